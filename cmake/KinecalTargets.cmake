@@ -1,0 +1,57 @@
+# The libraries, all header-only, one for each set of dependencies:
+#   kinecal::core   geometry ... crate           Eigen
+#   kinecal::solve  solve                        + Ceres
+#   kinecal::io     io, report                   + urdfdom, yaml-cpp, pugixml, fmt
+#   kinecal::kinecal  all of them
+include(GNUInstallDirs)
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Ceres 2.1 REQUIRED)
+find_package(urdfdom REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(fmt REQUIRED)
+
+function(kinecal_add_library name)
+  cmake_parse_arguments(ARG "" "" "FOLDERS;LINK" ${ARGN})
+  add_library(kinecal_${name} INTERFACE)
+  add_library(kinecal::${name} ALIAS kinecal_${name})
+  set_target_properties(kinecal_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(kinecal_${name} INTERFACE cxx_std_20)
+  set(headers "")
+  foreach(folder IN LISTS ARG_FOLDERS)
+    file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}/*.hpp
+         ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}.hpp)
+    list(APPEND headers ${found})
+  endforeach()
+  target_sources(kinecal_${name} INTERFACE FILE_SET HEADERS
+                 BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})
+  target_link_libraries(kinecal_${name} INTERFACE ${ARG_LINK})
+  install(TARGETS kinecal_${name} EXPORT kinecalTargets
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+kinecal_add_library(core
+  FOLDERS geometry kinematics parameters samples sensors errors crate
+  LINK Eigen3::Eigen)
+kinecal_add_library(solve
+  FOLDERS solve
+  LINK kinecal_core Ceres::ceres)
+kinecal_add_library(io
+  FOLDERS io report
+  LINK kinecal_solve urdfdom::urdfdom_model yaml-cpp pugixml::pugixml
+       fmt::fmt)
+kinecal_add_library(kinecal
+  FOLDERS kinecal
+  LINK kinecal_io)
+
+# What kinecal's own programs and tests are built with; never seen by its users.
+add_library(kinecal_build_options INTERFACE)
+target_compile_options(kinecal_build_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  $<$<BOOL:${KINECAL_WARNINGS_AS_ERRORS}>:-Werror>
+  $<$<BOOL:${KINECAL_NATIVE}>:-march=native>
+  $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=all>
+  $<$<BOOL:${KINECAL_SANITIZE}>:-fno-omit-frame-pointer>)
+target_link_options(kinecal_build_options INTERFACE
+  $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined>)

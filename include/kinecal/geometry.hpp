@@ -1,0 +1,7 @@
+// Door of geometry/: rotations and poses.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/geometry/pose.hpp"
+#include "kinecal/geometry/rotation.hpp"
+#include "kinecal/geometry/rpy.hpp"

@@ -1,0 +1,122 @@
+// Rotations as rotation vectors: exponential, logarithm and left Jacobian.
+//
+// A rotation vector w has the direction of the axis and the length of the angle (radians).  With
+// t = |w| and K = [w]x :
+//
+//   exp(w) = I + a K + b K^2      a = sin t / t      b = (1 - cos t) / t^2
+//   J(w)   = I + b K + c K^2      c = (t - sin t) / t^3
+//
+// J is the left Jacobian: exp(w + dw) = exp(J(w) dw) exp(w) to first order.  The coefficients are
+// even in t, hence smooth functions of t^2; below t = 0.5 their series are used, so values and
+// derivatives (automatic or by hand) are exact at zero.
+// Source: Chirikjian, Stochastic Models, Information Theory, and Lie Groups, vol. 2, 10.8.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace kinecal {
+
+template <class S>
+using Vector3 = Eigen::Matrix<S, 3, 1>;
+template <class S>
+using Matrix3 = Eigen::Matrix<S, 3, 3>;
+
+/// The matrix [w]x with [w]x p = w x p.
+template <class S>
+[[nodiscard]] Matrix3<S> cross_matrix(const Vector3<S>& w) {
+  Matrix3<S> k;
+  k << S(0), -w.z(), w.y(), w.z(), S(0), -w.x(), -w.y(), w.x(), S(0);
+  return k;
+}
+
+/// The three coefficients a, b, c above, for the square of the angle.
+template <class S>
+struct RotationCoefficients {
+  S a, b, c;
+
+  [[nodiscard]] static RotationCoefficients from_squared_angle(const S& t2) {
+    using std::cos, std::sin, std::sqrt;
+    if (t2 < S(0.25)) return {series(t2, 1), series(t2, 2), series(t2, 3)};
+    const S t = sqrt(t2);
+    const S half = sin(t * S(0.5));
+    return {sin(t) / t, S(2) * half * half / t2, (t - sin(t)) / (t2 * t)};
+  }
+
+ private:
+  /// sum over n of (-t2)^n / (2n + k)!, nine terms: the first one left out is below 1e-22.
+  [[nodiscard]] static S series(const S& t2, int k) {
+    S sum(0);
+    for (int n = 8; n >= 0; --n) {
+      // Horner from the inside: each term is the next one times -t2 / ((2n+k+1)(2n+k+2)).
+      sum = S(1) - sum * t2 / S(double(2 * n + k + 1) * double(2 * n + k + 2));
+    }
+    return sum / S(k == 3 ? 6.0 : k);  // k! for k = 1, 2, 3
+  }
+};
+
+/// Rotation matrix of a rotation vector.
+/// @param w  (3) rotation vector, radians
+template <class S>
+[[nodiscard]] Matrix3<S> exp(const Vector3<S>& w) {
+  const auto k = RotationCoefficients<S>::from_squared_angle(w.squaredNorm());
+  const Matrix3<S> cross = cross_matrix(w);
+  return Matrix3<S>::Identity() + cross * k.a + cross * cross * k.b;
+}
+
+/// Left Jacobian of exp at w: how a change of the rotation vector turns the rotated body.
+/// @param w  (3) rotation vector, radians
+template <class S>
+[[nodiscard]] Matrix3<S> left_jacobian(const Vector3<S>& w) {
+  const auto k = RotationCoefficients<S>::from_squared_angle(w.squaredNorm());
+  const Matrix3<S> cross = cross_matrix(w);
+  return Matrix3<S>::Identity() + cross * k.b + cross * cross * k.c;
+}
+
+namespace detail {
+
+/// Quaternion (x y z w) of a rotation matrix, not normalized: the largest of its four components
+/// is found first, so nothing is divided by a small number at any angle.
+template <class S>
+[[nodiscard]] Eigen::Matrix<S, 4, 1> quaternion(const Matrix3<S>& r) {
+  const S trace = r(0, 0) + r(1, 1) + r(2, 2);
+  int largest = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (r(largest, largest) < r(i, i)) largest = i;
+  }
+  Eigen::Matrix<S, 4, 1> q;
+  if (r(largest, largest) < trace) {
+    q << r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1), S(1) + trace;
+    return q;
+  }
+  const int i = largest, j = (i + 1) % 3, k = (i + 2) % 3;
+  q(i) = S(1) + r(i, i) - r(j, j) - r(k, k);
+  q(j) = r(j, i) + r(i, j);
+  q(k) = r(k, i) + r(i, k);
+  q(3) = r(k, j) - r(j, k);
+  if (q(3) < S(0)) q = -q;
+  return q;
+}
+
+}  // namespace detail
+
+/// Rotation vector of a rotation matrix, angle in [0, pi]; exact at zero and at pi.
+/// At exactly pi the axis is determined up to its sign only; one of the two is returned.
+template <class S>
+[[nodiscard]] Vector3<S> log(const Matrix3<S>& r) {
+  using std::atan2, std::sqrt;
+  const Eigen::Matrix<S, 4, 1> q = detail::quaternion(r);
+  const Vector3<S> v = q.template head<3>();
+  const S w = q(3), v2 = v.squaredNorm(), w2 = w * w;
+  if (v2 < w2 * S(1e-4)) {  // 2 atan(x)/x with x = |v|/w by its series, smooth at zero
+    const S x2 = v2 / w2;
+    const S factor =
+        S(1) - x2 * (S(1.0 / 3) - x2 * (S(1.0 / 5) - x2 * (S(1.0 / 7) - x2 * S(1.0 / 9))));
+    return v * (S(2) * factor / w);
+  }
+  const S norm = sqrt(v2);
+  return v * (S(2) * atan2(norm, w) / norm);
+}
+
+}  // namespace kinecal

@@ -1,0 +1,40 @@
+// Roll, pitch, yaw: the URDF's way to write a rotation.  R = Rz(yaw) Ry(pitch) Rx(roll).
+//
+// Only files and reports speak it; inside, rotations are matrices and rotation vectors.
+// Source: URDF specification, <origin rpy>: fixed-axis rotations about x, then y, then z.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/geometry/rotation.hpp"
+
+namespace kinecal {
+
+/// @param rpy  (3) roll, pitch, yaw, radians
+[[nodiscard]] inline Matrix3<double> rotation_from_rpy(const Vector3<double>& rpy) {
+  const double cr = std::cos(rpy.x()), sr = std::sin(rpy.x());
+  const double cp = std::cos(rpy.y()), sp = std::sin(rpy.y());
+  const double cy = std::cos(rpy.z()), sy = std::sin(rpy.z());
+  Matrix3<double> r;
+  r << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //
+      sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,   //
+      -sp, cp * sr, cp * cr;
+  return r;
+}
+
+/// @returns  (3) roll, pitch, yaw, radians; pitch in [-pi/2, pi/2].  At pitch = +-pi/2 only
+///           yaw -+ roll is determined: roll is set to zero there.
+[[nodiscard]] inline Vector3<double> rpy_from_rotation(const Matrix3<double>& r) {
+  const double cos_pitch = std::hypot(r(0, 0), r(1, 0));
+  const double pitch = std::atan2(-r(2, 0), cos_pitch);
+  // Below this cosine the angles that it scales drown in rounding.
+  constexpr double kGimbalLock = 1e-12;
+  if (cos_pitch < kGimbalLock) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
+  // With yaw taken out first, roll is found from entries of size one, accurate near gimbal lock.
+  const double yaw = std::atan2(r(1, 0), r(0, 0));
+  const double cy = std::cos(yaw), sy = std::sin(yaw);
+  const double roll =
+      std::atan2(sy * r(0, 2) - cy * r(1, 2), cy * r(1, 1) - sy * r(0, 1));
+  return {roll, pitch, yaw};
+}
+
+}  // namespace kinecal

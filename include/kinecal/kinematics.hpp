@@ -1,0 +1,13 @@
+// Door of kinematics/: robots, chains, the walk and its walkers.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/corrections.hpp"
+#include "kinecal/kinematics/joint.hpp"
+#include "kinecal/kinematics/motion.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/kinematics/pose_walker.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/kinematics/twist_walker.hpp"
+#include "kinecal/kinematics/walk.hpp"

@@ -1,0 +1,132 @@
+// A kinematic chain: the joints met on the way from one link of a robot to another.
+//
+// Base and tip are any two links: the way leads up from the base to the lowest common ancestor and
+// down to the tip.  A joint that is passed from child to parent is `reversed`:
+//
+//   base_T_tip = prod over joints of  fixed * (correction * motion)   passed parent to child
+//                                     fixed * (motion^-1 * correction^-1)   passed child to parent
+//                * tail
+//
+// `fixed` gathers everything constant before the joint: its own origin and the fixed joints that
+// nobody corrects, so the walk meets only joints that move or are corrected.
+//
+// The number of joints N is part of the type or std::dynamic_extent; both are one template, and the
+// walk of a chain of known length unrolls.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "kinecal/kinematics/robot.hpp"
+
+namespace kinecal {
+
+/// One joint on the way, as the walk needs it.
+struct ChainJoint {
+  std::string name;
+  JointType type = JointType::fixed;
+  Pose<double> fixed;  ///< constant transform from the previous joint (or the base) to this one
+  Vector3<double> axis = Vector3<double>::UnitX();
+  bool corrected = false;  ///< has a frame correction
+  bool reversed = false;   ///< passed from child to parent
+  Mimic drive;             ///< whose measured position moves it; itself, unless it mimics
+};
+
+template <std::size_t N = std::dynamic_extent>
+struct Chain {
+  using Joints = std::conditional_t<N == std::dynamic_extent, std::vector<ChainJoint>,
+                                    std::array<ChainJoint, N>>;
+  std::string base, tip;
+  Joints joints;
+  Pose<double> tail;  ///< constant transform from the last joint to the tip
+};
+
+/// Joints from `link` up to the root, the link's own parent joint first.
+[[nodiscard]] inline std::vector<const Joint*> joints_to_root(const Robot& robot,
+                                                              const std::string& link) {
+  std::vector<const Joint*> way;
+  for (const Joint* joint = robot.parent_joint(link); joint != nullptr;
+       joint = robot.parent_joint(joint->parent)) {
+    way.push_back(joint);
+    if (way.size() > robot.joints().size()) {
+      throw RobotError("link '" + link + "' is below itself");
+    }
+  }
+  return way;
+}
+
+/// The chain from `base` to `tip`.
+/// @param corrected  names of the joints with a frame correction; they are kept even when fixed
+/// @throws RobotError  if a link does not exist (with the nearest name), the two are not connected,
+///                     or a joint between them is floating or planar
+[[nodiscard]] inline Chain<> make_chain(const Robot& robot, const std::string& base,
+                                        const std::string& tip,
+                                        const std::set<std::string>& corrected = {}) {
+  std::vector<const Joint*> up = joints_to_root(robot, base);
+  std::vector<const Joint*> down = joints_to_root(robot, tip);
+  const auto root = [](const std::vector<const Joint*>& way, const std::string& link) {
+    return way.empty() ? link : way.back()->parent;
+  };
+  if (root(up, base) != root(down, tip)) {
+    throw RobotError("links '" + base + "' and '" + tip + "' are not connected in robot '" +
+                     robot.name() + "'");
+  }
+  while (!up.empty() && !down.empty() && up.back() == down.back()) {  // above the ancestor
+    up.pop_back();
+    down.pop_back();
+  }
+  std::reverse(down.begin(), down.end());
+
+  Chain<> chain{base, tip, {}, {}};
+  Pose<double> fixed;
+  const auto pass = [&](const Joint& joint, bool reversed) {
+    if (joint.type == JointType::floating || joint.type == JointType::planar) {
+      throw RobotError("joint '" + joint.name + "' between '" + base + "' and '" + tip + "' is " +
+                       std::string(to_string(joint.type)) +
+                       "; chains take fixed, revolute, continuous and prismatic joints");
+    }
+    if (!reversed) fixed = fixed * joint.origin;
+    const bool is_corrected = corrected.contains(joint.name);
+    if (is_corrected || moves(joint.type)) {
+      chain.joints.push_back({joint.name, joint.type, fixed, joint.axis, is_corrected, reversed,
+                              drive(robot, joint)});
+      fixed = {};
+    }
+    if (reversed) fixed = fixed * joint.origin.inverse();
+  };
+  for (const Joint* joint : up) pass(*joint, true);
+  for (const Joint* joint : down) pass(*joint, false);
+  chain.tail = fixed;
+  return chain;
+}
+
+/// The same chain with a virtual frame beyond its tip: a corrected, fixed joint of that name with
+/// an origin of identity.  Such frames (a checkerboard, a marker, a tracker) are in no URDF.
+[[nodiscard]] inline Chain<> with_virtual_frame(Chain<> chain, const std::string& frame) {
+  chain.joints.push_back({frame, JointType::fixed, chain.tail, Vector3<double>::UnitX(), true,
+                          false, Mimic{frame, 1.0, 0.0}});
+  chain.tail = {};
+  chain.tip = frame;
+  return chain;
+}
+
+/// The same chain with its number of joints in the type.
+/// @throws RobotError  if it has not N joints
+template <std::size_t N>
+[[nodiscard]] Chain<N> to_static(const Chain<>& chain) {
+  if (chain.joints.size() != N) {
+    throw RobotError("the chain from '" + chain.base + "' to '" + chain.tip + "' has " +
+                     std::to_string(chain.joints.size()) + " joints, not " + std::to_string(N));
+  }
+  Chain<N> result{chain.base, chain.tip, {}, chain.tail};
+  std::copy(chain.joints.begin(), chain.joints.end(), result.joints.begin());
+  return result;
+}
+
+}  // namespace kinecal

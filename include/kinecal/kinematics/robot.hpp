@@ -1,0 +1,125 @@
+// A robot as kinematics sees it: a tree of links connected by joints, found by name.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/kinematics/joint.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+
+namespace kinecal {
+
+/// Thrown where a name does not exist in the robot or two links are not connected.
+struct RobotError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+class Robot {
+ public:
+  Robot() = default;
+
+  /// @throws RobotError  on a joint name or child link that occurs twice, a mimic joint without its
+  ///                     source or in a circle, a moving joint with an axis of length zero
+  Robot(std::string name, std::vector<Joint> joints)
+      : name_(std::move(name)), joints_(std::move(joints)) {
+    for (std::size_t i = 0; i < joints_.size(); ++i) add_to_indices(i);
+    for (const Joint& joint : joints_) check_mimic(joint);
+  }
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::vector<Joint>& joints() const { return joints_; }
+
+  [[nodiscard]] bool has_joint(const std::string& name) const { return by_name_.contains(name); }
+  [[nodiscard]] bool has_link(const std::string& name) const { return links_.contains(name); }
+
+  /// @throws RobotError  with the nearest name, if there is no such joint
+  [[nodiscard]] const Joint& joint(const std::string& name) const {
+    const auto it = by_name_.find(name);
+    if (it == by_name_.end()) {
+      throw RobotError("no joint '" + name + "' in robot '" + name_ + "'" +
+                       did_you_mean(name, joint_names()));
+    }
+    return joints_[it->second];
+  }
+
+  /// The joint whose child is this link, or nullptr for the root.
+  /// @throws RobotError  with the nearest name, if there is no such link
+  [[nodiscard]] const Joint* parent_joint(const std::string& link) const {
+    const auto it = links_.find(link);
+    if (it == links_.end()) {
+      throw RobotError("no link '" + link + "' in robot '" + name_ + "'" +
+                       did_you_mean(link, link_names()));
+    }
+    return it->second < 0 ? nullptr : &joints_[static_cast<std::size_t>(it->second)];
+  }
+
+  [[nodiscard]] std::vector<std::string> joint_names() const {
+    std::vector<std::string> names;
+    for (const Joint& joint : joints_) names.push_back(joint.name);
+    return names;
+  }
+
+  [[nodiscard]] std::vector<std::string> link_names() const {
+    std::vector<std::string> names;
+    for (const auto& [link, joint] : links_) names.push_back(link);
+    return names;
+  }
+
+ private:
+  void add_to_indices(std::size_t i) {
+    Joint& joint = joints_[i];
+    if (!by_name_.emplace(joint.name, i).second) {
+      throw RobotError("joint '" + joint.name + "' occurs twice");
+    }
+    links_.try_emplace(joint.parent, -1);
+    int& parent_joint = links_.try_emplace(joint.child, -1).first->second;
+    if (parent_joint >= 0) {
+      throw RobotError("link '" + joint.child + "' is the child of two joints, '" +
+                       joints_[static_cast<std::size_t>(parent_joint)].name + "' and '" +
+                       joint.name + "'");
+    }
+    parent_joint = static_cast<int>(i);
+    if (!moves(joint.type)) return;
+    const double length = joint.axis.norm();
+    if (!(length > 0.0)) throw RobotError("joint '" + joint.name + "' has an axis of length zero");
+    joint.axis /= length;
+  }
+
+  void check_mimic(const Joint& first) const {
+    const Joint* joint = &first;
+    for (std::size_t steps = 0; joint->mimic; ++steps) {
+      if (steps > joints_.size()) {
+        throw RobotError("joint '" + first.name + "' mimics itself in a circle");
+      }
+      if (!has_joint(joint->mimic->joint)) {
+        throw RobotError("joint '" + joint->name + "' mimics '" + joint->mimic->joint +
+                         "', which does not exist" +
+                         did_you_mean(joint->mimic->joint, joint_names()));
+      }
+      joint = &this->joint(joint->mimic->joint);
+    }
+  }
+
+  std::string name_;
+  std::vector<Joint> joints_;
+  std::map<std::string, std::size_t> by_name_;
+  std::map<std::string, int> links_;  ///< link -> index of its parent joint, -1 for the root
+};
+
+/// The joint that finally drives a mimic joint, with the factors in between multiplied out.
+/// A joint that mimics nothing is driven by itself.
+[[nodiscard]] inline Mimic drive(const Robot& robot, const Joint& joint) {
+  Mimic total{joint.name, 1.0, 0.0};
+  for (const Joint* j = &joint; j->mimic; j = &robot.joint(j->mimic->joint)) {
+    total.offset += total.multiplier * j->mimic->offset;
+    total.multiplier *= j->mimic->multiplier;
+    total.joint = j->mimic->joint;
+  }
+  return total;
+}
+
+}  // namespace kinecal

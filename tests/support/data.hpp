@@ -1,0 +1,32 @@
+// Where the real data sets are: KINECAL_DATA, by default ../shared/data beside the checkout.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace kinecal::test {
+
+inline std::filesystem::path data_folder() {
+  const char* folder = std::getenv("KINECAL_DATA");
+  return folder != nullptr ? folder : KINECAL_DATA_DEFAULT;
+}
+
+inline bool data_required() {
+  const char* required = std::getenv("KINECAL_REQUIRE_DATA");
+  return required != nullptr && std::string(required) == "1";
+}
+
+}  // namespace kinecal::test
+
+/// Skips the test, with the reason, where a data set is absent; fails if KINECAL_REQUIRE_DATA=1.
+#define KINECAL_NEEDS_DATA(set)                                                             \
+  if (!std::filesystem::exists(kinecal::test::data_folder() / (set))) {                     \
+    if (kinecal::test::data_required()) {                                                   \
+      FAIL() << "data set '" << (set) << "' is absent and KINECAL_REQUIRE_DATA is 1";       \
+    }                                                                                       \
+    GTEST_SKIP() << "data set '" << (set) << "' is not in " << kinecal::test::data_folder() \
+                 << "; set KINECAL_DATA";                                                   \
+  }
