@@ -1,7 +1,8 @@
-// Door of geometry/: rotations and poses.
+// Door of geometry/: jets, rotations and poses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/geometry/jet.hpp"
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/geometry/rpy.hpp"

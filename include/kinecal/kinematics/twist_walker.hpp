@@ -27,8 +27,9 @@
 
 namespace kinecal {
 
-/// Which columns of a Jacobian belong to a joint's parameters; -1: not free.
-struct JointColumns {
+/// Where the parameters of a joint stand in a vector of parameters (or which columns of a Jacobian are
+/// theirs); -1: nowhere.
+struct JointIndices {
   int offset = -1;
   double gain = 1.0;  ///< of the offset: the multiplier of a mimic joint
   std::array<int, 6> frame = {-1, -1, -1, -1, -1, -1};  ///< x y z a b c
@@ -47,7 +48,7 @@ struct Twist {
 
 template <class S>
 struct TwistWalker {
-  std::span<const JointColumns> columns;  ///< one per joint of the chain
+  std::span<const JointIndices> columns;  ///< of the free parameters, one per joint of the chain
   PoseWalker<S> walker = {};
   std::vector<Twist<S>> twists = {};
 

@@ -1,0 +1,160 @@
+// Terms made of error blocks: jets differentiate the block, twists carry that to the parameters.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/crate/term.hpp"
+
+namespace kinecal {
+
+template <ErrorBlock B>
+class BlockTerm final : public Term {
+ public:
+  static constexpr int kSize = kResiduals<B>;
+
+  BlockTerm(std::string name, B block, std::vector<int> sensors, TermOptions options)
+      : Term(std::move(name), std::move(sensors), std::move(options)), block_(std::move(block)) {}
+
+  [[nodiscard]] int feature_size() const override { return kSize; }
+
+  [[nodiscard]] bool pairs_features() const override {
+    return PointPairBlock<B> || SightBlock<B>;
+  }
+
+  [[nodiscard]] int count(std::span<const PackedObservation* const> seen) const override {
+    if constexpr (PlanePairBlock<B>) {
+      return count_of_plane(*seen[0]) >= 3 && count_of_plane(*seen[1]) >= 3 ? 1 : 0;
+    } else {
+      return static_cast<int>(usable(seen).size());
+    }
+  }
+
+  [[nodiscard]] bool evaluate(std::span<const SensorView* const> views, int columns,
+                              TermResiduals& out) const override {
+    if constexpr (PlanePairBlock<B>) {
+      return evaluate_planes(views, columns, out);
+    } else {
+      const std::vector<std::size_t> features = usable(views);
+      out.resize(static_cast<Eigen::Index>(features.size()) * kSize, columns);
+      for (std::size_t n = 0; n < features.size(); ++n) {
+        const auto row = static_cast<Eigen::Index>(n) * kSize;
+        bool defined = false;
+        if constexpr (SightBlock<B>) {
+          defined = evaluate_sight(views, features[n], row, columns >= 0, out);
+        } else {
+          defined = evaluate_points(views, features[n], row, columns >= 0, out);
+        }
+        if (!defined) return false;
+      }
+      return true;
+    }
+  }
+
+ private:
+  [[nodiscard]] bool evaluate_points(std::span<const SensorView* const> views, std::size_t i,
+                                     Eigen::Index row, bool derivatives, TermResiduals& out) const {
+    constexpr int kPoints = kSensors<B>;
+    const auto call = [&]<class S>(const Vector3<S>& a, const Vector3<S>& b) {
+      if constexpr (kPoints == 1) {
+        return block_(a);
+      } else {
+        return block_(a, b);
+      }
+    };
+    const Vector3<double>& p_a = views[0]->points()[i];
+    const Vector3<double>& p_b = views[kPoints - 1]->points()[i];
+    if (!derivatives) {
+      out.residual.segment<kSize>(row) = call(p_a, p_b);
+      return out.residual.segment<kSize>(row).allFinite();
+    }
+    using J = Jet<double, 3 * kPoints>;
+    const auto r = call(detail::point_jets<J>(p_a, 0), detail::point_jets<J>(p_b, 3 * kPoints - 3));
+    out.residual.segment<kSize>(row) = detail::values<kSize>(r);
+    for (int s = 0; s < kPoints; ++s) {
+      views[static_cast<std::size_t>(s)]->add_motion(i, detail::derivatives<3, kSize>(r, 3 * s),
+                                                     out.jacobian.middleRows<kSize>(row));
+    }
+    return out.residual.segment<kSize>(row).allFinite();
+  }
+
+  /// The camera's parameters and the point it sees are the variables: 4 + 3.
+  [[nodiscard]] bool evaluate_sight(std::span<const SensorView* const> views, std::size_t i,
+                                    Eigen::Index row, bool derivatives, TermResiduals& out) const {
+    const SensorView& camera = *views[1];
+    const Vector3<double>& p_base = views[0]->points()[i];
+    const Vector3<double> p_camera = camera.pose().inverse() * p_base;
+    if (!(p_camera.z() > 0.0)) return false;
+    const PackedObservation& seen = camera.observation();
+    const auto look = [&]<class S>(const Vector3<S>& p, const std::array<S, 4>& parameters) {
+      return block_(
+          Sight<S>{p, parameters, seen.pinhole_camera, seen.measured[i].template head<2>()});
+    };
+    using J = Jet<double, 7>;
+    std::array<J, 4> parameters;
+    std::array<double, 4> parameter_values{};
+    for (int k = 0; k < 4; ++k) {
+      const auto index = static_cast<std::size_t>(k);
+      parameter_values[index] = camera.state().camera_values[index];
+      parameters[index] = J(parameter_values[index], 3 + k);
+    }
+    if (!derivatives) {
+      out.residual.segment<kSize>(row) = look(p_camera, parameter_values);
+      return out.residual.segment<kSize>(row).allFinite();
+    }
+    const auto r = look(detail::point_jets<J>(p_camera, 0), parameters);
+    out.residual.segment<kSize>(row) = detail::values<kSize>(r);
+    auto rows = out.jacobian.middleRows<kSize>(row);
+    const Eigen::Matrix<double, kSize, 3> by_base =
+        detail::derivatives<3, kSize>(r, 0) * camera.pose().rotation.transpose();
+    views[0]->add_motion(i, by_base, rows);
+    camera.add_viewer_motion(p_base, by_base, rows);
+    const auto by_camera = detail::derivatives<4, kSize>(r, 3);
+    for (int k = 0; k < 4; ++k) {
+      const int column = camera.state().camera_columns[static_cast<std::size_t>(k)];
+      if (column >= 0) rows.col(column) += by_camera.col(k);
+    }
+    return out.residual.segment<kSize>(row).allFinite();
+  }
+
+  [[nodiscard]] static int count_of_plane(const PackedObservation& seen) {
+    return static_cast<int>(std::count(seen.usable.begin(), seen.usable.end(), true));
+  }
+
+  [[nodiscard]] bool evaluate_planes(std::span<const SensorView* const> views, int columns,
+                                     TermResiduals& out) const {
+    std::array<std::vector<std::size_t>, 2> features;
+    std::vector<PlaneFit> fits;
+    for (std::size_t s = 0; s < 2; ++s) {
+      features[s] = usable(views.subspan(s, 1));
+      std::vector<Vector3<double>> points;
+      for (std::size_t i : features[s]) points.push_back(views[s]->points()[i]);
+      fits.emplace_back(points);
+      if (!fits[s].determined()) return false;
+    }
+    using J = Jet<double, 12>;
+    std::array<Plane<J>, 2> planes;
+    for (int s = 0; s < 2; ++s) {
+      const Plane<double> plane = fits[static_cast<std::size_t>(s)].plane();
+      planes[static_cast<std::size_t>(s)] = {detail::point_jets<J>(plane.centroid, 6 * s),
+                                             detail::point_jets<J>(plane.normal, 6 * s + 3)};
+    }
+    const auto r = block_(planes[0], planes[1]);
+    out.resize(kSize, columns);
+    out.residual = detail::values<kSize>(r);
+    for (std::size_t s = 0; columns >= 0 && s < 2; ++s) {
+      const int first = 6 * static_cast<int>(s);
+      const Eigen::Matrix<double, kSize, 3> by_centroid =
+          detail::derivatives<3, kSize>(r, first) * fits[s].centroid_by_point();
+      const Eigen::Matrix<double, kSize, 3> by_normal = detail::derivatives<3, kSize>(r, first + 3);
+      for (std::size_t i : features[s]) {
+        const Eigen::Matrix<double, kSize, 3> by_point =
+            by_centroid + by_normal * fits[s].normal_by_point(views[s]->points()[i]);
+        views[s]->add_motion(i, by_point, out.jacobian);
+      }
+    }
+    return out.residual.allFinite();
+  }
+
+  B block_;
+};
+
+}  // namespace kinecal

@@ -1,0 +1,150 @@
+// A sensor on its robot: the chains from the base to everything it observes, and its parameters.
+//
+// A feature is observed in the sensor's own frame or in a virtual frame (a checkerboard, a tracker)
+// that hangs on it; each such frame has its own chain.  What a sample says of the sensor is packed
+// once: trigonometry of its joints, measurements in the form in which the sensor model needs them.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/sensors/sensor.hpp"
+
+namespace kinecal {
+
+/// A sample that cannot be used with this robot and these sensors.
+struct SampleError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+/// What one sensor observed in one sample.
+struct PackedObservation {
+  std::vector<Vector3<double>> measured;  ///< chain3d: point, metres; camera3d: (u, v, z0);
+                                          ///< camera2d: (u, v, 0)
+  std::vector<bool> usable;               ///< false: not a number; left out everywhere
+  std::vector<std::size_t> chain;         ///< on which chain of the sensor each feature hangs
+  std::vector<std::optional<std::vector<Motion<double>>>> motions;  ///< of each chain's joints,
+                                                                    ///< where a feature hangs on it
+  DepthCamera depth_camera{};                        ///< as recorded, camera3d only
+  PinholeCamera pinhole_camera{};                    ///< as recorded, camera2d only
+};
+
+class SensorModel {
+ public:
+  /// @param frames  names of all free frames: those that are joints of the robot correct them, the
+  ///                others are virtual frames
+  /// @throws RobotError  if there is no chain from the base to the sensor's frame
+  SensorModel(const Robot& robot, const std::string& base, Sensor sensor,
+              const ParameterTable& table, const std::set<std::string>& frames)
+      : sensor_(std::move(sensor)), camera_parameters_(sensor_parameters(sensor_.type), -1) {
+    const Chain<> chain = make_chain(robot, base, sensor_.frame, frames);
+    add_chain(chain, table);
+    for (const std::string& frame : frames) {
+      if (!robot.has_joint(frame)) add_chain(with_virtual_frame(chain, frame), table);
+    }
+    for (std::size_t i = 0; i < camera_parameters_.size(); ++i) {
+      camera_parameters_[i] =
+          table.find(parameter_name(sensor_.parameter_prefix(), kCameraParameters[i]));
+    }
+  }
+
+  [[nodiscard]] const Sensor& sensor() const { return sensor_; }
+  [[nodiscard]] const std::vector<Chain<>>& chains() const { return chains_; }
+  /// Table indices of each chain's parameters.
+  [[nodiscard]] const std::vector<std::vector<JointIndices>>& parameters() const {
+    return parameters_;
+  }
+  /// Table indices of the sensor's own parameters, -1 where the table has none.
+  [[nodiscard]] const std::vector<int>& camera_parameters() const { return camera_parameters_; }
+
+  /// @throws SampleError  naming what is missing or wrong
+  [[nodiscard]] PackedObservation pack(const Sample& sample, const Observation& observation) const {
+    PackedObservation packed;
+    packed.motions.resize(chains_.size());
+    if (sensor_.type != SensorType::chain3d) pack_camera(observation, packed);
+    for (const Feature& feature : observation.features) {
+      const std::size_t chain = chain_to(feature.frame);
+      if (!packed.motions[chain]) packed.motions[chain] = motions(sample, chains_[chain]);
+      const bool usable = feature.point.allFinite();
+      packed.chain.push_back(chain);
+      packed.usable.push_back(usable);
+      packed.measured.push_back(usable ? measurement(feature.point, packed)
+                                       : Vector3<double>::Zero());
+    }
+    return packed;
+  }
+
+ private:
+  void add_chain(const Chain<>& chain, const ParameterTable& table) {
+    chain_by_frame_.emplace(chain.tip, chains_.size());
+    chains_.push_back(chain);
+    parameters_.push_back(chain_parameters(chain, table));
+  }
+
+  [[nodiscard]] std::size_t chain_to(const std::string& frame) const {
+    if (frame.empty()) return 0;  // a header without frame_id: the sensor's own frame
+    const auto it = chain_by_frame_.find(frame);
+    const bool is_camera = sensor_.type != SensorType::chain3d;
+    if (it != chain_by_frame_.end() && !(is_camera && it->second != 0)) return it->second;
+    std::vector<std::string> known;
+    for (const auto& [name, chain] : chain_by_frame_) known.push_back(name);
+    throw SampleError("sensor '" + sensor_.name + "': a feature is in frame '" + frame +
+                      "', which is not the sensor's frame '" + sensor_.frame + "'" +
+                      (is_camera ? "" : " and not a free frame") + did_you_mean(frame, known));
+  }
+
+  [[nodiscard]] std::vector<Motion<double>> motions(const Sample& sample,
+                                                    const Chain<>& chain) const {
+    return measured_motions(chain, [&](const std::string& joint) {
+      const std::optional<double> position = sample.position(joint);
+      if (!position) {
+        throw SampleError("joint '" + joint + "' is not in the sample; sensor '" + sensor_.name +
+                          "' needs it" + did_you_mean(joint, sample.joint_names));
+      }
+      if (!std::isfinite(*position)) {
+        throw SampleError("the position of joint '" + joint + "' is not a number");
+      }
+      return *position;
+    });
+  }
+
+  void pack_camera(const Observation& observation, PackedObservation& packed) const {
+    if (!observation.camera) {
+      throw SampleError("sensor '" + sensor_.name + "' is a camera but has no camera_info");
+    }
+    packed.depth_camera = DepthCamera::from(*observation.camera);
+    packed.pinhole_camera = PinholeCamera::from(*observation.camera);
+    const bool depth = sensor_.type == SensorType::camera3d;
+    const double fx = depth ? packed.depth_camera.fx : packed.pinhole_camera.fx;
+    const double fy = depth ? packed.depth_camera.fy : packed.pinhole_camera.fy;
+    if (!(fx > 0.0 && fy > 0.0)) {
+      throw SampleError("sensor '" + sensor_.name +
+                        "': the focal lengths in camera_info are not positive");
+    }
+  }
+
+  [[nodiscard]] Vector3<double> measurement(const Vector3<double>& point,
+                                            const PackedObservation& packed) const {
+    if (sensor_.type != SensorType::camera3d) return point;
+    if (point.z() <= 0.0) {
+      throw SampleError("sensor '" + sensor_.name + "': a point is behind the camera (z = " +
+                        std::to_string(point.z()) + " m)");
+    }
+    return packed.depth_camera.measurement(point);
+  }
+
+  Sensor sensor_;
+  std::vector<int> camera_parameters_;
+  std::vector<Chain<>> chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames
+  std::vector<std::vector<JointIndices>> parameters_;
+  std::map<std::string, std::size_t> chain_by_frame_;
+};
+
+}  // namespace kinecal

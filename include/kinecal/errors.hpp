@@ -1,0 +1,12 @@
+// Door of errors/: error blocks, priors and losses.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/errors/error_block.hpp"
+#include "kinecal/errors/loss.hpp"
+#include "kinecal/errors/plane_fit.hpp"
+#include "kinecal/errors/plane_to_plane.hpp"
+#include "kinecal/errors/point_to_pixel.hpp"
+#include "kinecal/errors/point_to_plane.hpp"
+#include "kinecal/errors/point_to_point.hpp"
+#include "kinecal/errors/prior.hpp"

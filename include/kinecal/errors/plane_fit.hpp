@@ -1,0 +1,66 @@
+// The plane through points that leaves the least squares of their distances, with derivatives.
+//
+// The normal n is the eigenvector of M = sum q q^T (q = p - centroid) with the least eigenvalue l0;
+// u_k, l_k are the two others.  A change dp of one point changes M n by q (n . dp) + dp (q . n), so
+//
+//   dn/dp = sum over k of  u_k ((q . n) u_k + (q . u_k) n)^T / (l0 - l_k)
+//
+// Source: Magnus, On differentiating eigenvalues and eigenvectors, 1985.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <span>
+
+#include "kinecal/errors/error_block.hpp"
+
+namespace kinecal {
+
+class PlaneFit {
+ public:
+  /// @param points  at least three, not on one line, metres
+  explicit PlaneFit(std::span<const Vector3<double>> points) : count_(points.size()) {
+    Vector3<double> sum = Vector3<double>::Zero();
+    for (const auto& p : points) sum += p;
+    centroid_ = sum / static_cast<double>(count_);
+    Matrix3<double> scatter = Matrix3<double>::Zero();
+    for (const auto& p : points) scatter += (p - centroid_) * (p - centroid_).transpose();
+    const Eigen::SelfAdjointEigenSolver<Matrix3<double>> solver(scatter);
+    eigenvalues_ = solver.eigenvalues();
+    eigenvectors_ = solver.eigenvectors();
+  }
+
+  /// False for fewer than three points, points on one line, or a cloud without a flattest side:
+  /// the normal is then not determined.
+  [[nodiscard]] bool determined() const {
+    constexpr double kLeastRatio = 1e-9;  // of squared extents
+    return count_ >= 3 && eigenvalues_(1) - eigenvalues_(0) > kLeastRatio * eigenvalues_(2);
+  }
+
+  [[nodiscard]] Plane<double> plane() const { return {centroid_, eigenvectors_.col(0)}; }
+
+  /// (3 x 3) derivative of the centroid with respect to one point.
+  [[nodiscard]] Matrix3<double> centroid_by_point() const {
+    return Matrix3<double>::Identity() / static_cast<double>(count_);
+  }
+
+  /// (3 x 3) derivative of the normal with respect to the point p.
+  [[nodiscard]] Matrix3<double> normal_by_point(const Vector3<double>& p) const {
+    const Vector3<double> q = p - centroid_, n = eigenvectors_.col(0);
+    Matrix3<double> derivative = Matrix3<double>::Zero();
+    for (int k = 1; k < 3; ++k) {
+      const Vector3<double> u = eigenvectors_.col(k);
+      derivative += u * (q.dot(n) * u + q.dot(u) * n).transpose() /
+                    (eigenvalues_(0) - eigenvalues_(k));
+    }
+    return derivative;
+  }
+
+ private:
+  std::size_t count_;
+  Vector3<double> centroid_;
+  Vector3<double> eigenvalues_;
+  Matrix3<double> eigenvectors_;
+};
+
+}  // namespace kinecal

@@ -1,0 +1,32 @@
+// Two sensors see the same plane (plane_to_plane).
+//
+//   r = ( (n_a - n_b) normal_scale,  n_b . (c_a - c_b) offset_scale )
+//
+// with normals n and centroids c of the two sets of points; n_b has been turned to the side of n_a,
+// so that no sign flips where a plane passes through the origin.
+// Source: Fetch paper, III-B
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/errors/error_block.hpp"
+
+namespace kinecal {
+
+struct PlaneToPlane {
+  double normal_scale = 1.0;
+  double offset_scale = 1.0;  ///< 1 / metre
+
+  /// @returns  (4) difference of the normals, distance of centroid a to plane b; scaled
+  template <class S>
+  [[nodiscard]] Eigen::Matrix<S, 4, 1> operator()(const Plane<S>& a, const Plane<S>& b) const {
+    const S side = a.normal.dot(b.normal) < S(0.0) ? S(-1.0) : S(1.0);
+    const Vector3<S> n_b = b.normal * side;
+    Eigen::Matrix<S, 4, 1> r;
+    r << (a.normal - n_b) * S(normal_scale), n_b.dot(a.centroid - b.centroid) * S(offset_scale);
+    return r;
+  }
+};
+
+static_assert(PlanePairBlock<PlaneToPlane> && kResiduals<PlaneToPlane> == 4);
+
+}  // namespace kinecal

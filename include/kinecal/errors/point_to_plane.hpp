@@ -1,0 +1,40 @@
+// Distance of a point to a known plane (chain3d_to_plane).  r = (n . p + d) / |n|
+//
+// Signed: the absolute value has a kink exactly at the solution, the cost is the same.
+// Source: Fetch paper, III-B, the ground plane
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+
+#include "kinecal/errors/error_block.hpp"
+
+namespace kinecal {
+
+class PointToPlane {
+ public:
+  /// The plane a x + b y + c z + d = 0 in the base, metres.
+  /// @throws std::invalid_argument  if (a, b, c) is zero
+  PointToPlane(double a, double b, double c, double d) : normal_(a, b, c), d_(d) {
+    const double length = normal_.norm();
+    if (!(length > 0.0)) throw std::invalid_argument("the plane's normal (a, b, c) is zero");
+    normal_ /= length;
+    d_ /= length;
+  }
+
+  /// @param p_base  (3) feature, metres, in the base
+  /// @returns       (1) signed distance, metres
+  template <class S>
+  [[nodiscard]] Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p_base) const {
+    return Eigen::Matrix<S, 1, 1>(normal_.x() * p_base.x() + normal_.y() * p_base.y() +
+                                  normal_.z() * p_base.z() + d_);
+  }
+
+ private:
+  Vector3<double> normal_;
+  double d_;
+};
+
+static_assert(PointBlock<PointToPlane> && kResiduals<PointToPlane> == 1);
+
+}  // namespace kinecal

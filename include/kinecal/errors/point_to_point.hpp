@@ -1,0 +1,21 @@
+// Two sensors see the same point (chain3d_to_chain3d).  r = p_a - p_b
+// Source: Fetch paper, III-B, hand-eye error
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/errors/error_block.hpp"
+
+namespace kinecal {
+
+struct PointToPoint {
+  /// @param p_a, p_b  (3) the feature as either sensor has it, metres, in the base
+  /// @returns         (3) metres
+  template <class S>
+  [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
+    return p_a - p_b;
+  }
+};
+
+static_assert(PointPairBlock<PointToPoint> && kResiduals<PointToPoint> == 3);
+
+}  // namespace kinecal

@@ -1,0 +1,131 @@
+// A jet: a value with its N first derivatives.  Arithmetic on jets differentiates (forward mode).
+//
+//   f(x + dx) = f(x) + f'(x) dx      Jet<S, 1> x{3.0, 0};  (x * x).v(0) == 6
+//
+// Used small (3 to 9 wide) to differentiate what a sensor or an error block does with a point;
+// kinematics has its own derivatives (kinematics/twist_walker.hpp).  S is double or a packet.
+// Comparisons look at the value only.
+// Source: Griewank, Walther, Evaluating Derivatives, 3.1.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <concepts>
+
+namespace kinecal {
+
+template <class S, int N>
+struct Jet {
+  using Gradient = Eigen::Matrix<S, N, 1>;
+
+  S a{0.0};                       ///< value
+  Gradient v = Gradient::Zero();  ///< derivatives
+
+  Jet() = default;
+  Jet(const S& value) : a(value) {}  // NOLINT: a number is a jet without derivatives
+  template <std::integral I>
+  Jet(I value) : a(static_cast<double>(value)) {}  // NOLINT
+  /// The k-th variable: its derivative with respect to itself is one.
+  Jet(const S& value, int k) : a(value) { v(k) = S(1.0); }
+  Jet(const S& value, const Gradient& gradient) : a(value), v(gradient) {}
+
+  Jet operator-() const { return {-a, -v}; }
+  Jet& operator+=(const Jet& y) { return *this = *this + y; }
+  Jet& operator-=(const Jet& y) { return *this = *this - y; }
+  Jet& operator*=(const Jet& y) { return *this = *this * y; }
+  Jet& operator/=(const Jet& y) { return *this = *this / y; }
+
+  friend Jet operator+(const Jet& x, const Jet& y) { return {x.a + y.a, x.v + y.v}; }
+  friend Jet operator-(const Jet& x, const Jet& y) { return {x.a - y.a, x.v - y.v}; }
+  friend Jet operator*(const Jet& x, const Jet& y) { return {x.a * y.a, x.v * y.a + y.v * x.a}; }
+  friend Jet operator/(const Jet& x, const Jet& y) {
+    const S inverse = S(1.0) / y.a, quotient = x.a * inverse;
+    return {quotient, (x.v - y.v * quotient) * inverse};
+  }
+  friend Jet operator+(const Jet& x, const S& s) { return {x.a + s, x.v}; }
+  friend Jet operator+(const S& s, const Jet& x) { return {s + x.a, x.v}; }
+  friend Jet operator-(const Jet& x, const S& s) { return {x.a - s, x.v}; }
+  friend Jet operator-(const S& s, const Jet& x) { return {s - x.a, -x.v}; }
+  friend Jet operator*(const Jet& x, const S& s) { return {x.a * s, x.v * s}; }
+  friend Jet operator*(const S& s, const Jet& x) { return x * s; }
+  friend Jet operator/(const Jet& x, const S& s) { return x * (S(1.0) / s); }
+
+  friend bool operator==(const Jet& x, const Jet& y) { return x.a == y.a; }
+  friend bool operator<(const Jet& x, const Jet& y) { return x.a < y.a; }
+  friend bool operator>(const Jet& x, const Jet& y) { return x.a > y.a; }
+  friend bool operator<=(const Jet& x, const Jet& y) { return x.a <= y.a; }
+  friend bool operator>=(const Jet& x, const Jet& y) { return x.a >= y.a; }
+
+  friend Jet sqrt(const Jet& x) {
+    using std::sqrt;
+    const S root = sqrt(x.a);
+    return {root, x.v * (S(0.5) / root)};
+  }
+  friend Jet abs(const Jet& x) { return x.a < S(0.0) ? -x : x; }
+  friend Jet sin(const Jet& x) {
+    using std::cos, std::sin;
+    return {sin(x.a), x.v * cos(x.a)};
+  }
+  friend Jet cos(const Jet& x) {
+    using std::cos, std::sin;
+    return {cos(x.a), x.v * S(-sin(x.a))};
+  }
+  friend Jet exp(const Jet& x) {
+    using std::exp;
+    const S value = exp(x.a);
+    return {value, x.v * value};
+  }
+  friend Jet log(const Jet& x) {
+    using std::log;
+    return {log(x.a), x.v * (S(1.0) / x.a)};
+  }
+  friend Jet atan2(const Jet& y, const Jet& x) {
+    using std::atan2;
+    const S scale = S(1.0) / (x.a * x.a + y.a * y.a);
+    return {atan2(y.a, x.a), y.v * (x.a * scale) - x.v * (y.a * scale)};
+  }
+};
+
+/// The number itself, or a jet's value.
+[[nodiscard]] inline double value_of(double x) { return x; }
+template <class S, int N>
+[[nodiscard]] S value_of(const Jet<S, N>& x) {
+  return x.a;
+}
+
+}  // namespace kinecal
+
+namespace Eigen {
+
+template <class S, int N>
+struct NumTraits<kinecal::Jet<S, N>> : NumTraits<double> {
+  using Real = kinecal::Jet<S, N>;
+  using NonInteger = Real;
+  using Nested = Real;
+  using Literal = Real;
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1 + N,
+    AddCost = 1 + N,
+    MulCost = 3 + 2 * N
+  };
+  static Real epsilon() { return Real(NumTraits<double>::epsilon()); }
+  static Real dummy_precision() { return Real(NumTraits<double>::dummy_precision()); }
+  static Real highest() { return Real(NumTraits<double>::highest()); }
+  static Real lowest() { return Real(NumTraits<double>::lowest()); }
+};
+
+template <class S, int N, class Op>
+struct ScalarBinaryOpTraits<kinecal::Jet<S, N>, S, Op> {
+  using ReturnType = kinecal::Jet<S, N>;
+};
+template <class S, int N, class Op>
+struct ScalarBinaryOpTraits<S, kinecal::Jet<S, N>, Op> {
+  using ReturnType = kinecal::Jet<S, N>;
+};
+
+}  // namespace Eigen

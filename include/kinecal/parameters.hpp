@@ -1,0 +1,7 @@
+// Door of parameters/: what may be wrong, by name.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/parameters/parameter.hpp"
+#include "kinecal/parameters/parameter_table.hpp"

@@ -1,0 +1,64 @@
+// Which parameters act on the joints of a chain, and the corrections that follow from their values.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kinecal/kinematics/twist_walker.hpp"
+#include "kinecal/parameters/parameter_table.hpp"
+
+namespace kinecal {
+
+/// Indices of the parameters of each joint of a chain, by name.  A mimic joint is moved by the
+/// offset of the joint that drives it.
+template <std::size_t N>
+[[nodiscard]] std::vector<JointIndices> chain_parameters(const Chain<N>& chain,
+                                                         const ParameterTable& table) {
+  std::vector<JointIndices> indices;
+  for (const ChainJoint& joint : chain.joints) {
+    JointIndices& of_joint = indices.emplace_back();
+    if (moves(joint.type)) {
+      of_joint.offset = table.find(joint.drive.joint);
+      of_joint.gain = joint.drive.multiplier;
+    }
+    if (!joint.corrected) continue;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      of_joint.frame[axis] = table.find(parameter_name(joint.name, kFrameAxes[axis]));
+    }
+  }
+  return indices;
+}
+
+/// The Jacobian's columns in place of the parameters' indices.
+[[nodiscard]] inline std::vector<JointIndices> columns_of(const std::vector<JointIndices>& indices,
+                                                          const FreeSet& free) {
+  std::vector<JointIndices> columns = indices;
+  for (JointIndices& joint : columns) {
+    joint.offset = free.column(joint.offset);
+    for (int& axis : joint.frame) axis = free.column(axis);
+  }
+  return columns;
+}
+
+/// Corrections of a chain's joints for the values of all parameters.
+/// @param values  of the whole table, in its order; any scalar
+template <class S>
+[[nodiscard]] Corrections<S> corrections_for(const std::vector<JointIndices>& indices,
+                                             std::span<const S> values) {
+  const auto value = [&](int i) { return i < 0 ? S(0.0) : values[static_cast<std::size_t>(i)]; };
+  Corrections<S> corrections(indices.size());
+  for (std::size_t j = 0; j < indices.size(); ++j) {
+    const JointIndices& joint = indices[j];
+    if (joint.offset >= 0) corrections[j].offset = make_motion(S(value(joint.offset) * joint.gain));
+    bool corrected = false;
+    for (int axis : joint.frame) corrected = corrected || axis >= 0;
+    if (!corrected) continue;
+    const auto& f = joint.frame;
+    corrections[j].set_frame({value(f[0]), value(f[1]), value(f[2])},
+                             {value(f[3]), value(f[4]), value(f[5])});
+  }
+  return corrections;
+}
+
+}  // namespace kinecal

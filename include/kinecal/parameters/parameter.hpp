@@ -1,0 +1,39 @@
+// A parameter: one number that may be wrong, known by its name.
+//
+// The names are robot_calibration's, the same in configuration, results and reports:
+//
+//   <joint>                  offset added to the measured position            rad or m
+//   <frame>_x _y _z          translation of a frame correction                m
+//   <frame>_a _b _c          rotation vector of a frame correction            rad
+//   <camera>_fx _fy _cx _cy  relative change of an intrinsic: f = f0 (1 + v)  1
+//   <camera>_z_offset        z = (z0 + z_offset) (1 + z_scaling)              m
+//   <camera>_z_scaling                                                        1
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace kinecal {
+
+inline constexpr std::array<std::string_view, 6> kFrameAxes = {"x", "y", "z", "a", "b", "c"};
+inline constexpr std::array<std::string_view, 6> kCameraParameters = {"fx", "fy",       "cx",
+                                                                      "cy", "z_offset", "z_scaling"};
+
+/// Name of one parameter of a frame or a camera: "head_pan_joint" + "x" -> "head_pan_joint_x".
+[[nodiscard]] inline std::string parameter_name(std::string_view owner, std::string_view part) {
+  return std::string(owner) + "_" + std::string(part);
+}
+
+struct Parameter {
+  std::string name;
+  std::string unit = "rad";  ///< "rad", "m" or "1"
+  double initial = 0.0;
+  double value = 0.0;
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace kinecal

@@ -1,0 +1,97 @@
+// The parameters of a calibration, found by name, and which of them are free in a step.
+//
+// A parameter's index is its place in the table; it never changes.  A free set gives some of them a
+// column of the Jacobian; the others are held at their value.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/parameters/parameter.hpp"
+
+namespace kinecal {
+
+class ParameterTable {
+ public:
+  /// Adds a parameter.
+  /// @throws std::invalid_argument  if the name is taken
+  int add(const Parameter& parameter) {
+    const int index = size();
+    if (!indices_.emplace(parameter.name, index).second) {
+      throw std::invalid_argument("parameter '" + parameter.name + "' occurs twice");
+    }
+    parameters_.push_back(parameter);
+    return index;
+  }
+
+  [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
+
+  /// Index of a parameter, or -1.
+  [[nodiscard]] int find(const std::string& name) const {
+    const auto it = indices_.find(name);
+    return it == indices_.end() ? -1 : it->second;
+  }
+
+  /// @throws std::invalid_argument  with the nearest name, if there is no such parameter
+  [[nodiscard]] int index(const std::string& name) const {
+    const int found = find(name);
+    if (found >= 0) return found;
+    std::vector<std::string> names;
+    for (const auto& [known, i] : indices_) names.push_back(known);
+    throw std::invalid_argument("no parameter '" + name + "'" + did_you_mean(name, names));
+  }
+
+  [[nodiscard]] Parameter& operator[](int i) { return parameters_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const Parameter& operator[](int i) const {
+    return parameters_[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] Parameter& operator[](const std::string& name) { return (*this)[index(name)]; }
+  [[nodiscard]] const Parameter& operator[](const std::string& name) const {
+    return (*this)[index(name)];
+  }
+
+  [[nodiscard]] auto begin() const { return parameters_.begin(); }
+  [[nodiscard]] auto end() const { return parameters_.end(); }
+
+  [[nodiscard]] Eigen::VectorXd values() const {
+    Eigen::VectorXd all(size());
+    for (int i = 0; i < size(); ++i) all(i) = (*this)[i].value;
+    return all;
+  }
+
+ private:
+  std::vector<Parameter> parameters_;
+  std::map<std::string, int> indices_;
+};
+
+/// Which parameters are free: the columns of the Jacobian.
+class FreeSet {
+ public:
+  /// @param parameters  indices in the table, in the order of the columns
+  /// @param table_size  number of parameters in the table
+  FreeSet(std::vector<int> parameters, int table_size)
+      : parameters_(std::move(parameters)), columns_(static_cast<std::size_t>(table_size), -1) {
+    for (std::size_t c = 0; c < parameters_.size(); ++c) {
+      columns_[static_cast<std::size_t>(parameters_[c])] = static_cast<int>(c);
+    }
+  }
+
+  [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
+  [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
+
+  /// Column of a parameter; -1 if it is held or is none (index -1).
+  [[nodiscard]] int column(int parameter) const {
+    return parameter < 0 ? -1 : columns_[static_cast<std::size_t>(parameter)];
+  }
+
+ private:
+  std::vector<int> parameters_;
+  std::vector<int> columns_;
+};
+
+}  // namespace kinecal

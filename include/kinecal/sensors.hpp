@@ -1,0 +1,7 @@
+// Door of sensors/: what observes, and with which parameters.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/sensor.hpp"

@@ -1,0 +1,9 @@
+// Door of solve/: Ceres.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/solve/calibrate.hpp"
+#include "kinecal/solve/compressed_cost.hpp"
+#include "kinecal/solve/normal_equations.hpp"
+#include "kinecal/solve/solve.hpp"
+#include "kinecal/solve/statistics.hpp"

@@ -1,0 +1,142 @@
+// Solving one step with Ceres, and saying how it went.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "kinecal/solve/compressed_cost.hpp"
+
+namespace kinecal {
+
+struct SolveOptions {
+  int max_num_iterations = 1000;
+  /// Called after each iteration with its number and cost.
+  std::function<void(int iteration, double cost)> progress = {};
+};
+
+/// How a step ended.
+struct StepResult {
+  std::string name;
+  bool converged = false;
+  std::string termination;  ///< why it stopped, in a sentence
+  int iterations = 0;
+  double initial_cost = 0.0, final_cost = 0.0;  ///< 1/2 sum rho(|w r|^2)
+  double seconds = 0.0;
+  int num_residuals = 0, num_parameters = 0;
+};
+
+namespace detail {
+
+class ProgressCallback final : public ceres::IterationCallback {
+ public:
+  explicit ProgressCallback(const SolveOptions& options) : options_(options) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (options_.progress) options_.progress(summary.iteration, summary.cost);
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const SolveOptions& options_;
+};
+
+[[nodiscard]] inline std::string explain(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE: return "converged: " + summary.message;
+    case ceres::NO_CONVERGENCE: return "did not converge: " + summary.message;
+    default: return "failed: " + summary.message;
+  }
+}
+
+[[nodiscard]] inline ceres::Solver::Options ceres_options(const SolveOptions& options) {
+  ceres::Solver::Options ceres_options;
+  ceres_options.linear_solver_type = ceres::DENSE_QR;
+  ceres_options.max_num_iterations = options.max_num_iterations;
+  // The cost is compared with reference figures to many digits, and an iteration costs little.
+  ceres_options.function_tolerance = 1e-14;
+  ceres_options.gradient_tolerance = 1e-16;
+  ceres_options.parameter_tolerance = 1e-12;
+  ceres_options.logging_type = ceres::SILENT;
+  ceres_options.num_threads = 1;
+  return ceres_options;
+}
+
+/// Number of residuals of a problem, priors counted once for each sample.
+[[nodiscard]] inline int count_residuals(const Problem& problem, std::span<const double> values) {
+  Eigen::Index rows = 0;
+  (void)problem.evaluate(values, nullptr, [&](int, int, const TermResiduals& residuals) {
+    rows += residuals.residual.size();
+  });
+  rows += static_cast<Eigen::Index>(problem.priors().size()) * Prior::kRows * problem.num_samples();
+  return static_cast<int>(rows);
+}
+
+}  // namespace detail
+
+/// Minimizes the cost of a problem over its free parameters.
+/// @param free    which parameters may change
+/// @param values  of all parameters of the problem's table: where to start, then where it ended.
+///                Unchanged if the result is not usable (termination says why).
+[[nodiscard]] inline StepResult solve(const Problem& problem, const FreeSet& free,
+                                      Eigen::VectorXd& values, const SolveOptions& options = {}) {
+  StepResult result;
+  result.num_parameters = free.size();
+  const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
+  std::optional<UndefinedResidual> undefined;
+  result.initial_cost = normal_equations(problem, all, nullptr, undefined).cost;
+  result.final_cost = result.initial_cost;
+  if (undefined) {
+    result.termination = "failed: the residual of '" + undefined->term +
+                         "' is not defined at the start for the sample at " + undefined->source +
+                         " (a point behind a camera, or points that span no plane)";
+    return result;
+  }
+  result.num_residuals = detail::count_residuals(problem, all);
+  if (result.num_residuals == 0) {
+    result.termination = "failed: no residuals";
+    return result;
+  }
+
+  CompressedCost cost(problem, free, values);
+  std::vector<double> x;
+  for (int p : free.parameters()) x.push_back(values(p));
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem ceres_problem(ownership);
+  ceres_problem.AddResidualBlock(&cost, nullptr, x.data());
+  for (int c = 0; c < free.size(); ++c) {
+    const Parameter& parameter = problem.table()[free.parameters()[static_cast<std::size_t>(c)]];
+    if (std::isfinite(parameter.lower)) {
+      ceres_problem.SetParameterLowerBound(x.data(), c, parameter.lower);
+    }
+    if (std::isfinite(parameter.upper)) {
+      ceres_problem.SetParameterUpperBound(x.data(), c, parameter.upper);
+    }
+  }
+  ceres::Solver::Options ceres_options = detail::ceres_options(options);
+  detail::ProgressCallback progress(options);
+  ceres_options.callbacks.push_back(&progress);
+  ceres::Solver::Summary summary;
+  ceres::Solve(ceres_options, &ceres_problem, &summary);
+
+  result.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  result.seconds = summary.total_time_in_seconds;
+  result.termination = detail::explain(summary);
+  if (!summary.IsSolutionUsable() || !std::isfinite(summary.final_cost)) return result;
+  if (summary.final_cost > summary.initial_cost) {
+    result.termination = "failed: the cost did not decrease";
+    return result;
+  }
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.final_cost = summary.final_cost;
+  for (int c = 0; c < free.size(); ++c) {
+    values(free.parameters()[static_cast<std::size_t>(c)]) = x[static_cast<std::size_t>(c)];
+  }
+  return result;
+}
+
+}  // namespace kinecal

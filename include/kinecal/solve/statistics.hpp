@@ -1,0 +1,87 @@
+// How large the residuals of an error block are, in its own unit, without weights and losses.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "kinecal/crate/problem.hpp"
+
+namespace kinecal {
+
+struct Statistics {
+  double rms = 0.0;   ///< of the residual's components
+  double mean = 0.0;  ///< of the features' norms, as median and max
+  double median = 0.0;
+  double max = 0.0;
+};
+
+/// One error block before and after a calibration.
+struct BlockStatistics {
+  std::string name, type;
+  std::string unit;  ///< "m", "px" or "1"
+  int count = 0;     ///< features
+  Statistics before, after;
+};
+
+/// @param norms       of each feature's residual
+/// @param components  number of residuals of one feature
+[[nodiscard]] inline Statistics statistics_of(std::vector<double> norms, int components) {
+  if (norms.empty()) return {};
+  Statistics s;
+  double squares = 0.0;
+  for (double norm : norms) {
+    squares += norm * norm;
+    s.mean += norm;
+  }
+  const auto n = static_cast<double>(norms.size());
+  s.rms = std::sqrt(squares / (n * components));
+  s.mean /= n;
+  std::sort(norms.begin(), norms.end());
+  const std::size_t half = norms.size() / 2;
+  s.median = norms.size() % 2 == 1 ? norms[half] : 0.5 * (norms[half - 1] + norms[half]);
+  s.max = norms.back();
+  return s;
+}
+
+/// Norms of the unweighted residuals of every feature, for each term of a problem.
+[[nodiscard]] inline std::vector<std::vector<double>> feature_norms(
+    const Problem& problem, std::span<const double> values) {
+  std::vector<std::vector<double>> norms(problem.terms().size());
+  (void)problem.evaluate(values, nullptr, [&](int t, int, const TermResiduals& residuals) {
+    const int size = problem.terms()[static_cast<std::size_t>(t)]->feature_size();
+    for (Eigen::Index row = 0; row < residuals.residual.size(); row += size) {
+      norms[static_cast<std::size_t>(t)].push_back(residuals.residual.segment(row, size).norm());
+    }
+  });
+  return norms;
+}
+
+/// Statistics of all error blocks and priors of a problem, for two sets of parameter values.
+[[nodiscard]] inline std::vector<BlockStatistics> block_statistics(const Problem& problem,
+                                                                   std::span<const double> before,
+                                                                   std::span<const double> after) {
+  std::vector<BlockStatistics> all;
+  const auto norms_before = feature_norms(problem, before);
+  const auto norms_after = feature_norms(problem, after);
+  for (std::size_t t = 0; t < problem.terms().size(); ++t) {
+    const Term& term = *problem.terms()[t];
+    all.push_back({term.name(), term.options().type, term.options().unit,
+                   static_cast<int>(norms_after[t].size()),
+                   statistics_of(norms_before[t], term.feature_size()),
+                   statistics_of(norms_after[t], term.feature_size())});
+  }
+  TermResiduals residuals;
+  for (const PriorTerm& prior : problem.priors()) {
+    BlockStatistics& block = all.emplace_back();
+    block = {prior.name, prior.options.type, prior.options.unit, problem.num_samples(), {}, {}};
+    problem.evaluate_prior(prior, before, nullptr, residuals);
+    block.before = statistics_of({residuals.residual.norm()}, Prior::kRows);
+    problem.evaluate_prior(prior, after, nullptr, residuals);
+    block.after = statistics_of({residuals.residual.norm()}, Prior::kRows);
+  }
+  return all;
+}
+
+}  // namespace kinecal

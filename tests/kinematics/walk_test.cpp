@@ -1,0 +1,257 @@
+#include "kinecal/kinematics/walk.hpp"
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "kinecal/kinematics/twist_walker.hpp"
+#include "support/robots.hpp"
+
+namespace kinecal {
+namespace {
+
+constexpr double kRounding = 1e-14;  // a dozen products of numbers of size one
+
+const std::set<std::string> kNone;
+const std::set<std::string> kCorrected = {"shoulder_lift", "elbow_mount", "wrist", "head_tilt",
+                                          "camera_joint", "head_pan"};
+
+/// Forward kinematics written down joint by joint, from the definition alone.
+Pose<double> by_hand(const Robot& robot, const std::string& base, const std::string& tip,
+                     test::RandomPositions& positions) {
+  const auto to_root = [&](const std::string& link) {
+    Pose<double> pose;
+    for (const Joint* j = robot.parent_joint(link); j != nullptr;
+         j = robot.parent_joint(j->parent)) {
+      double q = 0.0;
+      if (moves(j->type)) {
+        const Mimic d = drive(robot, *j);
+        q = d.multiplier * positions(d.joint) + d.offset;
+      }
+      Pose<double> motion;
+      if (turns(j->type)) motion.rotation = exp(Vector3<double>(j->axis * q));
+      if (j->type == JointType::prismatic) motion.translation = j->axis * q;
+      pose = j->origin * motion * pose;
+    }
+    return pose;
+  };
+  return to_root(base).inverse() * to_root(tip);
+}
+
+double difference(const Pose<double>& a, const Pose<double>& b) {
+  return (a.rotation - b.rotation).norm() + (a.translation - b.translation).norm();
+}
+
+const std::vector<std::pair<std::string, std::string>> kWays = {
+    {"base_link", "hand"},          {"base_link", "camera_optical_frame"},
+    {"hand", "base_link"},          {"hand", "camera_optical_frame"},
+    {"finger_right", "torso"},      {"camera_optical_frame", "counterweight"},
+    {"forearm", "forearm"},         {"finger_left", "finger_right"},
+};
+
+TEST(Walk, MatchesTheDefinitionBetweenAnyTwoLinks) {
+  const Robot robot = test::mobile_manipulator();
+  for (const auto& [base, tip] : kWays) {
+    for (unsigned seed = 0; seed < 5; ++seed) {
+      test::RandomPositions positions(seed);
+      const auto position_of = [&](const std::string& joint) { return positions(joint); };
+      const Pose<double> expected = by_hand(robot, base, tip, positions);
+      for (const auto& corrected : {kNone, kCorrected}) {
+        const Chain<> chain = make_chain(robot, base, tip, corrected);
+        EXPECT_LE(difference(forward_kinematics(chain, position_of), expected), kRounding)
+            << base << " -> " << tip;
+      }
+    }
+  }
+}
+
+TEST(Walk, StaticChainAgreesWithRuntimeChain) {
+  const Chain<> runtime = make_chain(test::mobile_manipulator(), "hand", "camera_optical_frame");
+  const Chain<6> fixed_size = to_static<6>(runtime);
+  test::RandomPositions positions(3);
+  const auto position_of = [&](const std::string& joint) { return positions(joint); };
+  EXPECT_EQ(difference(forward_kinematics(runtime, position_of),
+                       forward_kinematics(fixed_size, position_of)),
+            0.0);
+  EXPECT_THROW((void)to_static<5>(runtime), RobotError);
+}
+
+TEST(Walk, CorrectionStandsBetweenOriginAndMotionAndOffsetAddsToThePosition) {
+  const Robot robot = test::mobile_manipulator();
+  const Chain<> chain = make_chain(robot, "upper_arm", "forearm", {"elbow"});
+  Corrections<double> corrections(chain.joints.size());
+  const Vector3<double> t(0.01, -0.02, 0.03), w(0.1, -0.2, 0.3);
+  corrections[0].set_frame(t, w);
+  corrections[0].offset = make_motion(0.25);
+  const Joint& elbow = robot.joint("elbow");
+  const Pose<double> motion{exp(Vector3<double>(elbow.axis * (0.7 + 0.25))), {0, 0, 0}};
+  const Pose<double> expected =
+      robot.joint("elbow_mount").origin * elbow.origin * Pose<double>{exp(w), t} * motion;
+  const auto position_of = [](const std::string&) { return 0.7; };
+  EXPECT_LE(difference(forward_kinematics(chain, position_of, corrections), expected), kRounding);
+}
+
+TEST(Walk, ReversedChainIsTheInverseAlsoWithCorrections) {
+  const Robot robot = test::mobile_manipulator();
+  const Chain<> there = make_chain(robot, "base_link", "hand", kCorrected);
+  const Chain<> back = make_chain(robot, "hand", "base_link", kCorrected);
+  ASSERT_EQ(there.joints.size(), back.joints.size());
+  Corrections<double> corrections(there.joints.size());
+  for (std::size_t i = 0; i < corrections.size(); ++i) {
+    const double x = 0.1 * static_cast<double>(i + 1);
+    if (there.joints[i].corrected) corrections[i].set_frame({x, -x, 2 * x}, {-x, x, 0.5 * x});
+    corrections[i].offset = make_motion(0.3 * x);
+  }
+  Corrections<double> reversed(corrections.rbegin(), corrections.rend());
+  test::RandomPositions positions(4);
+  const auto position_of = [&](const std::string& joint) { return positions(joint); };
+  const Pose<double> product = forward_kinematics(there, position_of, corrections) *
+                               forward_kinematics(back, position_of, reversed);
+  EXPECT_LE(difference(product, {}), kRounding);
+}
+
+TEST(Chain, FoldsFixedJointsThatNobodyCorrects) {
+  const Robot robot = test::mobile_manipulator();
+  EXPECT_EQ(make_chain(robot, "base_link", "hand").joints.size(), 5u);
+  EXPECT_EQ(make_chain(robot, "base_link", "hand", {"elbow_mount"}).joints.size(), 6u);
+}
+
+TEST(Chain, NamesTheNearestLinkForAMisspeltOne) {
+  const Robot robot = test::mobile_manipulator();
+  try {
+    (void)make_chain(robot, "base_link", "fourarm");
+    FAIL();
+  } catch (const RobotError& e) {
+    EXPECT_STREQ(e.what(),
+                 "no link 'fourarm' in robot 'mobile_manipulator'; did you mean 'forearm'?");
+  }
+}
+
+TEST(Chain, RefusesFloatingJointsByName) {
+  const Robot robot = test::mobile_manipulator();
+  try {
+    (void)make_chain(robot, "hand", "ball");
+    FAIL();
+  } catch (const RobotError& e) {
+    EXPECT_NE(std::string(e.what()).find("joint 'loose' between 'hand' and 'ball' is floating"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
+TEST(Chain, RefusesLinksThatAreNotConnected) {
+  const Robot robot("two", {{"a", JointType::fixed, "l0", "l1", {}},
+                            {"b", JointType::fixed, "m0", "m1", {}}});
+  EXPECT_THROW((void)make_chain(robot, "l1", "m1"), RobotError);
+}
+
+TEST(Robot, RefusesMimicInACircleAndUnknownSources) {
+  using enum JointType;
+  const Vector3<double> z(0, 0, 1);
+  EXPECT_THROW(Robot("r", {{"a", revolute, "l0", "l1", {}, z, Mimic{"b"}},
+                           {"b", revolute, "l1", "l2", {}, z, Mimic{"a"}}}),
+               RobotError);
+  EXPECT_THROW(Robot("r", {{"a", revolute, "l0", "l1", {}, z, Mimic{"c"}}}), RobotError);
+  EXPECT_THROW(Robot("r", {{"a", revolute, "l0", "l1", {}, {0, 0, 0}}}), RobotError);
+}
+
+// Twists against automatic differentiation of the whole walk.
+
+constexpr int kMaxParameters = 48;
+using Wide = ceres::Jet<double, kMaxParameters>;
+
+/// One parameter for each offset and frame axis of the chain, in the order of the chain.
+std::vector<JointIndices> all_free(const Chain<>& chain, int& count) {
+  std::vector<JointIndices> indices;
+  std::map<std::string, int> by_joint;
+  count = 0;
+  for (const ChainJoint& joint : chain.joints) {
+    JointIndices& of = indices.emplace_back();
+    if (moves(joint.type)) {
+      of.gain = joint.drive.multiplier;
+      const auto [it, is_new] = by_joint.try_emplace(joint.drive.joint, count);
+      count += is_new ? 1 : 0;
+      of.offset = it->second;
+    }
+    if (joint.corrected) {
+      for (int& axis : of.frame) axis = count++;
+    }
+  }
+  return indices;
+}
+
+template <class S>
+Corrections<S> fill(const std::vector<JointIndices>& indices, const std::vector<S>& x) {
+  const auto at = [&](int i) { return x[static_cast<std::size_t>(i)]; };
+  Corrections<S> corrections(indices.size());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const auto& f = indices[i].frame;
+    if (indices[i].offset >= 0) {
+      corrections[i].offset = make_motion(S(at(indices[i].offset) * indices[i].gain));
+    }
+    if (f[0] >= 0) {
+      corrections[i].set_frame({at(f[0]), at(f[1]), at(f[2])}, {at(f[3]), at(f[4]), at(f[5])});
+    }
+  }
+  return corrections;
+}
+
+/// Size of the corrections: zero, tiny, random, and rotation vectors near pi.
+class Twists : public testing::TestWithParam<double> {};
+
+TEST_P(Twists, AgreeWithAutodiffThroughTheWholeWalk) {
+  const Robot robot = test::mobile_manipulator();
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (const auto& [base, tip] : kWays) {
+    const Chain<> chain = make_chain(robot, base, tip, kCorrected);
+    int count = 0;
+    const std::vector<JointIndices> indices = all_free(chain, count);
+    ASSERT_LE(count, kMaxParameters);
+    std::vector<double> x(static_cast<std::size_t>(count));
+    for (double& v : x) v = GetParam() * normal(random);
+    if (GetParam() > 3.0) {  // near pi: a random axis, the angle just below it
+      for (const JointIndices& joint : indices) {
+        if (joint.frame[3] < 0) continue;
+        const Vector3<double> w =
+            Vector3<double>(normal(random), normal(random), normal(random)).normalized() *
+            (std::numbers::pi - 1e-6);
+        for (int k = 0; k < 3; ++k) x[static_cast<std::size_t>(joint.frame[3] + k)] = w(k);
+      }
+    }
+    std::vector<Wide> jets;
+    for (int i = 0; i < count; ++i) jets.emplace_back(x[static_cast<std::size_t>(i)], i);
+
+    test::RandomPositions positions(9);
+    const auto position_of = [&](const std::string& joint) { return positions(joint); };
+    const Vector3<double> p(0.3, -0.2, 0.5);
+    const Vector3<Wide> expected =
+        forward_kinematics(chain, position_of, fill(indices, jets)) * p;
+
+    TwistWalker<double> walker{indices};
+    const auto motions = measured_motions(chain, position_of);
+    const Corrections<double> corrections = fill(indices, x);
+    walk(chain, std::span<const Motion<double>>(motions),
+         std::span<const JointCorrection<double>>(corrections), walker);
+    const Vector3<double> p_base = walker.walker.pose * p;
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, kMaxParameters);
+    for (const Twist<double>& twist : walker.twists) {
+      jacobian.col(twist.column) += twist.velocity(p_base);
+    }
+    Eigen::MatrixXd oracle(3, kMaxParameters);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(p_base(i), expected(i).a, kRounding * (1 + std::abs(expected(i).a)));
+      oracle.row(i) = expected(i).v.transpose();
+    }
+    // Products of a dozen rotations and translations of up to 3 GetParam() metres.
+    EXPECT_LE((jacobian - oracle).norm(), 1e-13 * (1.0 + oracle.norm()))
+        << base << " -> " << tip << "\ntwists\n" << jacobian << "\njets\n" << oracle;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AtZeroTinyRandomAndNearPi, Twists,
+                         testing::Values(0.0, 1e-8, 0.1, 1.0, 3.1));
+
+}  // namespace
+}  // namespace kinecal
