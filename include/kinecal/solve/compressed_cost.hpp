@@ -42,7 +42,7 @@ struct EquivalentResidual {
     ldlt.matrixL().solveInPlace(projected);
     residual.setZero(n + 1);
     jacobian.setZero(n + 1, n);
-    constexpr double kNoCurvature = 1e-15;  // of a unit diagonal: rounding of the sums
+    constexpr double kNoCurvature = 1e-13;  // of a unit diagonal: rounding of the sums
     for (Eigen::Index i = 0; i < n; ++i) {
       const double d = ldlt.vectorD()(i);
       if (!(d > kNoCurvature)) continue;

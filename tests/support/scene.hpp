@@ -1,0 +1,126 @@
+// A scene in code: a robot with an arm, an RGB-D camera, a colour camera and a ground, its
+// parameters, and samples of it that can be made without noise for any parameter values.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/crate/problem.hpp"
+#include "support/robots.hpp"
+
+namespace kinecal::test {
+
+inline CameraInfo camera_info() {
+  CameraInfo info;
+  info.width = 640;
+  info.height = 480;
+  info.distortion_model = "plumb_bob";
+  info.d = {0.0, 0.0, 0.0, 0.0, 0.0};
+  info.k = {550, 0, 320, 0, 545, 240, 0, 0, 1};
+  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.p = {550, 0, 320, 0, 0, 545, 240, 0, 0, 0, 1, 0};
+  return info;
+}
+
+/// The offsets, frames and camera parameters of the scene, all at zero.
+inline ParameterTable scene_table() {
+  ParameterTable table;
+  for (const char* joint : {"torso_joint", "shoulder_pan", "shoulder_lift", "elbow", "wrist",
+                            "head_pan", "head_tilt"}) {
+    table.add({.name = joint});
+  }
+  for (const char* frame : {"head_pan", "camera_joint", "elbow_mount", "board"}) {
+    for (auto axis : kFrameAxes) table.add({.name = parameter_name(frame, axis)});
+  }
+  for (auto part : kCameraParameters) table.add({.name = parameter_name("camera", part)});
+  for (std::size_t i = 0; i < 4; ++i) {
+    table.add({.name = parameter_name("eye", kCameraParameters[i])});
+  }
+  return table;
+}
+
+inline const std::set<std::string> kSceneFrames = {"head_pan", "camera_joint", "elbow_mount",
+                                                   "board"};
+
+/// A problem with all sensors of the scene and no error blocks yet.
+inline Problem scene_problem(const std::string& base = "base_link") {
+  Problem problem(mobile_manipulator(), base, scene_table(), kSceneFrames);
+  problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
+  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
+  problem.add_sensor({"eye", SensorType::camera2d, "camera_optical_frame", ""});
+  return problem;
+}
+
+/// Random values of the scene's parameters.
+/// @param scale  of angles (rad), lengths are a tenth, camera parameters a hundredth of it
+inline std::vector<double> random_values(const ParameterTable& table, double scale, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> values;
+  for (const Parameter& parameter : table) {
+    const std::string& name = parameter.name;
+    const bool length = name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z") ||
+                        name == "torso_joint";
+    const bool camera = name.starts_with("camera_") && !name.starts_with("camera_joint");
+    const double size = camera || name.starts_with("eye_") ? 0.01 : length ? 0.1 : 1.0;
+    values.push_back(scale * size * normal(random));
+  }
+  return values;
+}
+
+/// Samples that fit the problem's robot exactly at the given values: joint positions are random,
+/// each feature is a point in front of the camera, as camera and arm must then have seen it.
+inline std::vector<Sample> exact_samples(const Problem& problem, std::span<const double> values,
+                                         int count, const std::string& arm_frame = "hand",
+                                         unsigned seed = 1, int features = 4) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> side(-0.3, 0.3), depth(0.5, 1.2);
+  std::vector<Sample> samples;
+  const CameraInfo info = camera_info();
+  const Robot robot = mobile_manipulator();
+  for (int n = 0; n < count; ++n) {
+    Sample sample;
+    sample.source = "scene:" + std::to_string(n);
+    RandomPositions positions(seed * 1000 + static_cast<unsigned>(n));
+    for (const Joint& joint : robot.joints()) {
+      if (!moves(joint.type) || joint.mimic) continue;
+      sample.joint_names.push_back(joint.name);
+      sample.joint_positions.push_back(positions(joint.name));
+    }
+    const auto position_of = [&](const std::string& joint) { return *sample.position(joint); };
+    const auto tip = [&](std::size_t sensor, const std::string& frame) {
+      const SensorModel& model = problem.sensors()[sensor];
+      for (std::size_t c = 0; c < model.chains().size(); ++c) {
+        if (model.chains()[c].tip != frame) continue;
+        return forward_kinematics(model.chains()[c], position_of,
+                                  corrections_for(model.parameters()[c], values));
+      }
+      throw std::invalid_argument("no frame " + frame);
+    };
+    std::array<double, 6> camera{};
+    std::array<double, 4> eye{};
+    for (std::size_t i = 0; i < 6; ++i) {
+      camera[i] = values[static_cast<std::size_t>(problem.sensors()[1].camera_parameters()[i])];
+      if (i >= 4) continue;
+      eye[i] = values[static_cast<std::size_t>(problem.sensors()[2].camera_parameters()[i])];
+    }
+    Observation arm{"arm", {}}, depth_camera{"camera", {}, info}, pinhole{"eye", {}, info};
+    for (int f = 0; f < features; ++f) {
+      const double z = depth(random);
+      const Vector3<double> seen(side(random) * z, side(random) * z, z);
+      // The raw pixel and depth that mean this point at these camera parameters.
+      const double z0 = z / (1.0 + camera[5]) - camera[4];
+      const double u = seen.x() / z * 550 * (1 + camera[0]) + 320 * (1 + camera[2]);
+      const double v = seen.y() / z * 545 * (1 + camera[1]) + 240 * (1 + camera[3]);
+      const Vector3<double> recorded((u - 320) * z0 / 550, (v - 240) * z0 / 545, z0);
+      depth_camera.features.push_back({"camera_optical_frame", recorded});
+      const Vector3<double> p_base = tip(1, "camera_optical_frame") * seen;
+      arm.features.push_back({arm_frame, tip(0, arm_frame).inverse() * p_base});
+      const Eigen::Vector2d pixel = PinholeCamera::from(info).project(seen, eye);
+      pinhole.features.push_back({"camera_optical_frame", {pixel.x(), pixel.y(), 0}});
+    }
+    sample.observations = {arm, depth_camera, pinhole};
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+}  // namespace kinecal::test
