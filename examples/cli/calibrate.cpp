@@ -1,0 +1,90 @@
+// kinecal calibrate: samples in, corrected robot out.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <ctime>
+#include <optional>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/io/result_files.hpp"
+#include "kinecal/report.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// A line that is overwritten while a step runs; only on a terminal.
+Progress progress_line() {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [](const std::string& step, int iteration, double cost) {
+    fmt::print(stderr, "\r{}: iteration {}, cost {:.6g} \033[K", step, iteration, cost);
+  };
+}
+
+void end_progress_line() {
+  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");
+}
+
+ResultFileOptions file_options(const CalibrateOptions& options) {
+  ResultFileOptions files;
+  files.offsets = options.offsets == "origin" ? OffsetStyle::origin : OffsetStyle::rising;
+  if (options.upstream_names) {
+    files.date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
+  }
+  return files;
+}
+
+void print_result(const Input& input, const CalibrationResult& result) {
+  fmt::print("Robot '{}', {} samples\n{}\n", input.robot.name(), input.samples.size(),
+             step_lines(result));
+  fmt::print("Error blocks, before -> after (rms of components; median and max of features)\n{}\n",
+             error_block_table(result));
+  fmt::print("Parameters\n{}\n", parameter_table(result));
+}
+
+}  // namespace
+
+int calibrate(const CalibrateOptions& options) {
+  const Clock::time_point start = Clock::now();
+  const Input input = read_input(options.urdf, options.config, options.samples);
+  print(input.diagnostics);
+  if (!input.diagnostics.errors.empty()) return kBadInput;
+
+  // Found out before the work is done: whether the results can be written.
+  std::optional<OutputFolder> folder;
+  if (!options.dry_run) folder.emplace(options.output);
+  const double reading = seconds_since(start);
+  const CalibrationResult result = kinecal::calibrate(input.calibration, progress_line());
+  end_progress_line();
+  print_result(input, result);
+  for (const std::string& line : suspicious_values(result)) {
+    fmt::print(stderr, "warning: {}\n", line);
+  }
+  if (!result.converged) {
+    fmt::print(stderr, "error: not calibrated, nothing written: {}\n", result.termination);
+    return kNotConverged;
+  }
+  if (folder) {
+    std::vector<OutputFile> files =
+        result_files(input.robot, input.urdf_text, options.urdf, input.calibration, result,
+                     input.samples, file_options(options));
+    files.push_back({"report.json", json_report(result)});
+    folder->write(files);
+    for (const OutputFile& file : files) {
+      fmt::print("wrote {}\n", (folder->path() / file.name).string());
+    }
+  }
+  fmt::print("{:.3f} s, of which reading {:.3f} s\n", seconds_since(start), reading);
+  return kDone;
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,30 @@
+// kinecal check: every mistake in the input, without solving.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include "commands.hpp"
+#include "input.hpp"
+
+namespace kinecal::cli {
+
+int check(const CheckOptions& options) {
+  const Input input = read_input(options.urdf, options.config, options.samples);
+  print(input.diagnostics);
+  const std::size_t errors = input.diagnostics.errors.size();
+  if (errors > 0) {
+    fmt::print(stderr, "{} mistake{} found\n", errors, errors == 1 ? "" : "s");
+    return kBadInput;
+  }
+  for (const CalibrationStep& step : input.calibration.steps) {
+    if (input.samples.empty()) {
+      fmt::print("step '{}': fits the robot; samples were not given\n", step.name);
+    } else {
+      fmt::print("step '{}': {} samples, {} free parameters\n", step.name,
+                 step.problem.num_samples(), step.free.size());
+    }
+  }
+  fmt::print("no mistakes found\n");
+  return kDone;
+}
+
+}  // namespace kinecal::cli

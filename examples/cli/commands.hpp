@@ -1,0 +1,34 @@
+// The commands of the program.  Each returns the exit code: 0 done, 1 bad input, 2 did not converge.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kinecal::cli {
+
+enum ExitCode { kDone = 0, kBadInput = 1, kNotConverged = 2 };
+
+struct CalibrateOptions {
+  std::string urdf, config, output;
+  std::vector<std::string> samples;
+  std::string offsets = "rising";
+  bool upstream_names = false;
+  bool dry_run = false;
+};
+
+/// Calibrates the robot and writes the results, all or none.
+int calibrate(const CalibrateOptions& options);
+
+struct CheckOptions {
+  std::string urdf, config;
+  std::vector<std::string> samples;
+};
+
+/// Finds every mistake in the input without solving.
+int check(const CheckOptions& options);
+
+/// Says what is in the samples.
+int inspect(const std::vector<std::string>& samples);
+
+}  // namespace kinecal::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "input.hpp"
+
+#include <fmt/core.h>
+
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/read_config.hpp"
+#include "kinecal/io/read_samples.hpp"
+#include "kinecal/io/read_urdf.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// Runs one reader; what makes its file unusable joins the other mistakes.
+template <class Read>
+auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (const InputError& e) {
+    diagnostics.errors.emplace_back(e.what());
+    return std::nullopt;
+  }
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+std::vector<Sample> read_all_samples(const std::vector<std::string>& files,
+                                     Diagnostics& diagnostics) {
+  std::vector<Sample> all;
+  for (const std::string& file : files) {
+    auto samples = attempt([&] { return read_samples(file, diagnostics); }, diagnostics);
+    if (!samples) continue;
+    all.insert(all.end(), std::make_move_iterator(samples->begin()),
+               std::make_move_iterator(samples->end()));
+  }
+  return all;
+}
+
+Input read_input(const std::string& urdf, const std::string& config,
+                 const std::vector<std::string>& samples) {
+  Input input;
+  Diagnostics& diagnostics = input.diagnostics;
+  const auto robot = attempt([&] { return read_urdf(urdf); }, diagnostics);
+  if (robot) {
+    input.robot = *robot;
+    input.urdf_text = read_text(urdf);
+  }
+  const auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
+  const std::size_t before_samples = diagnostics.errors.size();
+  input.samples = read_all_samples(samples, diagnostics);
+  const bool samples_are_good = diagnostics.errors.size() == before_samples;
+  if (robot && configuration && samples_are_good) {
+    input.calibration = assemble(*configuration, *robot, input.samples, diagnostics);
+  }
+  return input;
+}
+
+void print(const Diagnostics& diagnostics) {
+  for (const std::string& warning : diagnostics.warnings) {
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+  for (const std::string& error : diagnostics.errors) fmt::print(stderr, "error: {}\n", error);
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,32 @@
+// The input of a calibration, read from the user's files; every mistake is told in one go.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/solve/calibrate.hpp"
+
+namespace kinecal::cli {
+
+struct Input {
+  Robot robot;
+  std::string urdf_text;
+  std::vector<Sample> samples;
+  Calibration calibration;
+  Diagnostics diagnostics;
+};
+
+/// Reads and assembles everything; mistakes end up in the diagnostics.
+[[nodiscard]] Input read_input(const std::string& urdf, const std::string& config,
+                               const std::vector<std::string>& samples);
+
+/// Reads samples from several files; mistakes end up in the diagnostics.
+[[nodiscard]] std::vector<Sample> read_all_samples(const std::vector<std::string>& files,
+                                                   Diagnostics& diagnostics);
+
+/// Prints warnings and errors to the standard error stream.
+void print(const Diagnostics& diagnostics);
+
+}  // namespace kinecal::cli

@@ -1,0 +1,122 @@
+// kinecal inspect: what is in the samples.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/report/text.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+struct JointRange {
+  std::size_t samples = 0;
+  double lower = 0.0, upper = 0.0;
+};
+
+struct SensorContent {
+  std::size_t samples = 0, features = 0, least = 0, most = 0, not_numbers = 0;
+  std::set<std::string> frames;
+  std::string camera = "no camera_info";
+};
+
+std::map<std::string, JointRange> joint_ranges(const std::vector<Sample>& samples) {
+  std::map<std::string, JointRange> ranges;
+  for (const Sample& sample : samples) {
+    for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
+      const double q = sample.joint_positions[i];
+      JointRange& range = ranges[sample.joint_names[i]];
+      range.lower = range.samples == 0 ? q : std::min(range.lower, q);
+      range.upper = range.samples == 0 ? q : std::max(range.upper, q);
+      ++range.samples;
+    }
+  }
+  return ranges;
+}
+
+std::map<std::string, SensorContent> sensor_contents(const std::vector<Sample>& samples) {
+  std::map<std::string, SensorContent> sensors;
+  for (const Sample& sample : samples) {
+    for (const Observation& seen : sample.observations) {
+      SensorContent& sensor = sensors[seen.sensor];
+      const std::size_t n = seen.features.size();
+      sensor.least = sensor.samples == 0 ? n : std::min(sensor.least, n);
+      sensor.most = std::max(sensor.most, n);
+      ++sensor.samples;
+      sensor.features += n;
+      for (const Feature& feature : seen.features) {
+        sensor.frames.insert(feature.frame);
+        if (!feature.point.allFinite()) ++sensor.not_numbers;
+      }
+      if (seen.camera) {
+        sensor.camera = fmt::format("{}x{}, fx {:.2f}, fy {:.2f}", seen.camera->width,
+                                    seen.camera->height, seen.camera->p[0], seen.camera->p[5]);
+      }
+    }
+  }
+  return sensors;
+}
+
+void print_joints(const std::vector<Sample>& samples) {
+  TextTable table({"joint", "samples", "least", "greatest", "range"});
+  for (const auto& [name, range] : joint_ranges(samples)) {
+    table.add({name, fmt::format("{}", range.samples), fmt::format("{:.4f}", range.lower),
+               fmt::format("{:.4f}", range.upper),
+               fmt::format("{:.4f}", range.upper - range.lower)});
+  }
+  fmt::print("Joints (radians or metres)\n{}\n", table.str());
+}
+
+void print_sensors(const std::vector<Sample>& samples) {
+  TextTable table({"sensor", "frames", "camera", "samples", "features", "each"}, 3);
+  for (const auto& [name, sensor] : sensor_contents(samples)) {
+    std::string frames;
+    for (const std::string& frame : sensor.frames) frames += (frames.empty() ? "" : ", ") + frame;
+    table.add({name, frames, sensor.camera, fmt::format("{}", sensor.samples),
+               fmt::format("{}", sensor.features),
+               sensor.least == sensor.most ? fmt::format("{}", sensor.most)
+                                           : fmt::format("{}-{}", sensor.least, sensor.most)});
+  }
+  fmt::print("Sensors\n{}\n", table.str());
+}
+
+/// What is missing here and there: joints or sensors of some samples only, features without numbers.
+void print_gaps(const std::vector<Sample>& samples) {
+  std::string gaps;
+  const auto add = [&](const std::string& what, std::size_t count) {
+    if (count < samples.size()) {
+      gaps += fmt::format("  {} is missing in {} of {} samples\n", what, samples.size() - count,
+                          samples.size());
+    }
+  };
+  for (const auto& [name, range] : joint_ranges(samples)) {
+    add(fmt::format("joint '{}'", name), range.samples);
+  }
+  for (const auto& [name, sensor] : sensor_contents(samples)) {
+    add(fmt::format("sensor '{}'", name), sensor.samples);
+    if (sensor.not_numbers > 0) {
+      gaps += fmt::format("  sensor '{}': {} features are not numbers\n", name, sensor.not_numbers);
+    }
+  }
+  fmt::print("Gaps\n{}", gaps.empty() ? "  none\n" : gaps);
+}
+
+}  // namespace
+
+int inspect(const std::vector<std::string>& files) {
+  Diagnostics diagnostics;
+  const std::vector<Sample> samples = read_all_samples(files, diagnostics);
+  print(diagnostics);
+  if (!diagnostics.errors.empty()) return kBadInput;
+  fmt::print("{} samples\n\n", samples.size());
+  print_joints(samples);
+  print_sensors(samples);
+  print_gaps(samples);
+  return kDone;
+}
+
+}  // namespace kinecal::cli

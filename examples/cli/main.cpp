@@ -1,0 +1,71 @@
+// kinecal: calibrates robots from a URDF, a configuration and recorded samples.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "commands.hpp"
+
+namespace {
+
+using namespace kinecal::cli;
+
+void add_input(CLI::App& command, std::string& urdf, std::string& config) {
+  command.add_option("--urdf", urdf, "the robot's URDF")->required()->type_name("FILE");
+  command.add_option("--config", config, "what is calibrated: robot_calibration's YAML, of ROS 1 or 2")
+      ->required()
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.");
+  app.set_version_flag("--version", "kinecal " KINECAL_VERSION);
+  app.require_subcommand(1);
+
+  CalibrateOptions calibrating;
+  CLI::App* calibrate_command = app.add_subcommand(
+      "calibrate", "calibrate the robot and write its corrected URDF and camera files");
+  add_input(*calibrate_command, calibrating.urdf, calibrating.config);
+  calibrate_command->add_option("--samples", calibrating.samples, "recorded samples, CalibrationData YAML")
+      ->required()
+      ->type_name("FILE");
+  calibrate_command->add_option("--output", calibrating.output, "folder for the results")
+      ->required()
+      ->type_name("DIR");
+  calibrate_command
+      ->add_option("--offsets", calibrating.offsets,
+                   "where joint offsets are written: added to <calibration rising>, or folded into "
+                   "<origin> for drivers that ignore it")
+      ->check(CLI::IsMember({"rising", "origin"}))
+      ->capture_default_str();
+  calibrate_command->add_flag("--upstream-names", calibrating.upstream_names,
+                              "name the files as robot_calibration does, with the date");
+  calibrate_command->add_flag("--dry-run", calibrating.dry_run, "calibrate, but write nothing");
+
+  CheckOptions checking;
+  CLI::App* check_command =
+      app.add_subcommand("check", "find every mistake in the input, without calibrating");
+  add_input(*check_command, checking.urdf, checking.config);
+  check_command->add_option("--samples", checking.samples, "recorded samples")->type_name("FILE");
+
+  std::vector<std::string> inspected;
+  CLI::App* inspect_command =
+      app.add_subcommand("inspect", "show what is in the samples: sensors, features, joint ranges, gaps");
+  inspect_command->add_option("samples", inspected, "recorded samples")->required()->type_name("FILE");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kDone : kBadInput;
+  }
+  try {
+    if (*calibrate_command) return calibrate(calibrating);
+    if (*check_command) return check(checking);
+    return inspect(inspected);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "error: %s\n", e.what());
+    return kBadInput;
+  }
+}

@@ -1,0 +1,6 @@
+// Door of report/: results for people and programs.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/report/json.hpp"
+#include "kinecal/report/text.hpp"
