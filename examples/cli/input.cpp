@@ -54,13 +54,20 @@ Input read_input(const std::string& urdf, const std::string& config,
     input.robot = *robot;
     input.urdf_text = read_text(urdf);
   }
-  const auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
-  const std::size_t before_samples = diagnostics.errors.size();
+  const std::size_t before = diagnostics.errors.size();
+  auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
+  const bool configuration_is_good = diagnostics.errors.size() == before;
   input.samples = read_all_samples(samples, diagnostics);
-  const bool samples_are_good = diagnostics.errors.size() == before_samples;
-  if (robot && configuration && samples_are_good) {
+  if (!robot || !configuration) return input;
+  if (diagnostics.errors.size() == before) {
     input.calibration = assemble(*configuration, *robot, input.samples, diagnostics);
+    return input;
   }
+  // What is known to be wrong is left out; the rest is still held against the robot.
+  if (!configuration_is_good) {
+    for (StepConfig& step : configuration->steps) step.error_blocks.clear();
+  }
+  (void)assemble(*configuration, *robot, {}, diagnostics);
   return input;
 }
 

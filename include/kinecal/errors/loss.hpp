@@ -43,6 +43,15 @@ struct Loss {
     }
     return {s, 1.0};
   }
+
+  /// A loss with a single minimum that treats outliers alike: huber in place of cauchy and tukey,
+  /// which no longer see what is far away.  From it the loss itself is started.
+  [[nodiscard]] Loss convex() const {
+    return {type == LossType::none ? LossType::none : LossType::huber, scale};
+  }
+  [[nodiscard]] bool is_convex() const {
+    return type == LossType::none || type == LossType::huber;
+  }
 };
 
 }  // namespace kinecal

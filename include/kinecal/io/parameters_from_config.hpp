@@ -19,9 +19,11 @@
 
 namespace kinecal {
 
+/// A type that does not exist has been told of; it counts as the one with most parameters, so that
+/// they are not told of as well.
 [[nodiscard]] inline SensorType sensor_type(const std::string& name) {
-  if (name == "camera3d") return SensorType::camera3d;
-  return name == "camera2d" ? SensorType::camera2d : SensorType::chain3d;
+  if (name == "chain3d") return SensorType::chain3d;
+  return name == "camera2d" ? SensorType::camera2d : SensorType::camera3d;
 }
 
 [[nodiscard]] inline Sensor sensor_from(const ModelConfig& model) {

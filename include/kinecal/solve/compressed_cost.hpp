@@ -57,8 +57,9 @@ struct EquivalentResidual {
 class CompressedCost final : public ceres::CostFunction {
  public:
   /// @param values  of all parameters of the problem's table; the free ones are replaced
-  CompressedCost(const Problem& problem, const FreeSet& free, Eigen::VectorXd values)
-      : problem_(problem), free_(free), values_(std::move(values)) {
+  CompressedCost(const Problem& problem, const FreeSet& free, Eigen::VectorXd values,
+                 Losses losses = Losses::as_given)
+      : problem_(problem), free_(free), values_(std::move(values)), losses_(losses) {
     set_num_residuals(free.size() + 1);
     mutable_parameter_block_sizes()->push_back(free.size());
   }
@@ -74,7 +75,7 @@ class CompressedCost final : public ceres::CostFunction {
     std::optional<UndefinedResidual> undefined;
     const NormalEquations normal = normal_equations(
         problem_, {values.data(), static_cast<std::size_t>(values.size())},
-        derivatives ? &free_ : nullptr, undefined);
+        derivatives ? &free_ : nullptr, undefined, losses_);
     if (undefined || !std::isfinite(normal.cost)) return false;
     Eigen::Map<Eigen::VectorXd> r(residuals, free_.size() + 1);
     if (!derivatives) {  // the cost is all that is asked for
@@ -93,6 +94,7 @@ class CompressedCost final : public ceres::CostFunction {
   const Problem& problem_;
   const FreeSet& free_;
   Eigen::VectorXd values_;
+  Losses losses_;
 };
 
 }  // namespace kinecal

@@ -13,6 +13,9 @@
 
 namespace kinecal {
 
+/// Which losses are used: those of the error blocks, or convex ones in their place.
+enum class Losses { as_given, convex };
+
 struct NormalEquations {
   double cost = 0.0;
   Eigen::VectorXd gradient;  ///< (parameters)
@@ -21,14 +24,14 @@ struct NormalEquations {
   /// Adds the residuals of one term in one sample.
   /// @param feature_size  number of residuals of one feature: the loss is applied to each feature
   /// @param repeats       how often they count
-  void add(const TermResiduals& residuals, int feature_size, const TermOptions& options,
+  void add(const TermResiduals& residuals, int feature_size, double weight, const Loss& loss_of,
            double repeats = 1.0) {
-    const double w2 = options.weight * options.weight;
+    const double w2 = weight * weight;
     const bool derivatives = residuals.jacobian.rows() > 0;
     Eigen::VectorXd factors(residuals.residual.size());
     for (Eigen::Index row = 0; row < residuals.residual.size(); row += feature_size) {
       const double squared = residuals.residual.segment(row, feature_size).squaredNorm();
-      const Loss::Value loss = options.loss(w2 * squared);
+      const Loss::Value loss = loss_of(w2 * squared);
       cost += 0.5 * repeats * loss.rho;
       factors.segment(row, feature_size).setConstant(repeats * loss.derivative * w2);
     }
@@ -46,19 +49,25 @@ struct NormalEquations {
 [[nodiscard]] inline NormalEquations normal_equations(const Problem& problem,
                                                       std::span<const double> values,
                                                       const FreeSet* free,
-                                                      std::optional<UndefinedResidual>& undefined) {
+                                                      std::optional<UndefinedResidual>& undefined,
+                                                      Losses losses = Losses::as_given) {
+  const auto loss_of = [&](const TermOptions& options) {
+    return losses == Losses::convex ? options.loss.convex() : options.loss;
+  };
   NormalEquations sum;
   const int n = free != nullptr ? free->size() : 0;
   sum.gradient.setZero(n);
   sum.hessian.setZero(n, n);
   undefined = problem.evaluate(values, free, [&](int t, int, const TermResiduals& residuals) {
     const Term& term = *problem.terms()[static_cast<std::size_t>(t)];
-    sum.add(residuals, term.feature_size(), term.options());
+    const TermOptions& options = term.options();
+    sum.add(residuals, term.feature_size(), options.weight, loss_of(options));
   });
   TermResiduals residuals;
   for (const PriorTerm& prior : problem.priors()) {
     problem.evaluate_prior(prior, values, free, residuals);
-    sum.add(residuals, Prior::kRows, prior.options, problem.num_samples());
+    sum.add(residuals, Prior::kRows, prior.options.weight, loss_of(prior.options),
+            problem.num_samples());
   }
   return sum;
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "kinecal/solve/compressed_cost.hpp"
+#include "kinecal/solve/statistics.hpp"
 
 namespace kinecal {
 
@@ -81,33 +82,12 @@ class ProgressCallback final : public ceres::IterationCallback {
   return static_cast<int>(rows);
 }
 
-}  // namespace detail
-
-/// Minimizes the cost of a problem over its free parameters.
-/// @param free    which parameters may change
-/// @param values  of all parameters of the problem's table: where to start, then where it ended.
-///                Unchanged if the result is not usable (termination says why).
-[[nodiscard]] inline StepResult solve(const Problem& problem, const FreeSet& free,
-                                      Eigen::VectorXd& values, const SolveOptions& options = {}) {
-  StepResult result;
-  result.num_parameters = free.size();
-  const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-  std::optional<UndefinedResidual> undefined;
-  result.initial_cost = normal_equations(problem, all, nullptr, undefined).cost;
-  result.final_cost = result.initial_cost;
-  if (undefined) {
-    result.termination = "failed: the residual of '" + undefined->term +
-                         "' is not defined at the start for the sample at " + undefined->source +
-                         " (a point behind a camera, or points that span no plane)";
-    return result;
-  }
-  result.num_residuals = detail::count_residuals(problem, all);
-  if (result.num_residuals == 0) {
-    result.termination = "failed: no residuals";
-    return result;
-  }
-
-  CompressedCost cost(problem, free, values);
+/// Runs Ceres on the free parameters, from the given values of all parameters.
+/// @param values  in: where to start; out: where it ended, if that is usable
+inline ceres::Solver::Summary minimize(const Problem& problem, const FreeSet& free,
+                                       Eigen::VectorXd& values, const SolveOptions& options,
+                                       Losses losses) {
+  CompressedCost cost(problem, free, values, losses);
   std::vector<double> x;
   for (int p : free.parameters()) x.push_back(values(p));
   ceres::Problem::Options ownership;
@@ -123,24 +103,98 @@ class ProgressCallback final : public ceres::IterationCallback {
       ceres_problem.SetParameterUpperBound(x.data(), c, parameter.upper);
     }
   }
-  ceres::Solver::Options ceres_options = detail::ceres_options(options);
-  detail::ProgressCallback progress(options);
-  ceres_options.callbacks.push_back(&progress);
+  ceres::Solver::Options solver = ceres_options(options);
+  ProgressCallback progress(options);
+  solver.callbacks.push_back(&progress);
   ceres::Solver::Summary summary;
-  ceres::Solve(ceres_options, &ceres_problem, &summary);
-
-  result.iterations = static_cast<int>(summary.iterations.size()) - 1;
-  result.seconds = summary.total_time_in_seconds;
-  result.termination = detail::explain(summary);
-  if (!summary.IsSolutionUsable() || !std::isfinite(summary.final_cost)) return result;
-  if (summary.final_cost > summary.initial_cost) {
-    result.termination = "failed: the cost did not decrease";
-    return result;
-  }
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
-  result.final_cost = summary.final_cost;
+  ceres::Solve(solver, &ceres_problem, &summary);
+  if (!summary.IsSolutionUsable()) return summary;
   for (int c = 0; c < free.size(); ++c) {
     values(free.parameters()[static_cast<std::size_t>(c)]) = x[static_cast<std::size_t>(c)];
+  }
+  return summary;
+}
+
+[[nodiscard]] inline bool all_losses_convex(const Problem& problem) {
+  bool convex = true;
+  for (const auto& term : problem.terms()) convex = convex && term->options().loss.is_convex();
+  for (const PriorTerm& prior : problem.priors()) {
+    convex = convex && prior.options.loss.is_convex();
+  }
+  return convex;
+}
+
+/// The name of a term whose loss leaves out half of its features or more; empty if there is none.
+/// Such a "minimum" is a plateau.
+[[nodiscard]] inline std::string mostly_left_out(const Problem& problem,
+                                                 std::span<const double> values) {
+  const auto norms = feature_norms(problem, values);
+  for (std::size_t t = 0; t < norms.size(); ++t) {
+    const TermOptions& options = problem.terms()[t]->options();
+    const auto left_out = std::count_if(norms[t].begin(), norms[t].end(), [&](double norm) {
+      const double weighted = options.weight * norm;
+      return options.loss(weighted * weighted).derivative == 0.0;
+    });
+    if (left_out > 0 && 2 * left_out >= static_cast<std::ptrdiff_t>(norms[t].size())) {
+      return problem.terms()[t]->name();
+    }
+  }
+  return {};
+}
+
+/// Costs and counts at the start; false, with the reason, if there is nothing to solve.
+inline bool start(const Problem& problem, std::span<const double> values, StepResult& result) {
+  std::optional<UndefinedResidual> undefined;
+  result.initial_cost = normal_equations(problem, values, nullptr, undefined).cost;
+  result.final_cost = result.initial_cost;
+  if (undefined) {
+    result.termination = "failed: the residual of '" + undefined->term +
+                         "' is not defined at the start for the sample at " + undefined->source +
+                         " (a point behind a camera, or points that span no plane)";
+    return false;
+  }
+  result.num_residuals = count_residuals(problem, values);
+  if (result.num_residuals == 0) result.termination = "failed: no residuals";
+  return result.num_residuals > 0;
+}
+
+}  // namespace detail
+
+/// Minimizes the cost of a problem over its free parameters.
+///
+/// Where a loss is not convex (cauchy, tukey), a convex one is solved first: from far away they see
+/// nothing.
+/// @param free    which parameters may change
+/// @param values  of all parameters of the problem's table: where to start, then where it ended.
+///                Unchanged if the result is not usable (termination says why).
+[[nodiscard]] inline StepResult solve(const Problem& problem, const FreeSet& free,
+                                      Eigen::VectorXd& values, const SolveOptions& options = {}) {
+  StepResult result;
+  result.num_parameters = free.size();
+  Eigen::VectorXd x = values;
+  const std::span<const double> all(x.data(), static_cast<std::size_t>(x.size()));
+  if (!detail::start(problem, all, result)) return result;
+  if (!detail::all_losses_convex(problem)) {
+    const auto first = detail::minimize(problem, free, x, options, Losses::convex);
+    result.iterations += static_cast<int>(first.iterations.size()) - 1;
+    result.seconds += first.total_time_in_seconds;
+  }
+  const auto summary = detail::minimize(problem, free, x, options, Losses::as_given);
+  result.iterations += static_cast<int>(summary.iterations.size()) - 1;
+  result.seconds += summary.total_time_in_seconds;
+  result.termination = detail::explain(summary);
+  if (!summary.IsSolutionUsable()) return result;
+  if (!std::isfinite(summary.final_cost)) {
+    result.termination = "failed: the cost is not finite";
+  } else if (summary.final_cost > result.initial_cost) {
+    result.termination = "failed: the cost did not decrease";
+  } else if (const std::string term = detail::mostly_left_out(problem, all); !term.empty()) {
+    result.termination = "failed: the loss of '" + term +
+                         "' leaves out half of its features or more; is its scale too small?";
+  } else {
+    result.converged = summary.termination_type == ceres::CONVERGENCE;
+    result.final_cost = summary.final_cost;
+    values = x;
   }
   return result;
 }

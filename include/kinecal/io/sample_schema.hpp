@@ -1,0 +1,155 @@
+// The keys of a recorded sample as a tree: which key stands where, and what may be under it.
+//
+//   joint_states: {name: [...], position: [...]}
+//   observations:
+//   - sensor_name: camera
+//     features: [{header: {frame_id: ...}, point: {x: ..., y: ..., z: ...}}, ...]
+//     ext_camera_info:
+//       camera_info: {height, width, distortion_model, D, K, R, P}
+//       parameters: [{name: ..., value: ...}, ...]
+//
+// Source: robot_calibration_msgs/CalibrationData; D K R P are ROS 1, d k r p are ROS 2.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace kinecal::detail {
+
+/// A place in the tree.  `document` is above everything, `unknown` is whatever is skipped.
+enum class SampleNode : std::uint8_t {
+  document,
+  sample,
+  joint_states,
+  joint_names,
+  joint_name,
+  joint_positions,
+  joint_position,
+  observations,
+  observation,
+  sensor,
+  features,
+  feature,
+  header,
+  frame,
+  point,
+  x,
+  y,
+  z,
+  ext_camera_info,
+  camera_info,
+  height,
+  width,
+  distortion_model,
+  d,
+  d_item,
+  k,
+  k_item,
+  r,
+  r_item,
+  p,
+  p_item,
+  parameters,
+  parameter,
+  parameter_name,
+  parameter_value,
+  unknown
+};
+
+enum class SampleNodeKind : std::uint8_t { map, list, scalar };
+
+/// One row: the node, what it is under, its key (none for the items of a list) and its other key.
+struct SampleNodeRule {
+  SampleNode node, parent;
+  SampleNodeKind kind;
+  std::string_view key, other_key = {};
+  bool required = false;
+};
+
+[[nodiscard]] constexpr auto sample_node_rules() {
+  using enum SampleNode;
+  using enum SampleNodeKind;
+  return std::to_array<SampleNodeRule>({
+      {document, unknown, list, "document"},
+      {sample, document, map, ""},
+      {joint_states, sample, map, "joint_states", "", true},
+      {joint_names, joint_states, list, "name", "", true},
+      {joint_name, joint_names, scalar, ""},
+      {joint_positions, joint_states, list, "position", "", true},
+      {joint_position, joint_positions, scalar, ""},
+      {observations, sample, list, "observations", "", true},
+      {observation, observations, map, ""},
+      {sensor, observation, scalar, "sensor_name", "", true},
+      {features, observation, list, "features"},
+      {feature, features, map, ""},
+      {header, feature, map, "header"},
+      {frame, header, scalar, "frame_id"},
+      {point, feature, map, "point", "", true},
+      {x, point, scalar, "x", "", true},
+      {y, point, scalar, "y", "", true},
+      {z, point, scalar, "z", "", true},
+      {ext_camera_info, observation, map, "ext_camera_info"},
+      {camera_info, ext_camera_info, map, "camera_info"},
+      {height, camera_info, scalar, "height"},
+      {width, camera_info, scalar, "width"},
+      {distortion_model, camera_info, scalar, "distortion_model"},
+      {d, camera_info, list, "D", "d"},
+      {d_item, d, scalar, ""},
+      {k, camera_info, list, "K", "k"},
+      {k_item, k, scalar, ""},
+      {r, camera_info, list, "R", "r"},
+      {r_item, r, scalar, ""},
+      {p, camera_info, list, "P", "p"},
+      {p_item, p, scalar, ""},
+      {parameters, ext_camera_info, list, "parameters"},
+      {parameter, parameters, map, ""},
+      {parameter_name, parameter, scalar, "name"},
+      {parameter_value, parameter, scalar, "value"},
+  });
+}
+
+inline constexpr auto kSampleNodeRules = sample_node_rules();
+
+[[nodiscard]] constexpr const SampleNodeRule& sample_rule(SampleNode node) {
+  return kSampleNodeRules[static_cast<std::size_t>(node)];
+}
+
+/// The node under `parent` with this key; `unknown` if there is none.  An item of a list: key "".
+[[nodiscard]] constexpr SampleNode sample_child(SampleNode parent, std::string_view key) {
+  for (const SampleNodeRule& r : kSampleNodeRules) {
+    if (r.parent == parent && (r.key == key || (r.other_key == key && !key.empty()))) return r.node;
+  }
+  return SampleNode::unknown;
+}
+
+/// What a message calls a node: its key, for an item the key of its list.
+[[nodiscard]] constexpr std::string_view sample_name(SampleNode node) {
+  if (node == SampleNode::sample) return "sample";
+  const SampleNodeRule& r = sample_rule(node);
+  return r.key.empty() ? sample_rule(r.parent).key : r.key;
+}
+
+/// One bit for each node, to remember which keys of a map were there.
+[[nodiscard]] constexpr std::uint64_t sample_bit(SampleNode node) {
+  return std::uint64_t{1} << static_cast<int>(node);
+}
+
+[[nodiscard]] constexpr std::uint64_t sample_children(SampleNode parent) {
+  std::uint64_t mask = 0;
+  for (const SampleNodeRule& r : kSampleNodeRules)
+    mask |= r.parent == parent ? sample_bit(r.node) : 0;
+  return mask;
+}
+
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kSampleNodeRules.size(); ++i) {
+        if (static_cast<std::size_t>(kSampleNodeRules[i].node) != i) return false;
+      }
+      return kSampleNodeRules.size() == static_cast<std::size_t>(SampleNode::unknown);
+    }(),
+    "the rules stand in the order of SampleNode, one for each");
+
+}  // namespace kinecal::detail

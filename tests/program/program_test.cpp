@@ -1,0 +1,482 @@
+// The program as its users meet it: exit codes, messages, files.  Every bad input gets a message
+// with the file, the line where there is one and the name; exit code 1; nothing is written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "kinecal/io/write_samples.hpp"
+#include "support/calibrated.hpp"
+#include "support/data.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+const char* const kUrdf = R"(<?xml version="1.0"?>
+<robot name="tiny">
+  <!-- two joints and a camera on a mast -->
+  <link name="base_link"/>
+  <link name="upper"/>
+  <link name="hand"/>
+  <link name="mast"/>
+  <link name="camera_optical_frame"/>
+  <joint name="shoulder" type="revolute">
+    <origin xyz="0 0 0.5" rpy="0 0 0"/>
+    <parent link="base_link"/>
+    <child link="upper"/>
+    <axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/>
+  </joint>
+  <joint name="elbow" type="revolute">
+    <origin xyz="0.4 0 0" rpy="0 0 0"/>
+    <parent link="upper"/>
+    <child link="hand"/>
+    <axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/>
+  </joint>
+  <joint name="mast_joint" type="fixed">
+    <origin xyz="-0.3 0 1.2" rpy="0 0.6 0"/>
+    <parent link="base_link"/>
+    <child link="mast"/>
+  </joint>
+  <joint name="optical_joint" type="fixed">
+    <origin rpy="-1.5707963267948966 0 -1.5707963267948966"/>
+    <parent link="mast"/>
+    <child link="camera_optical_frame"/>
+  </joint>
+  <joint name="drifter" type="floating">
+    <parent link="base_link"/>
+    <child link="balloon"/>
+  </joint>
+  <link name="balloon"/>
+</robot>
+)";
+
+const char* const kConfig = R"(base_link: base_link
+models:
+ - name: arm
+   type: chain
+   frame: hand
+ - name: camera
+   type: camera3d
+   frame: camera_optical_frame
+free_params:
+ - elbow
+ - camera_z_offset
+free_frames:
+ - {name: mast_joint, x: true, y: true, z: true, roll: true, pitch: true, yaw: true}
+error_blocks:
+ - name: hand_eye
+   type: chain3d_to_chain3d
+   model_a: camera
+   model_b: arm
+)";
+
+std::vector<Sample> samples() {
+  const Robot robot = parse_urdf(kUrdf, "tiny.urdf");
+  const Chain<> arm = make_chain(robot, "base_link", "hand");
+  const Chain<> camera = make_chain(robot, "base_link", "camera_optical_frame");
+  std::vector<Sample> all;
+  for (int n = 0; n < 20; ++n) {
+    Sample sample;
+    sample.joint_names = {"shoulder", "elbow"};
+    sample.joint_positions = {0.6 * std::sin(1.7 * n), 0.5 * std::cos(2.3 * n)};
+    const auto truth = [&](const std::string& joint) {
+      return *sample.position(joint) + (joint == "elbow" ? 0.02 : 0.0);
+    };
+    const Pose<double> base_T_hand = forward_kinematics(arm, truth);
+    const Pose<double> camera_T_base = forward_kinematics(camera, truth).inverse();
+    CameraInfo info;
+    info.width = 640;
+    info.height = 480;
+    info.distortion_model = "plumb_bob";
+    info.d = {0, 0, 0, 0, 0};
+    info.k = {550, 0, 320, 0, 550, 240, 0, 0, 1};
+    info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    info.p = {550, 0, 320, 0, 0, 550, 240, 0, 0, 0, 1, 0};
+    Observation seen{"camera", {}, info}, held{"arm", {}};
+    for (const Vector3<double>& p : {Vector3<double>(0.1, 0, 0), Vector3<double>(0.2, 0.05, 0),
+                                     Vector3<double>(0.2, -0.05, 0.03)}) {
+      held.features.push_back({"hand", p});
+      seen.features.push_back({"camera_optical_frame", camera_T_base * (base_T_hand * p)});
+    }
+    sample.observations = {seen, held};
+    all.push_back(sample);
+  }
+  return all;
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+class Program : public testing::Test {
+ protected:
+  Program() {
+    char folder[] = "/tmp/kinecal_program_XXXXXX";
+    folder_ = mkdtemp(folder);
+    write("tiny.urdf", kUrdf);
+    write("c.yaml", kConfig);
+    write_all(samples());
+  }
+  ~Program() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  void write_all(const std::vector<Sample>& all) const {
+    std::ofstream file(folder_ / "s.yaml");
+    write_samples(file, all);
+  }
+  /// Writes a file of the good input with one piece of text replaced.
+  void spoil(const std::string& name, const std::string& from, const std::string& to) const {
+    std::string text = read(name);
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    write(name, text.replace(at, from.size(), to));
+  }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    return test::text_of(folder_ / name);
+  }
+
+  [[nodiscard]] Outcome run(const std::string& arguments) const {
+    const std::string command = "cd " + folder_.string() + " && " KINECAL_PROGRAM " " + arguments +
+                                " > out.txt 2> err.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out.txt"), read("err.txt")};
+  }
+  [[nodiscard]] Outcome calibrate(const std::string& more = "") const {
+    return run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output out " + more);
+  }
+
+  /// The input as it stands is refused with this message, by check too, and nothing is written.
+  void expect_refused(const testing::Matcher<std::string>& message) const {
+    const Outcome result = calibrate();
+    EXPECT_EQ(result.code, 1) << result.out << result.err;
+    EXPECT_THAT(result.err, message);
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    const Outcome checked = run("check --urdf tiny.urdf --config c.yaml --samples s.yaml");
+    EXPECT_EQ(checked.code, 1) << checked.out;
+    EXPECT_THAT(checked.err, message);
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Program, CalibratesAndWritesAllFiles) {
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("hand_eye"), HasSubstr("elbow"), HasSubstr("1.146 deg"),
+                                HasSubstr("wrote out/calibrated.urdf")));
+  for (const char* name : {"calibrated.urdf", "calibration.yaml", "depth_camera.yaml",
+                           "rgb_camera.yaml", "report.json"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 5) << "left something";
+  EXPECT_NEAR(YAML::LoadFile((folder_ / "out/calibration.yaml").string())["elbow"].as<double>(),
+              0.02, 1e-9);
+  const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
+  EXPECT_TRUE(report["converged"].as<bool>());
+  EXPECT_EQ(report["error_blocks"][0]["count"].as<int>(), 60);
+  EXPECT_EQ(report["steps"][0]["num_parameters"].as<int>(), 8);
+}
+
+TEST_F(Program, BothOffsetStylesDescribeTheSameRobot) {
+  ASSERT_EQ(calibrate("--offsets rising").code, 0);
+  const Robot rising = read_urdf((folder_ / "out/calibrated.urdf").string());
+  ASSERT_EQ(calibrate("--offsets origin").code, 0);
+  const Robot origin = read_urdf((folder_ / "out/calibrated.urdf").string());
+  const double offset =
+      YAML::LoadFile((folder_ / "out/calibration.yaml").string())["elbow"].as<double>();
+  const auto tip = [&](const Robot& robot, double added) {
+    return forward_kinematics(make_chain(robot, "camera_optical_frame", "hand"),
+                              [&](const std::string& joint) {
+                                return joint == "elbow" ? 0.3 + added : -0.2;
+                              });
+  };
+  const Pose<double> a = tip(rising, offset), b = tip(origin, 0.0);
+  EXPECT_LE((a.rotation - b.rotation).norm() + (a.translation - b.translation).norm(), 1e-12);
+}
+
+TEST_F(Program, GivesTheSameBytesForTheSameInput) {
+  ASSERT_EQ(calibrate().code, 0);
+  const std::string urdf = read("out/calibrated.urdf"), yaml = read("out/calibration.yaml");
+  ASSERT_EQ(calibrate().code, 0);
+  EXPECT_EQ(read("out/calibrated.urdf"), urdf);
+  EXPECT_EQ(read("out/calibration.yaml"), yaml);
+}
+
+TEST_F(Program, UpstreamNamesCarryTheDateAndLeaveOutTheNameCamera) {
+  ASSERT_EQ(calibrate("--upstream-names").code, 0);
+  std::vector<std::string> names;
+  for (const auto& file : fs::directory_iterator(folder_ / "out")) {
+    names.push_back(file.path().filename().string());
+  }
+  const std::string date = "[0-9]+_[0-9]+_[0-9]+_[0-9]+_[0-9]+_[0-9]+";
+  using testing::MatchesRegex;
+  EXPECT_THAT(names, testing::UnorderedElementsAre(
+                         MatchesRegex("calibrated_" + date + "\\.urdf"),
+                         MatchesRegex("calibration_" + date + "\\.yaml"),
+                         MatchesRegex("depth_" + date + "\\.yaml"),
+                         MatchesRegex("rgb_" + date + "\\.yaml"), "report.json"));
+}
+
+TEST_F(Program, DryRunWritesNothing) {
+  EXPECT_EQ(calibrate("--dry-run").code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Program, ExitsWith2AndWritesNothingWhenItDoesNotConverge) {
+  write("c.yaml", std::string(kConfig) + "max_num_iterations: 1\n");
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 2) << result.out;
+  EXPECT_THAT(result.err, HasSubstr("not calibrated, nothing written"));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Program, InspectShowsSensorsJointsAndGaps) {
+  auto all = samples();
+  all[3].observations.pop_back();
+  write_all(all);
+  const Outcome result = run("inspect s.yaml");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("20 samples"), HasSubstr("640x480"), HasSubstr("elbow"),
+                                HasSubstr("sensor 'arm' is missing in 1 of 20 samples")));
+}
+
+TEST_F(Program, CheckTellsEveryMistakeInOneGo) {
+  spoil("c.yaml", " - elbow", " - elbwo\n - sholder");
+  spoil("c.yaml", "frame: hand", "frame: hnad");
+  const Outcome result = run("check --urdf tiny.urdf --config c.yaml --samples s.yaml");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("c.yaml:10: "), HasSubstr("'elbwo'"),
+                                HasSubstr("did you mean 'elbow'?"), HasSubstr("'sholder'"),
+                                HasSubstr("did you mean 'shoulder'?"), HasSubstr("'hnad'"),
+                                HasSubstr("did you mean 'hand'?")));
+}
+
+TEST_F(Program, AcceptsASampleFileTwice) {
+  EXPECT_EQ(run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml s.yaml --output out")
+                .code,
+            0);
+}
+
+// Bad input, one test each.
+
+TEST_F(Program, RefusesAMissingUrdf) {
+  fs::remove(folder_ / "tiny.urdf");
+  expect_refused(HasSubstr("tiny.urdf"));
+}
+
+TEST_F(Program, RefusesAMalformedUrdfWithTheLine) {
+  spoil("tiny.urdf", "<link name=\"hand\"/>", "<link name=\"hand\">");
+  expect_refused(HasSubstr("tiny.urdf:"));
+}
+
+TEST_F(Program, RefusesALinkThatDoesNotExist) {
+  spoil("c.yaml", "frame: hand", "frame: hnad");
+  expect_refused(AllOf(HasSubstr("c.yaml:3: model 'arm'"), HasSubstr("'hnad'"),
+                       HasSubstr("did you mean 'hand'?")));
+}
+
+TEST_F(Program, RefusesABaseLinkThatDoesNotExist) {
+  spoil("c.yaml", "base_link: base_link", "base_link: bsae_link");
+  expect_refused(AllOf(HasSubstr("'bsae_link'"), HasSubstr("did you mean 'base_link'?")));
+}
+
+TEST_F(Program, RefusesAFloatingJointOnTheWayByName) {
+  spoil("c.yaml", "frame: hand", "frame: balloon");
+  expect_refused(AllOf(HasSubstr("c.yaml:3"), HasSubstr("joint 'drifter'"), HasSubstr("floating")));
+}
+
+TEST_F(Program, RefusesAFreeParameterThatDoesNotExist) {
+  spoil("c.yaml", "camera_z_offset", "camera_xy");
+  expect_refused(AllOf(HasSubstr("c.yaml:11:"), HasSubstr("free parameter 'camera_xy'"),
+                       HasSubstr("did you mean 'camera_")));
+}
+
+TEST_F(Program, RefusesAFixedJointAsAnOffset) {
+  spoil("c.yaml", " - elbow", " - optical_joint");
+  expect_refused(AllOf(HasSubstr("c.yaml:10:"), HasSubstr("'optical_joint' is fixed")));
+}
+
+TEST_F(Program, RefusesAMisspeltFreeFrame) {
+  spoil("c.yaml", "name: mast_joint", "name: mast_jiont");
+  expect_refused(AllOf(HasSubstr("c.yaml:13:"), HasSubstr("did you mean 'mast_joint'?")));
+}
+
+TEST_F(Program, RefusesALinkAsAFreeFrameAndNamesItsJoint) {
+  spoil("c.yaml", "name: mast_joint", "name: mast");
+  expect_refused(AllOf(HasSubstr("'mast' is a link"), HasSubstr("'mast_joint'")));
+}
+
+TEST_F(Program, RefusesAnUnknownModelInABlock) {
+  spoil("c.yaml", "model_a: camera", "model_a: camra");
+  expect_refused(AllOf(HasSubstr("c.yaml:15: error block 'hand_eye': model_a 'camra'"),
+                       HasSubstr("did you mean 'camera'?")));
+}
+
+TEST_F(Program, RefusesAnUnknownBlockType) {
+  spoil("c.yaml", "type: chain3d_to_chain3d", "type: chain3d_to_chain");
+  expect_refused(AllOf(HasSubstr("'chain3d_to_chain'"),
+                       HasSubstr("did you mean 'chain3d_to_chain3d'?")));
+}
+
+TEST_F(Program, RefusesAnUnknownModelType) {
+  spoil("c.yaml", "type: camera3d", "type: camera4d");
+  expect_refused(AllOf(HasSubstr("c.yaml:7: model 'camera'"), HasSubstr("'camera4d'"),
+                       HasSubstr("did you mean 'camera3d'?"), Not(HasSubstr("z_offset"))));
+}
+
+TEST_F(Program, RefusesAModelAndAFrameOfOneNameInTheRos2Dialect) {
+  write("c.yaml", R"(robot_calibration:
+  ros__parameters:
+    base_link: base_link
+    calibration_steps: [one]
+    one:
+      models: [arm, camera]
+      arm: {type: chain3d, frame: hand}
+      camera: {type: camera3d, frame: camera_optical_frame}
+      free_params: [elbow]
+      free_frames: [arm]
+      error_blocks: [hand_eye]
+      hand_eye: {type: chain3d_to_chain3d, model_a: camera, model_b: arm}
+)");
+  expect_refused(AllOf(HasSubstr("c.yaml:"), HasSubstr("'arm'"), HasSubstr("rename")));
+}
+
+TEST_F(Program, RefusesYamlThatIsNone) {
+  write("c.yaml", "models: [a, {b: c\n");
+  expect_refused(HasSubstr("c.yaml:"));
+}
+
+TEST_F(Program, RefusesASampleWithoutAJointThatAChainNeeds) {
+  auto all = samples();
+  all[4].joint_names[1] = "elbw";
+  write_all(all);
+  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("joint 'elbow' is not in the sample"),
+                       HasSubstr("did you mean 'elbw'?")));
+}
+
+TEST_F(Program, LeavesOutFeaturesThatAreNotNumbersWithACount) {
+  auto all = samples();
+  all[2].observations[0].features[1].point.y() = std::nan("");
+  all[5].observations[1].features[0].point.x() = HUGE_VAL;
+  write_all(all);
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("2 features are not a number"), HasSubstr("s.yaml:")));
+  EXPECT_EQ(YAML::LoadFile((folder_ / "out/report.json").string())["error_blocks"][0]["count"]
+                .as<int>(),
+            58);
+}
+
+TEST_F(Program, RefusesSamplesInWhichNoFeatureIsANumber) {
+  auto all = samples();
+  for (Sample& sample : all) {
+    for (Feature& f : sample.observations[0].features) f.point.y() = std::nan("");
+  }
+  write_all(all);
+  expect_refused(HasSubstr("no sample has usable features"));
+}
+
+TEST_F(Program, RefusesTwoSensorsWithDifferentFeatureCounts) {
+  auto all = samples();
+  all[6].observations[1].features.pop_back();
+  write_all(all);
+  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("sensor 'camera' has 3 features"),
+                       HasSubstr("sensor 'arm' has 2")));
+}
+
+TEST_F(Program, RefusesZeroSamples) {
+  write("s.yaml", "");
+  expect_refused(AllOf(HasSubstr("s.yaml"), HasSubstr("no samples")));
+}
+
+TEST_F(Program, RefusesACameraWithoutCameraInfo) {
+  auto all = samples();
+  all[1].observations[0].camera.reset();
+  write_all(all);
+  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("'camera'"), HasSubstr("camera_info")));
+}
+
+TEST_F(Program, RefusesAProjectionMatrixOfTheWrongSize) {
+  std::string text = read("s.yaml");
+  const auto p = text.find("P: [");
+  ASSERT_NE(p, std::string::npos);
+  text.replace(p, text.find(']', p) + 1 - p, "P: [550.0, 0.0, 320.0]");
+  write("s.yaml", text);
+  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("P"), HasSubstr("12")));
+}
+
+TEST_F(Program, RefusesAPointBehindTheCamera) {
+  auto all = samples();
+  all[8].observations[0].features[2].point.z() = -0.7;
+  write_all(all);
+  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("behind the camera")));
+}
+
+TEST_F(Program, RefusesAFeatureInAnUnknownFrame) {
+  auto all = samples();
+  all[8].observations[1].features[2].frame = "hnad";
+  write_all(all);
+  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("'hnad'"), HasSubstr("did you mean 'hand'")));
+}
+
+TEST_F(Program, RefusesASampleFileThatWasCutOff) {
+  const std::string text = read("s.yaml");
+  write("s.yaml", text.substr(0, text.size() - 100));
+  expect_refused(HasSubstr("s.yaml:"));
+}
+
+TEST_F(Program, RefusesAnOutputFolderThatIsAFile) {
+  write("out", "precious");
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("out"));
+  EXPECT_EQ(read("out"), "precious");
+}
+
+TEST_F(Program, RefusesAnOutputFolderThatCannotBeCreated) {
+  const Outcome result = run(
+      "calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output /proc/kinecal/out");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("/proc/kinecal/out"));
+}
+
+/// A disk that is full half way: no file may grow beyond 2 kB, less than the URDF.
+TEST_F(Program, WritesNothingWhenTheDiskIsFullHalfWay) {
+  ASSERT_EQ(calibrate().code, 0);
+  const std::string before = read("out/calibrated.urdf");
+  ASSERT_GT(before.size(), 1024u);
+  spoil("tiny.urdf", "0.4 0 0", "0.41 0 0");
+  const std::string command = "cd " + folder_.string() +
+                              " && (trap '' XFSZ; ulimit -f 1; " KINECAL_PROGRAM
+                              " calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml "
+                              "--output out > /dev/null 2>&1)";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_EQ(read("out/calibrated.urdf"), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 5) << "left something";
+}
+
+TEST_F(Program, RefusesUnknownOptionsWithExitCode1) {
+  EXPECT_EQ(run("calibrate --urfd tiny.urdf").code, 1);
+  EXPECT_EQ(run("").code, 1);
+  EXPECT_EQ(run("--help").code, 0);
+}
+
+}  // namespace
+}  // namespace kinecal

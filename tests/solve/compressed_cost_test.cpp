@@ -1,0 +1,131 @@
+#include "kinecal/solve/compressed_cost.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinecal/errors.hpp"
+#include "support/scene.hpp"
+
+namespace kinecal {
+namespace {
+
+/// Residuals and Jacobian of all samples on top of one another, weighted, without losses.
+struct Stacked {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+};
+
+Stacked stack(const Problem& problem, std::span<const double> values, const FreeSet& free) {
+  Stacked all;
+  all.jacobian.resize(0, free.size());
+  (void)problem.evaluate(values, &free, [&](int t, int, const TermResiduals& out) {
+    const double weight = problem.terms()[static_cast<std::size_t>(t)]->options().weight;
+    const Eigen::Index rows = all.residual.size();
+    all.residual.conservativeResize(rows + out.residual.size());
+    all.jacobian.conservativeResize(rows + out.residual.size(), Eigen::NoChange);
+    all.residual.tail(out.residual.size()) = weight * out.residual;
+    all.jacobian.bottomRows(out.residual.size()) = weight * out.jacobian;
+  });
+  return all;
+}
+
+Problem noisy_problem(const Loss& loss) {
+  Problem problem = test::scene_problem();
+  TermOptions options;
+  options.weight = 3.0;
+  options.loss = loss;
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, options);
+  options.weight = 0.01;
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, options);
+  const auto truth = test::random_values(problem.table(), 0.01, 2);
+  for (const Sample& sample : test::exact_samples(problem, truth, 6)) problem.add_sample(sample);
+  return problem;
+}
+
+FreeSet all_free(const Problem& problem) {
+  std::vector<int> all;
+  for (int i = 0; i < problem.table().size(); ++i) all.push_back(i);
+  return FreeSet(all, problem.table().size());
+}
+
+TEST(CompressedCost, HasTheCostGradientAndHessianOfTheStackedResiduals) {
+  const Problem problem = noisy_problem({});
+  const FreeSet free = all_free(problem);
+  const auto x = test::random_values(problem.table(), 0.02, 5);
+  const Stacked all = stack(problem, x, free);
+  std::optional<UndefinedResidual> undefined;
+  const EquivalentResidual compressed(normal_equations(problem, x, &free, undefined));
+  ASSERT_FALSE(undefined);
+  EXPECT_EQ(compressed.residual.size(), free.size() + 1);
+  EXPECT_NEAR(compressed.residual.squaredNorm() / all.residual.squaredNorm(), 1.0, 1e-12);
+  const Eigen::VectorXd gradient = all.jacobian.transpose() * all.residual;
+  EXPECT_LE((compressed.jacobian.transpose() * compressed.residual - gradient).norm(),
+            1e-10 * gradient.norm());
+  const Eigen::MatrixXd hessian = all.jacobian.transpose() * all.jacobian;
+  EXPECT_LE((compressed.jacobian.transpose() * compressed.jacobian - hessian).norm(),
+            1e-10 * hessian.norm());  // directions below kNoCurvature are left out
+}
+
+/// The problem above frees parameters that cannot be told apart: its Hessian is singular.
+TEST(CompressedCost, IsFiniteWhereTheHessianIsSingular) {
+  const Problem problem = noisy_problem({});
+  const FreeSet free = all_free(problem);
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  std::optional<UndefinedResidual> undefined;
+  const NormalEquations normal = normal_equations(problem, zero, &free, undefined);
+  const Eigen::VectorXd d = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal.hessian).eigenvalues();
+  ASSERT_LT(d(0), 1e-12 * d(d.size() - 1));
+  const EquivalentResidual compressed(normal);
+  EXPECT_TRUE(compressed.residual.allFinite());
+  EXPECT_TRUE(compressed.jacobian.allFinite());
+}
+
+/// The gradient of the cost with a loss, by central differences of the cost itself.
+TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
+  for (const LossType type : {LossType::huber, LossType::cauchy, LossType::tukey}) {
+    const Problem problem = noisy_problem({type, 0.3});
+    const FreeSet free = all_free(problem);
+    const auto x = test::random_values(problem.table(), 0.02, 5);
+    const CompressedCost cost(problem, free,
+                              Eigen::Map<const Eigen::VectorXd>(x.data(), problem.table().size()));
+    const auto n = static_cast<Eigen::Index>(free.size());
+    const auto cost_at = [&](const std::vector<double>& values) {
+      Eigen::VectorXd r(n + 1);
+      const double* blocks[] = {values.data()};
+      EXPECT_TRUE(cost.Evaluate(blocks, r.data(), nullptr));
+      return 0.5 * r.squaredNorm();
+    };
+    Eigen::VectorXd r(n + 1);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(n + 1, n);
+    const double* blocks[] = {x.data()};
+    double* jacobians[] = {jacobian.data()};
+    ASSERT_TRUE(cost.Evaluate(blocks, r.data(), jacobians));
+    EXPECT_NEAR(0.5 * r.squaredNorm(), cost_at(x), 1e-12 * cost_at(x));
+    const Eigen::VectorXd gradient = jacobian.transpose() * r;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      constexpr double kStep = 1e-6;
+      std::vector<double> up = x, down = x;
+      up[static_cast<std::size_t>(i)] += kStep;
+      down[static_cast<std::size_t>(i)] -= kStep;
+      const double numeric = (cost_at(up) - cost_at(down)) / (2 * kStep);
+      EXPECT_NEAR(gradient(i), numeric, 1e-7 * gradient.norm()) << problem.table()[static_cast<int>(i)].name;
+    }
+  }
+}
+
+TEST(Loss, HasTheDerivativeItSaysAndBoundsItsTangent) {
+  for (const LossType type :
+       {LossType::none, LossType::huber, LossType::cauchy, LossType::tukey}) {
+    const Loss loss{type, 0.7};
+    EXPECT_EQ(loss(0.0).rho, 0.0);
+    EXPECT_EQ(loss(0.0).derivative, 1.0);
+    for (double s = 0.01; s < 2.0; s += 0.0371) {
+      constexpr double kStep = 1e-6;
+      const double numeric = (loss(s + kStep).rho - loss(s - kStep).rho) / (2 * kStep);
+      EXPECT_NEAR(loss(s).derivative, numeric, 1e-6) << static_cast<int>(type) << " at " << s;
+      EXPECT_LE(loss(s).derivative * s, loss(s).rho * (1 + 1e-15));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kinecal

@@ -1,0 +1,189 @@
+#include "kinecal/solve/solve.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinecal/errors.hpp"
+#include "support/scene.hpp"
+
+namespace kinecal {
+namespace {
+
+/// Parameters of the scene that camera and arm together can tell.
+const std::vector<std::string> kObservable = {
+    "shoulder_lift", "elbow",           "wrist",          "head_tilt",     "camera_joint_x",
+    "camera_joint_y", "camera_joint_z", "camera_joint_a", "camera_joint_c", "camera_fx",
+    "camera_fy",     "camera_cx",       "camera_cy",      "camera_z_offset", "camera_z_scaling"};
+
+FreeSet free_of(const ParameterTable& table, const std::vector<std::string>& names) {
+  std::vector<int> indices;
+  for (const std::string& name : names) indices.push_back(table.index(name));
+  return FreeSet(indices, table.size());
+}
+
+/// True values: some error in every observable parameter.
+Eigen::VectorXd true_values(const ParameterTable& table) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(table.size());
+  const std::vector<double> random = test::random_values(table, 0.03, 11);
+  for (const std::string& name : kObservable) {
+    values(table.index(name)) = random[static_cast<std::size_t>(table.index(name))];
+  }
+  return values;
+}
+
+std::span<const double> span_of(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+/// Samples of the true robot with noise on the camera's points.
+/// @param noise  standard deviation, metres
+std::vector<Sample> noisy_samples(int count, double noise) {
+  const Problem problem = test::scene_problem();
+  std::vector<Sample> samples =
+      test::exact_samples(problem, span_of(true_values(problem.table())), count);
+  std::mt19937 random(21);
+  std::normal_distribution<double> normal(0.0, noise);
+  for (Sample& sample : samples) {
+    for (Feature& feature : sample.observations[1].features) {
+      feature.point += Vector3<double>(normal(random), normal(random), normal(random));
+    }
+  }
+  return samples;
+}
+
+/// Solves camera against arm from zero; the values that were found.
+Eigen::VectorXd solved(const std::vector<Sample>& samples, const Loss& loss,
+                       StepResult* result = nullptr) {
+  Problem problem = test::scene_problem();
+  TermOptions options;
+  options.loss = loss;
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, options);
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+  const StepResult step = solve(problem, free_of(problem.table(), kObservable), values);
+  if (result != nullptr) *result = step;
+  return values;
+}
+
+TEST(Solve, RecoversInjectedErrorsFromExactSamples) {
+  StepResult result;
+  const Eigen::VectorXd values = solved(noisy_samples(30, 0.0), {}, &result);
+  EXPECT_TRUE(result.converged) << result.termination;
+  const Eigen::VectorXd truth = true_values(test::scene_table());
+  EXPECT_LE((values - truth).norm(), 1e-8 * truth.norm());
+  EXPECT_LE(result.final_cost, 1e-20);
+}
+
+TEST(Solve, GivesTheSameBytesForTheSameInput) {
+  const auto samples = noisy_samples(20, 1e-3);
+  const Eigen::VectorXd first = solved(samples, {}), second = solved(samples, {});
+  EXPECT_TRUE(first == second);
+}
+
+TEST(Solve, OneBadCaptureAmongAHundredMovesTheParametersTenTimesLessWithALoss) {
+  const std::vector<Sample> clean = noisy_samples(100, 1e-3);
+  for (const LossType type : {LossType::huber, LossType::cauchy, LossType::tukey}) {
+    const Loss loss{type, type == LossType::tukey ? 0.006 : 0.002};
+    for (const std::size_t bad : {7u, 50u, 93u}) {
+      std::vector<Sample> spoiled = clean;
+      for (Feature& f : spoiled[bad].observations[1].features) f.point.x() += 0.05;
+      const double without = (solved(spoiled, {}) - solved(clean, {})).norm();
+      const double with = (solved(spoiled, loss) - solved(clean, loss)).norm();
+      EXPECT_LT(with, 0.1 * without) << static_cast<int>(type) << ", sample " << bad;
+    }
+  }
+}
+
+TEST(Solve, ALossThatSeesNothingFromFarAwayIsStartedFromAConvexOne) {
+  StepResult result;
+  const Eigen::VectorXd values =
+      solved(noisy_samples(30, 1e-4), {LossType::tukey, 0.002}, &result);
+  EXPECT_TRUE(result.converged) << result.termination;
+  const Eigen::VectorXd truth = true_values(test::scene_table());
+  EXPECT_LE((values - truth).norm(), 0.1 * truth.norm());
+}
+
+TEST(Solve, RefusesAPlateauOnWhichTheLossLeavesOutHalfOfTheFeatures) {
+  StepResult result;
+  const Eigen::VectorXd values =
+      solved(noisy_samples(30, 5e-3), {LossType::tukey, 1e-4}, &result);
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.termination.find("'hand_eye' leaves out half"), std::string::npos)
+      << result.termination;
+  EXPECT_TRUE(values.isZero(0.0)) << "unusable results must not change the values";
+}
+
+TEST(Solve, StaysWithinBounds) {
+  Problem with_bounds(test::mobile_manipulator(), "base_link",
+                      [] {
+                        ParameterTable table = test::scene_table();
+                        table["camera_z_offset"].lower = -1e-5;
+                        table["camera_z_offset"].upper = 1e-5;
+                        return table;
+                      }(),
+                      test::kSceneFrames);
+  with_bounds.add_sensor({"arm", SensorType::chain3d, "hand", ""});
+  with_bounds.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
+  with_bounds.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  for (const Sample& sample : noisy_samples(30, 0.0)) with_bounds.add_sample(sample);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(with_bounds.table().size());
+  const StepResult result =
+      solve(with_bounds, free_of(with_bounds.table(), kObservable), values);
+  EXPECT_TRUE(result.converged) << result.termination;
+  const double found = values(with_bounds.table().index("camera_z_offset"));
+  const double truth = true_values(test::scene_table())(with_bounds.table().index("camera_z_offset"));
+  ASSERT_GT(std::abs(truth), 1e-5) << "the bound must matter";
+  EXPECT_NEAR(std::abs(found), 1e-5, 1e-13);
+}
+
+TEST(Solve, HoldsWhatIsNotFree) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  for (const Sample& sample : noisy_samples(10, 1e-3)) problem.add_sample(sample);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+  values(problem.table().index("elbow")) = 0.125;
+  (void)solve(problem, free_of(problem.table(), {"wrist", "camera_joint_x"}), values);
+  for (int i = 0; i < values.size(); ++i) {
+    const std::string& name = problem.table()[i].name;
+    if (name == "wrist" || name == "camera_joint_x") {
+      EXPECT_NE(values(i), 0.0);
+    } else {
+      EXPECT_EQ(values(i), name == "elbow" ? 0.125 : 0.0) << name;
+    }
+  }
+}
+
+TEST(Solve, SaysWhereAResidualIsNotDefinedAtTheStart) {
+  Problem problem = test::scene_problem();
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {});
+  Sample sample = noisy_samples(1, 0.0)[0];
+  sample.source = "s.yaml:12";
+  problem.add_sample(sample);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+  values(problem.table().index("head_pan")) = M_PI;  // looks the other way
+  const StepResult result = solve(problem, free_of(problem.table(), {"elbow"}), values);
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.termination.find("'reprojection'"), std::string::npos) << result.termination;
+  EXPECT_NE(result.termination.find("s.yaml:12"), std::string::npos) << result.termination;
+}
+
+TEST(Solve, APriorCountsOncePerSampleAndPullsToZero) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {});
+  const auto samples = noisy_samples(7, 0.0);
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  Eigen::VectorXd values = true_values(problem.table());
+  std::optional<UndefinedResidual> undefined;
+  const double cost = normal_equations(problem, span_of(values), nullptr, undefined).cost;
+  double squares = 0.0;
+  for (const char* axis : {"x", "y", "z"}) {
+    squares += std::pow(2.0 * values(problem.table().index(parameter_name("camera_joint", axis))), 2);
+  }
+  for (const char* axis : {"a", "b", "c"}) {
+    squares += std::pow(3.0 * values(problem.table().index(parameter_name("camera_joint", axis))), 2);
+  }
+  EXPECT_NEAR(cost / (0.5 * 7 * squares), 1.0, 1e-10);
+}
+
+}  // namespace
+}  // namespace kinecal
