@@ -5,6 +5,8 @@
 #   kinecal::kinecal  all of them
 include(GNUInstallDirs)
 
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that fetches kinecal links them, too
+
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Ceres 2.1 REQUIRED)
 find_package(urdfdom REQUIRED)

@@ -45,9 +45,13 @@ class SampleHandler final : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
     if (levels_.empty() && skipped_ == 0) {
       last_document_is_empty_ = true;
-    } else if (const SampleNode node = next_node(); node != SampleNode::unknown) {
-      null(node, mark.line + 1);
+      return;
     }
+    // The parser has moved on to what follows; the key is what the user looks for.
+    const bool is_value = !levels_.empty() && levels_.back().is_map && !at_key();
+    const int line = is_value ? key_line_ : mark.line + 1;
+    const SampleNode node = next_node();
+    if (node != SampleNode::unknown) null(node, line);
   }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
@@ -109,6 +113,7 @@ class SampleHandler final : public YAML::EventHandler {
   void key(const YAML::Mark& mark, const std::string& text) {
     Level& level = levels_.back();
     level.at_key = false;
+    key_line_ = mark.line + 1;
     value_node_ = text.empty() ? SampleNode::unknown : sample_child(level.node, text);
     if (value_node_ == SampleNode::unknown) return;
     if ((seen_ & sample_bit(value_node_)) != 0) {
@@ -179,6 +184,7 @@ class SampleHandler final : public YAML::EventHandler {
   std::vector<Level> levels_;
   std::uint64_t seen_ = 0;  ///< keys met in the maps that are open, see sample_bit()
   SampleNode value_node_ = SampleNode::unknown;
+  int key_line_ = 0;               ///< of the last key
   int skipped_ = 0;                ///< how deep in something unknown
   int document_position_ = -1;     ///< in the file, characters
   std::size_t errors_before_ = 0;  ///< this document

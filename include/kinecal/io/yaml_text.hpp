@@ -63,7 +63,7 @@ namespace kinecal {
 }
 
 /// Text in millimetres that metres_from_millimetres() reads as the same double.
-/// @param metres  metres
+/// @param metres  metres, below 1e305
 [[nodiscard]] inline std::string millimetres_from_metres(double metres) {
   std::string text = number_to_yaml(metres * 1e3);
   if (!std::isfinite(metres) || metres_from_millimetres(text) == metres) return text;

@@ -1,0 +1,25 @@
+#!/bin/sh
+# Installs the Debian 12 packages that kinecal needs, without asking; nothing if all are there.
+#   cmake/install_packages.sh [test]    with `test`, also what the tests need
+set -eu
+
+packages="g++ cmake ninja-build libeigen3-dev libceres-dev liburdfdom-dev libyaml-cpp-dev \
+libpugixml-dev libfmt-dev libcli11-dev"
+if [ "${1:-}" = test ]; then
+  packages="$packages clang-14 libgtest-dev libgmock-dev libbenchmark-dev"
+fi
+
+missing=""
+for package in $packages; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||
+    missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+as_root=""
+[ "$(id -u)" = 0 ] || as_root=sudo
+echo "Installing:$missing"
+$as_root apt-get update -qq
+# shellcheck disable=SC2086  # words on purpose
+$as_root env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -y -qq --no-install-recommends $missing >/dev/null

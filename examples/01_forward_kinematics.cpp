@@ -1,0 +1,92 @@
+// Forward kinematics: where is the gripper, and how does each joint move it?
+//
+// A robot is a list of joints, a chain the way from one link to another; one walk along the chain
+// gives the pose of its tip and a twist for each joint, the exact derivative of that pose.
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "kinecal/geometry.hpp"
+#include "kinecal/kinematics.hpp"
+
+namespace {
+
+using namespace kinecal;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+using Positions = std::map<std::string, double>;
+
+/// A lift, three turning joints and a gripper that hangs half a turn about x, lengths in metres.
+Robot make_robot() {
+  using enum JointType;
+  const auto origin = [](double x, double y, double z, double roll = 0.0) {
+    return Pose<double>{rotation_from_rpy({roll, 0, 0}), {x, y, z}};
+  };
+  return Robot("little_arm",
+               {{"lift", prismatic, "base", "column", origin(0, 0, 0.3), {0, 0, 1}},
+                {"shoulder", revolute, "column", "upper_arm", origin(0.1, 0, 0.1), {0, 0, 1}},
+                {"elbow", revolute, "upper_arm", "forearm", origin(0.4, 0, 0), {0, 0, 1}},
+                {"wrist", revolute, "forearm", "hand", origin(0.3, 0, 0), {0, 1, 0}},
+                {"mount", fixed, "hand", "gripper", origin(0.15, 0, 0, std::numbers::pi)}});
+}
+
+/// Where the gripper's origin is at these positions.
+Vector3<double> gripper(const Chain<>& chain, const Positions& positions) {
+  return forward_kinematics(chain, [&](const std::string& joint) { return positions.at(joint); })
+      .translation;
+}
+
+/// The twist of each joint: a walk with a walker that notes how each joint's offset moves the tip.
+std::vector<Twist<double>> twists(const Chain<>& chain, const Positions& positions) {
+  std::vector<JointIndices> columns(chain.joints.size());
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i].offset = static_cast<int>(i);
+  const Corrections<double> none(chain.joints.size());
+  const auto motions =
+      measured_motions(chain, [&](const std::string& joint) { return positions.at(joint); });
+  TwistWalker<double> walker{columns};
+  walk(chain, std::span<const Motion<double>>(motions),
+       std::span<const JointCorrection<double>>(none), walker);
+  return walker.twists;
+}
+
+}  // namespace
+
+int main() {
+  const Chain<> chain = make_chain(make_robot(), "base", "gripper");
+  const Positions positions = {
+      {"lift", 0.05}, {"shoulder", 30 * kDegree}, {"elbow", 45 * kDegree}, {"wrist", 20 * kDegree}};
+
+  const Pose<double> base_T_gripper =
+      forward_kinematics(chain, [&](const std::string& joint) { return positions.at(joint); });
+  const Vector3<double> p = base_T_gripper.translation;
+  const Vector3<double> rpy = rpy_from_rotation(base_T_gripper.rotation) / kDegree;
+  std::printf("The gripper is at   x %.4f  y %.4f  z %.4f m\n", p.x(), p.y(), p.z());
+  std::printf("and turned by       roll %.1f  pitch %.1f  yaw %.1f degrees\n\n", rpy.x(), rpy.y(),
+              rpy.z());
+
+  std::printf("How it moves when a joint turns by 1 degree or slides by 1 mm, in mm:\n");
+  std::printf("  %-10s %8s %8s %8s   %s\n", "joint", "x", "y", "z", "twist - difference");
+  double worst = 0.0;
+  for (const Twist<double>& twist : twists(chain, positions)) {
+    const ChainJoint& joint = chain.joints[static_cast<std::size_t>(twist.column)];
+    // The same by brute force: the positions a little to either side.
+    constexpr double kStep = 1e-6;
+    Positions up = positions, down = positions;
+    up[joint.name] += kStep;
+    down[joint.name] -= kStep;
+    const Vector3<double> difference = (gripper(chain, up) - gripper(chain, down)) / (2 * kStep);
+    const double error = (twist.velocity(p) - difference).norm();
+    const Vector3<double> mm = twist.velocity(p) * (turns(joint.type) ? kDegree * 1e3 : 1.0);
+    std::printf("  %-10s %8.3f %8.3f %8.3f   %.0e\n", joint.name.c_str(), mm.x(), mm.y(), mm.z(),
+                error);
+    worst = std::fmax(worst, error);
+  }
+  constexpr double kDifferencesAreGoodTo = 1e-8;  // what central differences can show
+  const bool agree = worst < kDifferencesAreGoodTo;
+  std::printf("\nTwists and differences %s.\n", agree ? "agree" : "DO NOT AGREE");
+  return agree ? 0 : 1;
+}

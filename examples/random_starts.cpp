@@ -1,0 +1,282 @@
+// A study: does a calibration depend on where it starts?
+//
+//   random_starts_study [COUNT=1000] [SEED=1]
+//
+// COUNT random robots, an arm of 5 to 8 joints and a pan-tilt head with an RGB-D camera, each with
+// true errors of its own and 50 noisy samples of four LEDs.  Each is calibrated twice: from the
+// truth, and from 4 degrees off in every joint and 3 cm and 5 degrees off in every frame, as a
+// technician aligns by eye, with the camera as its driver has it.  Both must end at the same cost.
+// (Not at the same parameters: some directions cannot be observed, along them the cost is level.)
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <optional>
+
+#include "kinecal/errors.hpp"
+#include "kinecal/solve.hpp"
+#include "simulation.hpp"
+
+namespace {
+
+using namespace kinecal;
+using namespace kinecal::examples;
+using Positions = std::map<std::string, double>;
+
+constexpr int kSamples = 50;
+constexpr double kJointError = 4.0 * kDegree;
+constexpr double kFrameShift = 0.03;  // metres
+constexpr double kFrameTurn = 5.0 * kDegree;
+/// Costs that differ by less, relatively, are the same.
+constexpr double kSameCost = 1e-6;
+/// How the head stands on the torso, the camera in the head and the LEDs (not in any drawing) in
+/// the gripper.
+const std::set<std::string> kFrames = {"head_pan", "camera_mount", "leds"};
+const std::vector<Vector3<double>> kLeds = {
+    {0.03, 0.035, 0.0}, {-0.03, 0.035, 0.01}, {-0.03, -0.035, 0.0}, {0.03, -0.035, 0.01}};
+constexpr int kFeatures = kSamples * 4;  // LEDs
+
+std::string arm_joint(int i) { return "arm_" + std::to_string(i); }
+
+/// An arm with a joint every 10 to 30 cm.  Half of the robots have joints about x, y and z as
+/// those in shops, the other half about any axis.
+std::vector<Joint> random_arm(SeededRandom& random) {
+  using enum JointType;
+  const int count = random.integer(5, 8);
+  const bool skew = random.uniform(0.0, 1.0) < 0.5;
+  std::vector<Joint> arm;
+  std::string parent = "torso";
+  Pose<double> origin{Matrix3<double>::Identity(),
+                      {0.1, random.either_sign(0.0, 0.2), random.uniform(0.2, 0.4)}};
+  int last = -1;
+  for (int i = 0; i < count; ++i) {
+    const int axis = last < 0 ? random.integer(0, 2) : (last + random.integer(1, 2)) % 3;
+    last = axis;
+    const Vector3<double> square = Vector3<double>::Unit(axis);
+    const Vector3<double> along = skew ? random.direction() : square;
+    arm.push_back({arm_joint(i), revolute, parent, "link_" + std::to_string(i), origin, along});
+    parent = arm.back().child;
+    const Vector3<double> bend = (skew ? 0.5 : 0.0) * random.direction();
+    const Vector3<double> way = Vector3<double>::UnitX() + bend;
+    origin = {exp(bend), random.uniform(0.1, 0.3) * way.normalized()};
+  }
+  arm.push_back({"wrist_mount", fixed, parent, "gripper", origin});
+  return arm;
+}
+
+Robot random_robot(SeededRandom& random) {
+  using enum JointType;
+  std::vector<Joint> joints = random_arm(random);
+  const auto at = [](double x, double y, double z) {
+    return Pose<double>{Matrix3<double>::Identity(), {x, y, z}};
+  };
+  const double side = random.either_sign(0.0, 0.1), height = random.uniform(0.4, 0.8);
+  const double neck = random.uniform(0.0, 0.15), nose = random.uniform(0.0, 0.1);
+  joints.push_back({"head_pan", revolute, "torso", "head", at(0.0, side, height), {0, 0, 1}});
+  joints.push_back({"head_tilt", revolute, "head", "face", at(neck, 0, 0.06), {0, 1, 0}});
+  joints.push_back({"camera_mount", fixed, "face", "camera_body", at(nose, 0.02, 0.02)});
+  Matrix3<double> optical;  // x right, y down, z forward
+  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  joints.push_back({"camera_optical", fixed, "camera_body", "optical", {optical, {0, 0, 0}}});
+  return Robot("random_robot", joints);
+}
+
+/// The errors of the true robot, as `value`; calibrations start at zero when nothing is known.
+ParameterTable random_truth(const Robot& robot, SeededRandom& random) {
+  ParameterTable truth;
+  for (const Joint& joint : robot.joints()) {
+    if (!moves(joint.type) || joint.name == "head_pan") continue;  // the pan is its frame's yaw
+    truth.add({.name = joint.name, .value = random.either_sign(0.0, 2.0) * kDegree});
+  }
+  for (const std::string& frame : kFrames) {
+    const Vector3<double> shift = 0.01 * random.direction(), turn = 0.03 * random.direction();
+    for (int k = 0; k < 6; ++k) {
+      truth.add({.name = parameter_name(frame, kFrameAxes[static_cast<std::size_t>(k)]),
+                 .value = k < 3 ? shift(k) : turn(k - 3)});
+    }
+  }
+  for (std::size_t i = 0; i < kCameraParameters.size(); ++i) {
+    truth.add({.name = parameter_name("camera", kCameraParameters[i]),
+               .value = random.either_sign(0.0, i == 4 ? 0.008 : 0.015)});
+  }
+  return truth;
+}
+
+Problem make_problem(const Robot& robot, const ParameterTable& table) {
+  Problem problem(robot, "torso", table, kFrames);
+  problem.add_sensor({"arm", SensorType::chain3d, "gripper", ""});
+  problem.add_sensor({"camera", SensorType::camera3d, "optical", ""});
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  return problem;
+}
+
+/// Where the true robot's camera and LEDs are.
+class TrueRobot {
+ public:
+  TrueRobot(const Robot& robot, const ParameterTable& truth)
+      : robot_(robot), truth_(truth), camera_(DepthCamera::from(example_camera_info())) {
+    for (std::size_t i = 0; i < errors_.size(); ++i) {
+      errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
+    }
+  }
+
+  /// Turns the head to the gripper, not quite, and takes a sample; none if not all LEDs are seen.
+  [[nodiscard]] std::optional<Sample> look(Positions positions, SeededRandom& random) const {
+    const auto gripper_from = [&](const char* link) {
+      return pose(make_chain(robot_, link, "gripper", kFrames), positions).translation;
+    };
+    const Vector3<double> beside = gripper_from("head");
+    positions["head_pan"] = std::atan2(beside.y(), beside.x()) + random.uniform(-0.4, 0.4);
+    const Vector3<double> below = gripper_from("face");
+    positions["head_tilt"] = std::atan2(-below.z(), below.x()) + random.uniform(-0.3, 0.3);
+    const Chain<> chain = make_chain(robot_, "optical", "gripper", kFrames);
+    const Pose<double> camera_T_leds = pose(with_virtual_frame(chain, "leds"), positions);
+    Observation arm{"arm", {}}, camera{"camera", {}, example_camera_info()};
+    for (const Vector3<double>& led : kLeds) {
+      const Vector3<double> p = camera_T_leds * led;
+      if (p.z() < 0.3 || p.z() > 1.5 || !is_in_image(camera_, p)) return std::nullopt;
+      arm.features.push_back({"leds", led});
+      camera.features.push_back({"optical", recorded_point(camera_, p, errors_, {}, random)});
+    }
+    Sample sample;
+    for (const auto& [joint, position] : positions) {
+      sample.joint_names.push_back(joint);
+      sample.joint_positions.push_back(position);
+    }
+    sample.observations = {arm, camera};
+    return sample;
+  }
+
+ private:
+  [[nodiscard]] Pose<double> pose(const Chain<>& chain, const Positions& positions) const {
+    const Eigen::VectorXd values = truth_.values();
+    const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
+    return forward_kinematics(chain, [&](const std::string& joint) { return positions.at(joint); },
+                              corrections_for(chain_parameters(chain, truth_), all));
+  }
+
+  const Robot& robot_;
+  const ParameterTable& truth_;
+  DepthCamera camera_;
+  std::array<double, 6> errors_{};
+};
+
+/// Adds samples with the arm at random.
+void add_samples(Problem& problem, const Robot& robot, const ParameterTable& truth,
+                 SeededRandom& random) {
+  const TrueRobot true_robot(robot, truth);
+  while (problem.num_samples() < kSamples) {
+    Positions positions;
+    for (const Joint& joint : robot.joints()) {
+      if (moves(joint.type)) positions[joint.name] = 0.0;
+      if (joint.name.starts_with("arm_")) positions[joint.name] = random.uniform(-2.0, 2.0);
+    }
+    if (const auto sample = true_robot.look(positions, random)) problem.add_sample(*sample);
+  }
+}
+
+/// The truth as it is known by eye.
+Eigen::VectorXd by_eye(const ParameterTable& truth, SeededRandom& random) {
+  Eigen::VectorXd start = truth.values();
+  for (int i = 0; i < truth.size(); ++i) {
+    const std::string& name = truth[i].name;
+    if (name.starts_with("camera_") && !name.starts_with("camera_mount")) start(i) = 0.0;
+    if (name.starts_with("arm_") || name == "head_tilt") {
+      start(i) += random.either_sign(kJointError, kJointError);
+    }
+  }
+  for (const std::string& frame : kFrames) {
+    const int first = truth.index(parameter_name(frame, "x"));
+    const Vector3<double> xyz = start.segment<3>(first), abc = start.segment<3>(first + 3);
+    const Vector3<double> turn = kFrameTurn * random.direction();
+    start.segment<3>(first) = xyz + kFrameShift * random.direction();
+    start.segment<3>(first + 3) = log(Matrix3<double>(exp(abc) * exp(turn)));
+  }
+  return start;
+}
+
+/// Both calibrations of one robot.
+struct Outcome {
+  StepResult from_truth, by_eye;
+
+  /// Relative; positive: the start by eye ended higher.
+  [[nodiscard]] double difference() const {
+    return (by_eye.final_cost - from_truth.final_cost) / from_truth.final_cost;
+  }
+  [[nodiscard]] bool same() const {
+    return from_truth.converged && by_eye.converged && std::abs(difference()) < kSameCost;
+  }
+};
+
+Outcome calibrate_twice(std::uint64_t seed) {
+  SeededRandom random(seed);
+  const Robot robot = random_robot(random);
+  const ParameterTable truth = random_truth(robot, random);
+  Problem problem = make_problem(robot, truth);
+  add_samples(problem, robot, truth, random);
+  std::vector<int> all;
+  for (int i = 0; i < truth.size(); ++i) all.push_back(i);
+  const FreeSet free(all, truth.size());
+  Eigen::VectorXd from_truth = truth.values(), start = by_eye(truth, random);
+  return {solve(problem, free, from_truth), solve(problem, free, start)};
+}
+
+/// All robots together.
+struct Study {
+  int same = 0;
+  double worst = 0.0;           ///< relative difference of the costs
+  std::vector<int> iterations;  ///< of the calibrations that start by eye
+  std::vector<double> off, on;  ///< distance of arm and camera before and after, mm
+
+  void add(const Outcome& outcome) {
+    const auto rms_mm = [](double cost) { return 1e3 * std::sqrt(2.0 * cost / kFeatures); };
+    same += outcome.same() ? 1 : 0;
+    worst = std::max(worst, std::abs(outcome.difference()));
+    iterations.push_back(outcome.by_eye.iterations);
+    off.push_back(rms_mm(outcome.by_eye.initial_cost));
+    on.push_back(rms_mm(outcome.by_eye.final_cost));
+  }
+
+  void print(double seconds) {
+    for (auto* distances : {&off, &on}) std::sort(distances->begin(), distances->end());
+    std::sort(iterations.begin(), iterations.end());
+    const std::size_t half = iterations.size() / 2;
+    std::printf("robots                       %zu\n", iterations.size());
+    std::printf("same cost as from the truth  %d\n", same);
+    std::printf("worst relative difference    %.1e\n", worst);
+    std::printf("distance at the start        median %.1f mm, most %.1f mm\n", off[half], off.back());
+    std::printf("distance at the end          median %.2f mm, most %.2f mm\n", on[half], on.back());
+    std::printf("iterations                   median %d, most %d\n", iterations[half],
+                iterations.back());
+    std::printf("seconds                      %.1f\n", seconds);
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
+  const long first_seed = argc > 2 ? std::atol(argv[2]) : 1;
+  if (count < 1 || argc > 3) {
+    std::fprintf(stderr, "usage: random_starts_study [COUNT=1000] [SEED=1]\n");
+    return 2;
+  }
+  std::printf("Starting %.0f degrees off in every joint, %.0f cm and %.0f degrees in every frame:\n",
+              kJointError / kDegree, kFrameShift * 100, kFrameTurn / kDegree);
+  const auto begin = std::chrono::steady_clock::now();
+  Study study;
+  for (int n = 0; n < count; ++n) {
+    const Outcome outcome = calibrate_twice(static_cast<std::uint64_t>(first_seed + n));
+    study.add(outcome);
+    if (outcome.same()) continue;
+    std::printf("seed %ld: cost %.6e from the truth, %.6e (%+.1e) by eye\n", first_seed + n,
+                outcome.from_truth.final_cost, outcome.by_eye.final_cost, outcome.difference());
+    std::printf("  %s\n  %s\n", outcome.from_truth.termination.c_str(),
+                outcome.by_eye.termination.c_str());
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  study.print(seconds.count());
+  return study.same == count ? 0 : 1;
+}

@@ -1,0 +1,112 @@
+// The tree reads as the way of the data: a folder includes only folders that stand above it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kHeaders = fs::path(KINECAL_SOURCE_DIR) / "include/kinecal";
+
+/// From the ground up; what a folder may include stands before it.
+const std::vector<std::string> kFolders = {"geometry", "kinematics", "parameters", "samples",
+                                           "sensors",  "errors",     "crate",      "solve",
+                                           "io",       "report"};
+
+struct Include {
+  fs::path header;
+  std::string target;
+};
+
+std::vector<Include> all_includes() {
+  std::vector<Include> includes;
+  const std::string directive = "#include ";
+  for (const auto& file : fs::recursive_directory_iterator(kHeaders)) {
+    if (file.path().extension() != ".hpp") continue;
+    std::ifstream in(file.path());
+    for (std::string line; std::getline(in, line);) {
+      if (!line.starts_with(directive)) continue;
+      const std::size_t first = directive.size() + 1;
+      includes.push_back({file.path(), line.substr(first, line.find_first_of(">\"", first) - first)});
+    }
+  }
+  return includes;
+}
+
+/// Where a header stands in the order; the doors and kinecal.hpp stand outside of it.
+std::ptrdiff_t rank(const std::string& folder) {
+  return std::find(kFolders.begin(), kFolders.end(), folder) - kFolders.begin();
+}
+
+std::string folder_of(const fs::path& header) {
+  const fs::path relative = fs::relative(header, kHeaders);
+  return relative.has_parent_path() ? relative.parent_path().string() : "";
+}
+
+TEST(Architecture, AFolderIncludesOnlyFoldersThatStandAboveIt) {
+  const auto includes = all_includes();
+  ASSERT_GT(includes.size(), 100u);
+  for (const auto& [header, target] : includes) {
+    const std::string folder = folder_of(header);
+    if (folder.empty() || !target.starts_with("kinecal/")) continue;
+    ASSERT_LT(rank(folder), std::ssize(kFolders)) << "unknown folder " << folder;
+    const fs::path path = fs::path(target).lexically_relative("kinecal");
+    const std::string other =
+        path.has_parent_path() ? path.parent_path().string() : path.stem().string();
+    EXPECT_LE(rank(other), rank(folder)) << header << " includes " << target;
+  }
+}
+
+TEST(Architecture, CoreSeesEigenAndTheStandardLibraryOnly) {
+  for (const auto& [header, target] : all_includes()) {
+    const std::string folder = folder_of(header);
+    if (folder.empty() || target.starts_with("kinecal/") || target.starts_with("Eigen/")) continue;
+    const bool standard = target.find('/') == std::string::npos && target.find('.') == std::string::npos;
+    if (rank(folder) < rank("solve")) {
+      EXPECT_TRUE(standard) << header << " includes " << target;
+    }
+    if (target.starts_with("ceres/")) {
+      EXPECT_EQ(folder, "solve") << header << " includes " << target;
+    }
+    if (target.starts_with("urdf") || target.starts_with("yaml-cpp/") || target == "pugixml.hpp") {
+      EXPECT_EQ(folder, "io") << header << " includes " << target;
+    }
+  }
+}
+
+TEST(Architecture, EachFolderHasADoorThatOpensAllOfIt) {
+  for (const std::string& folder : kFolders) {
+    const fs::path door = kHeaders / (folder + ".hpp");
+    ASSERT_TRUE(fs::exists(door)) << door;
+    std::ifstream in(door);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    for (const auto& file : fs::directory_iterator(kHeaders / folder)) {
+      const std::string name = "kinecal/" + folder + "/" + file.path().filename().string();
+      EXPECT_THAT(text, testing::HasSubstr("\"" + name + "\"")) << "not in " << door;
+    }
+    std::ifstream all(kHeaders / "kinecal.hpp");
+    EXPECT_THAT(std::string(std::istreambuf_iterator<char>(all), {}),
+                testing::HasSubstr("kinecal/" + folder + ".hpp"));
+  }
+}
+
+TEST(Architecture, EveryHeaderHasALicenceAndFitsIntoTheHead) {
+  for (const auto& file : fs::recursive_directory_iterator(kHeaders)) {
+    if (file.path().extension() != ".hpp") continue;
+    std::ifstream in(file.path());
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_THAT(text, testing::HasSubstr("SPDX-License-Identifier: Apache-2.0")) << file.path();
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 270) << file.path();
+    EXPECT_THAT(text, testing::StartsWith("// ")) << file.path();
+  }
+}
+
+}  // namespace
+}  // namespace kinecal

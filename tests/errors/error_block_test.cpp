@@ -1,0 +1,64 @@
+#include "kinecal/errors/error_block.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinecal/errors.hpp"
+
+namespace kinecal {
+namespace {
+
+struct Height {
+  template <class S>
+  Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p_base) const {
+    return Eigen::Matrix<S, 1, 1>(p_base.z());
+  }
+};
+struct NotTemplated {
+  Eigen::Matrix<double, 1, 1> operator()(const Vector3<double>& p) const {
+    return Eigen::Matrix<double, 1, 1>(p.z());
+  }
+};
+struct DynamicSize {
+  template <class S>
+  Eigen::Matrix<S, Eigen::Dynamic, 1> operator()(const Vector3<S>& p) const {
+    return p;
+  }
+};
+struct NoCall {};
+
+static_assert(PointBlock<Height> && !PointPairBlock<Height>);
+static_assert(PointPairBlock<PointToPoint> && !PointBlock<PointToPoint>);
+static_assert(SightBlock<PointToPixel> && PlanePairBlock<PlaneToPlane>);
+static_assert(kSensors<PointToPixel> == 2 && kSensors<PlaneToPlane> == 2);
+static_assert(!ErrorBlock<NotTemplated>, "a block must take jets");
+static_assert(!ErrorBlock<DynamicSize>, "a residual has a fixed size");
+static_assert(!ErrorBlock<NoCall>);
+
+TEST(Jet, DifferentiatesItsFunctionsLikeTheirFormulas) {
+  using J = Jet<double, 2>;
+  const double x = 0.7, y = 1.3;
+  const J jx(x, 0), jy(y, 1);
+  const auto expect = [](const J& j, double value, double by_x, double by_y) {
+    EXPECT_NEAR(j.a, value, 1e-15 * (1 + std::abs(value)));
+    EXPECT_NEAR(j.v(0), by_x, 4e-15 * (1 + std::abs(by_x)));
+    EXPECT_NEAR(j.v(1), by_y, 4e-15 * (1 + std::abs(by_y)));
+  };
+  expect(jx * jy - jx / jy, x * y - x / y, y - 1 / y, x + x / (y * y));
+  expect(2.0 - jx, 2 - x, -1, 0);
+  expect(3.0 / jy, 3 / y, 0, -3 / (y * y));
+  expect(jx / 4.0 + 1.0, x / 4 + 1, 0.25, 0);
+  expect(sqrt(jx), std::sqrt(x), 0.5 / std::sqrt(x), 0);
+  expect(sin(jx) + cos(jy), std::sin(x) + std::cos(y), std::cos(x), -std::sin(y));
+  expect(exp(jx) + log(jy), std::exp(x) + std::log(y), std::exp(x), 1 / y);
+  expect(atan2(jy, jx), std::atan2(y, x), -y / (x * x + y * y), x / (x * x + y * y));
+  expect(abs(-jx), x, 1, 0);
+  J sum = jx;
+  sum += jy;
+  sum *= jx;
+  sum -= jy;
+  sum /= jy;
+  expect(sum, ((x + y) * x - y) / y, (2 * x + y) / y, -(x * x) / (y * y));
+}
+
+}  // namespace
+}  // namespace kinecal

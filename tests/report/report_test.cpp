@@ -1,0 +1,67 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include "kinecal/report/json.hpp"
+#include "kinecal/report/text.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+
+CalibrationResult result() {
+  CalibrationResult r;
+  r.converged = true;
+  r.termination = "converged: \"enough\"\n";
+  r.steps.push_back({"one", true, "converged", 5, 2.0, 0.125, 0.001, 30, 2});
+  r.blocks.push_back({"hand_eye", "chain3d_to_chain3d", "m", 10, {0.01, 0.02, 0.03, 0.04},
+                      {0.001, 0.002, 0.003, 0.004}});
+  r.table.add({.name = "elbow", .unit = "rad", .initial = 0.0, .value = 0.1});
+  r.table.add({.name = "camera_z_offset", .unit = "m", .initial = 0.0, .value = 0.25});
+  r.calibrated = {0, 1};
+  return r;
+}
+
+TEST(JsonReport, IsReadBackAsItWasWritten) {
+  const YAML::Node json = YAML::Load(json_report(result()));  // JSON is YAML
+  EXPECT_TRUE(json["converged"].as<bool>());
+  EXPECT_EQ(json["termination"].as<std::string>(), "converged: \"enough\"\n");
+  EXPECT_EQ(json["steps"][0]["initial_cost"].as<double>(), 2.0);
+  EXPECT_EQ(json["steps"][0]["num_residuals"].as<int>(), 30);
+  EXPECT_EQ(json["error_blocks"][0]["after"]["median"].as<double>(), 0.003);
+  EXPECT_EQ(json["parameters"][0]["name"].as<std::string>(), "elbow");
+  EXPECT_EQ(json["parameters"][0]["value"].as<double>(), 0.1);
+  EXPECT_EQ(json["parameters"][1]["unit"].as<std::string>(), "m");
+}
+
+TEST(JsonReport, WritesNullForWhatIsNoNumber) {
+  EXPECT_EQ(json_number(std::nan("")), "null");
+  EXPECT_EQ(json_number(0.1), "0.1");
+  EXPECT_EQ(json_string("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
+}
+
+TEST(TextReport, ShowsMillimetresAndDegrees) {
+  EXPECT_THAT(error_block_table(result()), HasSubstr("10.000  ->  1.000"));
+  EXPECT_THAT(parameter_table(result()), HasSubstr("5.730 deg"));
+  EXPECT_THAT(parameter_table(result()), HasSubstr("250.000 mm"));
+  EXPECT_THAT(step_lines(result()), HasSubstr("2 parameters, 30 residuals"));
+}
+
+TEST(TextReport, WarnsOfADepthOffsetOfAQuarterMetre) {
+  const auto lines = suspicious_values(result());
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], HasSubstr("'camera_z_offset'"));
+}
+
+TEST(Statistics, AreThoseOfTheDefinition) {
+  const Statistics s = statistics_of({3.0, 1.0, 2.0, 10.0}, 3);
+  EXPECT_DOUBLE_EQ(s.rms, std::sqrt((9 + 1 + 4 + 100) / 12.0));
+  EXPECT_DOUBLE_EQ(s.mean, 4.0);
+  EXPECT_DOUBLE_EQ(s.median, 2.5);
+  EXPECT_DOUBLE_EQ(s.max, 10.0);
+  EXPECT_EQ(statistics_of({}, 3).max, 0.0);
+}
+
+}  // namespace
+}  // namespace kinecal

@@ -1,0 +1,13 @@
+#!/bin/sh
+# Builds and passes all tests on a fresh Debian 12 machine, packages included.
+#   tests/run.sh [PRESET...]    dev by default: g++, sanitizers, warnings as errors
+set -eu
+cd "$(dirname "$0")/.."
+
+cmake/install_packages.sh test
+for preset in "${@:-dev}"; do
+  echo "== $preset"
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset"
+  ctest --preset "$preset" -j "$(nproc)"
+done
