@@ -1,8 +1,8 @@
 // A calibration without files: an arm, a tracker that sees where its tip really is, 25 samples.
 //
-// The arm's three zeros are wrong and its upper arm is longer than its drawing says.  A Problem holds
-// the robot, its sensors, the error block that compares them and the samples; solve() finds what
-// makes them agree.
+// The arm's three zeros are wrong and its upper arm is longer than its drawing says.  A Problem
+// holds the robot, its sensors, the error block that compares them and the samples; solve() finds
+// what makes them agree.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
@@ -49,11 +49,13 @@ Sample measure(const Problem& problem, const Eigen::VectorXd& truth, SeededRando
   const SensorModel& arm = problem.sensors()[0];
   const std::span<const double> values(truth.data(), static_cast<std::size_t>(truth.size()));
   Vector3<double> seen =
-      forward_kinematics(arm.chains()[0], [&](const auto& name) { return *sample.position(name); },
-                         corrections_for(arm.parameters()[0], values))
+      forward_kinematics(
+          arm.chains()[0], [&](const auto& name) { return *sample.position(name); },
+          corrections_for(arm.parameters()[0], values))
           .translation;
   for (int i = 0; i < 3; ++i) seen(i) += 1e-4 * random.normal();
-  sample.observations = {{"arm", {{"tip", Vector3<double>::Zero()}}}, {"tracker", {{"base", seen}}}};
+  sample.observations = {{"arm", {{"tip", Vector3<double>::Zero()}}},
+                         {"tracker", {{"base", seen}}}};
   return sample;
 }
 

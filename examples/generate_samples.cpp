@@ -4,8 +4,8 @@
 //   generate_example_samples URDF OUTPUT_FOLDER [--samples 100] [--seed 1]
 //
 // The true robot differs from the URDF: zeros of the joints, the frames of head and camera, the
-// camera's intrinsics and depth.  The head looks at four LEDs in the gripper, then at the floor; one
-// capture of the LEDs is bad.  Everything follows from the seed.
+// camera's intrinsics and depth.  The head looks at four LEDs in the gripper, then at the floor;
+// one capture of the LEDs is bad.  Everything follows from the seed.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <filesystem>
@@ -111,8 +111,9 @@ class TrueRobot {
     const Chain<> chain = make_chain(robot_, base, tip, kFrames);
     const Eigen::VectorXd values = truth_.values();
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-    return forward_kinematics(chain, [&](const std::string& joint) { return positions.at(joint); },
-                              corrections_for(chain_parameters(chain, truth_), all));
+    return forward_kinematics(
+        chain, [&](const std::string& joint) { return positions.at(joint); },
+        corrections_for(chain_parameters(chain, truth_), all));
   }
 
   /// What the camera's driver reports of a point.

@@ -38,7 +38,9 @@ const std::vector<Vector3<double>> kLeds = {
     {0.03, 0.035, 0.0}, {-0.03, 0.035, 0.01}, {-0.03, -0.035, 0.0}, {0.03, -0.035, 0.01}};
 constexpr int kFeatures = kSamples * 4;  // LEDs
 
-std::string arm_joint(int i) { return "arm_" + std::to_string(i); }
+std::string arm_joint(int i) {
+  return "arm_" + std::to_string(i);
+}
 
 /// An arm with a joint every 10 to 30 cm.  Half of the robots have joints about x, y and z as
 /// those in shops, the other half about any axis.
@@ -153,8 +155,9 @@ class TrueRobot {
   [[nodiscard]] Pose<double> pose(const Chain<>& chain, const Positions& positions) const {
     const Eigen::VectorXd values = truth_.values();
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-    return forward_kinematics(chain, [&](const std::string& joint) { return positions.at(joint); },
-                              corrections_for(chain_parameters(chain, truth_), all));
+    return forward_kinematics(
+        chain, [&](const std::string& joint) { return positions.at(joint); },
+        corrections_for(chain_parameters(chain, truth_), all));
   }
 
   const Robot& robot_;
@@ -246,7 +249,8 @@ struct Study {
     std::printf("robots                       %zu\n", iterations.size());
     std::printf("same cost as from the truth  %d\n", same);
     std::printf("worst relative difference    %.1e\n", worst);
-    std::printf("distance at the start        median %.1f mm, most %.1f mm\n", off[half], off.back());
+    std::printf("distance at the start        median %.1f mm, most %.1f mm\n", off[half],
+                off.back());
     std::printf("distance at the end          median %.2f mm, most %.2f mm\n", on[half], on.back());
     std::printf("iterations                   median %d, most %d\n", iterations[half],
                 iterations.back());
@@ -263,8 +267,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: random_starts_study [COUNT=1000] [SEED=1]\n");
     return 2;
   }
-  std::printf("Starting %.0f degrees off in every joint, %.0f cm and %.0f degrees in every frame:\n",
-              kJointError / kDegree, kFrameShift * 100, kFrameTurn / kDegree);
+  std::printf(
+      "Starting %.0f degrees off in every joint, %.0f cm and %.0f degrees in every frame:\n",
+      kJointError / kDegree, kFrameShift * 100, kFrameTurn / kDegree);
   const auto begin = std::chrono::steady_clock::now();
   Study study;
   for (int n = 0; n < count; ++n) {

@@ -30,4 +30,5 @@
 #include "kinecal/io/urdfdom_messages.hpp"
 #include "kinecal/io/write_samples.hpp"
 #include "kinecal/io/xml_edit.hpp"
+#include "kinecal/io/yaml_documents.hpp"
 #include "kinecal/io/yaml_text.hpp"

@@ -362,6 +362,16 @@ TEST_F(Program, RefusesYamlThatIsNone) {
   expect_refused(HasSubstr("c.yaml:"));
 }
 
+TEST_F(Program, RefusesACharacterThatCannotBeginADocumentWithoutHanging) {
+  for (const char* text : {",", "--- ,", "a: 1\n---\n,"}) {
+    write("c.yaml", text);
+    expect_refused(HasSubstr("c.yaml:"));
+  }
+  write("c.yaml", kConfig);
+  write("s.yaml", ",");
+  expect_refused(HasSubstr("s.yaml:"));
+}
+
 TEST_F(Program, RefusesASampleWithoutAJointThatAChainNeeds) {
   auto all = samples();
   all[4].joint_names[1] = "elbw";

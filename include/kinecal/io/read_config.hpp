@@ -8,12 +8,14 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "kinecal/io/config_ros1.hpp"
 #include "kinecal/io/config_ros2.hpp"
+#include "kinecal/io/yaml_documents.hpp"
 
 namespace kinecal {
 
@@ -26,7 +28,8 @@ namespace kinecal {
     throw InputError(path + ": is not there or cannot be read");
   }
   YAML::Node content;
-  for (const YAML::Node& document : YAML::LoadAll(file)) {
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  for (const YAML::Node& document : load_yaml_documents(text)) {
     if (document.IsNull()) continue;
     if (content.IsNull()) {
       content.reset(document);

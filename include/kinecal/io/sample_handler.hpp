@@ -17,6 +17,7 @@
 
 #include "kinecal/io/sample_builder.hpp"
 #include "kinecal/io/sample_schema.hpp"
+#include "kinecal/io/yaml_documents.hpp"
 
 namespace kinecal::detail {
 
@@ -31,10 +32,7 @@ class SampleHandler final : public YAML::EventHandler {
   /// @throws YAML::ParserException  where the parser does not move on: before a stray ',' or ']' it
   ///                                finds empty documents without end
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (mark.pos <= document_position_) {
-      throw YAML::ParserException(mark, "a character that cannot begin a document");
-    }
-    document_position_ = mark.pos;
+    progress_.document_starts(mark);
     levels_.clear();
     skipped_ = 0;
     last_document_is_empty_ = false;
@@ -186,7 +184,7 @@ class SampleHandler final : public YAML::EventHandler {
   SampleNode value_node_ = SampleNode::unknown;
   int key_line_ = 0;               ///< of the last key
   int skipped_ = 0;                ///< how deep in something unknown
-  int document_position_ = -1;     ///< in the file, characters
+  YamlProgress progress_;
   std::size_t errors_before_ = 0;  ///< this document
   bool last_document_is_empty_ = false;
 };

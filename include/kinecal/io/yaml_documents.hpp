@@ -1,0 +1,69 @@
+// Documents of a YAML file, without the endless loop of yaml-cpp.
+//
+// yaml-cpp 0.7 finds empty documents without end before a stray ',' at the start of a document; it
+// does not move on.  Whoever parses by events looks at where each document starts; whoever loads
+// nodes parses the text once before.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace kinecal {
+
+/// Notices a parser that does not move on.
+class YamlProgress {
+ public:
+  /// To be called at each start of a document.
+  /// @throws YAML::ParserException  if it starts where the last one did
+  void document_starts(const YAML::Mark& mark) {
+    if (mark.pos <= position_) {
+      throw YAML::ParserException(mark, "a character that cannot begin a document");
+    }
+    position_ = mark.pos;
+  }
+
+ private:
+  int position_ = -1;
+};
+
+namespace detail {
+
+/// Listens to nothing but the starts of documents.
+class YamlDocumentStarts final : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { progress_.document_starts(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+ private:
+  YamlProgress progress_;
+};
+
+}  // namespace detail
+
+/// All documents of a text.
+/// @throws YAML::Exception  where it is not YAML
+[[nodiscard]] inline std::vector<YAML::Node> load_yaml_documents(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  detail::YamlDocumentStarts starts;
+  while (parser.HandleNextDocument(starts)) {
+  }
+  return YAML::LoadAll(text);
+}
+
+}  // namespace kinecal
