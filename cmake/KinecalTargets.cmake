@@ -1,6 +1,6 @@
 # The libraries, all header-only, one for each set of dependencies:
 #   kinecal::core   geometry ... crate           Eigen
-#   kinecal::solve  solve                        + Ceres
+#   kinecal::solve  solve, trust                 + Ceres
 #   kinecal::io     io, report                   + urdfdom, yaml-cpp, pugixml, fmt
 #   kinecal::kinecal  all of them
 include(GNUInstallDirs)
@@ -37,7 +37,7 @@ kinecal_add_library(core
   FOLDERS geometry kinematics parameters samples sensors errors crate
   LINK Eigen3::Eigen)
 kinecal_add_library(solve
-  FOLDERS solve
+  FOLDERS solve trust
   LINK kinecal_core Ceres::ceres)
 kinecal_add_library(io
   FOLDERS io report

@@ -3,7 +3,6 @@
 // A robot is a list of joints, a chain the way from one link to another; one walk along the chain
 // gives the pose of its tip and a twist for each joint, the exact derivative of that pose.
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
 #include <map>

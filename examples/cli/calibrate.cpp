@@ -43,6 +43,29 @@ ResultFileOptions file_options(const CalibrateOptions& options) {
   return files;
 }
 
+std::vector<Observability> observe(const Calibration& calibration,
+                                   const CalibrationResult& result) {
+  const Eigen::VectorXd values = result.table.values();
+  std::vector<Observability> all;
+  for (const CalibrationStep& step : calibration.steps) {
+    all.push_back(observability(step.problem, step.free,
+                                {values.data(), static_cast<std::size_t>(values.size())}));
+  }
+  return all;
+}
+
+void print_doubts(const Input& input, const CalibrationResult& result,
+                  const std::vector<Observability>& observability) {
+  for (std::size_t s = 0; s < observability.size(); ++s) {
+    const std::string text = observability_text(input.calibration.steps[s].name, observability[s],
+                                                result.table);
+    if (!text.empty()) fmt::print(stderr, "warning: {}\n", text);
+  }
+  for (const std::string& line : suspicious_values(result)) {
+    fmt::print(stderr, "warning: {}\n", line);
+  }
+}
+
 void print_result(const Input& input, const CalibrationResult& result) {
   fmt::print("Robot '{}', {} samples\n{}\n", input.robot.name(), input.samples.size(),
              step_lines(result));
@@ -66,9 +89,9 @@ int calibrate(const CalibrateOptions& options) {
   const CalibrationResult result = kinecal::calibrate(input.calibration, progress_line());
   end_progress_line();
   print_result(input, result);
-  for (const std::string& line : suspicious_values(result)) {
-    fmt::print(stderr, "warning: {}\n", line);
-  }
+  const std::vector<Observability> observability = observe(input.calibration, result);
+  std::fflush(stdout);
+  print_doubts(input, result, observability);
   if (!result.converged) {
     fmt::print(stderr, "error: not calibrated, nothing written: {}\n", result.termination);
     return kNotConverged;
@@ -77,7 +100,7 @@ int calibrate(const CalibrateOptions& options) {
     std::vector<OutputFile> files =
         result_files(input.robot, input.urdf_text, options.urdf, input.calibration, result,
                      input.samples, file_options(options));
-    files.push_back({"report.json", json_report(result)});
+    files.push_back({"report.json", json_report(result, observability)});
     folder->write(files);
     for (const OutputFile& file : files) {
       fmt::print("wrote {}\n", (folder->path() / file.name).string());

@@ -12,3 +12,4 @@
 #include "kinecal/samples.hpp"
 #include "kinecal/sensors.hpp"
 #include "kinecal/solve.hpp"
+#include "kinecal/trust.hpp"

@@ -18,7 +18,7 @@ const fs::path kHeaders = fs::path(KINECAL_SOURCE_DIR) / "include/kinecal";
 /// From the ground up; what a folder may include stands before it.
 const std::vector<std::string> kFolders = {"geometry", "kinematics", "parameters", "samples",
                                            "sensors",  "errors",     "crate",      "solve",
-                                           "io",       "report"};
+                                           "trust",    "io",         "report"};
 
 struct Include {
   fs::path header;

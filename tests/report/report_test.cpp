@@ -24,7 +24,8 @@ CalibrationResult result() {
 }
 
 TEST(JsonReport, IsReadBackAsItWasWritten) {
-  const YAML::Node json = YAML::Load(json_report(result()));  // JSON is YAML
+  // JSON is YAML.
+  const YAML::Node json = YAML::Load(json_report(result(), {{1, 2.5, {{{0, 1.0}, {1, -0.5}}}}}));
   EXPECT_TRUE(json["converged"].as<bool>());
   EXPECT_EQ(json["termination"].as<std::string>(), "converged: \"enough\"\n");
   EXPECT_EQ(json["steps"][0]["initial_cost"].as<double>(), 2.0);
@@ -33,6 +34,8 @@ TEST(JsonReport, IsReadBackAsItWasWritten) {
   EXPECT_EQ(json["parameters"][0]["name"].as<std::string>(), "elbow");
   EXPECT_EQ(json["parameters"][0]["value"].as<double>(), 0.1);
   EXPECT_EQ(json["parameters"][1]["unit"].as<std::string>(), "m");
+  EXPECT_EQ(json["observability"][0]["rank"].as<int>(), 1);
+  EXPECT_EQ(json["observability"][0]["unobservable"][0]["camera_z_offset"].as<double>(), -0.5);
 }
 
 TEST(JsonReport, WritesNullForWhatIsNoNumber) {
@@ -46,6 +49,14 @@ TEST(TextReport, ShowsMillimetresAndDegrees) {
   EXPECT_THAT(parameter_table(result()), HasSubstr("5.730 deg"));
   EXPECT_THAT(parameter_table(result()), HasSubstr("250.000 mm"));
   EXPECT_THAT(step_lines(result()), HasSubstr("2 parameters, 30 residuals"));
+}
+
+TEST(TextReport, NamesWhatTheSamplesCannotTell) {
+  const auto table = result().table;
+  EXPECT_EQ(observability_text("one", {2, 1.0, {}}, table), "");
+  const std::string text = observability_text("one", {1, 2.5, {{{0, 1.0}, {1, -0.5}}}}, table);
+  EXPECT_THAT(text, HasSubstr("tell 1 of 2 combinations"));
+  EXPECT_THAT(text, HasSubstr("+1 elbow -0.5 camera_z_offset"));
 }
 
 TEST(TextReport, WarnsOfADepthOffsetOfAQuarterMetre) {

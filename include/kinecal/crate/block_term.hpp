@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Cholesky>
+
 #include "kinecal/crate/term.hpp"
 
 namespace kinecal {
@@ -29,7 +31,7 @@ class BlockTerm final : public Term {
   }
 
   [[nodiscard]] bool evaluate(std::span<const SensorView* const> views, int columns,
-                              TermResiduals& out) const override {
+                              Linearization at, TermResiduals& out) const override {
     if constexpr (PlanePairBlock<B>) {
       return evaluate_planes(views, columns, out);
     } else {
@@ -41,7 +43,7 @@ class BlockTerm final : public Term {
         if constexpr (SightBlock<B>) {
           defined = evaluate_sight(views, features[n], row, columns >= 0, out);
         } else {
-          defined = evaluate_points(views, features[n], row, columns >= 0, out);
+          defined = evaluate_points(views, features[n], row, columns >= 0, at, out);
         }
         if (!defined) return false;
       }
@@ -50,30 +52,67 @@ class BlockTerm final : public Term {
   }
 
  private:
-  [[nodiscard]] bool evaluate_points(std::span<const SensorView* const> views, std::size_t i,
-                                     Eigen::Index row, bool derivatives, TermResiduals& out) const {
-    constexpr int kPoints = kSensors<B>;
-    const auto call = [&]<class S>(const Vector3<S>& a, const Vector3<S>& b) {
-      if constexpr (kPoints == 1) {
-        return block_(a);
-      } else {
-        return block_(a, b);
-      }
-    };
-    const Vector3<double>& p_a = views[0]->points()[i];
-    const Vector3<double>& p_b = views[kPoints - 1]->points()[i];
-    if (!derivatives) {
-      out.residual.segment<kSize>(row) = call(p_a, p_b);
-      return out.residual.segment<kSize>(row).allFinite();
+  static constexpr int kPoints = kSensors<B>;
+  using PointJet = Jet<double, 3 * kPoints>;
+  using Points = Eigen::Matrix<double, 3 * kPoints, 1>;  ///< one below the other
+
+  /// The block at points one below the other, in the scalar of the given variables.
+  template <class S>
+  [[nodiscard]] auto call(const Vector3<S>& a, const Vector3<S>& b) const {
+    if constexpr (kPoints == 1) {
+      return block_(a);
+    } else {
+      return block_(a, b);
     }
-    using J = Jet<double, 3 * kPoints>;
-    const auto r = call(detail::point_jets<J>(p_a, 0), detail::point_jets<J>(p_b, 3 * kPoints - 3));
-    out.residual.segment<kSize>(row) = detail::values<kSize>(r);
+  }
+
+  [[nodiscard]] auto call_jets(const Points& p) const {
+    return call(detail::point_jets<PointJet>(p.template head<3>(), 0),
+                detail::point_jets<PointJet>(p.template tail<3>(), 3 * kPoints - 3));
+  }
+
+  /// The points with one of them moved until there is no residual, the one that was measured: a
+  /// camera's, else the second.  One Newton step, exact where the block is linear.
+  [[nodiscard]] static int measured_one(std::span<const SensorView* const> views) {
+    return kPoints == 1 || views[0]->sees_depth() ? 0 : 1;
+  }
+  [[nodiscard]] Points without_residual(const Points& p, int moved) const {
+    const auto r = call_jets(p);
+    const Eigen::Matrix<double, kSize, 3> by_point =
+        detail::derivatives<3, kSize>(r, 3 * moved);
+    const Eigen::Matrix<double, kSize, 1> residual = detail::values<kSize>(r);
+    Points q = p;
+    if constexpr (kSize <= 3) {  // the least step that takes the residual away
+      const Eigen::Matrix<double, kSize, kSize> gram = by_point * by_point.transpose();
+      q.template segment<3>(3 * moved) -= by_point.transpose() * gram.ldlt().solve(residual);
+    } else {  // the step that leaves the least residual
+      const Matrix3<double> gram = by_point.transpose() * by_point;
+      q.template segment<3>(3 * moved) -= gram.ldlt().solve(by_point.transpose() * residual);
+    }
+    return q;
+  }
+
+  [[nodiscard]] bool evaluate_points(std::span<const SensorView* const> views, std::size_t i,
+                                     Eigen::Index row, bool derivatives, Linearization at,
+                                     TermResiduals& out) const {
+    Points p;
     for (int s = 0; s < kPoints; ++s) {
-      views[static_cast<std::size_t>(s)]->add_motion(i, detail::derivatives<3, kSize>(r, 3 * s),
+      p.template segment<3>(3 * s) = views[static_cast<std::size_t>(s)]->points()[i];
+    }
+    auto residual = out.residual.segment<kSize>(row);
+    if (!derivatives) {
+      residual = call(Vector3<double>(p.template head<3>()), Vector3<double>(p.template tail<3>()));
+      return residual.allFinite();
+    }
+    if (at == Linearization::error_free) p = without_residual(p, measured_one(views));
+    const auto r = call_jets(p);
+    residual = detail::values<kSize>(r);
+    for (int s = 0; s < kPoints; ++s) {
+      views[static_cast<std::size_t>(s)]->add_motion(i, p.template segment<3>(3 * s),
+                                                     detail::derivatives<3, kSize>(r, 3 * s),
                                                      out.jacobian.middleRows<kSize>(row));
     }
-    return out.residual.segment<kSize>(row).allFinite();
+    return residual.allFinite();
   }
 
   /// The camera's parameters and the point it sees are the variables: 4 + 3.
@@ -105,7 +144,7 @@ class BlockTerm final : public Term {
     auto rows = out.jacobian.middleRows<kSize>(row);
     const Eigen::Matrix<double, kSize, 3> by_base =
         detail::derivatives<3, kSize>(r, 0) * camera.pose().rotation.transpose();
-    views[0]->add_motion(i, by_base, rows);
+    views[0]->add_motion(i, p_base, by_base, rows);
     camera.add_viewer_motion(p_base, by_base, rows);
     const auto by_camera = detail::derivatives<4, kSize>(r, 3);
     for (int k = 0; k < 4; ++k) {
@@ -148,7 +187,7 @@ class BlockTerm final : public Term {
       for (std::size_t i : features[s]) {
         const Eigen::Matrix<double, kSize, 3> by_point =
             by_centroid + by_normal * fits[s].normal_by_point(views[s]->points()[i]);
-        views[s]->add_motion(i, by_point, out.jacobian);
+        views[s]->add_motion(i, views[s]->points()[i], by_point, out.jacobian);
       }
     }
     return out.residual.allFinite();

@@ -135,11 +135,12 @@ class Problem {
   /// @param values  of all parameters of the table
   /// @param free    the Jacobian's columns; nullptr: residuals only
   /// @param visit   callable (int term, int sample, const TermResiduals&)
+  /// @param at      where derivatives are taken
   /// @returns       the first residual that is not defined, if any; the rest is not evaluated
   template <class Visit>
-  [[nodiscard]] std::optional<UndefinedResidual> evaluate(std::span<const double> values,
-                                                          const FreeSet* free,
-                                                          Visit&& visit) const {
+  [[nodiscard]] std::optional<UndefinedResidual> evaluate(
+      std::span<const double> values, const FreeSet* free, Visit&& visit,
+      Linearization at = Linearization::measured) const {
     std::vector<SensorState> states;
     for (const SensorModel& sensor : sensors_) states.emplace_back(sensor, values, free);
     std::vector<SensorView> views(sensors_.size());
@@ -154,7 +155,7 @@ class Problem {
         const Term& term = *terms_[static_cast<std::size_t>(t)];
         of_term.clear();
         for (int s : term.sensors()) of_term.push_back(&views[static_cast<std::size_t>(s)]);
-        if (!term.evaluate(of_term, free != nullptr ? free->size() : -1, residuals)) {
+        if (!term.evaluate(of_term, free != nullptr ? free->size() : -1, at, residuals)) {
           return UndefinedResidual{term.name(), sample.source};
         }
         visit(t, static_cast<int>(n), std::as_const(residuals));

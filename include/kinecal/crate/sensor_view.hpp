@@ -44,6 +44,8 @@ class SensorView {
   [[nodiscard]] const PackedObservation& observation() const { return *observation_; }
   [[nodiscard]] const std::vector<Vector3<double>>& points() const { return points_; }
   [[nodiscard]] const SensorState& state() const { return *state_; }
+  /// True for a depth camera.
+  [[nodiscard]] bool sees_depth() const { return !by_camera_.empty(); }
   /// The pose of the sensor's own frame in the base.
   [[nodiscard]] const Pose<double>& pose() const { return poses_[0]; }
 
@@ -65,10 +67,11 @@ class SensorView {
   }
 
   /// Adds to the rows of a Jacobian what moving point i does to a residual.
+  /// @param p                  (3) where the point is, metres, in the base
   /// @param residual_by_point  (m x 3) derivative of the residual with respect to the point in base
   template <class ByPoint, class Rows>
-  void add_motion(std::size_t i, const ByPoint& residual_by_point, Rows&& rows) const {
-    const Vector3<double>& p = points_[i];
+  void add_motion(std::size_t i, const Vector3<double>& p, const ByPoint& residual_by_point,
+                  Rows&& rows) const {
     for (const Twist<double>& twist : twists_[observation_->chain[i]]) {
       rows.col(twist.column) += residual_by_point * twist.velocity(p);
     }

@@ -35,6 +35,14 @@ struct TermResiduals {
   }
 };
 
+/// At which points derivatives are taken.
+enum class Linearization {
+  measured,   ///< those that the sensors saw
+  error_free  ///< measurements replaced by the model's prediction.  With residuals, a change that no
+              ///< measurement shows still turns them and looks as if it could be seen.  Planes are
+              ///< taken as they are.
+};
+
 class Term {
  public:
   Term(std::string name, std::vector<int> sensors, TermOptions options)
@@ -54,7 +62,7 @@ class Term {
   /// @param columns  number of free parameters; -1: no derivatives
   /// @returns  false where the residual is not defined (a point behind a camera)
   [[nodiscard]] virtual bool evaluate(std::span<const SensorView* const> views, int columns,
-                                      TermResiduals& out) const = 0;
+                                      Linearization at, TermResiduals& out) const = 0;
 
  protected:
   /// Indices of the features that all sensors have.

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/observability.hpp"
 
 namespace kinecal {
 
@@ -62,6 +64,21 @@ namespace detail {
                      json_number(parameter.initial), json_string(parameter.unit));
 }
 
+[[nodiscard]] inline std::string json(const Observability& observability,
+                                      const ParameterTable& table) {
+  std::string combinations;
+  for (const Combination& combination : observability.unobservable) {
+    std::string factors;
+    for (const auto& [parameter, factor] : combination) {
+      factors += fmt::format("{}{}: {}", factors.empty() ? "" : ", ",
+                             json_string(table[parameter].name), json_number(factor));
+    }
+    combinations += fmt::format("{}{{{}}}", combinations.empty() ? "" : ", ", factors);
+  }
+  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": [{}]}})",
+                     observability.rank, json_number(observability.condition), combinations);
+}
+
 /// "[\n    a,\n    b\n  ]"
 template <class Items, class Write>
 [[nodiscard]] std::string json_list(const Items& items, Write&& write) {
@@ -74,14 +91,18 @@ template <class Items, class Write>
 
 /// The whole result.  Costs are 1/2 sum of squares; rms is per residual component, mean, median and
 /// max are of the features' norms; lengths in metres, angles in radians, pixels.
-[[nodiscard]] inline std::string json_report(const CalibrationResult& result) {
+/// @param observability  of each step
+[[nodiscard]] inline std::string json_report(const CalibrationResult& result,
+                                             const std::vector<Observability>& observability) {
   const auto write = [](const auto& item) { return detail::json(item); };
   return fmt::format(
       "{{\n  \"converged\": {},\n  \"termination\": {},\n  \"steps\": {},\n"
-      "  \"error_blocks\": {},\n  \"parameters\": {}\n}}\n",
+      "  \"error_blocks\": {},\n  \"parameters\": {},\n  \"observability\": {}\n}}\n",
       result.converged, json_string(result.termination), detail::json_list(result.steps, write),
       detail::json_list(result.blocks, write),
-      detail::json_list(result.calibrated, [&](int i) { return detail::json(result.table[i]); }));
+      detail::json_list(result.calibrated, [&](int i) { return detail::json(result.table[i]); }),
+      detail::json_list(observability,
+                        [&](const auto& item) { return detail::json(item, result.table); }));
 }
 
 }  // namespace kinecal

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/observability.hpp"
 
 namespace kinecal {
 
@@ -100,6 +101,29 @@ namespace detail {
                         "({:.1f} ms)\n    {}\n",
                         step.name, step.num_parameters, step.num_residuals, step.initial_cost,
                         step.final_cost, step.iterations, 1e3 * step.seconds, step.termination);
+  }
+  return text;
+}
+
+/// What the samples of a step cannot tell, a combination of parameters a line; empty if they tell all.
+[[nodiscard]] inline std::string observability_text(const std::string& step,
+                                                    const Observability& observability,
+                                                    const ParameterTable& table) {
+  if (observability.unobservable.empty()) return {};
+  const std::size_t unknown = observability.unobservable.size();
+  std::string text = fmt::format(
+      "step '{}': these samples tell {} of {} combinations of the parameters; along the other{} no "
+      "residual changes, and priors or initial values decide",
+      step, observability.rank, static_cast<std::size_t>(observability.rank) + unknown,
+      unknown == 1 ? "" : "s");
+  for (const Combination& combination : observability.unobservable) {
+    text += "\n   ";
+    constexpr std::size_t kTold = 6;
+    for (std::size_t i = 0; i < std::min(kTold, combination.size()); ++i) {
+      const auto& [parameter, factor] = combination[i];
+      text += fmt::format(" {:+.3g} {}", factor, table[parameter].name);
+    }
+    if (combination.size() > kTold) text += " ...";
   }
   return text;
 }
