@@ -22,9 +22,9 @@ function(kinecal_add_library name)
   target_compile_features(kinecal_${name} INTERFACE cxx_std_20)
   set(headers "")
   foreach(folder IN LISTS ARG_FOLDERS)
-    file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}/*.hpp
-         ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}.hpp)
-    list(APPEND headers ${found})
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS
+         ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}/*.hpp)
+    list(APPEND headers ${found} ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}.hpp)
   endforeach()
   target_sources(kinecal_${name} INTERFACE FILE_SET HEADERS
                  BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})

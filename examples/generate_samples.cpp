@@ -12,8 +12,8 @@
 #include <fstream>
 #include <map>
 
-#include "kinecal/io/read_urdf.hpp"
-#include "kinecal/io/write_samples.hpp"
+#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/parameters.hpp"
 #include "simulation.hpp"
 

@@ -55,17 +55,22 @@ void evaluate(benchmark::State& state, bool derivatives) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
-void BM_residuals(benchmark::State& state) { evaluate(state, false); }
+void BM_residuals(benchmark::State& state) {
+  evaluate(state, false);
+}
 BENCHMARK(BM_residuals)->Arg(100);
 
-void BM_residuals_and_jacobian(benchmark::State& state) { evaluate(state, true); }
+void BM_residuals_and_jacobian(benchmark::State& state) {
+  evaluate(state, true);
+}
 BENCHMARK(BM_residuals_and_jacobian)->Arg(100);
 
 /// The control: the same residuals, differentiated by one wide jet through the whole walk.
 void BM_residuals_and_jacobian_wide_jets(benchmark::State& state) {
   const Work work(static_cast<int>(state.range(0)));
   std::vector<Wide> jets;
-  for (int i = 0; i < kParameters; ++i) jets.emplace_back(work.values[static_cast<std::size_t>(i)], i);
+  for (int i = 0; i < kParameters; ++i)
+    jets.emplace_back(work.values[static_cast<std::size_t>(i)], i);
   for (auto _ : state) {
     for (const Sample& sample : work.samples) {
       auto residuals = test::oracle_residuals(PointToPoint{}, work.problem, {1, 0}, sample, jets);

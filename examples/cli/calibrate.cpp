@@ -6,11 +6,12 @@
 
 #include <chrono>
 #include <ctime>
+#include <filesystem>
 #include <optional>
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/result_files.hpp"
+#include "kinecal/io/results/result_files.hpp"
 #include "kinecal/report.hpp"
 
 namespace kinecal::cli {
@@ -57,12 +58,30 @@ std::vector<Observability> observe(const Calibration& calibration,
 void print_doubts(const Input& input, const CalibrationResult& result,
                   const std::vector<Observability>& observability) {
   for (std::size_t s = 0; s < observability.size(); ++s) {
-    const std::string text = observability_text(input.calibration.steps[s].name, observability[s],
-                                                result.table);
+    const std::string text =
+        observability_text(input.calibration.steps[s].name, observability[s], result.table);
     if (!text.empty()) fmt::print(stderr, "warning: {}\n", text);
+  }
+  for (const std::string& line : active_bounds(input.calibration, result)) {
+    fmt::print(stderr, "warning: {}\n", line);
   }
   for (const std::string& line : suspicious_values(result)) {
     fmt::print(stderr, "warning: {}\n", line);
+  }
+}
+
+/// Results must not replace what they were made from.
+void check_targets(const CalibrateOptions& options, const std::filesystem::path& folder,
+                   const std::vector<OutputFile>& files) {
+  std::vector<std::string> inputs = options.samples;
+  inputs.insert(inputs.end(), {options.urdf, options.config});
+  for (const OutputFile& file : files) {
+    for (const std::string& input : inputs) {
+      std::error_code missing;
+      if (!std::filesystem::equivalent(folder / file.name, input, missing)) continue;
+      throw OutputError((folder / file.name).string() +
+                        ": would replace an input; choose another --output");
+    }
   }
 }
 
@@ -88,19 +107,23 @@ int calibrate(const CalibrateOptions& options) {
   const double reading = seconds_since(start);
   const CalibrationResult result = kinecal::calibrate(input.calibration, progress_line());
   end_progress_line();
-  print_result(input, result);
-  const std::vector<Observability> observability = observe(input.calibration, result);
-  std::fflush(stdout);
-  print_doubts(input, result, observability);
+  const bool ran = !result.steps.empty() && result.steps.back().iterations > 0;
+  if (result.converged || ran) {
+    print_result(input, result);
+    std::fflush(stdout);
+    print_doubts(input, result, observe(input.calibration, result));
+  }
   if (!result.converged) {
-    fmt::print(stderr, "error: not calibrated, nothing written: {}\n", result.termination);
+    fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
+               result.steps.back().name, result.termination);
     return kNotConverged;
   }
   if (folder) {
     std::vector<OutputFile> files =
         result_files(input.robot, input.urdf_text, options.urdf, input.calibration, result,
                      input.samples, file_options(options));
-    files.push_back({"report.json", json_report(result, observability)});
+    files.push_back({"report.json", json_report(result, observe(input.calibration, result))});
+    check_targets(options, folder->path(), files);
     folder->write(files);
     for (const OutputFile& file : files) {
       fmt::print("wrote {}\n", (folder->path() / file.name).string());

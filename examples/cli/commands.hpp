@@ -1,5 +1,5 @@
-// The commands of the program.  Each returns the exit code: 0 done, 1 bad input, 2 did not converge.
-// SPDX-License-Identifier: Apache-2.0
+// The commands of the program.  Each returns the exit code: 0 done, 1 bad input, 2 did not
+// converge. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>

@@ -3,14 +3,13 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
 #include <iterator>
 #include <optional>
 
 #include "kinecal/io/assemble.hpp"
-#include "kinecal/io/read_config.hpp"
-#include "kinecal/io/read_samples.hpp"
-#include "kinecal/io/read_urdf.hpp"
+#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/io/samples/read_samples.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -24,11 +23,6 @@ auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(re
     diagnostics.errors.emplace_back(e.what());
     return std::nullopt;
   }
-}
-
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace
@@ -49,11 +43,13 @@ Input read_input(const std::string& urdf, const std::string& config,
                  const std::vector<std::string>& samples) {
   Input input;
   Diagnostics& diagnostics = input.diagnostics;
-  const auto robot = attempt([&] { return read_urdf(urdf); }, diagnostics);
-  if (robot) {
-    input.robot = *robot;
-    input.urdf_text = read_text(urdf);
-  }
+  const auto robot = attempt(
+      [&] {
+        input.urdf_text = read_urdf_text(urdf);
+        return parse_urdf(input.urdf_text, urdf);
+      },
+      diagnostics);
+  if (robot) input.robot = *robot;
   const std::size_t before = diagnostics.errors.size();
   auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
   const bool configuration_is_good = diagnostics.errors.size() == before;

@@ -84,7 +84,8 @@ void print_sensors(const std::vector<Sample>& samples) {
   fmt::print("Sensors\n{}\n", table.str());
 }
 
-/// What is missing here and there: joints or sensors of some samples only, features without numbers.
+/// What is missing here and there: joints or sensors of some samples only, features without
+/// numbers.
 void print_gaps(const std::vector<Sample>& samples) {
   std::string gaps;
   const auto add = [&](const std::string& what, std::size_t count) {

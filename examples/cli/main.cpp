@@ -12,7 +12,8 @@ using namespace kinecal::cli;
 
 void add_input(CLI::App& command, std::string& urdf, std::string& config) {
   command.add_option("--urdf", urdf, "the robot's URDF")->required()->type_name("FILE");
-  command.add_option("--config", config, "what is calibrated: robot_calibration's YAML, of ROS 1 or 2")
+  command
+      .add_option("--config", config, "what is calibrated: robot_calibration's YAML, of ROS 1 or 2")
       ->required()
       ->type_name("FILE");
 }
@@ -20,7 +21,8 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.");
+  CLI::App app(
+      "Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.");
   app.set_version_flag("--version", "kinecal " KINECAL_VERSION);
   app.require_subcommand(1);
 
@@ -28,12 +30,13 @@ int main(int argc, char** argv) {
   CLI::App* calibrate_command = app.add_subcommand(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files");
   add_input(*calibrate_command, calibrating.urdf, calibrating.config);
-  calibrate_command->add_option("--samples", calibrating.samples, "recorded samples, CalibrationData YAML")
+  calibrate_command
+      ->add_option("--samples", calibrating.samples, "recorded samples, CalibrationData YAML")
       ->required()
       ->type_name("FILE");
-  calibrate_command->add_option("--output", calibrating.output, "folder for the results")
-      ->required()
-      ->type_name("DIR");
+  CLI::Option* output =
+      calibrate_command->add_option("--output", calibrating.output, "folder for the results")
+          ->type_name("DIR");
   calibrate_command
       ->add_option("--offsets", calibrating.offsets,
                    "where joint offsets are written: added to <calibration rising>, or folded into "
@@ -51,21 +54,30 @@ int main(int argc, char** argv) {
   check_command->add_option("--samples", checking.samples, "recorded samples")->type_name("FILE");
 
   std::vector<std::string> inspected;
-  CLI::App* inspect_command =
-      app.add_subcommand("inspect", "show what is in the samples: sensors, features, joint ranges, gaps");
-  inspect_command->add_option("samples", inspected, "recorded samples")->required()->type_name("FILE");
+  CLI::App* inspect_command = app.add_subcommand(
+      "inspect", "show what is in the samples: sensors, features, joint ranges, gaps");
+  inspect_command->add_option("samples", inspected, "recorded samples")
+      ->required()
+      ->type_name("FILE");
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kDone : kBadInput;
   }
-  try {
-    if (*calibrate_command) return calibrate(calibrating);
-    if (*check_command) return check(checking);
-    return inspect(inspected);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "error: %s\n", e.what());
+  if (*calibrate_command && output->empty() && !calibrating.dry_run) {
+    std::fprintf(stderr, "error: --output is required (or --dry-run)\n");
     return kBadInput;
   }
+  try {
+    int code = kDone;
+    if (*calibrate_command) code = calibrate(calibrating);
+    if (*check_command) code = check(checking);
+    if (*inspect_command) code = inspect(inspected);
+    if (std::fflush(stdout) == 0) return code;
+    std::fprintf(stderr, "error: the output cannot be printed\n");
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "error: %s\n", e.what());
+  }
+  return kBadInput;
 }

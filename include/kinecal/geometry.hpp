@@ -1,8 +1,9 @@
-// Door of geometry/: jets, rotations and poses.
+// Door of geometry/: jets, packets, rotations and poses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "kinecal/geometry/jet.hpp"
+#include "kinecal/geometry/packet.hpp"
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/geometry/rpy.hpp"

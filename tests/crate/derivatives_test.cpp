@@ -82,7 +82,9 @@ void check_block(const B& block, const std::vector<std::string>& sensors,
         expected.row(i) = r.v.transpose();
       }
       EXPECT_LE((out.jacobian - expected).norm(), 1e-12 * (1.0 + expected.norm()))
-          << "kinecal\n" << out.jacobian << "\njets\n" << expected;
+          << "kinecal\n"
+          << out.jacobian << "\njets\n"
+          << expected;
       // Central differences: good to 1e-8 of the derivative's size, at a step of 1e-6.
       for (int p = 0; p < kParameters; ++p) {
         constexpr double kStep = 1e-6;
@@ -120,7 +122,9 @@ void check_block(const B& block, const std::vector<std::string>& sensors,
   }
 }
 
-TEST(Derivatives, PointToPoint) { check_block(PointToPoint{}, {"camera", "arm"}, "hand"); }
+TEST(Derivatives, PointToPoint) {
+  check_block(PointToPoint{}, {"camera", "arm"}, "hand");
+}
 
 TEST(Derivatives, PointToPointThroughAVirtualFrame) {
   check_block(PointToPoint{}, {"camera", "arm"}, "board");
@@ -130,17 +134,25 @@ TEST(Derivatives, PointToPointWithTheBaseOnTheMovingArm) {
   check_block(PointToPoint{}, {"arm", "camera"}, "hand", "forearm");
 }
 
-TEST(Derivatives, PointToPixel) { check_block(PointToPixel{}, {"arm", "eye"}, "hand"); }
+TEST(Derivatives, PointToPixel) {
+  check_block(PointToPixel{}, {"arm", "eye"}, "hand");
+}
 
 TEST(Derivatives, PointToPixelOfADepthCamerasPoint) {
   check_block(PointToPixel{}, {"camera", "eye"}, "hand", "hand");
 }
 
-TEST(Derivatives, PointToPlane) { check_block(PointToPlane(0.1, 0.2, 2, -0.4), {"camera"}, "hand"); }
+TEST(Derivatives, PointToPlane) {
+  check_block(PointToPlane(0.1, 0.2, 2, -0.4), {"camera"}, "hand");
+}
 
-TEST(Derivatives, PlaneToPlane) { check_block(PlaneToPlane{2.0, 3.0}, {"camera", "arm"}, "board"); }
+TEST(Derivatives, PlaneToPlane) {
+  check_block(PlaneToPlane{2.0, 3.0}, {"camera", "arm"}, "board");
+}
 
-TEST(Derivatives, ABlockWrittenByAUser) { check_block(PointToSphere{}, {"camera"}, "hand"); }
+TEST(Derivatives, ABlockWrittenByAUser) {
+  check_block(PointToSphere{}, {"camera"}, "hand");
+}
 
 /// Residuals at the parameters with which the samples were made.
 template <ErrorBlock B>

@@ -14,9 +14,9 @@ std::vector<Vector3<double>> noisy_plane(double noise) {
   std::vector<Vector3<double>> points;
   const Matrix3<double> turn = exp(Vector3<double>(0.3, -0.5, 0.2));
   for (int i = 0; i < 20; ++i) {
-    points.push_back(turn * Vector3<double>(side(random), 0.4 * side(random),
-                                            noise > 0 ? normal(random) : 0.0) +
-                     Vector3<double>(1, 2, 3));
+    points.push_back(
+        turn * Vector3<double>(side(random), 0.4 * side(random), noise > 0 ? normal(random) : 0.0) +
+        Vector3<double>(1, 2, 3));
   }
   return points;
 }
@@ -60,8 +60,8 @@ TEST(PlaneFit, KnowsWhenThePointsSpanNoPlane) {
   const std::vector<Vector3<double>> line = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {-3, -3, -3}};
   EXPECT_FALSE(PlaneFit(line).determined());
   EXPECT_FALSE(PlaneFit(std::span(line).first(2)).determined());
-  const std::vector<Vector3<double>> cube = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
-                                             {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  const std::vector<Vector3<double>> cube = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                             {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
   EXPECT_FALSE(PlaneFit(cube).determined());
 }
 

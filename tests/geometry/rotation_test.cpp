@@ -50,7 +50,8 @@ TEST(Rotation, LogUndoesExpAlsoAtZeroAndNearPi) {
   for (const auto& w : difficult_vectors()) {
     const Vector3<double> back = log(exp(w));
     // At pi itself the sign of the axis is free.
-    const double error = std::min((back - w).norm(), w.norm() > kPi - 1e-12 ? (back + w).norm() : 9);
+    const double error =
+        std::min((back - w).norm(), w.norm() > kPi - 1e-12 ? (back + w).norm() : 9);
     EXPECT_LE(error, 2e-15 + 4e-15 * w.norm()) << "w = " << w.transpose();
   }
 }

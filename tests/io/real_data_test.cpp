@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "kinecal/io/result_files.hpp"
+#include "kinecal/io/results/result_files.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
 
@@ -69,8 +69,9 @@ TEST(Fetch, OwnConfigurationsFitTheWholeRobot) {
 TEST(Fetch, AFrameThatTheSamplesDoNotTouchKeepsItsValueWithAWarning) {
   KINECAL_NEEDS_DATA("fetch");
   const auto synth = data_folder() / "fetch/synth";
-  const auto fetch = calibrate_files(synth / "fetch_arm_head.urdf",
-                                     data_folder() / "fetch/calibrate.yaml", synth / "samples.yaml");
+  const auto fetch =
+      calibrate_files(synth / "fetch_arm_head.urdf", data_folder() / "fetch/calibrate.yaml",
+                      synth / "samples.yaml");
   expect_cost(fetch.cost(), 8.019441481e-4);
   const auto& warnings = fetch.diagnostics.warnings;
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
@@ -92,8 +93,8 @@ TEST_P(Ur5Tracker, ReachesTheReferenceOnTheGridAndOnPosesThatWereNotFitted) {
   KINECAL_NEEDS_DATA("ur5_tracker");
   const TrackerCase& expected = GetParam();
   const auto folder = data_folder() / "ur5_tracker";
-  const auto grid = calibrate_files(folder / "ur5.urdf", folder / expected.config,
-                                    folder / "grid.yaml");
+  const auto grid =
+      calibrate_files(folder / "ur5.urdf", folder / expected.config, folder / "grid.yaml");
   EXPECT_TRUE(grid.result.converged) << grid.result.termination;
   expect_cost(grid.cost(), expected.cost);
   EXPECT_NEAR(grid.rms_mm(), expected.grid_rms, kRmsTolerance);
@@ -146,7 +147,9 @@ struct PandaCase {
   std::vector<std::pair<const char*, double>> held_out;  ///< region, fit RMS in mm
 };
 
-void PrintTo(const PandaCase& c, std::ostream* out) { *out << c.folder << "/" << c.config; }
+void PrintTo(const PandaCase& c, std::ostream* out) {
+  *out << c.folder << "/" << c.config;
+}
 
 class MukcaPanda : public testing::TestWithParam<PandaCase> {};
 
@@ -161,9 +164,9 @@ TEST_P(MukcaPanda, WrittenUrdfReachesTheReferenceInRegionsThatWereNotFitted) {
   EXPECT_NEAR(train.rms_mm(), expected.train_rms, kRmsTolerance);
 
   const std::string text = test::text_of(data / "panda.urdf");
-  const std::string calibrated = patch_urdf(
-      text, "panda.urdf", train.robot, joint_patches(train.robot, train.result.table),
-      OffsetStyle::origin);
+  const std::string calibrated =
+      patch_urdf(text, "panda.urdf", train.robot, joint_patches(train.robot, train.result.table),
+                 OffsetStyle::origin);
   const Robot robot = parse_urdf(calibrated, "calibrated.urdf");
   for (const auto& [region, rms] : expected.held_out) {
     Diagnostics diagnostics;
@@ -177,20 +180,50 @@ TEST_P(MukcaPanda, WrittenUrdfReachesTheReferenceInRegionsThatWereNotFitted) {
 INSTANTIATE_TEST_SUITE_P(
     Configurations, MukcaPanda,
     testing::Values(
-        PandaCase{"panda_6", "front", "minimal.yaml", 1.169456536e-6, 0.194228,
+        PandaCase{"panda_6",
+                  "front",
+                  "minimal.yaml",
+                  1.169456536e-6,
+                  0.194228,
                   {{"left", 0.260036}, {"right", 0.307303}}},
-        PandaCase{"panda_6", "front", "stable.yaml", 1.263745341e-6, 0.201906,
+        PandaCase{"panda_6",
+                  "front",
+                  "stable.yaml",
+                  1.263745341e-6,
+                  0.201906,
                   {{"left", 0.270672}, {"right", 0.323136}}},
-        PandaCase{"panda_6", "front", "frames.yaml", 1.356061661e-6, 0.195816,
+        PandaCase{"panda_6",
+                  "front",
+                  "frames.yaml",
+                  1.356061661e-6,
+                  0.195816,
                   {{"left", 0.264849}, {"right", 0.314274}}},
-        PandaCase{"panda_2", "front_center", "minimal.yaml", 9.588253667e-7, 0.178776,
-                  {{"front_left", 0.464333}, {"front_right", 0.483762}, {"mid-high", 0.440007},
+        PandaCase{"panda_2",
+                  "front_center",
+                  "minimal.yaml",
+                  9.588253667e-7,
+                  0.178776,
+                  {{"front_left", 0.464333},
+                   {"front_right", 0.483762},
+                   {"mid-high", 0.440007},
                    {"back_left", 0.391221}}},
-        PandaCase{"panda_2", "front_center", "stable.yaml", 9.678876781e-7, 0.179619,
-                  {{"front_left", 0.466335}, {"front_right", 0.487140}, {"mid-high", 0.440450},
+        PandaCase{"panda_2",
+                  "front_center",
+                  "stable.yaml",
+                  9.678876781e-7,
+                  0.179619,
+                  {{"front_left", 0.466335},
+                   {"front_right", 0.487140},
+                   {"mid-high", 0.440450},
                    {"back_left", 0.390697}}},
-        PandaCase{"panda_2", "front_center", "frames.yaml", 1.232490840e-6, 0.180012,
-                  {{"front_left", 0.463258}, {"front_right", 0.451584}, {"mid-high", 0.429358},
+        PandaCase{"panda_2",
+                  "front_center",
+                  "frames.yaml",
+                  1.232490840e-6,
+                  0.180012,
+                  {{"front_left", 0.463258},
+                   {"front_right", 0.451584},
+                   {"mid-high", 0.429358},
                    {"back_left", 0.388347}}},
         PandaCase{"panda_6", "front", "redundant.yaml", 1.169456536e-6, 0.194228, {}},
         PandaCase{"panda_2", "front_center", "redundant.yaml", 9.588253667e-7, 0.178776, {}}));

@@ -14,8 +14,8 @@ namespace {
 constexpr double kRounding = 1e-14;  // a dozen products of numbers of size one
 
 const std::set<std::string> kNone;
-const std::set<std::string> kCorrected = {"shoulder_lift", "elbow_mount", "wrist", "head_tilt",
-                                          "camera_joint", "head_pan"};
+const std::set<std::string> kCorrected = {"shoulder_lift", "elbow_mount",  "wrist",
+                                          "head_tilt",     "camera_joint", "head_pan"};
 
 /// Forward kinematics written down joint by joint, from the definition alone.
 Pose<double> by_hand(const Robot& robot, const std::string& base, const std::string& tip,
@@ -44,10 +44,10 @@ double difference(const Pose<double>& a, const Pose<double>& b) {
 }
 
 const std::vector<std::pair<std::string, std::string>> kWays = {
-    {"base_link", "hand"},          {"base_link", "camera_optical_frame"},
-    {"hand", "base_link"},          {"hand", "camera_optical_frame"},
-    {"finger_right", "torso"},      {"camera_optical_frame", "counterweight"},
-    {"forearm", "forearm"},         {"finger_left", "finger_right"},
+    {"base_link", "hand"},     {"base_link", "camera_optical_frame"},
+    {"hand", "base_link"},     {"hand", "camera_optical_frame"},
+    {"finger_right", "torso"}, {"camera_optical_frame", "counterweight"},
+    {"forearm", "forearm"},    {"finger_left", "finger_right"},
 };
 
 TEST(Walk, MatchesTheDefinitionBetweenAnyTwoLinks) {
@@ -141,8 +141,8 @@ TEST(Chain, RefusesFloatingJointsByName) {
 }
 
 TEST(Chain, RefusesLinksThatAreNotConnected) {
-  const Robot robot("two", {{"a", JointType::fixed, "l0", "l1", {}},
-                            {"b", JointType::fixed, "m0", "m1", {}}});
+  const Robot robot(
+      "two", {{"a", JointType::fixed, "l0", "l1", {}}, {"b", JointType::fixed, "m0", "m1", {}}});
   EXPECT_THROW((void)make_chain(robot, "l1", "m1"), RobotError);
 }
 
@@ -226,8 +226,7 @@ TEST_P(Twists, AgreeWithAutodiffThroughTheWholeWalk) {
     test::RandomPositions positions(9);
     const auto position_of = [&](const std::string& joint) { return positions(joint); };
     const Vector3<double> p(0.3, -0.2, 0.5);
-    const Vector3<Wide> expected =
-        forward_kinematics(chain, position_of, fill(indices, jets)) * p;
+    const Vector3<Wide> expected = forward_kinematics(chain, position_of, fill(indices, jets)) * p;
 
     TwistWalker<double> walker{indices};
     const auto motions = measured_motions(chain, position_of);
@@ -246,7 +245,9 @@ TEST_P(Twists, AgreeWithAutodiffThroughTheWholeWalk) {
     }
     // Products of a dozen rotations and translations of up to 3 GetParam() metres.
     EXPECT_LE((jacobian - oracle).norm(), 1e-13 * (1.0 + oracle.norm()))
-        << base << " -> " << tip << "\ntwists\n" << jacobian << "\njets\n" << oracle;
+        << base << " -> " << tip << "\ntwists\n"
+        << jacobian << "\njets\n"
+        << oracle;
   }
 }
 

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <random>
 
-#include "kinecal/io/write_samples.hpp"
+#include "kinecal/io/samples/write_samples.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
 
@@ -152,8 +152,8 @@ class Program : public testing::Test {
   }
 
   [[nodiscard]] Outcome run(const std::string& arguments) const {
-    const std::string command = "cd " + folder_.string() + " && " KINECAL_PROGRAM " " + arguments +
-                                " > out.txt 2> err.txt";
+    const std::string command =
+        "cd " + folder_.string() + " && " KINECAL_PROGRAM " " + arguments + " > out.txt 2> err.txt";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out.txt"), read("err.txt")};
   }
@@ -201,10 +201,9 @@ TEST_F(Program, BothOffsetStylesDescribeTheSameRobot) {
   const double offset =
       YAML::LoadFile((folder_ / "out/calibration.yaml").string())["elbow"].as<double>();
   const auto tip = [&](const Robot& robot, double added) {
-    return forward_kinematics(make_chain(robot, "camera_optical_frame", "hand"),
-                              [&](const std::string& joint) {
-                                return joint == "elbow" ? 0.3 + added : -0.2;
-                              });
+    return forward_kinematics(
+        make_chain(robot, "camera_optical_frame", "hand"),
+        [&](const std::string& joint) { return joint == "elbow" ? 0.3 + added : -0.2; });
   };
   const Pose<double> a = tip(rising, offset), b = tip(origin, 0.0);
   EXPECT_LE((a.rotation - b.rotation).norm() + (a.translation - b.translation).norm(), 1e-12);
@@ -226,11 +225,11 @@ TEST_F(Program, UpstreamNamesCarryTheDateAndLeaveOutTheNameCamera) {
   }
   const std::string date = "[0-9]+_[0-9]+_[0-9]+_[0-9]+_[0-9]+_[0-9]+";
   using testing::MatchesRegex;
-  EXPECT_THAT(names, testing::UnorderedElementsAre(
-                         MatchesRegex("calibrated_" + date + "\\.urdf"),
-                         MatchesRegex("calibration_" + date + "\\.yaml"),
-                         MatchesRegex("depth_" + date + "\\.yaml"),
-                         MatchesRegex("rgb_" + date + "\\.yaml"), "report.json"));
+  EXPECT_THAT(
+      names, testing::UnorderedElementsAre(MatchesRegex("calibrated_" + date + "\\.urdf"),
+                                           MatchesRegex("calibration_" + date + "\\.yaml"),
+                                           MatchesRegex("depth_" + date + "\\.yaml"),
+                                           MatchesRegex("rgb_" + date + "\\.yaml"), "report.json"));
 }
 
 TEST_F(Program, DryRunWritesNothing) {
@@ -268,9 +267,9 @@ TEST_F(Program, CheckTellsEveryMistakeInOneGo) {
 }
 
 TEST_F(Program, AcceptsASampleFileTwice) {
-  EXPECT_EQ(run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml s.yaml --output out")
-                .code,
-            0);
+  EXPECT_EQ(
+      run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml s.yaml --output out").code,
+      0);
 }
 
 // Bad input, one test each.
@@ -330,8 +329,8 @@ TEST_F(Program, RefusesAnUnknownModelInABlock) {
 
 TEST_F(Program, RefusesAnUnknownBlockType) {
   spoil("c.yaml", "type: chain3d_to_chain3d", "type: chain3d_to_chain");
-  expect_refused(AllOf(HasSubstr("'chain3d_to_chain'"),
-                       HasSubstr("did you mean 'chain3d_to_chain3d'?")));
+  expect_refused(
+      AllOf(HasSubstr("'chain3d_to_chain'"), HasSubstr("did you mean 'chain3d_to_chain3d'?")));
 }
 
 TEST_F(Program, RefusesAnUnknownModelType) {
@@ -388,9 +387,9 @@ TEST_F(Program, LeavesOutFeaturesThatAreNotNumbersWithACount) {
   const Outcome result = calibrate();
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.err, AllOf(HasSubstr("2 features are not a number"), HasSubstr("s.yaml:")));
-  EXPECT_EQ(YAML::LoadFile((folder_ / "out/report.json").string())["error_blocks"][0]["count"]
-                .as<int>(),
-            58);
+  EXPECT_EQ(
+      YAML::LoadFile((folder_ / "out/report.json").string())["error_blocks"][0]["count"].as<int>(),
+      58);
 }
 
 TEST_F(Program, RefusesSamplesInWhichNoFeatureIsANumber) {
@@ -442,7 +441,8 @@ TEST_F(Program, RefusesAFeatureInAnUnknownFrame) {
   auto all = samples();
   all[8].observations[1].features[2].frame = "hnad";
   write_all(all);
-  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("'hnad'"), HasSubstr("did you mean 'hand'")));
+  expect_refused(
+      AllOf(HasSubstr("s.yaml:"), HasSubstr("'hnad'"), HasSubstr("did you mean 'hand'")));
 }
 
 TEST_F(Program, RefusesASampleFileThatWasCutOff) {
@@ -460,8 +460,8 @@ TEST_F(Program, RefusesAnOutputFolderThatIsAFile) {
 }
 
 TEST_F(Program, RefusesAnOutputFolderThatCannotBeCreated) {
-  const Outcome result = run(
-      "calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output /proc/kinecal/out");
+  const Outcome result =
+      run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output /proc/kinecal/out");
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, HasSubstr("/proc/kinecal/out"));
 }
@@ -482,7 +482,157 @@ TEST_F(Program, WritesNothingWhenTheDiskIsFullHalfWay) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 5) << "left something";
 }
 
+TEST_F(Program, RefusesToReplaceItsInput) {
+  fs::rename(folder_ / "c.yaml", folder_ / "calibration.yaml");
+  const Outcome result =
+      run("calibrate --urdf tiny.urdf --config calibration.yaml --samples s.yaml --output .");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("calibration.yaml: would replace an input"));
+  EXPECT_EQ(read("calibration.yaml"), kConfig);
+  EXPECT_FALSE(fs::exists(folder_ / "calibrated.urdf"));
+}
+
+TEST_F(Program, RefusesToReplaceAFolder) {
+  fs::create_directories(folder_ / "out/calibrated.urdf");
+  write("out/calibrated.urdf/precious", "x");
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("out/calibrated.urdf: exists and is not a file"));
+  EXPECT_EQ(read("out/calibrated.urdf/precious"), "x");
+}
+
+TEST_F(Program, RemovesTheFoldersItMadeWhenItDoesNotConverge) {
+  write("c.yaml", std::string(kConfig) + "max_num_iterations: 1\n");
+  EXPECT_EQ(run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output a/b/c").code,
+            2);
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
+}
+
+TEST_F(Program, ReadsTheUrdfFromAPipe) {
+  const std::string command = "cd " + folder_.string() +
+                              " && cat tiny.urdf | " KINECAL_PROGRAM
+                              " calibrate --urdf /dev/stdin --config c.yaml --samples s.yaml "
+                              "--output out > /dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/calibrated.urdf"));
+}
+
+TEST_F(Program, TellsWhatTheSamplesCannotTell) {
+  spoil("c.yaml", " - elbow", " - elbow\n - shoulder");
+  const Outcome result = calibrate();  // the shoulder turns about the same axis as the mast's yaw
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("combinations of the parameters"), HasSubstr("shoulder"),
+                                HasSubstr("mast_joint_")));
+}
+
+TEST_F(Program, RefusesFewerResidualsThanParameters) {
+  auto all = samples();
+  all.resize(1);
+  for (Observation& seen : all[0].observations) seen.features.resize(2);
+  write_all(all);
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, HasSubstr("6 residuals cannot tell 8 parameters"));
+}
+
+TEST_F(Program, TellsOfAParameterThatEndedAtItsBound) {
+  write("c.yaml", std::string(kConfig) + "bounds: {elbow: [-0.5, 0.01]}\n");
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("'elbow' ended at its bound 0.01"));
+}
+
+TEST_F(Program, InitialValuesOfALaterStepDoNotTouchAnEarlierOne) {
+  write("c.yaml", R"(base_link: base_link
+models:
+ - {name: arm, type: chain, frame: hand}
+ - {name: camera, type: camera3d, frame: camera_optical_frame}
+error_blocks:
+ - {name: hand_eye, type: chain3d_to_chain3d, model_a: camera, model_b: arm}
+cal_steps:
+  a:
+    free_params: [elbow]
+  b:
+    free_params: []
+    free_frames:
+     - {name: mast_joint, x: true, y: true, z: true, roll: true, pitch: true, yaw: true}
+    initial_values: {mast_joint_x: 0.1}
+)");
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 0) << result.err;
+  const YAML::Node steps = YAML::LoadFile((folder_ / "out/report.json").string())["steps"];
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_LT(steps[0]["final_cost"].as<double>(), 1e-20);
+  EXPECT_GT(steps[1]["initial_cost"].as<double>(), 0.1);
+}
+
+TEST_F(Program, StartingAtTheResultIsNoFailure) {
+  ASSERT_EQ(calibrate().code, 0);
+  std::string values = "initial_values:\n";
+  for (const auto& line : YAML::LoadFile((folder_ / "out/calibration.yaml").string())) {
+    const auto name = line.first.as<std::string>();
+    if (name.ends_with("_info") || name == "urdf") continue;
+    values += "  " + name + ": " + line.second.as<std::string>() + "\n";
+  }
+  write("c.yaml", kConfig + values);
+  EXPECT_EQ(calibrate().code, 0);
+}
+
+TEST_F(Program, RefusesAJointNamedLikeAParameterOfAFrame) {
+  std::string text = kUrdf;
+  for (const char* where : {"\"elbow\""}) {
+    text.replace(text.find(where), std::string(where).size(), "\"mast_joint_x\"");
+  }
+  write("tiny.urdf", text);
+  spoil("c.yaml", " - elbow\n", "");
+  auto all = samples();
+  for (Sample& sample : all) sample.joint_names[1] = "mast_joint_x";
+  write_all(all);
+  expect_refused(AllOf(HasSubstr("c.yaml:"), HasSubstr("parameter 'mast_joint_x' of frame"),
+                       HasSubstr("rename")));
+}
+
+TEST_F(Program, RefusesAJointTwiceInASample) {
+  auto all = samples();
+  all[3].joint_names.push_back("elbow");
+  all[3].joint_positions.push_back(0.3);
+  write_all(all);
+  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("joint 'elbow' occurs twice")));
+}
+
+TEST_F(Program, RefusesADistortionModelItDoesNotKnow) {
+  spoil("c.yaml", "type: camera3d", "type: camera2d");
+  spoil("c.yaml", " - camera_z_offset\n", "");
+  spoil("c.yaml", "type: chain3d_to_chain3d\n   model_a: camera\n   model_b: arm",
+        "type: chain3d_to_camera2d\n   model_3d: arm\n   model_2d: camera");
+  auto all = samples();
+  for (Sample& sample : all) {
+    sample.observations[0].camera->distortion_model = "equidistant";
+    sample.observations[0].camera->d = {0.1, 0.0, 0.0, 0.0};
+  }
+  write_all(all);
+  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("'equidistant' is not supported")));
+}
+
+TEST_F(Program, AnObservationWithoutFeaturesIsNone) {
+  auto all = samples();
+  all[2].observations[1].features.clear();
+  write_all(all);
+  EXPECT_EQ(calibrate().code, 0);
+}
+
+TEST_F(Program, WarnsOfACameraThatWasSetDifferently) {
+  auto all = samples();
+  all[9].observations[0].camera->p[0] = 551.0;
+  write_all(all);
+  const Outcome result = calibrate();
+  EXPECT_THAT(result.err, AllOf(HasSubstr("s.yaml:"), HasSubstr("'camera' differs")));
+}
+
 TEST_F(Program, RefusesUnknownOptionsWithExitCode1) {
+  EXPECT_EQ(run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml").code, 1);
+  EXPECT_EQ(run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --dry-run").code, 0);
+
   EXPECT_EQ(run("calibrate --urfd tiny.urdf").code, 1);
   EXPECT_EQ(run("").code, 1);
   EXPECT_EQ(run("--help").code, 0);

@@ -15,7 +15,11 @@ CalibrationResult result() {
   r.converged = true;
   r.termination = "converged: \"enough\"\n";
   r.steps.push_back({"one", true, "converged", 5, 2.0, 0.125, 0.001, 30, 2});
-  r.blocks.push_back({"hand_eye", "chain3d_to_chain3d", "m", 10, {0.01, 0.02, 0.03, 0.04},
+  r.blocks.push_back({"hand_eye",
+                      "chain3d_to_chain3d",
+                      "m",
+                      10,
+                      {0.01, 0.02, 0.03, 0.04},
                       {0.001, 0.002, 0.003, 0.004}});
   r.table.add({.name = "elbow", .unit = "rad", .initial = 0.0, .value = 0.1});
   r.table.add({.name = "camera_z_offset", .unit = "m", .initial = 0.0, .value = 0.25});

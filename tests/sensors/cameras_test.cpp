@@ -17,8 +17,8 @@ TEST(DepthCamera, GivesBackTheRecordedPointWithTheRecordedSettings) {
 
 TEST(DepthCamera, FollowsTheDriversDepthFormula) {
   const DepthCamera camera{550, 545, 320, 240, 0.0, 1.0};
-  const Vector3<double> p = camera.point(Vector3<double>(320, 240, 2.0),
-                                         std::array<double, 6>{0, 0, 0, 0, 0.01, -0.1});
+  const Vector3<double> p =
+      camera.point(Vector3<double>(320, 240, 2.0), std::array<double, 6>{0, 0, 0, 0, 0.01, -0.1});
   EXPECT_LE((p - Vector3<double>(0, 0, 2.01 * 0.9)).norm(), 1e-15);
 }
 

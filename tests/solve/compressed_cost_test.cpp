@@ -72,7 +72,8 @@ TEST(CompressedCost, IsFiniteWhereTheHessianIsSingular) {
   const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
   std::optional<UndefinedResidual> undefined;
   const NormalEquations normal = normal_equations(problem, zero, &free, undefined);
-  const Eigen::VectorXd d = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal.hessian).eigenvalues();
+  const Eigen::VectorXd d =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal.hessian).eigenvalues();
   ASSERT_LT(d(0), 1e-12 * d(d.size() - 1));
   const EquivalentResidual compressed(normal);
   EXPECT_TRUE(compressed.residual.allFinite());
@@ -107,14 +108,14 @@ TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
       up[static_cast<std::size_t>(i)] += kStep;
       down[static_cast<std::size_t>(i)] -= kStep;
       const double numeric = (cost_at(up) - cost_at(down)) / (2 * kStep);
-      EXPECT_NEAR(gradient(i), numeric, 1e-7 * gradient.norm()) << problem.table()[static_cast<int>(i)].name;
+      EXPECT_NEAR(gradient(i), numeric, 1e-7 * gradient.norm())
+          << problem.table()[static_cast<int>(i)].name;
     }
   }
 }
 
 TEST(Loss, HasTheDerivativeItSaysAndBoundsItsTangent) {
-  for (const LossType type :
-       {LossType::none, LossType::huber, LossType::cauchy, LossType::tukey}) {
+  for (const LossType type : {LossType::none, LossType::huber, LossType::cauchy, LossType::tukey}) {
     const Loss loss{type, 0.7};
     EXPECT_EQ(loss(0.0).rho, 0.0);
     EXPECT_EQ(loss(0.0).derivative, 1.0);

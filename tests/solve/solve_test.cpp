@@ -10,9 +10,9 @@ namespace {
 
 /// Parameters of the scene that camera and arm together can tell.
 const std::vector<std::string> kObservable = {
-    "shoulder_lift", "elbow",           "wrist",          "head_tilt",     "camera_joint_x",
-    "camera_joint_y", "camera_joint_z", "camera_joint_a", "camera_joint_c", "camera_fx",
-    "camera_fy",     "camera_cx",       "camera_cy",      "camera_z_offset", "camera_z_scaling"};
+    "shoulder_lift",  "elbow",          "wrist",          "head_tilt",       "camera_joint_x",
+    "camera_joint_y", "camera_joint_z", "camera_joint_a", "camera_joint_c",  "camera_fx",
+    "camera_fy",      "camera_cx",      "camera_cy",      "camera_z_offset", "camera_z_scaling"};
 
 FreeSet free_of(const ParameterTable& table, const std::vector<std::string>& names) {
   std::vector<int> indices;
@@ -95,8 +95,7 @@ TEST(Solve, OneBadCaptureAmongAHundredMovesTheParametersTenTimesLessWithALoss) {
 
 TEST(Solve, ALossThatSeesNothingFromFarAwayIsStartedFromAConvexOne) {
   StepResult result;
-  const Eigen::VectorXd values =
-      solved(noisy_samples(30, 1e-4), {LossType::tukey, 0.002}, &result);
+  const Eigen::VectorXd values = solved(noisy_samples(30, 1e-4), {LossType::tukey, 0.002}, &result);
   EXPECT_TRUE(result.converged) << result.termination;
   const Eigen::VectorXd truth = true_values(test::scene_table());
   EXPECT_LE((values - truth).norm(), 0.1 * truth.norm());
@@ -104,35 +103,57 @@ TEST(Solve, ALossThatSeesNothingFromFarAwayIsStartedFromAConvexOne) {
 
 TEST(Solve, RefusesAPlateauOnWhichTheLossLeavesOutHalfOfTheFeatures) {
   StepResult result;
-  const Eigen::VectorXd values =
-      solved(noisy_samples(30, 5e-3), {LossType::tukey, 1e-4}, &result);
+  const Eigen::VectorXd values = solved(noisy_samples(30, 5e-3), {LossType::tukey, 1e-4}, &result);
   EXPECT_FALSE(result.converged);
   EXPECT_NE(result.termination.find("'hand_eye' leaves out half"), std::string::npos)
       << result.termination;
   EXPECT_TRUE(values.isZero(0.0)) << "unusable results must not change the values";
 }
 
-TEST(Solve, StaysWithinBounds) {
-  Problem with_bounds(test::mobile_manipulator(), "base_link",
-                      [] {
-                        ParameterTable table = test::scene_table();
-                        table["camera_z_offset"].lower = -1e-5;
-                        table["camera_z_offset"].upper = 1e-5;
-                        return table;
-                      }(),
-                      test::kSceneFrames);
-  with_bounds.add_sensor({"arm", SensorType::chain3d, "hand", ""});
-  with_bounds.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
-  with_bounds.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
-  for (const Sample& sample : noisy_samples(30, 0.0)) with_bounds.add_sample(sample);
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(with_bounds.table().size());
-  const StepResult result =
-      solve(with_bounds, free_of(with_bounds.table(), kObservable), values);
-  EXPECT_TRUE(result.converged) << result.termination;
-  const double found = values(with_bounds.table().index("camera_z_offset"));
-  const double truth = true_values(test::scene_table())(with_bounds.table().index("camera_z_offset"));
-  ASSERT_GT(std::abs(truth), 1e-5) << "the bound must matter";
-  EXPECT_NEAR(std::abs(found), 1e-5, 1e-13);
+/// The scene with one parameter's bounds, and camera against arm.
+Problem bounded_problem(const std::string& name, double lower, double upper,
+                        const std::vector<Sample>& samples) {
+  ParameterTable table = test::scene_table();
+  table[name].lower = lower;
+  table[name].upper = upper;
+  Problem problem(test::mobile_manipulator(), "base_link", table, test::kSceneFrames);
+  problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
+  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  return problem;
+}
+
+/// An active bound costs exactly what holding the parameter there costs.
+TEST(Solve, AnActiveBoundEndsAtTheMinimumOfTheOtherParameters) {
+  const auto samples = noisy_samples(30, 1e-3);
+  for (const std::string name : {"camera_joint_x", "elbow", "camera_fx"}) {
+    const double truth = true_values(test::scene_table())(test::scene_table().index(name));
+    const double bound = 0.3 * truth;
+    const Problem problem =
+        bounded_problem(name, std::min(0.0, bound), std::max(0.0, bound), samples);
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+    const StepResult result = solve(problem, free_of(problem.table(), kObservable), values);
+    EXPECT_TRUE(result.converged) << result.termination;
+    EXPECT_NEAR(values(problem.table().index(name)), bound, 1e-12) << name;
+
+    std::vector<std::string> others = kObservable;
+    std::erase(others, name);
+    Eigen::VectorXd held = Eigen::VectorXd::Zero(problem.table().size());
+    held(problem.table().index(name)) = bound;
+    const StepResult reference = solve(problem, free_of(problem.table(), others), held);
+    EXPECT_NEAR(result.final_cost / reference.final_cost, 1.0, 1e-9) << name;
+  }
+}
+
+TEST(Solve, ABoundThatIsNotReachedChangesNothing) {
+  const auto samples = noisy_samples(20, 1e-3);
+  const Problem problem = bounded_problem("elbow", -1.0, 1.0, samples);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+  const StepResult result = solve(problem, free_of(problem.table(), kObservable), values);
+  StepResult unbounded;
+  (void)solved(samples, {}, &unbounded);
+  EXPECT_NEAR(result.final_cost / unbounded.final_cost, 1.0, 1e-9);
 }
 
 TEST(Solve, HoldsWhatIsNotFree) {
@@ -177,10 +198,12 @@ TEST(Solve, APriorCountsOncePerSampleAndPullsToZero) {
   const double cost = normal_equations(problem, span_of(values), nullptr, undefined).cost;
   double squares = 0.0;
   for (const char* axis : {"x", "y", "z"}) {
-    squares += std::pow(2.0 * values(problem.table().index(parameter_name("camera_joint", axis))), 2);
+    squares +=
+        std::pow(2.0 * values(problem.table().index(parameter_name("camera_joint", axis))), 2);
   }
   for (const char* axis : {"a", "b", "c"}) {
-    squares += std::pow(3.0 * values(problem.table().index(parameter_name("camera_joint", axis))), 2);
+    squares +=
+        std::pow(3.0 * values(problem.table().index(parameter_name("camera_joint", axis))), 2);
   }
   EXPECT_NEAR(cost / (0.5 * 7 * squares), 1.0, 1e-10);
 }

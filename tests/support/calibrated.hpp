@@ -6,9 +6,9 @@
 #include <iterator>
 
 #include "kinecal/io/assemble.hpp"
-#include "kinecal/io/read_config.hpp"
-#include "kinecal/io/read_samples.hpp"
-#include "kinecal/io/read_urdf.hpp"
+#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/io/samples/read_samples.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal::test {

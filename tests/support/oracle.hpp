@@ -34,9 +34,9 @@ OracleView<S> oracle_view(const SensorModel& model, const Sample& sample,
   const auto tip_pose = [&](std::size_t c) {
     const auto corrections =
         corrections_for(model.parameters()[c], std::span<const S>(values.data(), values.size()));
-    return forward_kinematics(model.chains()[c],
-                              [&](const std::string& joint) { return *sample.position(joint); },
-                              corrections);
+    return forward_kinematics(
+        model.chains()[c], [&](const std::string& joint) { return *sample.position(joint); },
+        corrections);
   };
   for (std::size_t i = 0; i < view.seen.measured.size(); ++i) {
     const Pose<S> pose = tip_pose(view.seen.chain[i]);
@@ -44,8 +44,8 @@ OracleView<S> oracle_view(const SensorModel& model, const Sample& sample,
       view.pose = pose;
       view.points.emplace_back(Vector3<S>::Zero());
     } else if (model.sensor().type == SensorType::camera3d) {
-      view.points.push_back(pose *
-                            view.seen.depth_camera.point(view.seen.measured[i], view.camera_values));
+      view.points.push_back(
+          pose * view.seen.depth_camera.point(view.seen.measured[i], view.camera_values));
     } else {
       view.points.push_back(pose * view.seen.measured[i]);
     }

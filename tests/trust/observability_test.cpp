@@ -71,8 +71,7 @@ TEST(Observability, HasTheRankAndConditionOfTheReference) {
                     "mukca_panda/panda_2/front_center.yaml", 28, 141},
        }) {
     const auto data = test::data_folder();
-    const auto calibrated =
-        test::calibrate_files(data / c.urdf, data / c.config, data / c.samples);
+    const auto calibrated = test::calibrate_files(data / c.urdf, data / c.config, data / c.samples);
     const Observability found = of(calibrated);
     EXPECT_EQ(found.rank, c.rank) << c.config;
     if (c.condition > 0) {
@@ -91,7 +90,8 @@ TEST(Observability, ResidualsDoNotChangeAlongWhatCannotBeTold) {
   for (const char* name : {"torso_joint", "shoulder_pan", "head_pan", "elbow", "head_pan_z"}) {
     offsets.push_back(problem.table().index(name));
   }
-  const Observability found = observability(problem, FreeSet(offsets, problem.table().size()), zero);
+  const Observability found =
+      observability(problem, FreeSet(offsets, problem.table().size()), zero);
   // The torso carries arm and head alike; both pans turn about parallel axes, but not the same one.
   EXPECT_EQ(found.rank, 4);
   ASSERT_EQ(found.unobservable.size(), 1u);

@@ -18,9 +18,7 @@ class BlockTerm final : public Term {
 
   [[nodiscard]] int feature_size() const override { return kSize; }
 
-  [[nodiscard]] bool pairs_features() const override {
-    return PointPairBlock<B> || SightBlock<B>;
-  }
+  [[nodiscard]] bool pairs_features() const override { return PointPairBlock<B> || SightBlock<B>; }
 
   [[nodiscard]] int count(std::span<const PackedObservation* const> seen) const override {
     if constexpr (PlanePairBlock<B>) {
@@ -78,8 +76,7 @@ class BlockTerm final : public Term {
   }
   [[nodiscard]] Points without_residual(const Points& p, int moved) const {
     const auto r = call_jets(p);
-    const Eigen::Matrix<double, kSize, 3> by_point =
-        detail::derivatives<3, kSize>(r, 3 * moved);
+    const Eigen::Matrix<double, kSize, 3> by_point = detail::derivatives<3, kSize>(r, 3 * moved);
     const Eigen::Matrix<double, kSize, 1> residual = detail::values<kSize>(r);
     Points q = p;
     if constexpr (kSize <= 3) {  // the least step that takes the residual away

@@ -61,9 +61,9 @@ class Problem {
     for (std::size_t i = 0; i < indices.size(); ++i) {
       const bool is_pinhole = model(indices[i]).sensor().type == SensorType::camera2d;
       if (is_pinhole != (SightBlock<B> && i == 1)) {
-        throw std::invalid_argument("error block '" + name + "': sensor '" + sensors[i] + "' " +
-                                    (is_pinhole ? "sees pixels, a point is needed"
-                                                : "sees points, a camera2d is needed"));
+        throw std::invalid_argument(
+            "error block '" + name + "': sensor '" + sensors[i] + "' " +
+            (is_pinhole ? "sees pixels, a point is needed" : "sees points, a camera2d is needed"));
       }
     }
     terms_.push_back(std::make_unique<BlockTerm<B>>(name, block, std::move(indices), options));
@@ -77,12 +77,13 @@ class Problem {
   /// Adds a sample, after the sensors and blocks.
   /// @throws SampleError  naming the sample and what is missing or wrong in it; it is not added
   void add_sample(const Sample& sample) {
-    PackedSample packed{sample.source, std::vector<std::optional<PackedObservation>>(
-                                           sensors_.size()), {}};
+    PackedSample packed{
+        sample.source, std::vector<std::optional<PackedObservation>>(sensors_.size()), {}};
     try {
       for (std::size_t s = 0; s < sensors_.size(); ++s) {
         const Observation* seen = sample.observation(sensors_[s].sensor().name);
-        if (seen != nullptr) packed.seen[s] = sensors_[s].pack(sample, *seen);
+        if (seen != nullptr && !seen->features.empty())
+          packed.seen[s] = sensors_[s].pack(sample, *seen);
       }
       for (std::size_t t = 0; t < terms_.size(); ++t) {
         if (applies(*terms_[t], sample, packed)) packed.terms.push_back(static_cast<int>(t));
@@ -201,7 +202,9 @@ class Problem {
 
   [[nodiscard]] bool applies(const Term& term, const Sample& sample,
                              const PackedSample& packed) const {
-    if (term.options().alone && sample.observations.size() != term.sensors().size()) return false;
+    const auto observing = std::count_if(sample.observations.begin(), sample.observations.end(),
+                                         [](const Observation& o) { return !o.features.empty(); });
+    if (term.options().alone && observing != std::ssize(term.sensors())) return false;
     std::vector<const PackedObservation*> seen;
     for (int s : term.sensors()) {
       const auto& observation = packed.seen[static_cast<std::size_t>(s)];

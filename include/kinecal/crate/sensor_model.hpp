@@ -6,6 +6,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -32,8 +34,8 @@ struct PackedObservation {
   std::vector<std::size_t> chain;         ///< on which chain of the sensor each feature hangs
   std::vector<std::optional<std::vector<Motion<double>>>> motions;  ///< of each chain's joints,
                                                                     ///< where a feature hangs on it
-  DepthCamera depth_camera{};                        ///< as recorded, camera3d only
-  PinholeCamera pinhole_camera{};                    ///< as recorded, camera2d only
+  DepthCamera depth_camera{};                                       ///< as recorded, camera3d only
+  PinholeCamera pinhole_camera{};                                   ///< as recorded, camera2d only
 };
 
 class SensorModel {
@@ -119,14 +121,46 @@ class SensorModel {
     if (!observation.camera) {
       throw SampleError("sensor '" + sensor_.name + "' is a camera but has no camera_info");
     }
-    packed.depth_camera = DepthCamera::from(*observation.camera);
-    packed.pinhole_camera = PinholeCamera::from(*observation.camera);
+    const CameraInfo& info = *observation.camera;
+    packed.depth_camera = DepthCamera::from(info);
+    packed.pinhole_camera = PinholeCamera::from(info);
     const bool depth = sensor_.type == SensorType::camera3d;
-    const double fx = depth ? packed.depth_camera.fx : packed.pinhole_camera.fx;
-    const double fy = depth ? packed.depth_camera.fy : packed.pinhole_camera.fy;
-    if (!(fx > 0.0 && fy > 0.0)) {
+    const auto& d = packed.depth_camera;
+    const auto& c = packed.pinhole_camera;
+    check_numbers(depth ? std::array{d.fx, d.fy, d.cx, d.cy, d.z_offset, d.z_scaling}
+                        : std::array{c.fx, c.fy, c.cx, c.cy, 0.0, 1.0});
+    if (!depth) check_distortion(info);
+  }
+
+  /// @param numbers  fx fy cx cy z_offset z_scaling
+  void check_numbers(const std::array<double, 6>& numbers) const {
+    for (const double number : numbers) {
+      if (!std::isfinite(number)) {
+        throw SampleError("sensor '" + sensor_.name +
+                          "': camera_info has a value that is no number");
+      }
+    }
+    if (!(numbers[0] > 0.0 && numbers[1] > 0.0)) {
       throw SampleError("sensor '" + sensor_.name +
                         "': the focal lengths in camera_info are not positive");
+    }
+    if (!(numbers[5] > 0.0)) {
+      throw SampleError("sensor '" + sensor_.name + "': z_scaling is not positive");
+    }
+  }
+
+  void check_distortion(const CameraInfo& info) const {
+    for (std::size_t i = 0; i < info.d.size(); ++i) {
+      if (info.d[i] == 0.0) continue;
+      if (!info.distortion_model.empty() && info.distortion_model != "plumb_bob") {
+        throw SampleError("sensor '" + sensor_.name + "': distortion model '" +
+                          info.distortion_model +
+                          "' is not supported; rectify the images or use plumb_bob");
+      }
+      if (i >= 5 || !std::isfinite(info.d[i])) {
+        throw SampleError("sensor '" + sensor_.name +
+                          "': plumb_bob has five distortion coefficients, each a number");
+      }
     }
   }
 

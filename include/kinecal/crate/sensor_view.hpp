@@ -83,8 +83,8 @@ class SensorView {
     }
   }
 
-  /// Adds what moving this sensor does to a residual of a point that it looks at: the same as moving
-  /// the point the other way.
+  /// Adds what moving this sensor does to a residual of a point that it looks at: the same as
+  /// moving the point the other way.
   template <class ByPoint, class Rows>
   void add_viewer_motion(const Vector3<double>& p_base, const ByPoint& residual_by_point,
                          Rows&& rows) const {
@@ -134,10 +134,10 @@ class SensorView {
 
   const SensorState* state_ = nullptr;
   const PackedObservation* observation_ = nullptr;
-  std::vector<Pose<double>> poses_;                ///< of each chain's tip in the base
+  std::vector<Pose<double>> poses_;                 ///< of each chain's tip in the base
   std::vector<std::vector<Twist<double>>> twists_;  ///< of each chain
-  std::vector<Vector3<double>> points_;            ///< of each feature, in the base
-  std::vector<CameraJacobian> by_camera_;          ///< of each feature; empty: no camera
+  std::vector<Vector3<double>> points_;             ///< of each feature, in the base
+  std::vector<CameraJacobian> by_camera_;           ///< of each feature; empty: no camera
 };
 
 }  // namespace kinecal

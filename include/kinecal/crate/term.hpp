@@ -17,11 +17,11 @@
 namespace kinecal {
 
 struct TermOptions {
-  double weight = 1.0;      ///< the residual is multiplied by it: scale / sigma
-  Loss loss = {};           ///< of each feature's weighted residual
-  bool alone = false;       ///< only samples in which no other sensor observes
-  std::string type = "";    ///< for reports: "chain3d_to_chain3d"
-  std::string unit = "m";   ///< of the unweighted residual, for reports: "m", "px" or "1"
+  double weight = 1.0;     ///< the residual is multiplied by it: scale / sigma
+  Loss loss = {};          ///< of each feature's weighted residual
+  bool alone = false;      ///< only samples in which no other sensor observes
+  std::string type = "";   ///< for reports: "chain3d_to_chain3d"
+  std::string unit = "m";  ///< of the unweighted residual, for reports: "m", "px" or "1"
 };
 
 /// Residuals of one term in one sample, features one after the other, and their derivatives.
@@ -38,9 +38,9 @@ struct TermResiduals {
 /// At which points derivatives are taken.
 enum class Linearization {
   measured,   ///< those that the sensors saw
-  error_free  ///< measurements replaced by the model's prediction.  With residuals, a change that no
-              ///< measurement shows still turns them and looks as if it could be seen.  Planes are
-              ///< taken as they are.
+  error_free  ///< measurements replaced by the model's prediction.  With residuals, a change that
+              ///< no measurement shows still turns them and looks as if it could be seen.  Planes
+              ///< are taken as they are.
 };
 
 class Term {
@@ -97,7 +97,8 @@ template <class J>
   return {J(p.x(), first), J(p.y(), first + 1), J(p.z(), first + 2)};
 }
 
-/// Values of a residual, and derivatives of its rows with respect to `Width` variables from `first`.
+/// Values of a residual, and derivatives of its rows with respect to `Width` variables from
+/// `first`.
 template <int M, class S>
 [[nodiscard]] Eigen::Matrix<double, M, 1> values(const Eigen::Matrix<S, M, 1>& r) {
   Eigen::Matrix<double, M, 1> result;

@@ -39,7 +39,8 @@ struct Loss {
         const double t = 1.0 - s / c2;
         return {c2 / 3.0 * (1.0 - t * t * t), t * t};
       }
-      case LossType::none: break;
+      case LossType::none:
+        break;
     }
     return {s, 1.0};
   }
@@ -49,9 +50,7 @@ struct Loss {
   [[nodiscard]] Loss convex() const {
     return {type == LossType::none ? LossType::none : LossType::huber, scale};
   }
-  [[nodiscard]] bool is_convex() const {
-    return type == LossType::none || type == LossType::huber;
-  }
+  [[nodiscard]] bool is_convex() const { return type == LossType::none || type == LossType::huber; }
 };
 
 }  // namespace kinecal

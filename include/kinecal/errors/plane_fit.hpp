@@ -50,8 +50,8 @@ class PlaneFit {
     Matrix3<double> derivative = Matrix3<double>::Zero();
     for (int k = 1; k < 3; ++k) {
       const Vector3<double> u = eigenvectors_.col(k);
-      derivative += u * (q.dot(n) * u + q.dot(u) * n).transpose() /
-                    (eigenvalues_(0) - eigenvalues_(k));
+      derivative +=
+          u * (q.dot(n) * u + q.dot(u) * n).transpose() / (eigenvalues_(0) - eigenvalues_(k));
     }
     return derivative;
   }

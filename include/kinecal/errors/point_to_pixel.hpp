@@ -14,8 +14,7 @@ struct PointToPixel {
   /// @returns  (2) pixels
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 2, 1> operator()(const Sight<S>& sight) const {
-    const Eigen::Matrix<S, 2, 1> predicted =
-        sight.camera.project(sight.p_camera, sight.parameters);
+    const Eigen::Matrix<S, 2, 1> predicted = sight.camera.project(sight.p_camera, sight.parameters);
     return {predicted.x() - sight.pixel.x(), predicted.y() - sight.pixel.y()};
   }
 };

@@ -88,7 +88,9 @@ struct Jet {
 };
 
 /// The number itself, or a jet's value.
-[[nodiscard]] inline double value_of(double x) { return x; }
+[[nodiscard]] inline double value_of(double x) {
+  return x;
+}
 template <class S, int N>
 [[nodiscard]] S value_of(const Jet<S, N>& x) {
   return x.a;

@@ -32,8 +32,7 @@ namespace kinecal {
   // With yaw taken out first, roll is found from entries of size one, accurate near gimbal lock.
   const double yaw = std::atan2(r(1, 0), r(0, 0));
   const double cy = std::cos(yaw), sy = std::sin(yaw);
-  const double roll =
-      std::atan2(sy * r(0, 2) - cy * r(1, 2), cy * r(1, 1) - sy * r(0, 1));
+  const double roll = std::atan2(sy * r(0, 2) - cy * r(1, 2), cy * r(1, 1) - sy * r(0, 1));
   return {roll, pitch, yaw};
 }
 

@@ -4,6 +4,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+
 #include "kinecal/errors.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/solve/calibrate.hpp"
@@ -41,18 +43,17 @@ inline void add_block(Problem& problem, const BlockConfig& block) {
                       block.models, options);
   } else {
     options.unit = "1";
-    problem.add_prior(block.name,
-                      {block.param, number("joint_scale"), number("position_scale"),
-                       number("rotation_scale")},
-                      options);
+    problem.add_prior(
+        block.name,
+        {block.param, number("joint_scale"), number("position_scale"), number("rotation_scale")},
+        options);
   }
 }
 
 /// A prior must name something of the table.
 inline void check_prior(const BlockConfig& block, const ParameterTable& table,
                         const std::set<std::string>& frames, Diagnostics& diagnostics) {
-  if (block.type != "outrageous" || frames.contains(block.param) ||
-      table.find(block.param) >= 0) {
+  if (block.type != "outrageous" || frames.contains(block.param) || table.find(block.param) >= 0) {
     return;
   }
   std::vector<std::string> names(frames.begin(), frames.end());
@@ -98,6 +99,26 @@ inline void warn_of_unusable(std::span<const Sample> samples, Diagnostics& diagn
                   unusable == 1 ? " is" : "s are", first));
 }
 
+/// Cameras that were set differently in some samples: the files written are those of the first one.
+inline void warn_of_changing_cameras(std::span<const Sample> samples, Diagnostics& diagnostics) {
+  std::map<std::string, std::pair<const CameraInfo*, bool>> first;  // and whether it was told
+  for (const Sample& sample : samples) {
+    for (const Observation& seen : sample.observations) {
+      if (!seen.camera) continue;
+      auto& [info, told] = first.try_emplace(seen.sensor, &*seen.camera, false).first->second;
+      const CameraInfo& now = *seen.camera;
+      const bool same = info->p == now.p && info->k == now.k && info->d == now.d &&
+                        info->z_offset == now.z_offset && info->z_scaling == now.z_scaling;
+      if (same || told) continue;
+      told = true;
+      diagnostics.warnings.push_back(
+          fmt::format("{}: the camera_info of sensor '{}' differs from that of the first sample, "
+                      "which the written camera files are made from",
+                      sample.source, seen.sensor));
+    }
+  }
+}
+
 /// Sensors of the samples that no model names: probably one of the two is misspelt.
 inline void warn_of_unknown_sensors(const StepConfig& step, std::span<const Sample> samples,
                                     Diagnostics& diagnostics) {
@@ -108,8 +129,9 @@ inline void warn_of_unknown_sensors(const StepConfig& step, std::span<const Samp
   for (const ModelConfig& model : step.models) models.insert(model.name);
   for (const ModelConfig& model : step.models) {
     if (recorded.contains(model.name) || samples.empty()) continue;
-    diagnostics.warning(model.place, fmt::format("model '{}': no sample has a sensor of that name{}",
-                                                 model.name, did_you_mean(model.name, recorded)));
+    diagnostics.warning(model.place,
+                        fmt::format("model '{}': no sample has a sensor of that name{}", model.name,
+                                    did_you_mean(model.name, recorded)));
   }
 }
 
@@ -182,7 +204,10 @@ inline void check_terms(const StepConfig& step, const Problem& problem, Diagnost
     if (index < 0) continue;
     table[index].lower = bound.lower;
     table[index].upper = bound.upper;
-    const double value = table[index].initial;
+    double value = table[index].initial;
+    for (const auto& [assigned, initial] : initial_assignments(step, table)) {
+      if (assigned == index) value = initial;
+    }
     if (value < bound.lower || value > bound.upper) {
       diagnostics.error(bound.place, fmt::format("bound: the initial value {} of '{}' is outside "
                                                  "[{}, {}]",
@@ -193,8 +218,8 @@ inline void check_terms(const StepConfig& step, const Problem& problem, Diagnost
 }
 
 /// The sensors and error blocks of a step; false, after telling why, if they do not fit the robot.
-inline bool add_models(Problem& problem, const StepConfig& step, const std::set<std::string>& frames,
-                       Diagnostics& diagnostics) {
+inline bool add_models(Problem& problem, const StepConfig& step,
+                       const std::set<std::string>& frames, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   for (const ModelConfig& model : step.models) {
     try {
@@ -224,22 +249,22 @@ inline bool add_models(Problem& problem, const StepConfig& step, const std::set<
                                           Diagnostics& diagnostics) {
   Calibration calibration;
   if (!robot.has_link(config.base_link)) {
-    diagnostics.error(config.place, fmt::format("base_link: no link '{}' in robot '{}'{}",
-                                                config.base_link, robot.name(),
-                                                did_you_mean(config.base_link,
-                                                             robot.link_names())));
+    diagnostics.error(
+        config.place,
+        fmt::format("base_link: no link '{}' in robot '{}'{}", config.base_link, robot.name(),
+                    did_you_mean(config.base_link, robot.link_names())));
     return calibration;
   }
   const std::set<std::string> frames = frames_of(config);
   calibration.table = parameters_from(config, robot, samples, diagnostics);
-  std::set<int> assigned;
-  for (const StepConfig& step : config.steps) {
-    for (const auto& [index, value] : initial_assignments(step, calibration.table)) {
-      Parameter& parameter = calibration.table[index];
-      if (assigned.insert(index).second) parameter.initial = parameter.value = value;
+  if (!config.steps.empty()) {  // those of later steps are set when the step starts
+    for (const auto& [index, value] :
+         initial_assignments(config.steps.front(), calibration.table)) {
+      calibration.table[index].initial = calibration.table[index].value = value;
     }
   }
   detail::warn_of_unusable(samples, diagnostics);
+  detail::warn_of_changing_cameras(samples, diagnostics);
   for (const StepConfig& step : config.steps) {
     Problem problem(robot, config.base_link,
                     detail::with_bounds(calibration.table, step, diagnostics), frames);

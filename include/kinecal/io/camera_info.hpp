@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/io/yaml_text.hpp"
+#include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {

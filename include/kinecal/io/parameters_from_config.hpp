@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "kinecal/geometry/rpy.hpp"
-#include "kinecal/io/config.hpp"
+#include "kinecal/io/config/config.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/samples/sample.hpp"
@@ -45,8 +45,8 @@ namespace detail {
 
 inline void add_if_new(ParameterTable& table, const std::string& name, const std::string& unit,
                        double initial = 0.0) {
-  if (table.find(name) < 0) table.add({.name = name, .unit = unit, .initial = initial,
-                                       .value = initial});
+  if (table.find(name) < 0)
+    table.add({.name = name, .unit = unit, .initial = initial, .value = initial});
 }
 
 /// A camera's parameters start from what its driver had been told when the samples were recorded.
@@ -144,11 +144,11 @@ inline void add_params(ParameterTable& table, const Robot& robot, const StepConf
       add_joint(table, robot, param.name, param.place, diagnostics);
       continue;
     }
-    diagnostics.error(param.place,
-                      fmt::format("free parameter '{}' is no joint of the robot and no parameter of "
-                                  "a camera{}",
-                                  param.name,
-                                  did_you_mean(param.name, free_param_names(robot, step))));
+    diagnostics.error(
+        param.place,
+        fmt::format("free parameter '{}' is no joint of the robot and no parameter of "
+                    "a camera{}",
+                    param.name, did_you_mean(param.name, free_param_names(robot, step))));
   }
 }
 
@@ -162,11 +162,37 @@ inline void add_valued_joints(ParameterTable& table, const Robot& robot, const S
     }
     std::vector<std::string> names = free_param_names(robot, step);
     for (const Parameter& parameter : table) names.push_back(parameter.name);
-    diagnostics.error(place, fmt::format("{} '{}' is no parameter of this calibration{}", what, name,
-                                         did_you_mean(name, names)));
+    diagnostics.error(place, fmt::format("{} '{}' is no parameter of this calibration{}", what,
+                                         name, did_you_mean(name, names)));
   };
   for (const auto& value : step.initial_values) check(value.name, value.place, "initial value:");
   for (const auto& bound : step.bounds) check(bound.name, bound.place, "bound:");
+}
+
+/// A parameter of a frame or camera that has the name of a joint: one name would mean two things.
+inline void check_collisions(const ParameterTable& table, const Robot& robot, const Config& config,
+                             Diagnostics& diagnostics) {
+  const auto check = [&](const std::string& name, const Place& place, const std::string& owner) {
+    if (table.find(name) < 0 || !robot.has_joint(name) || !moves(robot.joint(name).type)) return;
+    diagnostics.error(place, fmt::format("parameter '{}' of {} has the name of a joint of the "
+                                         "robot; rename one of them",
+                                         name, owner));
+  };
+  for (const StepConfig& step : config.steps) {
+    for (const FreeFrameConfig& frame : step.free_frames) {
+      for (auto axis : kFrameAxes) {
+        check(parameter_name(frame.name, axis), frame.place, "frame '" + frame.name + "'");
+      }
+    }
+    for (const ModelConfig& model : step.models) {
+      const Sensor sensor = sensor_from(model);
+      for (int i = 0; i < sensor_parameters(sensor.type); ++i) {
+        const auto part = kCameraParameters[static_cast<std::size_t>(i)];
+        check(parameter_name(sensor.parameter_prefix(), part), model.place,
+              "model '" + model.name + "'");
+      }
+    }
+  }
 }
 
 }  // namespace detail
@@ -195,6 +221,7 @@ inline void add_valued_joints(ParameterTable& table, const Robot& robot, const S
     detail::add_params(table, robot, step, diagnostics);
     detail::add_valued_joints(table, robot, step, diagnostics);
   }
+  detail::check_collisions(table, robot, config, diagnostics);
   return table;
 }
 

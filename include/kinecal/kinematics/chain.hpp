@@ -94,8 +94,8 @@ struct Chain {
     if (!reversed) fixed = fixed * joint.origin;
     const bool is_corrected = corrected.contains(joint.name);
     if (is_corrected || moves(joint.type)) {
-      chain.joints.push_back({joint.name, joint.type, fixed, joint.axis, is_corrected, reversed,
-                              drive(robot, joint)});
+      chain.joints.push_back(
+          {joint.name, joint.type, fixed, joint.axis, is_corrected, reversed, drive(robot, joint)});
       fixed = {};
     }
     if (reversed) fixed = fixed * joint.origin.inverse();

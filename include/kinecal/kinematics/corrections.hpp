@@ -15,8 +15,8 @@ namespace kinecal {
 
 template <class S>
 struct JointCorrection {
-  Motion<S> offset;          ///< added to the measured position
-  Pose<S> frame;             ///< between the joint's origin and its motion
+  Motion<S> offset;                                   ///< added to the measured position
+  Pose<S> frame;                                      ///< between the joint's origin and its motion
   Matrix3<S> left_jacobian = Matrix3<S>::Identity();  ///< of the frame's rotation vector
 
   void set_frame(const Vector3<S>& translation, const Vector3<S>& rotation_vector) {
@@ -38,9 +38,9 @@ template <class PositionOf, std::size_t N>
   motions.reserve(chain.joints.size());
   for (const ChainJoint& joint : chain.joints) {
     const Mimic& drive = joint.drive;
-    motions.push_back(moves(joint.type) ? make_motion(drive.multiplier * position_of(drive.joint) +
-                                                      drive.offset)
-                                        : Motion<double>{});
+    motions.push_back(moves(joint.type)
+                          ? make_motion(drive.multiplier * position_of(drive.joint) + drive.offset)
+                          : Motion<double>{});
   }
   return motions;
 }

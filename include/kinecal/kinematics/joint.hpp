@@ -43,8 +43,8 @@ struct JointLimits {
 struct Joint {
   std::string name;
   JointType type = JointType::fixed;
-  std::string parent, child;  ///< links
-  Pose<double> origin;        ///< of the joint in the parent link, metres
+  std::string parent, child;                        ///< links
+  Pose<double> origin;                              ///< of the joint in the parent link, metres
   Vector3<double> axis = Vector3<double>::UnitX();  ///< unit vector, in the joint's frame
   std::optional<Mimic> mimic = {};
   std::optional<JointLimits> limits = {};

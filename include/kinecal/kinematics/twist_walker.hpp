@@ -28,8 +28,8 @@
 
 namespace kinecal {
 
-/// Where the parameters of a joint stand in a vector of parameters (or which columns of a Jacobian are
-/// theirs); -1: nowhere.
+/// Where the parameters of a joint stand in a vector of parameters (or which columns of a Jacobian
+/// are theirs); -1: nowhere.
 struct JointIndices {
   int offset = -1;
   double gain = 1.0;  ///< of the offset: the multiplier of a mimic joint

@@ -19,8 +19,8 @@
 namespace kinecal {
 
 inline constexpr std::array<std::string_view, 6> kFrameAxes = {"x", "y", "z", "a", "b", "c"};
-inline constexpr std::array<std::string_view, 6> kCameraParameters = {"fx", "fy",       "cx",
-                                                                      "cy", "z_offset", "z_scaling"};
+inline constexpr std::array<std::string_view, 6> kCameraParameters = {
+    "fx", "fy", "cx", "cy", "z_offset", "z_scaling"};
 
 /// Name of one parameter of a frame or a camera: "head_pan_joint" + "x" -> "head_pan_joint_x".
 [[nodiscard]] inline std::string parameter_name(std::string_view owner, std::string_view part) {

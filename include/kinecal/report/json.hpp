@@ -75,8 +75,8 @@ namespace detail {
     }
     combinations += fmt::format("{}{{{}}}", combinations.empty() ? "" : ", ", factors);
   }
-  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": [{}]}})",
-                     observability.rank, json_number(observability.condition), combinations);
+  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": [{}]}})", observability.rank,
+                     json_number(observability.condition), combinations);
 }
 
 /// "[\n    a,\n    b\n  ]"

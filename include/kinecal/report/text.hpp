@@ -64,15 +64,15 @@ namespace detail {
 [[nodiscard]] inline std::string for_people(double value, const std::string& unit) {
   if (unit == "rad") return fmt::format("{:.3f} deg", value * 180.0 / std::numbers::pi);
   if (unit == "m") return fmt::format("{:.3f} mm", 1e3 * value);
-  return fmt::format("{:.3f} %  ", 1e2 * value);
+  return fmt::format("{:.3f} %", 1e2 * value);
 }
 
 }  // namespace detail
 
 /// Each error block before and after: rms of its components, median and maximum of its features.
 [[nodiscard]] inline std::string error_block_table(const CalibrationResult& result) {
-  TextTable table({"error block", "features", "unit", "rms", "->", "", "median", "->", "", "max",
-                   "->", ""});
+  TextTable table(
+      {"error block", "features", "unit", "rms", "->", "", "median", "->", "", "max", "->", ""});
   for (const BlockStatistics& block : result.blocks) {
     const auto text = [&](double value) { return detail::in_reading_unit(value, block.unit); };
     table.add({block.name, fmt::format("{}", block.count), detail::reading_unit(block.unit),
@@ -87,7 +87,8 @@ namespace detail {
   TextTable table({"parameter", "calibrated", "value", "from"});
   for (const int i : result.calibrated) {
     const Parameter& parameter = result.table[i];
-    table.add({parameter.name, detail::for_people(parameter.value, parameter.unit),
+    const std::string pad = parameter.unit == "1" ? "  " : parameter.unit == "m" ? " " : "";
+    table.add({parameter.name, detail::for_people(parameter.value, parameter.unit) + pad,
                fmt::format("{:.8g}", parameter.value), fmt::format("{:.8g}", parameter.initial)});
   }
   return table.str();
@@ -97,15 +98,35 @@ namespace detail {
 [[nodiscard]] inline std::string step_lines(const CalibrationResult& result) {
   std::string text;
   for (const StepResult& step : result.steps) {
-    text += fmt::format("  {}: {} parameters, {} residuals, cost {:.6g} -> {:.6g} in {} iterations "
-                        "({:.1f} ms)\n    {}\n",
-                        step.name, step.num_parameters, step.num_residuals, step.initial_cost,
-                        step.final_cost, step.iterations, 1e3 * step.seconds, step.termination);
+    text += fmt::format(
+        "  {}: {} parameters, {} residuals, cost {:.6g} -> {:.6g} in {} iterations "
+        "({:.1f} ms)\n    {}\n",
+        step.name, step.num_parameters, step.num_residuals, step.initial_cost, step.final_cost,
+        step.iterations, 1e3 * step.seconds, step.termination);
   }
   return text;
 }
 
-/// What the samples of a step cannot tell, a combination of parameters a line; empty if they tell all.
+/// Parameters that ended at a bound of their step.
+[[nodiscard]] inline std::vector<std::string> active_bounds(const Calibration& calibration,
+                                                            const CalibrationResult& result) {
+  std::vector<std::string> lines;
+  for (const CalibrationStep& step : calibration.steps) {
+    for (const int p : step.free.parameters()) {
+      const Parameter& parameter = step.problem.table()[p];
+      const double value = result.table[p].value;
+      constexpr double kAtBound = 1e-9;
+      const double near = kAtBound * (1e-3 + std::abs(value));
+      if (value > parameter.lower + near && value < parameter.upper - near) continue;
+      lines.push_back(
+          fmt::format("step '{}': '{}' ended at its bound {}", step.name, parameter.name, value));
+    }
+  }
+  return lines;
+}
+
+/// What the samples of a step cannot tell, a combination of parameters a line; empty if they tell
+/// all.
 [[nodiscard]] inline std::string observability_text(const std::string& step,
                                                     const Observability& observability,
                                                     const ParameterTable& table) {
@@ -140,11 +161,10 @@ namespace detail {
                          : parameter.unit == "m" ? (depth ? 0.1 : 0.2)
                                                  : 0.2;
     if (change <= limit) continue;
-    lines.push_back(fmt::format("'{}' changed by {}: is the URDF or the initial value wrong, or can "
-                                "these samples not tell it?",
-                                parameter.name,
-                                detail::for_people(parameter.value - parameter.initial,
-                                                   parameter.unit)));
+    lines.push_back(fmt::format(
+        "'{}' changed by {}: is the URDF or the initial value wrong, or can "
+        "these samples not tell it?",
+        parameter.name, detail::for_people(parameter.value - parameter.initial, parameter.unit)));
   }
   return lines;
 }

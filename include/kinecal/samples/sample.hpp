@@ -23,12 +23,12 @@ struct Feature {
 struct CameraInfo {
   int width = 0, height = 0;  ///< pixels
   std::string distortion_model;
-  std::vector<double> d;        ///< k1 k2 p1 p2 k3 of plumb_bob
-  std::array<double, 9> k{};    ///< 3x3, row-major, pixels
-  std::array<double, 9> r{};    ///< 3x3, row-major
-  std::array<double, 12> p{};   ///< 3x4, row-major, pixels
-  double z_offset = 0.0;        ///< of the depth driver, metres (z_offset_mm in files)
-  double z_scaling = 1.0;       ///< of the depth driver: z = (z0 + z_offset) * z_scaling
+  std::vector<double> d;       ///< k1 k2 p1 p2 k3 of plumb_bob
+  std::array<double, 9> k{};   ///< 3x3, row-major, pixels
+  std::array<double, 9> r{};   ///< 3x3, row-major
+  std::array<double, 12> p{};  ///< 3x4, row-major, pixels
+  double z_offset = 0.0;       ///< of the depth driver, metres (z_offset_mm in files)
+  double z_scaling = 1.0;      ///< of the depth driver: z = (z0 + z_offset) * z_scaling
 };
 
 struct Observation {

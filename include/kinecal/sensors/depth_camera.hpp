@@ -8,8 +8,8 @@
 //   x' = (u - cx0 (1 + cx)) z' / (fx0 (1 + fx))      y' likewise
 //
 // Parameters, in this order: fx fy cx cy (relative), z_offset (metres), z_scaling (relative).
-// Defined for z > 0.  Source: Fetch paper, III-B; the depth correction is that of the camera driver.
-// SPDX-License-Identifier: Apache-2.0
+// Defined for z > 0.  Source: Fetch paper, III-B; the depth correction is that of the camera
+// driver. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace kinecal {
 struct DepthCamera {
   static constexpr int kParameters = 6;
 
-  double fx, fy, cx, cy;  ///< recorded intrinsics, pixels
+  double fx, fy, cx, cy;                   ///< recorded intrinsics, pixels
   double z_offset = 0.0, z_scaling = 1.0;  ///< recorded depth correction, metres and factor
 
   [[nodiscard]] static DepthCamera from(const CameraInfo& info) {

@@ -20,7 +20,7 @@ namespace kinecal {
 struct PinholeCamera {
   static constexpr int kParameters = 4;
 
-  double fx, fy, cx, cy;        ///< pixels
+  double fx, fy, cx, cy;         ///< pixels
   std::array<double, 5> d = {};  ///< k1 k2 p1 p2 k3
 
   /// A distorted image is described by K and D, a rectified one by P alone.

@@ -32,8 +32,8 @@ struct CalibrationResult {
   std::string termination;  ///< of the last step that ran
   std::vector<StepResult> steps;
   std::vector<BlockStatistics> blocks;
-  ParameterTable table;          ///< at the final values
-  std::vector<int> calibrated;   ///< table indices of the parameters that some step freed
+  ParameterTable table;         ///< at the final values
+  std::vector<int> calibrated;  ///< table indices of the parameters that some step freed
 };
 
 /// Called while a step runs: name of the step, iteration, cost.
@@ -87,8 +87,8 @@ inline void merge_statistics(std::vector<BlockStatistics>& all, std::vector<Bloc
     return std::span<const double>(v.data(), static_cast<std::size_t>(v.size()));
   };
   for (std::size_t s = 0; s < result.steps.size(); ++s) {
-    detail::merge_statistics(result.blocks, block_statistics(calibration.steps[s].problem,
-                                                             span(initial), span(values)));
+    detail::merge_statistics(
+        result.blocks, block_statistics(calibration.steps[s].problem, span(initial), span(values)));
   }
   for (int i = 0; i < result.table.size(); ++i) result.table[i].value = values(i);
   return result;

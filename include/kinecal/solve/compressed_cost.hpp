@@ -1,6 +1,7 @@
 // The compressed cost: all samples as one Ceres residual of parameters + 1 rows.
 //
-// Least squares meets the samples only through H = J^T J, g = J^T r and the cost c.  With H = A^T A,
+// Least squares meets the samples only through H = J^T J, g = J^T r and the cost c.  With H = A^T
+// A,
 //
 //   r' = ( A^-T g, sqrt(2 c - |A^-T g|^2) )      J' = ( A, 0 )
 //
@@ -34,11 +35,12 @@ struct EquivalentResidual {
     const Eigen::MatrixXd scaled =
         scale.cwiseInverse().asDiagonal() * normal.hessian * scale.cwiseInverse().asDiagonal();
     const Eigen::LDLT<Eigen::MatrixXd> ldlt(scaled);
-    // H = D P^T L diag(d) L^T P D;  A = diag(sqrt d) L^T P D;  A^-T g = diag(1/sqrt d) L^-1 P D^-1 g
+    // H = D P^T L diag(d) L^T P D;  A = diag(sqrt d) L^T P D;  A^-T g = diag(1/sqrt d) L^-1 P D^-1
+    // g
     Eigen::MatrixXd rows = ldlt.transpositionsP() * Eigen::MatrixXd::Identity(n, n);
     rows = ldlt.matrixU() * rows;
-    Eigen::VectorXd projected = ldlt.transpositionsP() * scale.cwiseInverse().cwiseProduct(
-                                                             normal.gradient);
+    Eigen::VectorXd projected =
+        ldlt.transpositionsP() * scale.cwiseInverse().cwiseProduct(normal.gradient);
     ldlt.matrixL().solveInPlace(projected);
     residual.setZero(n + 1);
     jacobian.setZero(n + 1, n);
@@ -73,9 +75,9 @@ class CompressedCost final : public ceres::CostFunction {
     }
     const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
     std::optional<UndefinedResidual> undefined;
-    const NormalEquations normal = normal_equations(
-        problem_, {values.data(), static_cast<std::size_t>(values.size())},
-        derivatives ? &free_ : nullptr, undefined, losses_);
+    const NormalEquations normal =
+        normal_equations(problem_, {values.data(), static_cast<std::size_t>(values.size())},
+                         derivatives ? &free_ : nullptr, undefined, losses_);
     if (undefined || !std::isfinite(normal.cost)) return false;
     Eigen::Map<Eigen::VectorXd> r(residuals, free_.size() + 1);
     if (!derivatives) {  // the cost is all that is asked for

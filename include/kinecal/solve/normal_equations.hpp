@@ -1,6 +1,7 @@
 // The cost, its gradient and its Gauss-Newton Hessian, summed over all samples.
 //
-//   cost = 1/2 sum rho(|w r|^2)      gradient = sum rho' w^2 J^T r      hessian = sum rho' w^2 J^T J
+//   cost = 1/2 sum rho(|w r|^2)      gradient = sum rho' w^2 J^T r      hessian = sum rho' w^2 J^T
+//   J
 //
 // over the features of all error blocks, each with its weight w and loss rho.
 // SPDX-License-Identifier: Apache-2.0

@@ -32,8 +32,8 @@ namespace detail {
 /// Singular values of 1e-8 and below are rounding: they are roots of eigenvalues of J^T J.
 inline constexpr double kUnobservable = 1e-6;
 
-/// Reduces the columns of a basis (Gauss-Jordan with full pivoting) until each has a row in which it
-/// is one and the others are zero.
+/// Reduces the columns of a basis (Gauss-Jordan with full pivoting) until each has a row in which
+/// it is one and the others are zero.
 inline void reduce(Eigen::MatrixXd& basis) {
   std::vector<bool> used(static_cast<std::size_t>(basis.rows()), false);
   for (Eigen::Index c = 0; c < basis.cols(); ++c) {

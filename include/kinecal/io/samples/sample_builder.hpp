@@ -1,0 +1,116 @@
+// Builds one sample from the values found in its document, and says what is wrong with it.
+//
+// Places in the tree are those of sample_schema.hpp; sample_handler.hpp finds them.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/samples/sample_camera.hpp"
+#include "kinecal/io/samples/sample_schema.hpp"
+#include "kinecal/io/yaml/yaml_text.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal::detail {
+
+class SampleBuilder {
+ public:
+  SampleBuilder(const std::string& file, Diagnostics& diagnostics) : errors_{file, diagnostics} {}
+
+  [[nodiscard]] Sample take() { return std::move(sample_); }
+  [[nodiscard]] SampleErrors& errors() { return errors_; }
+  [[nodiscard]] int sample_line() const { return line_; }  ///< where the last one begins
+
+  /// A map or list begins.  @param line  of its first character, from 1
+  void begin(SampleNode node, int line) {
+    if (node == SampleNode::sample) {
+      line_ = line;
+      sample_ = {};
+      sample_.source = Place{errors_.file, line}.str();
+    } else if (node == SampleNode::observation) {
+      sample_.observations.emplace_back();
+      camera_ = {};
+    } else if (node == SampleNode::feature) {
+      observation().features.emplace_back();
+    } else {
+      camera_.begin(node, line);
+    }
+  }
+
+  /// A map or list ends.  @param line  where it began
+  void end(SampleNode node, int line) {
+    if (node == SampleNode::joint_states) check_joints(line);
+    if (node == SampleNode::observation) end_observation(line);
+    if (node == SampleNode::parameter) camera_.end_parameter(errors_);
+  }
+
+  void scalar(SampleNode node, int line, const std::string& text) {
+    if (node == SampleNode::joint_name) {
+      sample_.joint_names.push_back(text);
+    } else if (node == SampleNode::sensor) {
+      observation().sensor = text;
+    } else if (node == SampleNode::frame) {
+      feature().frame = text;
+    } else if (!camera_.text(node, line, text)) {
+      const std::optional<double> value = number_from_yaml(text);
+      if (!value) {
+        errors_.add(line, fmt::format("{}: {} is not a number", sample_name(node), shown(text)));
+      }
+      number(node, line, value.value_or(0.0));
+    }
+  }
+
+ private:
+  [[nodiscard]] Observation& observation() { return sample_.observations.back(); }
+  [[nodiscard]] Feature& feature() { return observation().features.back(); }
+
+  void number(SampleNode node, int line, double value) {
+    if (node == SampleNode::joint_position) {
+      sample_.joint_positions.push_back(value);
+    } else if (node == SampleNode::x) {
+      feature().point.x() = value;
+    } else if (node == SampleNode::y) {
+      feature().point.y() = value;
+    } else if (node == SampleNode::z) {
+      feature().point.z() = value;
+    } else {
+      camera_.number(node, line, value, errors_);
+    }
+  }
+
+  void check_joints(int line) {
+    const std::size_t names = sample_.joint_names.size(), values = sample_.joint_positions.size();
+    if (names != values) {
+      errors_.add(line, fmt::format("joint_states: {} names but {} positions", names, values));
+    }
+    std::vector<std::string> sorted = sample_.joint_names;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) {
+      errors_.add(line, fmt::format("joint_states: joint {} occurs twice", shown(*twice)));
+    }
+  }
+
+  void end_observation(int line) {
+    const std::string& name = observation().sensor;
+    const std::string where = fmt::format("sample at line {}, sensor {}", line_, shown(name));
+    const auto same = [&](const Observation& o) { return o.sensor == name; };
+    if (std::any_of(sample_.observations.begin(), sample_.observations.end() - 1, same)) {
+      errors_.add(line, where + " occurs twice");
+    }
+    observation().camera = camera_.take(line, where, errors_);
+  }
+
+  SampleErrors errors_;
+  int line_ = 0;  ///< where the sample begins
+  Sample sample_;
+  SampleCamera camera_;
+};
+
+}  // namespace kinecal::detail

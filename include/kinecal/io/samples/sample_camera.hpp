@@ -1,0 +1,149 @@
+// The camera of an observation as it is read: `ext_camera_info` with its lists and parameters.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/samples/sample_schema.hpp"
+#include "kinecal/io/yaml/yaml_text.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal::detail {
+
+/// The mistakes of one file of samples.
+struct SampleErrors {
+  /// Told of one file; the rest are usually the same one again.
+  static constexpr std::size_t kMost = 20;
+
+  std::string file;
+  Diagnostics& diagnostics;
+  std::size_t count = 0;
+
+  void add(int line, const std::string& message) {
+    if (count++ < kMost) diagnostics.error({file, line}, message);
+  }
+};
+
+/// A text of the file as a message shows it: short, and without control characters.
+[[nodiscard]] inline std::string shown(std::string_view text) {
+  if (text == "...") {
+    return "'...', for values left out ('ros2 topic echo --full-length' prints them all),";
+  }
+  std::string s(text.substr(0, 40));
+  for (char& c : s) c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return "'" + s + (text.size() > 40 ? "...'" : "'");
+}
+
+class SampleCamera {
+ public:
+  /// A map or list begins.  @param line  of its first character, from 1
+  void begin(SampleNode node, int line) {
+    if (node == SampleNode::camera_info) k_ = r_ = p_ = {0, line};
+    if (node == SampleNode::k) k_ = {0, line};
+    if (node == SampleNode::r) r_ = {0, line};
+    if (node == SampleNode::p) p_ = {0, line};
+    if (node == SampleNode::parameter) parameter_ = {{}, "0", line};
+  }
+
+  /// @return  false if this text is not one of the camera's
+  [[nodiscard]] bool text(SampleNode node, int line, const std::string& text) {
+    if (node == SampleNode::parameter_value) {
+      parameter_.value = text;
+      parameter_.line = line;
+      return true;
+    }
+    if (node != SampleNode::distortion_model && node != SampleNode::parameter_name) return false;
+    (node == SampleNode::parameter_name ? parameter_.name : info_.distortion_model) = text;
+    return true;
+  }
+
+  void number(SampleNode node, int line, double value, SampleErrors& errors) {
+    if (node == SampleNode::height) info_.height = pixels("height", line, value, errors);
+    if (node == SampleNode::width) info_.width = pixels("width", line, value, errors);
+    if (node == SampleNode::d_item) info_.d.push_back(value);
+    if (node == SampleNode::k_item) append(info_.k, k_, value);
+    if (node == SampleNode::r_item) append(info_.r, r_, value);
+    if (node == SampleNode::p_item) append(info_.p, p_, value);
+  }
+
+  /// Only z_offset_mm and z_scaling matter; others may have any value.
+  void end_parameter(SampleErrors& errors) {
+    const bool offset = parameter_.name == "z_offset_mm";
+    if (!offset && parameter_.name != "z_scaling") return;
+    const auto value =
+        offset ? metres_from_millimetres(parameter_.value) : number_from_yaml(parameter_.value);
+    if (!value) {
+      errors.add(parameter_.line,
+                 fmt::format("{}: {} is not a number", parameter_.name, shown(parameter_.value)));
+    }
+    (offset ? info_.z_offset : info_.z_scaling) = value.value_or(0.0);
+  }
+
+  /// @param where  "sample at line 37, sensor 'camera'"
+  /// @return       nothing for a sensor that is no camera, or if a list has the wrong size
+  [[nodiscard]] std::optional<CameraInfo> take(int line, const std::string& where,
+                                               SampleErrors& errors) {
+    const bool blank = is_blank(info_);
+    const bool k = has_size("K", k_, 9, true, where, errors);
+    const bool r = has_size("R", r_, 9, true, where, errors);
+    const bool p = has_size("P", p_, 12, blank, where, errors);
+    if (k && r && blank && (info_.z_offset != 0.0 || info_.z_scaling != 1.0)) {
+      errors.diagnostics.warning({errors.file, line},
+                                 where +
+                                     ": z_offset_mm and z_scaling are not used, because "
+                                     "there is no camera_info or it is all zeros");
+    }
+    if (!k || !r || !p || blank) return std::nullopt;
+    return std::move(info_);
+  }
+
+ private:
+  struct List {
+    std::size_t size = 0;
+    int line = 0;  ///< of its first number, or of camera_info if it is not there
+  };
+  struct Parameter {
+    std::string name, value;
+    int line = 0;
+  };
+
+  [[nodiscard]] static int pixels(const char* name, int line, double value, SampleErrors& errors) {
+    if (value >= 0.0 && value <= std::numeric_limits<int>::max() && value == std::floor(value)) {
+      return static_cast<int>(value);
+    }
+    errors.add(line, fmt::format("{}: {} is not a number of pixels", name, value));
+    return 0;
+  }
+
+  template <std::size_t N>
+  static void append(std::array<double, N>& values, List& list, double value) {
+    if (list.size < N) values[list.size] = value;
+    ++list.size;
+  }
+
+  /// @param may_be_empty  whether the list may be empty or missing
+  [[nodiscard]] static bool has_size(const char* name, const List& list, std::size_t size,
+                                     bool may_be_empty, const std::string& where,
+                                     SampleErrors& errors) {
+    if (list.size == size || (list.size == 0 && may_be_empty)) return true;
+    errors.add(list.line, fmt::format("{}: {} of camera_info has {} numbers, not {}", where, name,
+                                      list.size, size));
+    return false;
+  }
+
+  CameraInfo info_;
+  List k_, r_, p_;
+  Parameter parameter_;
+};
+
+}  // namespace kinecal::detail

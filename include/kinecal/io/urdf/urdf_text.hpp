@@ -1,0 +1,159 @@
+// The text of a URDF and its XML tree, so that a mistake is told with its line and an element is
+// found again in the text.
+//
+// The tree is read as UTF-8, byte for byte: what it says of an element's place is a place in the
+// text.  White space in attributes counts as in the XML specification: a tab or a line break is a
+// space, several are one.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kinecal/geometry/rotation.hpp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/urdf/xml_edit.hpp"
+
+namespace kinecal {
+
+/// A number and where in a text it stands.
+struct NumberToken {
+  std::size_t begin, end;
+  double value;
+};
+
+/// The numbers of a text, separated by white space; nothing if one of them is no finite number.
+/// Independent of the locale.
+[[nodiscard]] inline std::optional<std::vector<NumberToken>> number_tokens(std::string_view text) {
+  std::vector<NumberToken> tokens;
+  std::size_t begin = text.find_first_not_of(kXmlSpace);
+  while (begin != std::string_view::npos) {
+    const std::size_t end = std::min(text.find_first_of(kXmlSpace, begin), text.size());
+    const bool plus = text[begin] == '+' && end > begin + 1 && text[begin + 1] != '-';
+    NumberToken token{begin, end, 0.0};
+    const auto [stop, error] =
+        std::from_chars(text.data() + begin + (plus ? 1 : 0), text.data() + end, token.value);
+    if (error != std::errc() || stop != text.data() + end || !std::isfinite(token.value)) return {};
+    tokens.push_back(token);
+    begin = text.find_first_not_of(kXmlSpace, end);
+  }
+  return tokens;
+}
+
+class UrdfText {
+ public:
+  /// @param file  name of the file for messages
+  /// @throws InputError  if the text is empty, not XML, not UTF-8 or its root is not <robot>
+  UrdfText(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
+    if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
+      throw InputError(file_ + ": the text is UTF-16; save it as UTF-8");
+    }
+    if (text_.find_first_not_of(kXmlSpace) == std::string::npos) {
+      throw InputError(file_ + ": the file is empty; a URDF has a <robot> element");
+    }
+    const pugi::xml_parse_result result = document_.load_buffer(
+        text_.data(), text_.size(), pugi::parse_default | pugi::parse_wnorm_attribute,
+        pugi::encoding_utf8);
+    if (!result) {
+      const Place place{file_, line(static_cast<std::size_t>(result.offset))};
+      throw InputError(place.str() + ": malformed XML: " + result.description());
+    }
+    if (robot().name() != std::string_view("robot")) {
+      throw InputError(place(robot()).str() + ": the root element is <" + robot().name() +
+                       ">; a URDF begins with <robot>");
+    }
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] pugi::xml_node robot() const { return document_.document_element(); }
+
+  /// The joint of that name among the robot's own, not those in <transmission> or <gazebo>; a null
+  /// node where there is none.
+  [[nodiscard]] pugi::xml_node joint(const std::string& name) const {
+    return robot().find_child_by_attribute("joint", "name", name.c_str());
+  }
+
+  /// Where in the text the '<' of an element stands.
+  [[nodiscard]] std::size_t offset(pugi::xml_node element) const {
+    return static_cast<std::size_t>(element.offset_debug()) - 1;
+  }
+
+  /// File and line of an element; the file as a whole for a null node.
+  [[nodiscard]] Place place(pugi::xml_node element) const {
+    return {file_, element ? line(offset(element)) : 0};
+  }
+
+  /// Place of the first joint, or else link, whose name a message gives in '' or [].
+  [[nodiscard]] Place place_of_name_in(std::string_view message) const {
+    for (const char* kind : {"joint", "link"}) {
+      for (std::size_t open = message.find_first_of("'["); open != std::string_view::npos;
+           open = message.find_first_of("'[", open + 1)) {
+        const std::size_t close = message.find(message[open] == '[' ? ']' : '\'', open + 1);
+        if (close == std::string_view::npos) continue;
+        const std::string name(message.substr(open + 1, close - open - 1));
+        const pugi::xml_node found = robot().find_child_by_attribute(kind, "name", name.c_str());
+        if (found) return place(found);
+      }
+    }
+    return {file_, 0};
+  }
+
+  /// The numbers of an attribute; zeros, and an error, where it has not as many as it should.
+  /// @returns  zeros also where there is no such attribute
+  [[nodiscard]] std::vector<double> numbers(pugi::xml_node element, const char* attribute,
+                                            std::size_t count, Diagnostics& diagnostics) const {
+    std::vector<double> values(count, 0.0);
+    const pugi::xml_attribute found = element.attribute(attribute);
+    if (!found) return values;
+    const auto tokens = number_tokens(found.value());
+    if (tokens && tokens->size() == count) {
+      std::transform(tokens->begin(), tokens->end(), values.begin(),
+                     [](const NumberToken& token) { return token.value; });
+    } else {
+      diagnostics.error(place(element),
+                        std::string("joint '") + element.parent().attribute("name").value() +
+                            "': " + attribute + "=\"" + found.value() + "\" of <" + element.name() +
+                            "> is not " +
+                            (count == 1 ? "a number" : std::to_string(count) + " numbers"));
+    }
+    return values;
+  }
+
+  [[nodiscard]] Vector3<double> vector(pugi::xml_node element, const char* attribute,
+                                       Diagnostics& diagnostics) const {
+    const std::vector<double> values = numbers(element, attribute, 3, diagnostics);
+    return {values[0], values[1], values[2]};
+  }
+
+  /// Throws what was gathered.  In a file with xacro left in it the first mistake and its likely
+  /// cause say more than all of them.
+  /// @throws InputError  if there are errors
+  void throw_if_errors(const Diagnostics& diagnostics) const {
+    const bool xacro =
+        text_.find("<xacro:") != std::string::npos || text_.find("${") != std::string::npos;
+    if (xacro && !diagnostics.errors.empty()) {
+      throw InputError(diagnostics.errors.front() +
+                       "; the file is xacro, not URDF: run xacro on it first");
+    }
+    diagnostics.throw_if_errors();
+  }
+
+ private:
+  [[nodiscard]] int line(std::size_t offset) const {
+    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text_.size()));
+    return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
+  }
+
+  std::string text_, file_;
+  pugi::xml_document document_;
+};
+
+}  // namespace kinecal

@@ -1,0 +1,59 @@
+// The walk in packets: as many samples at once as a register holds, the same numbers as one by one.
+#include <gtest/gtest.h>
+
+#include "kinecal/geometry/packet.hpp"
+#include "kinecal/kinematics/twist_walker.hpp"
+#include "support/robots.hpp"
+
+namespace kinecal {
+namespace {
+
+TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
+  const Robot robot = test::mobile_manipulator();
+  const Chain<> chain = make_chain(robot, "hand", "camera_optical_frame", {"wrist", "head_tilt"});
+  Corrections<double> corrections(chain.joints.size());
+  std::vector<JointIndices> columns(chain.joints.size());
+  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+    corrections[i].offset = make_motion(0.01 * static_cast<double>(i));
+    columns[i].offset = static_cast<int>(i);
+    if (!chain.joints[i].corrected) continue;
+    corrections[i].set_frame({0.01, -0.02, 0.03}, {0.1, 0.2, -0.3});
+    columns[i].frame = {10, 11, 12, 13, 14, 15};
+  }
+  const std::span<const JointCorrection<double>> all(corrections);
+
+  // One sample in each lane.
+  std::vector<std::vector<Motion<double>>> samples;
+  std::vector<Motion<Packet>> packed(chain.joints.size());
+  for (std::size_t lane = 0; lane < Packet::size(); ++lane) {
+    test::RandomPositions positions(static_cast<unsigned>(lane));
+    samples.push_back(
+        measured_motions(chain, [&](const std::string& joint) { return positions(joint); }));
+    for (std::size_t i = 0; i < packed.size(); ++i) {
+      packed[i].position[lane] = samples[lane][i].position;
+      packed[i].cos[lane] = samples[lane][i].cos;
+      packed[i].sin[lane] = samples[lane][i].sin;
+    }
+  }
+  TwistWalker<Packet> at_once{columns};
+  walk(chain, std::span<const Motion<Packet>>(packed), all, at_once);
+
+  constexpr double kRounding = 1e-14;
+  for (std::size_t lane = 0; lane < Packet::size(); ++lane) {
+    TwistWalker<double> alone{columns};
+    walk(chain, std::span<const Motion<double>>(samples[lane]), all, alone);
+    ASSERT_EQ(at_once.twists.size(), alone.twists.size());
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(at_once.walker.pose.translation(k)[lane], alone.walker.pose.translation(k),
+                  kRounding);
+      for (std::size_t t = 0; t < alone.twists.size(); ++t) {
+        EXPECT_EQ(at_once.twists[t].column, alone.twists[t].column);
+        EXPECT_NEAR(at_once.twists[t].linear(k)[lane], alone.twists[t].linear(k), kRounding);
+        EXPECT_NEAR(at_once.twists[t].angular(k)[lane], alone.twists[t].angular(k), kRounding);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kinecal
