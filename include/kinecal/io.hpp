@@ -18,6 +18,7 @@
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/results/result_files.hpp"
+#include "kinecal/io/sample_warnings.hpp"
 #include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/samples/sample_builder.hpp"
 #include "kinecal/io/samples/sample_camera.hpp"

@@ -4,10 +4,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
-
 #include "kinecal/errors.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
+#include "kinecal/io/sample_warnings.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
@@ -78,60 +77,6 @@ inline void add_samples(Problem& problem, std::span<const Sample> samples,
   if (refused > kTold) {
     diagnostics.errors.push_back(
         fmt::format("{} more samples have mistakes like these", refused - kTold));
-  }
-}
-
-/// Counts the features that are no numbers, once for all steps.
-inline void warn_of_unusable(std::span<const Sample> samples, Diagnostics& diagnostics) {
-  std::size_t unusable = 0;
-  std::string first;
-  for (const Sample& sample : samples) {
-    for (const Observation& observation : sample.observations) {
-      for (const Feature& feature : observation.features) {
-        if (feature.point.allFinite()) continue;
-        if (unusable++ == 0) first = sample.source + ", sensor '" + observation.sensor + "'";
-      }
-    }
-  }
-  if (unusable == 0) return;
-  diagnostics.warnings.push_back(
-      fmt::format("{} feature{} not a number and left out; the first is at {}", unusable,
-                  unusable == 1 ? " is" : "s are", first));
-}
-
-/// Cameras that were set differently in some samples: the files written are those of the first one.
-inline void warn_of_changing_cameras(std::span<const Sample> samples, Diagnostics& diagnostics) {
-  std::map<std::string, std::pair<const CameraInfo*, bool>> first;  // and whether it was told
-  for (const Sample& sample : samples) {
-    for (const Observation& seen : sample.observations) {
-      if (!seen.camera) continue;
-      auto& [info, told] = first.try_emplace(seen.sensor, &*seen.camera, false).first->second;
-      const CameraInfo& now = *seen.camera;
-      const bool same = info->p == now.p && info->k == now.k && info->d == now.d &&
-                        info->z_offset == now.z_offset && info->z_scaling == now.z_scaling;
-      if (same || told) continue;
-      told = true;
-      diagnostics.warnings.push_back(
-          fmt::format("{}: the camera_info of sensor '{}' differs from that of the first sample, "
-                      "which the written camera files are made from",
-                      sample.source, seen.sensor));
-    }
-  }
-}
-
-/// Sensors of the samples that no model names: probably one of the two is misspelt.
-inline void warn_of_unknown_sensors(const StepConfig& step, std::span<const Sample> samples,
-                                    Diagnostics& diagnostics) {
-  std::set<std::string> recorded, models;
-  for (const Sample& sample : samples) {
-    for (const Observation& observation : sample.observations) recorded.insert(observation.sensor);
-  }
-  for (const ModelConfig& model : step.models) models.insert(model.name);
-  for (const ModelConfig& model : step.models) {
-    if (recorded.contains(model.name) || samples.empty()) continue;
-    diagnostics.warning(model.place,
-                        fmt::format("model '{}': no sample has a sensor of that name{}", model.name,
-                                    did_you_mean(model.name, recorded)));
   }
 }
 
