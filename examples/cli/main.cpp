@@ -18,9 +18,7 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
       ->type_name("FILE");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app(
       "Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.");
   app.set_version_flag("--version", "kinecal " KINECAL_VERSION);
@@ -69,13 +67,20 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "error: --output is required (or --dry-run)\n");
     return kBadInput;
   }
+  int code = kDone;
+  if (*calibrate_command) code = calibrate(calibrating);
+  if (*check_command) code = check(checking);
+  if (*inspect_command) code = inspect(inspected);
+  if (std::fflush(stdout) == 0) return code;
+  std::fprintf(stderr, "error: the output cannot be printed\n");
+  return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    int code = kDone;
-    if (*calibrate_command) code = calibrate(calibrating);
-    if (*check_command) code = check(checking);
-    if (*inspect_command) code = inspect(inspected);
-    if (std::fflush(stdout) == 0) return code;
-    std::fprintf(stderr, "error: the output cannot be printed\n");
+    return run(argc, argv);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "error: %s\n", e.what());
   }

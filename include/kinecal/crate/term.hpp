@@ -20,7 +20,7 @@ struct TermOptions {
   double weight = 1.0;     ///< the residual is multiplied by it: scale / sigma
   Loss loss = {};          ///< of each feature's weighted residual
   bool alone = false;      ///< only samples in which no other sensor observes
-  std::string type = "";   ///< for reports: "chain3d_to_chain3d"
+  std::string type = {};   ///< for reports: "chain3d_to_chain3d"
   std::string unit = "m";  ///< of the unweighted residual, for reports: "m", "px" or "1"
 };
 

@@ -93,7 +93,7 @@ inline void read_block_numbers(ConfigMap& map, const BlockForm& form, BlockConfi
 /// A word out of a few.
 inline std::string read_choice(ConfigMap& map, const std::string& key, const std::string& fallback,
                                const std::vector<std::string>& choices) {
-  const std::string word = map.text(key).value_or(fallback);
+  std::string word = map.text(key).value_or(fallback);
   std::string all;
   for (const std::string& choice : choices) {
     if (choice == word) return word;

@@ -180,7 +180,7 @@ class ConfigMap {
   std::optional<Value> read(const std::string& key, const Read& read_value, const char* expected) {
     const ConfigEntry* entry = find(key);
     if (entry == nullptr) return std::nullopt;
-    const std::optional<Value> value = read_value(entry->value);
+    std::optional<Value> value = read_value(entry->value);
     if (value) return value;
     error(entry->place, key + " is " + describe_config(entry->value) + ", not " + expected);
     return std::nullopt;
