@@ -4,7 +4,7 @@ set(options -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -G Ninja
 if(MODE STREQUAL install)
   execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix
                   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-  list(APPEND options -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+  list(APPEND options -DCMAKE_PREFIX_PATH=${WORK}/prefix -DKINECAL_EXAMPLES=${SOURCE}/examples)
 else()
   list(APPEND options -DKINECAL_FROM_SOURCE=${SOURCE})
 endif()
