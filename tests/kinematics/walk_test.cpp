@@ -111,6 +111,25 @@ TEST(Walk, ReversedChainIsTheInverseAlsoWithCorrections) {
   EXPECT_LE(difference(product, {}), kRounding);
 }
 
+/// The minimal walker of CONCEPTS.md.
+struct Counter {
+  int moved = 0;
+  void fixed(const Pose<double>&) {}
+  void correct(std::size_t, const ChainJoint&, const JointCorrection<double>&) {}
+  void move(std::size_t, const ChainJoint&, const Motion<double>&) { ++moved; }
+};
+static_assert(Walker<Counter, double>);
+
+TEST(Walk, TellsAnyWalkerWhatItMeets) {
+  const Chain<> chain = make_chain(test::mobile_manipulator(), "base_link", "hand");
+  const std::vector<Motion<double>> motions(chain.joints.size());
+  const Corrections<double> corrections(chain.joints.size());
+  Counter counter;
+  walk(chain, std::span<const Motion<double>>(motions),
+       std::span<const JointCorrection<double>>(corrections), counter);
+  EXPECT_EQ(counter.moved, 5);
+}
+
 TEST(Chain, FoldsFixedJointsThatNobodyCorrects) {
   const Robot robot = test::mobile_manipulator();
   EXPECT_EQ(make_chain(robot, "base_link", "hand").joints.size(), 5u);

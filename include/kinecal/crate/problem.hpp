@@ -42,15 +42,19 @@ class Problem {
   }
 
   /// @throws RobotError  if there is no chain from the base to the sensor
+  /// @throws std::logic_error  if samples have been added: they would not know of it
   void add_sensor(const Sensor& sensor) {
+    check_no_samples();
     sensors_.emplace_back(robot_, base_, sensor, table_, frames_);
   }
 
   /// Adds an error block between sensors, which are added before.
   /// @throws std::invalid_argument  if a sensor does not exist, or their number or kind is wrong
+  /// @throws std::logic_error       if samples have been added: they would not know of it
   template <ErrorBlock B>
   void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
+    check_no_samples();
     std::vector<int> indices;
     for (const std::string& sensor : sensors) indices.push_back(sensor_index(sensor));
     if (static_cast<int>(indices.size()) != kSensors<B>) {
@@ -82,8 +86,8 @@ class Problem {
     try {
       for (std::size_t s = 0; s < sensors_.size(); ++s) {
         const Observation* seen = sample.observation(sensors_[s].sensor().name);
-        if (seen != nullptr && !seen->features.empty())
-          packed.seen[s] = sensors_[s].pack(sample, *seen);
+        if (seen == nullptr || seen->features.empty()) continue;
+        packed.seen[s] = sensors_[s].pack(sample, *seen);
       }
       for (std::size_t t = 0; t < terms_.size(); ++t) {
         if (applies(*terms_[t], sample, packed)) packed.terms.push_back(static_cast<int>(t));
@@ -91,6 +95,7 @@ class Problem {
     } catch (const SampleError& e) {
       throw SampleError(sample.source + ": " + e.what());
     }
+    forget_unused(packed);
     samples_.push_back(std::move(packed));
   }
 
@@ -187,6 +192,11 @@ class Problem {
     std::vector<int> terms;                              ///< that apply
   };
 
+  void check_no_samples() const {
+    if (samples_.empty()) return;
+    throw std::logic_error("sensors and error blocks are added before the samples");
+  }
+
   [[nodiscard]] const SensorModel& model(int s) const {
     return sensors_[static_cast<std::size_t>(s)];
   }
@@ -219,6 +229,19 @@ class Problem {
                         std::to_string(seen[1]->usable.size()));
     }
     return term.count(seen) > 0;
+  }
+
+  /// What no term looks at needs no evaluation.
+  void forget_unused(PackedSample& packed) const {
+    std::vector<bool> used(sensors_.size(), false);
+    for (const int t : packed.terms) {
+      for (const int s : terms_[static_cast<std::size_t>(t)]->sensors()) {
+        used[static_cast<std::size_t>(s)] = true;
+      }
+    }
+    for (std::size_t s = 0; s < used.size(); ++s) {
+      if (!used[s]) packed.seen[s].reset();
+    }
   }
 
   void add_touched(int s, const PackedObservation& seen, std::set<int>& touched) const {

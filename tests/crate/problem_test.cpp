@@ -1,0 +1,119 @@
+#include "kinecal/crate/problem.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kinecal/errors.hpp"
+#include "support/scene.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+
+/// The message of what a call throws.
+template <class Error, class Call>
+std::string message_of(Call&& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "nothing was thrown";
+}
+
+std::vector<Sample> samples(int count = 3) {
+  const Problem problem = test::scene_problem();
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  return test::exact_samples(problem, zero, count);
+}
+
+TEST(Problem, NamesTheNearestSensorForAMisspeltOne) {
+  Problem problem = test::scene_problem();
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+              problem.add_block("b", PointToPoint{}, {"camra", "arm"});
+            }),
+            "no sensor 'camra'; did you mean 'camera'?");
+}
+
+TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
+  Problem problem = test::scene_problem();
+  EXPECT_THAT(
+      message_of<std::invalid_argument>([&] { problem.add_block("b", PointToPoint{}, {"arm"}); }),
+      HasSubstr("takes 2 sensors, not 1"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] {
+                problem.add_block("b", PointToPoint{}, {"arm", "eye"});
+              }),
+              HasSubstr("sensor 'eye' sees pixels"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] {
+                problem.add_block("b", PointToPixel{}, {"arm", "camera"});
+              }),
+              HasSubstr("sensor 'camera' sees points"));
+}
+
+TEST(Problem, TakesSensorsAndBlocksBeforeSamplesOnly) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  problem.add_sample(samples()[0]);
+  EXPECT_THROW(problem.add_block("c", PointToPoint{}, {"camera", "arm"}), std::logic_error);
+  EXPECT_THROW(problem.add_sensor({"again", SensorType::chain3d, "hand", ""}), std::logic_error);
+}
+
+TEST(Problem, ARefusedSampleIsNotAdded) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  Sample sample = samples()[0];
+  sample.source = "s.yaml:3";
+  sample.observations[0].features.pop_back();
+  EXPECT_THAT(message_of<SampleError>([&] { problem.add_sample(sample); }),
+              testing::AllOf(HasSubstr("s.yaml:3"), HasSubstr("sensor 'camera' has 4 features"),
+                             HasSubstr("sensor 'arm' has 3")));
+  EXPECT_EQ(problem.num_samples(), 0);
+}
+
+TEST(Problem, ABlockAppliesToTheSamplesThatHaveItsSensors) {
+  Problem problem = test::scene_problem();
+  TermOptions alone;
+  alone.alone = true;
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  problem.add_block("floor", PointToPlane(0, 0, 1, 0), {"camera"});
+  problem.add_block("floor_alone", PointToPlane(0, 0, 1, 0), {"camera"}, alone);
+  auto all = samples(4);
+  all[1].observations.erase(all[1].observations.begin());  // the arm
+  all[2].observations = {all[2].observations[1]};          // the camera alone
+  for (const Sample& sample : all) problem.add_sample(sample);
+  EXPECT_EQ(problem.samples_of(0), 2);
+  EXPECT_EQ(problem.samples_of(1), 4);
+  EXPECT_EQ(problem.samples_of(2), 1);
+  EXPECT_EQ(problem.shared_samples(1), 3);
+}
+
+TEST(Problem, KnowsWhichParametersItsSamplesTouch) {
+  Problem problem = test::scene_problem();
+  problem.add_block("floor", PointToPlane(0, 0, 1, 0), {"camera"});
+  for (const Sample& sample : samples()) problem.add_sample(sample);
+  std::vector<std::string> names;
+  for (int i : problem.touched_parameters()) names.push_back(problem.table()[i].name);
+  EXPECT_THAT(names, testing::Contains("head_tilt"));
+  EXPECT_THAT(names, testing::Contains("camera_z_offset"));
+  EXPECT_THAT(names, testing::Not(testing::Contains("elbow")));
+  EXPECT_THAT(names, testing::Not(testing::Contains("board_x")));
+}
+
+TEST(Problem, FeaturesThatAreNoNumbersAreLeftOutEverywhere) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  Sample sample = samples()[0];
+  sample.observations[1].features[2].point.z() = std::nan("");
+  problem.add_sample(sample);
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  Eigen::Index rows = 0;
+  (void)problem.evaluate(zero, nullptr, [&](int, int, const TermResiduals& out) {
+    rows = out.residual.size();
+    EXPECT_TRUE(out.residual.allFinite());
+  });
+  EXPECT_EQ(rows, 9);
+}
+
+}  // namespace
+}  // namespace kinecal
