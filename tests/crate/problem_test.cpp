@@ -71,6 +71,24 @@ TEST(Problem, ARefusedSampleIsNotAdded) {
   EXPECT_EQ(problem.num_samples(), 0);
 }
 
+TEST(Problem, RefusesPointsThatSpanNoPlane) {
+  Problem problem = test::scene_problem();
+  problem.add_block("floor", PlaneToPlane{}, {"camera", "arm"});
+  Sample line = samples()[0], few = samples()[1];
+  line.source = "s.yaml:9";
+  for (std::size_t i = 0; i < 4; ++i) {
+    line.observations[1].features[i].point =
+        Vector3<double>(0.1, 0.2, 1.0) * (1.0 + 0.1 * double(i));
+  }
+  EXPECT_EQ(message_of<SampleError>([&] { problem.add_sample(line); }),
+            "s.yaml:9: error block 'floor': its points span no plane");
+  few.observations[0].features.resize(2);
+  EXPECT_THAT(message_of<SampleError>([&] { problem.add_sample(few); }),
+              HasSubstr("a plane takes three points or more"));
+  problem.add_sample(samples()[2]);
+  EXPECT_EQ(problem.samples_of(0), 1);
+}
+
 TEST(Problem, ABlockAppliesToTheSamplesThatHaveItsSensors) {
   Problem problem = test::scene_problem();
   TermOptions alone;

@@ -21,11 +21,18 @@ class BlockTerm final : public Term {
   [[nodiscard]] bool pairs_features() const override { return PointPairBlock<B> || SightBlock<B>; }
 
   [[nodiscard]] int count(std::span<const PackedObservation* const> seen) const override {
+    return PlanePairBlock<B> ? 1 : static_cast<int>(usable(seen).size());
+  }
+
+  [[nodiscard]] std::string why_not(std::span<const PackedObservation* const> seen) const override {
     if constexpr (PlanePairBlock<B>) {
-      return count_of_plane(*seen[0]) >= 3 && count_of_plane(*seen[1]) >= 3 ? 1 : 0;
-    } else {
-      return static_cast<int>(usable(seen).size());
+      for (const PackedObservation* observation : seen) {
+        const std::vector<Vector3<double>> points = recorded_points(*observation);
+        if (points.size() < 3) return "a plane takes three points or more";
+        if (!PlaneFit(points).determined()) return "its points span no plane";
+      }
     }
+    return {};
   }
 
   [[nodiscard]] bool evaluate(std::span<const SensorView* const> views, int columns,
@@ -151,8 +158,17 @@ class BlockTerm final : public Term {
     return out.residual.segment<kSize>(row).allFinite();
   }
 
-  [[nodiscard]] static int count_of_plane(const PackedObservation& seen) {
-    return static_cast<int>(std::count(seen.usable.begin(), seen.usable.end(), true));
+  /// The usable points of an observation, in the sensor's frame, as they were recorded.
+  [[nodiscard]] static std::vector<Vector3<double>> recorded_points(const PackedObservation& seen) {
+    const DepthCamera& camera = seen.depth_camera;
+    const std::array<double, 6> recorded = {0, 0, 0, 0, camera.z_offset, camera.z_scaling - 1.0};
+    std::vector<Vector3<double>> points;
+    for (std::size_t i = 0; i < seen.measured.size(); ++i) {
+      if (!seen.usable[i]) continue;
+      points.push_back(camera.fx > 0.0 ? camera.point(seen.measured[i], recorded)
+                                       : seen.measured[i]);
+    }
+    return points;
   }
 
   [[nodiscard]] bool evaluate_planes(std::span<const SensorView* const> views, int columns,

@@ -228,6 +228,9 @@ class Problem {
                         model(term.sensors()[1]).sensor().name + "' has " +
                         std::to_string(seen[1]->usable.size()));
     }
+    if (const std::string why = term.why_not(seen); !why.empty()) {
+      throw SampleError("error block '" + term.name() + "': " + why);
+    }
     return term.count(seen) > 0;
   }
 

@@ -122,14 +122,14 @@ class SensorModel {
       throw SampleError("sensor '" + sensor_.name + "' is a camera but has no camera_info");
     }
     const CameraInfo& info = *observation.camera;
-    packed.depth_camera = DepthCamera::from(info);
-    packed.pinhole_camera = PinholeCamera::from(info);
-    const bool depth = sensor_.type == SensorType::camera3d;
-    const auto& d = packed.depth_camera;
-    const auto& c = packed.pinhole_camera;
-    check_numbers(depth ? std::array{d.fx, d.fy, d.cx, d.cy, d.z_offset, d.z_scaling}
-                        : std::array{c.fx, c.fy, c.cx, c.cy, 0.0, 1.0});
-    if (!depth) check_distortion(info);
+    if (sensor_.type == SensorType::camera3d) {
+      const DepthCamera& c = packed.depth_camera = DepthCamera::from(info);
+      check_numbers({c.fx, c.fy, c.cx, c.cy, c.z_offset, c.z_scaling});
+    } else {
+      const PinholeCamera& c = packed.pinhole_camera = PinholeCamera::from(info);
+      check_numbers({c.fx, c.fy, c.cx, c.cy, 0.0, 1.0});
+      check_distortion(info);
+    }
   }
 
   /// @param numbers  fx fy cx cy z_offset z_scaling

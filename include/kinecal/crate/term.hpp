@@ -59,6 +59,9 @@ class Term {
   [[nodiscard]] virtual bool pairs_features() const = 0;
   /// Features that can be compared, given what the sensors observed.
   [[nodiscard]] virtual int count(std::span<const PackedObservation* const> seen) const = 0;
+  /// Why the block cannot take these observations of one sample; empty if it can.
+  [[nodiscard]] virtual std::string why_not(
+      std::span<const PackedObservation* const> seen) const = 0;
   /// @param columns  number of free parameters; -1: no derivatives
   /// @returns  false where the residual is not defined (a point behind a camera)
   [[nodiscard]] virtual bool evaluate(std::span<const SensorView* const> views, int columns,
