@@ -105,7 +105,7 @@ inline std::vector<Sample> exact_samples(const Problem& problem, std::span<const
     Observation arm{"arm", {}}, depth_camera{"camera", {}, info}, pinhole{"eye", {}, info};
     for (int f = 0; f < features; ++f) {
       const double z = depth(random);
-      const Vector3<double> seen(side(random) * z, side(random) * z, z);
+      const Vector3<double> seen{side(random) * z, side(random) * z, z};  // braces: in this order
       // The raw pixel and depth that mean this point at these camera parameters.
       const double z0 = z / (1.0 + camera[5]) - camera[4];
       const double u = seen.x() / z * 550 * (1 + camera[0]) + 320 * (1 + camera[2]);
