@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/crate/block_term.hpp"
+#include "kinecal/crate/prior_term.hpp"
 #include "kinecal/crate/problem.hpp"
 #include "kinecal/crate/sensor_model.hpp"
 #include "kinecal/crate/sensor_view.hpp"

@@ -12,20 +12,13 @@
 #include <vector>
 
 #include "kinecal/crate/block_term.hpp"
-#include "kinecal/errors/prior.hpp"
+#include "kinecal/crate/prior_term.hpp"
 
 namespace kinecal {
 
 /// A residual that is not defined: which, where.
 struct UndefinedResidual {
   std::string term, source;  ///< name of the error block, place of the sample
-};
-
-/// A prior with its weight and loss.
-struct PriorTerm {
-  std::string name;
-  Prior prior;
-  TermOptions options;
 };
 
 class Problem {
@@ -168,21 +161,6 @@ class Problem {
       }
     }
     return std::nullopt;
-  }
-
-  /// Residuals of a prior, as they count for one sample; unweighted.
-  void evaluate_prior(const PriorTerm& prior, std::span<const double> values, const FreeSet* free,
-                      TermResiduals& out) const {
-    out.resize(Prior::kRows, free != nullptr ? free->size() : -1);
-    const auto parameters = prior.prior.parameters(table_);
-    const auto scales = prior.prior.scales();
-    for (std::size_t row = 0; row < parameters.size(); ++row) {
-      if (parameters[row] < 0) continue;
-      const auto r = static_cast<Eigen::Index>(row);
-      out.residual(r) = scales[row] * values[static_cast<std::size_t>(parameters[row])];
-      const int column = free != nullptr ? free->column(parameters[row]) : -1;
-      if (column >= 0) out.jacobian(r, column) = scales[row];
-    }
   }
 
  private:

@@ -66,7 +66,7 @@ struct NormalEquations {
   });
   TermResiduals residuals;
   for (const PriorTerm& prior : problem.priors()) {
-    problem.evaluate_prior(prior, values, free, residuals);
+    prior.evaluate(problem.table(), values, free, residuals);
     sum.add(residuals, Prior::kRows, prior.options.weight, loss_of(prior.options),
             problem.num_samples());
   }

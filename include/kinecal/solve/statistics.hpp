@@ -76,9 +76,9 @@ struct BlockStatistics {
   for (const PriorTerm& prior : problem.priors()) {
     BlockStatistics& block = all.emplace_back();
     block = {prior.name, prior.options.type, prior.options.unit, problem.num_samples(), {}, {}};
-    problem.evaluate_prior(prior, before, nullptr, residuals);
+    prior.evaluate(problem.table(), before, nullptr, residuals);
     block.before = statistics_of({residuals.residual.norm()}, Prior::kRows);
-    problem.evaluate_prior(prior, after, nullptr, residuals);
+    prior.evaluate(problem.table(), after, nullptr, residuals);
     block.after = statistics_of({residuals.residual.norm()}, Prior::kRows);
   }
   return all;
