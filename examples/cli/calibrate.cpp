@@ -107,11 +107,12 @@ int calibrate(const CalibrateOptions& options) {
   const double reading = seconds_since(start);
   const CalibrationResult result = kinecal::calibrate(input.calibration, progress_line());
   end_progress_line();
+  const std::vector<Observability> observability = observe(input.calibration, result);
   const bool ran = !result.steps.empty() && result.steps.back().iterations > 0;
   if (result.converged || ran) {
     print_result(input, result);
     std::fflush(stdout);
-    print_doubts(input, result, observe(input.calibration, result));
+    print_doubts(input, result, observability);
   }
   if (!result.converged) {
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
@@ -122,7 +123,7 @@ int calibrate(const CalibrateOptions& options) {
     std::vector<OutputFile> files =
         result_files(input.robot, input.urdf_text, options.urdf, input.calibration, result,
                      input.samples, file_options(options));
-    files.push_back({"report.json", json_report(result, observe(input.calibration, result))});
+    files.push_back({"report.json", json_report(result, observability)});
     check_targets(options, folder->path(), files);
     folder->write(files);
     for (const OutputFile& file : files) {

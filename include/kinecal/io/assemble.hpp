@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kinecal/errors.hpp"
+#include "kinecal/io/config/config_free.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/io/sample_warnings.hpp"
 #include "kinecal/solve/calibrate.hpp"
@@ -127,12 +128,7 @@ inline void check_terms(const StepConfig& step, const Problem& problem, Diagnost
     }
     free.push_back(index);
   };
-  for (const FreeParamConfig& param : step.free_params) add(param.name, param.place);
-  for (const FreeFrameConfig& frame : step.free_frames) {
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      if (frame.axes[axis]) add(parameter_name(frame.name, kFrameAxes[axis]), frame.place);
-    }
-  }
+  for (const FreeParamConfig& param : free_parameters(step)) add(param.name, param.place);
   if (free.empty()) {
     diagnostics.error(step.place, fmt::format("step '{}': nothing is free that these samples could "
                                               "tell",
