@@ -129,6 +129,7 @@ inline void run_ceres(const Problem& problem, const FreeSet& free, Eigen::Vector
                                       Eigen::VectorXd& values, const SolveOptions& options,
                                       Losses losses) {
   Minimum minimum;
+  const Eigen::VectorXd start = values;
   run_ceres(problem, free, values, options, losses, minimum);
   std::vector<int> inside = free.parameters();
   const int rounds = 2 * free.size() + 2;  // each round usually settles several bounds
@@ -136,6 +137,8 @@ inline void run_ceres(const Problem& problem, const FreeSet& free, Eigen::Vector
     std::vector<int> next = within_bounds(problem, free, values, losses);
     if (next == inside || next.empty()) return minimum;
     inside = std::move(next);
+    // From the start again: crawling along a bound also drifts along what cannot be observed.
+    for (const int p : inside) values(p) = start(p);
     run_ceres(problem, FreeSet(inside, problem.table().size()), values, options, losses, minimum);
   }
   return minimum;
