@@ -1,7 +1,7 @@
 # The libraries, all header-only, one for each set of dependencies:
-#   kinecal::core   geometry ... crate           Eigen
+#   kinecal::core   geometry ... crate           Eigen, threads
 #   kinecal::solve  solve, trust                 + Ceres
-#   kinecal::io     io, report                   + urdfdom, yaml-cpp, pugixml, fmt
+#   kinecal::io     io, report                   + urdfdom, yaml-cpp, libyaml, pugixml, fmt
 #   kinecal::kinecal  all of them
 include(GNUInstallDirs)
 
@@ -13,6 +13,9 @@ find_package(urdfdom REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(fmt REQUIRED)
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET GLOBAL yaml-0.1)
 
 function(kinecal_add_library name)
   cmake_parse_arguments(ARG "" "" "FOLDERS;LINK" ${ARGN})
@@ -35,14 +38,14 @@ endfunction()
 
 kinecal_add_library(core
   FOLDERS geometry kinematics parameters samples sensors errors crate
-  LINK Eigen3::Eigen)
+  LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(solve
   FOLDERS solve trust
   LINK kinecal_core Ceres::ceres)
 kinecal_add_library(io
   FOLDERS io report
-  LINK kinecal_solve urdfdom::urdfdom_model yaml-cpp pugixml::pugixml
-       fmt::fmt)
+  LINK kinecal_solve urdfdom::urdfdom_model yaml-cpp PkgConfig::libyaml
+       pugixml::pugixml fmt::fmt)
 kinecal_add_library(kinecal
   FOLDERS kinecal
   LINK kinecal_io)

@@ -40,16 +40,18 @@ Vector3<double> gripper(const Chain<>& chain, const Positions& positions) {
 }
 
 /// The twist of each joint: a walk with a walker that notes how each joint's offset moves the tip.
-std::vector<Twist<double>> twists(const Chain<>& chain, const Positions& positions) {
+std::vector<std::pair<int, Twist<double>>> twists(const Chain<>& chain, const Positions& positions) {
   std::vector<JointIndices> columns(chain.joints.size());
   for (std::size_t i = 0; i < columns.size(); ++i) columns[i].offset = static_cast<int>(i);
   const Corrections<double> none(chain.joints.size());
   const auto motions =
       measured_motions(chain, [&](const std::string& joint) { return positions.at(joint); });
-  TwistWalker<double> walker{columns};
+  ChainTwists<double> twists;
+  twist_columns(chain, columns).resize(twists);
+  TwistWalker<double> walker{columns, twists};
   walk(chain, std::span<const Motion<double>>(motions),
        std::span<const JointCorrection<double>>(none), walker);
-  return walker.twists;
+  return by_column(twists, twist_columns(chain, columns));
 }
 
 }  // namespace
@@ -70,8 +72,8 @@ int main() {
   std::printf("How it moves when a joint turns by 1 degree or slides by 1 mm, in mm:\n");
   std::printf("  %-10s %8s %8s %8s   %s\n", "joint", "x", "y", "z", "twist - difference");
   double worst = 0.0;
-  for (const Twist<double>& twist : twists(chain, positions)) {
-    const ChainJoint& joint = chain.joints[static_cast<std::size_t>(twist.column)];
+  for (const auto& [column, twist] : twists(chain, positions)) {
+    const ChainJoint& joint = chain.joints[static_cast<std::size_t>(column)];
     // The same by brute force: the positions a little to either side.
     constexpr double kStep = 1e-6;
     Positions up = positions, down = positions;

@@ -99,7 +99,7 @@ ParameterTable random_truth(SeededRandom& random) {
 class TrueRobot {
  public:
   TrueRobot(const Robot& robot, const ParameterTable& truth)
-      : robot_(robot), truth_(truth), camera_(DepthCamera::from(example_camera_info())) {
+      : robot_(robot), truth_(truth), camera_(DepthCamera<>::from(example_camera_info())) {
     for (std::size_t i = 0; i < camera_errors_.size(); ++i) {
       camera_errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
     }
@@ -123,12 +123,12 @@ class TrueRobot {
   }
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
-  [[nodiscard]] const DepthCamera& camera() const { return camera_; }
+  [[nodiscard]] const DepthCamera<>& camera() const { return camera_; }
 
  private:
   const Robot& robot_;
   const ParameterTable& truth_;
-  DepthCamera camera_;
+  DepthCamera<> camera_;
   std::array<double, 6> camera_errors_{};
 };
 
@@ -231,7 +231,7 @@ Sample ground_sample(const TrueRobot& robot, SeededRandom& random) {
   Observation camera{"camera", {}, example_camera_info()};
   for (const double v : {-0.8, -0.3, 0.2, 0.7}) {  // of half the image
     for (const double u : {-0.8, -0.4, 0.0, 0.4, 0.8}) {
-      const DepthCamera& c = robot.camera();
+      const DepthCamera<>& c = robot.camera();
       const Vector3<double> ray(u * c.cx / c.fx, v * c.cy / c.fy, 1.0);
       const double down = -(base_T_camera.rotation.row(2) * ray).value();
       const double depth = base_T_camera.translation.z() / down;

@@ -118,7 +118,7 @@ Problem make_problem(const Robot& robot, const ParameterTable& table) {
 class TrueRobot {
  public:
   TrueRobot(const Robot& robot, const ParameterTable& truth)
-      : robot_(robot), truth_(truth), camera_(DepthCamera::from(example_camera_info())) {
+      : robot_(robot), truth_(truth), camera_(DepthCamera<>::from(example_camera_info())) {
     for (std::size_t i = 0; i < errors_.size(); ++i) {
       errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
     }
@@ -162,7 +162,7 @@ class TrueRobot {
 
   const Robot& robot_;
   const ParameterTable& truth_;
-  DepthCamera camera_;
+  DepthCamera<> camera_;
   std::array<double, 6> errors_{};
 };
 

@@ -5,6 +5,6 @@
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/minimize.hpp"
-#include "kinecal/solve/normal_equations.hpp"
 #include "kinecal/solve/solve.hpp"
+#include "kinecal/solve/stacked_cost.hpp"
 #include "kinecal/solve/statistics.hpp"

@@ -69,7 +69,7 @@ void check_block(const B& block, const std::vector<std::string>& sensors,
     for (int i = 0; i < kParameters; ++i) jets.emplace_back(x[static_cast<std::size_t>(i)], i);
 
     int visited = 0;
-    const auto undefined = problem.evaluate(x, &free, [&](int t, int n, const TermResiduals& out) {
+    const auto undefined = evaluate(problem, x, &free, [&](int t, int n, const TermResiduals& out) {
       ++visited;
       const std::vector<Wide> oracle =
           oracle_residuals(block, problem, problem.terms()[static_cast<std::size_t>(t)]->sensors(),
@@ -93,7 +93,7 @@ void check_block(const B& block, const std::vector<std::string>& sensors,
         down[static_cast<std::size_t>(p)] -= kStep;
         const auto at = [&](const std::vector<double>& values) {
           Eigen::VectorXd r;
-          (void)problem.evaluate(values, nullptr, [&](int, int m, const TermResiduals& o) {
+          (void)evaluate(problem, values, nullptr, [&](int, int m, const TermResiduals& o) {
             if (m == n) r = o.residual;
           });
           return r;
@@ -113,8 +113,8 @@ void check_block(const B& block, const std::vector<std::string>& sensors,
         all.insert(all.end(), out.residual.begin(), out.residual.end());
       };
     };
-    (void)problem.evaluate(x, &free, collect(with));
-    (void)problem.evaluate(x, nullptr, collect(without));
+    (void)evaluate(problem, x, &free, collect(with));
+    (void)evaluate(problem, x, nullptr, collect(without));
     ASSERT_EQ(with.size(), without.size());
     for (std::size_t i = 0; i < with.size(); ++i) {
       EXPECT_NEAR(with[i], without[i], 1e-13 * (1 + std::abs(with[i])));
@@ -162,7 +162,7 @@ double largest_at_truth(const B& block, const std::vector<std::string>& sensors)
   const std::vector<double> truth = test::random_values(problem.table(), 0.05, 8);
   for (const Sample& s : test::exact_samples(problem, truth, 5)) problem.add_sample(s);
   double largest = 0.0;
-  (void)problem.evaluate(truth, nullptr, [&](int, int, const TermResiduals& out) {
+  (void)evaluate(problem, truth, nullptr, [&](int, int, const TermResiduals& out) {
     largest = std::max(largest, out.residual.cwiseAbs().maxCoeff());
   });
   return largest;
@@ -200,7 +200,7 @@ TEST(Residuals, APointBehindACameraIsUndefinedAndNamed) {
   bool found = false;
   for (double pan = 0.0; pan < 6.3 && !found; pan += 0.5) {
     behind[static_cast<std::size_t>(problem.table().index("head_pan"))] = pan;
-    const auto undefined = problem.evaluate(behind, nullptr, [](int, int, const auto&) {});
+    const auto undefined = evaluate(problem, behind, nullptr, [](int, int, const auto&) {});
     if (!undefined) continue;
     found = true;
     EXPECT_EQ(undefined->term, "reprojection");

@@ -1,4 +1,4 @@
-#include "kinecal/crate/problem.hpp"
+#include "kinecal/crate/evaluate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -126,7 +126,7 @@ TEST(Problem, FeaturesThatAreNoNumbersAreLeftOutEverywhere) {
   problem.add_sample(sample);
   const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
   Eigen::Index rows = 0;
-  (void)problem.evaluate(zero, nullptr, [&](int, int, const TermResiduals& out) {
+  (void)evaluate(problem, zero, nullptr, [&](int, int, const TermResiduals& out) {
     rows = out.residual.size();
     EXPECT_TRUE(out.residual.allFinite());
   });

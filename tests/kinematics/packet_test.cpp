@@ -35,21 +35,28 @@ TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
       packed[i].sin[lane] = samples[lane][i].sin;
     }
   }
-  TwistWalker<Packet> at_once{columns};
+  ChainTwists<Packet> packed_twists;
+  twist_columns(chain, columns).resize(packed_twists);
+  TwistWalker<Packet> at_once{columns, packed_twists};
   walk(chain, std::span<const Motion<Packet>>(packed), all, at_once);
 
   constexpr double kRounding = 1e-14;
   for (std::size_t lane = 0; lane < Packet::size(); ++lane) {
-    TwistWalker<double> alone{columns};
+    ChainTwists<double> twists;
+    twist_columns(chain, columns).resize(twists);
+    TwistWalker<double> alone{columns, twists};
     walk(chain, std::span<const Motion<double>>(samples[lane]), all, alone);
-    ASSERT_EQ(at_once.twists.size(), alone.twists.size());
+    ASSERT_EQ(packed_twists.turns.size(), twists.turns.size());
+    ASSERT_EQ(packed_twists.shifts.size(), twists.shifts.size());
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(at_once.walker.pose.translation(k)[lane], alone.walker.pose.translation(k),
                   kRounding);
-      for (std::size_t t = 0; t < alone.twists.size(); ++t) {
-        EXPECT_EQ(at_once.twists[t].column, alone.twists[t].column);
-        EXPECT_NEAR(at_once.twists[t].linear(k)[lane], alone.twists[t].linear(k), kRounding);
-        EXPECT_NEAR(at_once.twists[t].angular(k)[lane], alone.twists[t].angular(k), kRounding);
+      for (std::size_t t = 0; t < twists.turns.size(); ++t) {
+        EXPECT_NEAR(packed_twists.turns[t].linear(k)[lane], twists.turns[t].linear(k), kRounding);
+        EXPECT_NEAR(packed_twists.turns[t].angular(k)[lane], twists.turns[t].angular(k), kRounding);
+      }
+      for (std::size_t t = 0; t < twists.shifts.size(); ++t) {
+        EXPECT_NEAR(packed_twists.shifts[t](k)[lane], twists.shifts[t](k), kRounding);
       }
     }
   }

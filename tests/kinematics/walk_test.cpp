@@ -247,15 +247,17 @@ TEST_P(Twists, AgreeWithAutodiffThroughTheWholeWalk) {
     const Vector3<double> p(0.3, -0.2, 0.5);
     const Vector3<Wide> expected = forward_kinematics(chain, position_of, fill(indices, jets)) * p;
 
-    TwistWalker<double> walker{indices};
+    ChainTwists<double> twists;
+    twist_columns(chain, indices).resize(twists);
+    TwistWalker<double> walker{indices, twists};
     const auto motions = measured_motions(chain, position_of);
     const Corrections<double> corrections = fill(indices, x);
     walk(chain, std::span<const Motion<double>>(motions),
          std::span<const JointCorrection<double>>(corrections), walker);
     const Vector3<double> p_base = walker.walker.pose * p;
     Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, kMaxParameters);
-    for (const Twist<double>& twist : walker.twists) {
-      jacobian.col(twist.column) += twist.velocity(p_base);
+    for (const auto& [column, twist] : by_column(twists, twist_columns(chain, indices))) {
+      jacobian.col(column) += twist.velocity(p_base);
     }
     Eigen::MatrixXd oracle(3, kMaxParameters);
     for (int i = 0; i < 3; ++i) {

@@ -17,7 +17,7 @@ struct Stacked {
 Stacked stack(const Problem& problem, std::span<const double> values, const FreeSet& free) {
   Stacked all;
   all.jacobian.resize(0, free.size());
-  (void)problem.evaluate(values, &free, [&](int t, int, const TermResiduals& out) {
+  (void)evaluate(problem, values, &free, [&](int t, int, const TermResiduals& out) {
     const double weight = problem.terms()[static_cast<std::size_t>(t)]->options().weight;
     const Eigen::Index rows = all.residual.size();
     all.residual.conservativeResize(rows + out.residual.size());
@@ -52,9 +52,7 @@ TEST(CompressedCost, HasTheCostGradientAndHessianOfTheStackedResiduals) {
   const FreeSet free = all_free(problem);
   const auto x = test::random_values(problem.table(), 0.02, 5);
   const Stacked all = stack(problem, x, free);
-  std::optional<UndefinedResidual> undefined;
-  const EquivalentResidual compressed(normal_equations(problem, x, &free, undefined));
-  ASSERT_FALSE(undefined);
+  const EquivalentResidual compressed(normal_equations(problem, x, &free));
   EXPECT_EQ(compressed.residual.size(), free.size() + 1);
   EXPECT_NEAR(compressed.residual.squaredNorm() / all.residual.squaredNorm(), 1.0, 1e-12);
   const Eigen::VectorXd gradient = all.jacobian.transpose() * all.residual;
@@ -70,8 +68,7 @@ TEST(CompressedCost, IsFiniteWhereTheHessianIsSingular) {
   const Problem problem = noisy_problem({});
   const FreeSet free = all_free(problem);
   const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
-  std::optional<UndefinedResidual> undefined;
-  const NormalEquations normal = normal_equations(problem, zero, &free, undefined);
+  const NormalEquations normal = normal_equations(problem, zero, &free);
   const Eigen::VectorXd d =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal.hessian).eigenvalues();
   ASSERT_LT(d(0), 1e-12 * d(d.size() - 1));
@@ -86,8 +83,8 @@ TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
     const Problem problem = noisy_problem({type, 0.3});
     const FreeSet free = all_free(problem);
     const auto x = test::random_values(problem.table(), 0.02, 5);
-    const CompressedCost cost(problem, free,
-                              Eigen::Map<const Eigen::VectorXd>(x.data(), problem.table().size()));
+    const CompressedCost<Packet> cost(problem, free,
+                              Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(x.data(), problem.table().size())));
     const auto n = static_cast<Eigen::Index>(free.size());
     const auto cost_at = [&](const std::vector<double>& values) {
       Eigen::VectorXd r(n + 1);

@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-#include "kinecal/crate/problem.hpp"
+#include "kinecal/crate/evaluate.hpp"
 
 namespace kinecal::test {
 
@@ -18,7 +18,7 @@ struct OracleView {
   Pose<S> pose;                    ///< of the sensor's frame in the base
   std::vector<Vector3<S>> points;  ///< in the base
   std::array<S, 6> camera_values;
-  PackedObservation seen;
+  PackedObservation<double> seen;
 };
 
 template <class S>
@@ -45,7 +45,7 @@ OracleView<S> oracle_view(const SensorModel& model, const Sample& sample,
       view.points.emplace_back(Vector3<S>::Zero());
     } else if (model.sensor().type == SensorType::camera3d) {
       view.points.push_back(
-          pose * view.seen.depth_camera.point(view.seen.measured[i], view.camera_values));
+          pose * view.seen.depth_camera->point(view.seen.measured[i], view.camera_values));
     } else {
       view.points.push_back(pose * view.seen.measured[i]);
     }
@@ -82,6 +82,13 @@ Plane<S> oracle_plane(const std::vector<Vector3<S>>& points) {
   return plane;
 }
 
+template <class S>
+PinholeCamera<S> in_scalar(const PinholeCamera<>& c) {
+  PinholeCamera<S> camera{S(c.fx), S(c.fy), S(c.cx), S(c.cy), {}};
+  for (std::size_t k = 0; k < c.d.size(); ++k) camera.d[k] = S(c.d[k]);
+  return camera;
+}
+
 /// Residuals of a block between sensors for one sample, features one after the other.
 template <class S, ErrorBlock B>
 std::vector<S> oracle_residuals(const B& block, const Problem& problem,
@@ -104,8 +111,8 @@ std::vector<S> oracle_residuals(const B& block, const Problem& problem,
         std::array<S, 4> parameters;
         std::copy_n(camera.camera_values.begin(), 4, parameters.begin());
         append(block(Sight<S>{camera.pose.inverse() * views[0].points[i], parameters,
-                              camera.seen.pinhole_camera,
-                              camera.seen.measured[i].template head<2>()}));
+                              in_scalar<S>(*camera.seen.pinhole_camera),
+                              camera.seen.measured[i].template head<2>().template cast<S>()}));
       } else if constexpr (PointPairBlock<B>) {
         append(block(views[0].points[i], views[1].points[i]));
       } else {

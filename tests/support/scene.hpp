@@ -114,7 +114,7 @@ inline std::vector<Sample> exact_samples(const Problem& problem, std::span<const
       depth_camera.features.push_back({"camera_optical_frame", recorded});
       const Vector3<double> p_base = tip(1, "camera_optical_frame") * seen;
       arm.features.push_back({arm_frame, tip(0, arm_frame).inverse() * p_base});
-      const Eigen::Vector2d pixel = PinholeCamera::from(info).project(seen, eye);
+      const Eigen::Vector2d pixel = PinholeCamera<>::from(info).project(seen, eye);
       pinhole.features.push_back({"camera_optical_frame", {pixel.x(), pixel.y(), 0}});
     }
     sample.observations = {arm, depth_camera, pinhole};

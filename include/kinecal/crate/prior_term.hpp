@@ -31,6 +31,18 @@ struct PriorTerm {
       if (column >= 0) out.jacobian(r, column) = scales[row];
     }
   }
+
+  /// Adds its residuals, weighted, to normal equations; it counts once for each sample.
+  void add_to(NormalEquations& total, const TermResiduals& residuals, int samples,
+              Losses losses) const {
+    const double w2 = options.weight * options.weight;
+    const auto loss = options.loss_for(losses)(w2 * residuals.residual.squaredNorm());
+    total.cost += 0.5 * samples * loss.rho;
+    if (residuals.jacobian.cols() == 0) return;
+    const double factor = samples * w2 * loss.derivative;
+    total.gradient.noalias() += factor * residuals.jacobian.transpose() * residuals.residual;
+    total.hessian.noalias() += factor * residuals.jacobian.transpose() * residuals.jacobian;
+  }
 };
 
 }  // namespace kinecal

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -16,17 +17,14 @@
 
 namespace kinecal {
 
-/// A residual that is not defined: which, where.
-struct UndefinedResidual {
-  std::string term, source;  ///< name of the error block, place of the sample
-};
-
-class Problem {
+/// @tparam S  in which it is evaluated: a packet, or double for one sample at a time
+template <class S>
+class BasicProblem {
  public:
   /// @param base    the link in which sensors are compared
   /// @param frames  names of the free frames, joints of the robot or virtual
   /// @throws RobotError  if the link does not exist
-  Problem(Robot robot, std::string base, ParameterTable table, std::set<std::string> frames)
+  BasicProblem(Robot robot, std::string base, ParameterTable table, std::set<std::string> frames)
       : robot_(std::move(robot)),
         base_(std::move(base)),
         table_(std::move(table)),
@@ -63,7 +61,7 @@ class Problem {
             (is_pinhole ? "sees pixels, a point is needed" : "sees points, a camera2d is needed"));
       }
     }
-    terms_.push_back(std::make_unique<BlockTerm<B>>(name, block, std::move(indices), options));
+    terms_.push_back(std::make_unique<BlockTerm<B, S>>(name, block, std::move(indices), options));
   }
 
   /// Adds a prior; it counts once for each sample.
@@ -74,55 +72,67 @@ class Problem {
   /// Adds a sample, after the sensors and blocks.
   /// @throws SampleError  naming the sample and what is missing or wrong in it; it is not added
   void add_sample(const Sample& sample) {
-    PackedSample packed{
-        sample.source, std::vector<std::optional<PackedObservation>>(sensors_.size()), {}};
+    Observations seen(sensors_.size());
+    SampleShape shape;
     try {
       for (std::size_t s = 0; s < sensors_.size(); ++s) {
-        const Observation* seen = sample.observation(sensors_[s].sensor().name);
-        if (seen == nullptr || seen->features.empty()) continue;
-        packed.seen[s] = sensors_[s].pack(sample, *seen);
+        const Observation* observation = sample.observation(sensors_[s].sensor().name);
+        if (observation == nullptr || observation->features.empty()) continue;
+        seen[s] = sensors_[s].pack(sample, *observation);
       }
       for (std::size_t t = 0; t < terms_.size(); ++t) {
-        if (applies(*terms_[t], sample, packed)) packed.terms.push_back(static_cast<int>(t));
+        if (applies(*terms_[t], sample, seen)) shape.terms.push_back(static_cast<int>(t));
       }
     } catch (const SampleError& e) {
       throw SampleError(sample.source + ": " + e.what());
     }
-    forget_unused(packed);
-    samples_.push_back(std::move(packed));
+    for (const int t : shape.terms) residuals_ += residuals_of(*terms_[std::size_t(t)], seen);
+    forget_unused(shape, seen);
+    add_to_packs(std::move(shape), seen);
+    sources_.push_back(sample.source);
   }
 
   [[nodiscard]] const ParameterTable& table() const { return table_; }
   [[nodiscard]] const std::vector<SensorModel>& sensors() const { return sensors_; }
-  [[nodiscard]] const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
+  [[nodiscard]] const std::vector<std::unique_ptr<Term<S>>>& terms() const { return terms_; }
   [[nodiscard]] const std::vector<PriorTerm>& priors() const { return priors_; }
-  [[nodiscard]] int num_samples() const { return static_cast<int>(samples_.size()); }
+  [[nodiscard]] int num_samples() const { return static_cast<int>(sources_.size()); }
+  /// Where a sample came from.
+  [[nodiscard]] const std::string& source(int sample) const {
+    return sources_[static_cast<std::size_t>(sample)];
+  }
+  [[nodiscard]] std::span<const PackedSample<S>> packs() const { return packs_; }
+  /// Number of residuals of all features, and of each prior once.
+  [[nodiscard]] int num_residuals() const {
+    return residuals_ + static_cast<int>(priors_.size()) * Prior::kRows;
+  }
 
   /// Number of samples to which a term applies.
   [[nodiscard]] int samples_of(int term) const {
     int n = 0;
-    for (const PackedSample& sample : samples_) {
-      n += static_cast<int>(std::count(sample.terms.begin(), sample.terms.end(), term));
+    for (const PackedSample<S>& pack : packs_) {
+      if (has_term(pack, term)) n += static_cast<int>(pack.samples.size());
     }
     return n;
   }
 
   /// Number of samples of a term in which another term, of other sensors too, applies as well.
   [[nodiscard]] int shared_samples(int term) const {
-    return static_cast<int>(
-        std::count_if(samples_.begin(), samples_.end(), [&](const PackedSample& sample) {
-          return sample.terms.size() > 1 &&
-                 std::count(sample.terms.begin(), sample.terms.end(), term) > 0;
-        }));
+    int n = 0;
+    for (const PackedSample<S>& pack : packs_) {
+      const bool shared = pack.shape->terms.size() > 1 && has_term(pack, term);
+      if (shared) n += static_cast<int>(pack.samples.size());
+    }
+    return n;
   }
 
   /// Table indices of the parameters on which some residual of the samples depends, in their order.
   [[nodiscard]] std::vector<int> touched_parameters() const {
     std::set<int> touched;
-    for (const PackedSample& sample : samples_) {
-      for (int term : sample.terms) {
-        for (int s : terms_[static_cast<std::size_t>(term)]->sensors()) {
-          add_touched(s, *sample.seen[static_cast<std::size_t>(s)], touched);
+    for (const auto& [shape, open] : shapes_) {
+      for (const int term : shape.terms) {
+        for (const int s : terms_[static_cast<std::size_t>(term)]->sensors()) {
+          add_touched(s, *shape.chains[static_cast<std::size_t>(s)], touched);
         }
       }
     }
@@ -130,48 +140,11 @@ class Problem {
     return {touched.begin(), touched.end()};
   }
 
-  /// Evaluates all residuals, sample by sample.
-  /// @param values  of all parameters of the table
-  /// @param free    the Jacobian's columns; nullptr: residuals only
-  /// @param visit   callable (int term, int sample, const TermResiduals&)
-  /// @param at      where derivatives are taken
-  /// @returns       the first residual that is not defined, if any; the rest is not evaluated
-  template <class Visit>
-  [[nodiscard]] std::optional<UndefinedResidual> evaluate(
-      std::span<const double> values, const FreeSet* free, Visit&& visit,
-      Linearization at = Linearization::measured) const {
-    std::vector<SensorState> states;
-    for (const SensorModel& sensor : sensors_) states.emplace_back(sensor, values, free);
-    std::vector<SensorView> views(sensors_.size());
-    std::vector<const SensorView*> of_term;
-    TermResiduals residuals;
-    for (std::size_t n = 0; n < samples_.size(); ++n) {
-      const PackedSample& sample = samples_[n];
-      for (std::size_t s = 0; s < sensors_.size(); ++s) {
-        if (sample.seen[s]) views[s].update(sensors_[s], states[s], *sample.seen[s]);
-      }
-      for (int t : sample.terms) {
-        const Term& term = *terms_[static_cast<std::size_t>(t)];
-        of_term.clear();
-        for (int s : term.sensors()) of_term.push_back(&views[static_cast<std::size_t>(s)]);
-        if (!term.evaluate(of_term, free != nullptr ? free->size() : -1, at, residuals)) {
-          return UndefinedResidual{term.name(), sample.source};
-        }
-        visit(t, static_cast<int>(n), std::as_const(residuals));
-      }
-    }
-    return std::nullopt;
-  }
-
  private:
-  struct PackedSample {
-    std::string source;
-    std::vector<std::optional<PackedObservation>> seen;  ///< by each sensor
-    std::vector<int> terms;                              ///< that apply
-  };
+  using Observations = std::vector<std::optional<PackedObservation<double>>>;  ///< by each sensor
 
   void check_no_samples() const {
-    if (samples_.empty()) return;
+    if (sources_.empty()) return;
     throw std::logic_error("sensors and error blocks are added before the samples");
   }
 
@@ -188,17 +161,31 @@ class Problem {
     throw std::invalid_argument("no sensor '" + name + "'" + did_you_mean(name, names));
   }
 
-  [[nodiscard]] bool applies(const Term& term, const Sample& sample,
-                             const PackedSample& packed) const {
+  [[nodiscard]] static bool has_term(const PackedSample<S>& pack, int term) {
+    const std::vector<int>& terms = pack.shape->terms;
+    return std::find(terms.begin(), terms.end(), term) != terms.end();
+  }
+
+  [[nodiscard]] static std::vector<const PackedObservation<double>*> observations_of(
+      const Term<S>& term, const Observations& observed) {
+    std::vector<const PackedObservation<double>*> seen;
+    for (const int s : term.sensors()) seen.push_back(&*observed[static_cast<std::size_t>(s)]);
+    return seen;
+  }
+
+  [[nodiscard]] static int residuals_of(const Term<S>& term, const Observations& observed) {
+    return term.count(observations_of(term, observed)) * term.feature_size();
+  }
+
+  [[nodiscard]] bool applies(const Term<S>& term, const Sample& sample,
+                             const Observations& observed) const {
     const auto observing = std::count_if(sample.observations.begin(), sample.observations.end(),
                                          [](const Observation& o) { return !o.features.empty(); });
     if (term.options().alone && observing != std::ssize(term.sensors())) return false;
-    std::vector<const PackedObservation*> seen;
-    for (int s : term.sensors()) {
-      const auto& observation = packed.seen[static_cast<std::size_t>(s)];
-      if (!observation) return false;
-      seen.push_back(&*observation);
+    for (const int s : term.sensors()) {
+      if (!observed[static_cast<std::size_t>(s)]) return false;
     }
+    const auto seen = observations_of(term, observed);
     if (term.pairs_features() && seen[0]->usable.size() != seen[1]->usable.size()) {
       throw SampleError("error block '" + term.name() + "': sensor '" +
                         model(term.sensors()[0]).sensor().name + "' has " +
@@ -213,23 +200,33 @@ class Problem {
   }
 
   /// What no term looks at needs no evaluation.
-  void forget_unused(PackedSample& packed) const {
+  void forget_unused(SampleShape& shape, Observations& seen) const {
     std::vector<bool> used(sensors_.size(), false);
-    for (const int t : packed.terms) {
+    for (const int t : shape.terms) {
       for (const int s : terms_[static_cast<std::size_t>(t)]->sensors()) {
         used[static_cast<std::size_t>(s)] = true;
       }
     }
+    shape.chains.resize(sensors_.size());
     for (std::size_t s = 0; s < used.size(); ++s) {
-      if (!used[s]) packed.seen[s].reset();
+      if (!used[s]) seen[s].reset();
+      if (seen[s]) shape.chains[s] = seen[s]->chain;
     }
   }
 
-  void add_touched(int s, const PackedObservation& seen, std::set<int>& touched) const {
+  void add_to_packs(SampleShape shape, const Observations& seen) {
+    const auto [known, is_new] = shapes_.try_emplace(std::move(shape), packs_.size());
+    auto& [of_samples, open] = *known;
+    if (!is_new && add_to_pack(packs_[open], num_samples(), seen)) return;
+    open = packs_.size();
+    packs_.push_back(make_pack<S>(of_samples, num_samples(), seen));
+  }
+
+  /// @param chains  of the features that the sensor observed
+  void add_touched(int s, const std::vector<std::size_t>& chains, std::set<int>& touched) const {
     const SensorModel& sensor = model(s);
     touched.insert(sensor.camera_parameters().begin(), sensor.camera_parameters().end());
-    for (std::size_t c = 0; c < seen.motions.size(); ++c) {
-      if (!seen.motions[c]) continue;
+    for (const std::size_t c : chains) {
       for (const JointIndices& joint : sensor.parameters()[c]) {
         touched.insert(joint.offset);
         touched.insert(joint.frame.begin(), joint.frame.end());
@@ -242,9 +239,15 @@ class Problem {
   ParameterTable table_;
   std::set<std::string> frames_;
   std::vector<SensorModel> sensors_;
-  std::vector<std::unique_ptr<Term>> terms_;
+  std::vector<std::unique_ptr<Term<S>>> terms_;
   std::vector<PriorTerm> priors_;
-  std::vector<PackedSample> samples_;
+  int residuals_ = 0;                           ///< of all features
+  std::vector<std::string> sources_;            ///< of each sample
+  std::map<SampleShape, std::size_t> shapes_;   ///< and the pack of each that is not full
+  std::vector<PackedSample<S>> packs_;
 };
+
+/// A problem evaluated in packets of the instruction set compiled for.
+using Problem = BasicProblem<Packet>;
 
 }  // namespace kinecal

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -15,27 +16,15 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/crate/packed_sample.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
 
 /// A sample that cannot be used with this robot and these sensors.
 struct SampleError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
-};
-
-/// What one sensor observed in one sample.
-struct PackedObservation {
-  std::vector<Vector3<double>> measured;  ///< chain3d: point, metres; camera3d: (u, v, z0);
-                                          ///< camera2d: (u, v, 0)
-  std::vector<bool> usable;               ///< false: not a number; left out everywhere
-  std::vector<std::size_t> chain;         ///< on which chain of the sensor each feature hangs
-  std::vector<std::optional<std::vector<Motion<double>>>> motions;  ///< of each chain's joints,
-                                                                    ///< where a feature hangs on it
-  DepthCamera depth_camera{};                                       ///< as recorded, camera3d only
-  PinholeCamera pinhole_camera{};                                   ///< as recorded, camera2d only
 };
 
 class SensorModel {
@@ -67,8 +56,9 @@ class SensorModel {
   [[nodiscard]] const std::vector<int>& camera_parameters() const { return camera_parameters_; }
 
   /// @throws SampleError  naming what is missing or wrong
-  [[nodiscard]] PackedObservation pack(const Sample& sample, const Observation& observation) const {
-    PackedObservation packed;
+  [[nodiscard]] PackedObservation<double> pack(const Sample& sample,
+                                               const Observation& observation) const {
+    PackedObservation<double> packed;
     packed.motions.resize(chains_.size());
     if (sensor_.type != SensorType::chain3d) pack_camera(observation, packed);
     for (const Feature& feature : observation.features) {
@@ -76,10 +66,10 @@ class SensorModel {
       if (!packed.motions[chain]) packed.motions[chain] = motions(sample, chains_[chain]);
       const bool usable = feature.point.allFinite();
       packed.chain.push_back(chain);
-      packed.usable.push_back(usable);
-      packed.measured.push_back(usable ? measurement(feature.point, packed)
-                                       : Vector3<double>::Zero());
+      packed.usable.push_back(usable ? 1.0 : 0.0);
+      packed.measured.push_back(usable ? measurement(feature.point, packed) : feature.point);
     }
+    replace_unusable(packed);
     return packed;
   }
 
@@ -117,16 +107,26 @@ class SensorModel {
     });
   }
 
-  void pack_camera(const Observation& observation, PackedObservation& packed) const {
+  /// What is no number has weight zero; it must be a number for that.
+  static void replace_unusable(PackedObservation<double>& packed) {
+    const auto first = std::find(packed.usable.begin(), packed.usable.end(), 1.0);
+    if (first == packed.usable.end()) return;  // no error block takes it then
+    const auto stand_in = packed.measured[static_cast<std::size_t>(first - packed.usable.begin())];
+    for (std::size_t i = 0; i < packed.usable.size(); ++i) {
+      if (packed.usable[i] == 0.0) packed.measured[i] = stand_in;
+    }
+  }
+
+  void pack_camera(const Observation& observation, PackedObservation<double>& packed) const {
     if (!observation.camera) {
       throw SampleError("sensor '" + sensor_.name + "' is a camera but has no camera_info");
     }
     const CameraInfo& info = *observation.camera;
     if (sensor_.type == SensorType::camera3d) {
-      const DepthCamera& c = packed.depth_camera = DepthCamera::from(info);
+      const DepthCamera<>& c = packed.depth_camera.emplace(DepthCamera<>::from(info));
       check_numbers({c.fx, c.fy, c.cx, c.cy, c.z_offset, c.z_scaling});
     } else {
-      const PinholeCamera& c = packed.pinhole_camera = PinholeCamera::from(info);
+      const PinholeCamera<>& c = packed.pinhole_camera.emplace(PinholeCamera<>::from(info));
       check_numbers({c.fx, c.fy, c.cx, c.cy, 0.0, 1.0});
       check_distortion(info);
     }
@@ -165,13 +165,13 @@ class SensorModel {
   }
 
   [[nodiscard]] Vector3<double> measurement(const Vector3<double>& point,
-                                            const PackedObservation& packed) const {
+                                            const PackedObservation<double>& packed) const {
     if (sensor_.type != SensorType::camera3d) return point;
     if (point.z() <= 0.0) {
       throw SampleError("sensor '" + sensor_.name + "': a point is behind the camera (z = " +
                         std::to_string(point.z()) + " m)");
     }
-    return packed.depth_camera.measurement(point);
+    return packed.depth_camera->measurement(point);
   }
 
   Sensor sensor_;

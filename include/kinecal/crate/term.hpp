@@ -1,6 +1,7 @@
 // A term of the cost: an error block with the sensors it compares, its weight and its loss.
 //
 // The block is known at compile time, the term hides it: a problem holds terms of different blocks.
+// A term takes a pack of samples at a time, so hiding it costs nothing.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/crate/sensor_view.hpp"
+#include "kinecal/crate/sums.hpp"
 #include "kinecal/errors/error_block.hpp"
 #include "kinecal/errors/loss.hpp"
 #include "kinecal/errors/plane_fit.hpp"
@@ -22,6 +23,10 @@ struct TermOptions {
   bool alone = false;      ///< only samples in which no other sensor observes
   std::string type = {};   ///< for reports: "chain3d_to_chain3d"
   std::string unit = "m";  ///< of the unweighted residual, for reports: "m", "px" or "1"
+
+  [[nodiscard]] Loss loss_for(Losses losses) const {
+    return losses == Losses::convex ? loss.convex() : loss;
+  }
 };
 
 /// Residuals of one term in one sample, features one after the other, and their derivatives.
@@ -35,6 +40,41 @@ struct TermResiduals {
   }
 };
 
+/// Residuals of one term in a pack of samples, and their derivatives.
+template <class S>
+struct PackedRows {
+  /// Features next to each other that hang on the same chains.
+  struct Run {
+    std::size_t features = 0;
+    std::vector<int> columns;  ///< of the whole Jacobian: see local_columns()
+    std::size_t jacobian = 0;  ///< where its values start
+  };
+  std::vector<Run> runs;     ///< the first `num_runs` of them
+  std::size_t num_runs = 0;  ///< (vectors keep their memory for the next pack)
+  std::vector<S> weight;     ///< of each feature: one, or zero where it is missing
+  std::vector<S> residual;   ///< of each feature, unweighted
+  std::vector<S> jacobian;   ///< of each residual, a value for each column of its run
+
+  [[nodiscard]] Run& next_run() {
+    if (num_runs == runs.size()) runs.emplace_back();
+    runs[num_runs].features = 0;
+    return runs[num_runs++];
+  }
+};
+
+/// The normal equations of one term while they are summed.
+template <class S>
+struct TermSums {
+  S twice_cost{0.0};  ///< sum of rho
+  std::vector<std::pair<BodyChains<2>, LocalSums<S>>> by_chains;
+  FeatureGram<S> gram;
+
+  void set_zero() {
+    twice_cost = S(0.0);
+    for (auto& [chains, local] : by_chains) local.set_zero();
+  }
+};
+
 /// At which points derivatives are taken.
 enum class Linearization {
   measured,   ///< those that the sensors saw
@@ -43,8 +83,12 @@ enum class Linearization {
               ///< are taken as they are.
 };
 
+template <class S>
 class Term {
  public:
+  using Views = std::span<const SensorView<S>* const>;
+  using Observations = std::span<const PackedObservation<double>* const>;
+
   Term(std::string name, std::vector<int> sensors, TermOptions options)
       : name_(std::move(name)), sensors_(std::move(sensors)), options_(std::move(options)) {}
   virtual ~Term() = default;
@@ -58,33 +102,18 @@ class Term {
   /// True if feature i of one sensor is compared with feature i of the other.
   [[nodiscard]] virtual bool pairs_features() const = 0;
   /// Features that can be compared, given what the sensors observed.
-  [[nodiscard]] virtual int count(std::span<const PackedObservation* const> seen) const = 0;
+  [[nodiscard]] virtual int count(Observations seen) const = 0;
   /// Why the block cannot take these observations of one sample; empty if it can.
-  [[nodiscard]] virtual std::string why_not(
-      std::span<const PackedObservation* const> seen) const = 0;
-  /// @param columns  number of free parameters; -1: no derivatives
-  /// @returns  false where the residual is not defined (a point behind a camera)
-  [[nodiscard]] virtual bool evaluate(std::span<const SensorView* const> views, int columns,
-                                      Linearization at, TermResiduals& out) const = 0;
+  [[nodiscard]] virtual std::string why_not(Observations seen) const = 0;
 
- protected:
-  /// Indices of the features that all sensors have.
-  [[nodiscard]] static std::vector<std::size_t> usable(
-      std::span<const PackedObservation* const> seen) {
-    std::vector<std::size_t> indices;
-    for (std::size_t i = 0; i < seen[0]->usable.size(); ++i) {
-      bool all = true;
-      for (const PackedObservation* o : seen) all = all && o->usable[i];
-      if (all) indices.push_back(i);
-    }
-    return indices;
-  }
-
-  [[nodiscard]] static std::vector<std::size_t> usable(std::span<const SensorView* const> views) {
-    std::vector<const PackedObservation*> seen;
-    for (const SensorView* view : views) seen.push_back(&view->observation());
-    return usable(seen);
-  }
+  /// Adds the cost of a pack of samples; not finite where a residual is not defined (a point behind
+  /// a camera).
+  virtual void add_cost(Views views, const Loss& loss, TermSums<S>& sums) const = 0;
+  /// Adds the cost and the normal equations of a pack of samples.
+  virtual void add_normal_equations(Views views, const Loss& loss, TermSums<S>& sums) const = 0;
+  /// @param derivatives  the Jacobian, too
+  virtual void evaluate(Views views, bool derivatives, Linearization at,
+                        PackedRows<S>& out) const = 0;
 
  private:
   std::string name_;
@@ -92,32 +121,4 @@ class Term {
   TermOptions options_;
 };
 
-namespace detail {
-
-/// Three jets for a point, whose variables start at `first`.
-template <class J>
-[[nodiscard]] Vector3<J> point_jets(const Vector3<double>& p, int first) {
-  return {J(p.x(), first), J(p.y(), first + 1), J(p.z(), first + 2)};
-}
-
-/// Values of a residual, and derivatives of its rows with respect to `Width` variables from
-/// `first`.
-template <int M, class S>
-[[nodiscard]] Eigen::Matrix<double, M, 1> values(const Eigen::Matrix<S, M, 1>& r) {
-  Eigen::Matrix<double, M, 1> result;
-  for (int i = 0; i < M; ++i) result(i) = value_of(r(i));
-  return result;
-}
-
-template <int Width, int M, class J>
-[[nodiscard]] Eigen::Matrix<double, M, Width> derivatives(const Eigen::Matrix<J, M, 1>& r,
-                                                          int first) {
-  Eigen::Matrix<double, M, Width> result;
-  for (int i = 0; i < M; ++i) {
-    result.row(i) = r(i).v.template segment<Width>(first).transpose();
-  }
-  return result;
-}
-
-}  // namespace detail
 }  // namespace kinecal

@@ -18,6 +18,9 @@
 //   (point, point)       the same feature seen by two sensors, both in the base
 //   (sight)              a feature of one sensor as another, a pinhole camera, sees it
 //   (plane, plane)       the planes through all features of two sensors, in the base
+//
+// The scalar holds one sample for each lane of a packet, so a block does not branch on values: it
+// writes select(x < y, a, b) for x < y ? a : b.  (Planes are compared sample by sample.)
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -35,8 +38,8 @@ template <class S>
 struct Sight {
   Vector3<S> p_camera;          ///< metres, in the camera's optical frame
   std::array<S, 4> parameters;  ///< of the camera: fx fy cx cy, relative
-  PinholeCamera camera;         ///< as recorded
-  Eigen::Vector2d pixel;        ///< observed
+  PinholeCamera<ValueOf<S>> camera;            ///< as recorded
+  Eigen::Matrix<ValueOf<S>, 2, 1> pixel;       ///< observed
 };
 
 /// A plane through points, in the base.
@@ -93,6 +96,11 @@ auto probe(const B& block) {
   }
 }
 }  // namespace detail
+
+/// True for a block that is the difference of its two points, r = p_a - p_b: its derivatives are I
+/// and -I and need not be multiplied with.  Specialized beside such a block.
+template <class B>
+inline constexpr bool kIsDifference = false;
 
 /// Number of residuals for one feature (for one pair of planes).
 template <ErrorBlock B>

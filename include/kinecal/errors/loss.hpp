@@ -13,6 +13,8 @@
 
 #include <cmath>
 
+#include "kinecal/geometry/packet.hpp"
+
 namespace kinecal {
 
 enum class LossType { none, huber, cauchy, tukey };
@@ -21,28 +23,31 @@ struct Loss {
   LossType type = LossType::none;
   double scale = 1.0;  ///< c, in units of the weighted residual
 
+  template <class S>
   struct Value {
-    double rho, derivative;
+    S rho, derivative;
   };
 
   /// @param s  squared norm of one feature's weighted residual
-  [[nodiscard]] Value operator()(double s) const {
-    const double c2 = scale * scale;
+  template <class S>
+  [[nodiscard]] Value<S> operator()(const S& s) const {
+    using std::log1p, std::sqrt;
+    const S c(scale), c2(scale * scale), one(1.0);
     switch (type) {
-      case LossType::huber:
-        if (s <= c2) return {s, 1.0};
-        return {2.0 * scale * std::sqrt(s) - c2, scale / std::sqrt(s)};
+      case LossType::huber: {
+        const S root = sqrt(select(s <= c2, c2, s));  // c where the loss is quadratic
+        return {select(s <= c2, s, S(2.0) * c * root - c2), c / root};
+      }
       case LossType::cauchy:
-        return {c2 * std::log1p(s / c2), 1.0 / (1.0 + s / c2)};
+        return {c2 * log1p(s / c2), one / (one + s / c2)};
       case LossType::tukey: {
-        if (s >= c2) return {c2 / 3.0, 0.0};
-        const double t = 1.0 - s / c2;
-        return {c2 / 3.0 * (1.0 - t * t * t), t * t};
+        const S t = select(s >= c2, S(0.0), one - s / c2);
+        return {c2 / S(3.0) * (one - t * t * t), t * t};
       }
       case LossType::none:
         break;
     }
-    return {s, 1.0};
+    return {s, one};
   }
 
   /// A loss with a single minimum that treats outliers alike: huber in place of cauchy and tukey,

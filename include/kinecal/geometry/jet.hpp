@@ -13,6 +13,8 @@
 #include <cmath>
 #include <concepts>
 
+#include "kinecal/geometry/packet.hpp"
+
 namespace kinecal {
 
 template <class S, int N>
@@ -51,18 +53,27 @@ struct Jet {
   friend Jet operator*(const S& s, const Jet& x) { return x * s; }
   friend Jet operator/(const Jet& x, const S& s) { return x * (S(1.0) / s); }
 
-  friend bool operator==(const Jet& x, const Jet& y) { return x.a == y.a; }
-  friend bool operator<(const Jet& x, const Jet& y) { return x.a < y.a; }
-  friend bool operator>(const Jet& x, const Jet& y) { return x.a > y.a; }
-  friend bool operator<=(const Jet& x, const Jet& y) { return x.a <= y.a; }
-  friend bool operator>=(const Jet& x, const Jet& y) { return x.a >= y.a; }
+  // Of packets, a mask: one answer for each lane; see select() in geometry/packet.hpp.
+  friend auto operator==(const Jet& x, const Jet& y) { return x.a == y.a; }
+  friend auto operator<(const Jet& x, const Jet& y) { return x.a < y.a; }
+  friend auto operator>(const Jet& x, const Jet& y) { return x.a > y.a; }
+  friend auto operator<=(const Jet& x, const Jet& y) { return x.a <= y.a; }
+  friend auto operator>=(const Jet& x, const Jet& y) { return x.a >= y.a; }
 
   friend Jet sqrt(const Jet& x) {
     using std::sqrt;
     const S root = sqrt(x.a);
     return {root, x.v * (S(0.5) / root)};
   }
-  friend Jet abs(const Jet& x) { return x.a < S(0.0) ? -x : x; }
+  friend Jet abs(const Jet& x) { return select(x < Jet(S(0.0)), -x, x); }
+  /// a where the condition holds, else b; lane by lane.
+  template <class Mask>
+  friend Jet select(const Mask& condition, const Jet& a, const Jet& b) {
+    Jet result;
+    result.a = kinecal::select(condition, a.a, b.a);
+    for (int k = 0; k < N; ++k) result.v(k) = kinecal::select(condition, a.v(k), b.v(k));
+    return result;
+  }
   friend Jet sin(const Jet& x) {
     using std::cos, std::sin;
     return {sin(x.a), x.v * cos(x.a)};
@@ -88,12 +99,41 @@ struct Jet {
 };
 
 /// The number itself, or a jet's value.
-[[nodiscard]] inline double value_of(double x) {
+template <class S>
+[[nodiscard]] S value_of(const S& x) {
   return x;
 }
 template <class S, int N>
 [[nodiscard]] S value_of(const Jet<S, N>& x) {
   return x.a;
+}
+
+/// The scalar of measurements beside a residual in S: S itself, or what a jet holds.
+template <class S>
+using ValueOf = decltype(value_of(std::declval<const S&>()));
+
+/// Three jets for a point, whose variables start at `first`.
+template <class J, class S>
+[[nodiscard]] Eigen::Matrix<J, 3, 1> point_jets(const Eigen::Matrix<S, 3, 1>& p, int first) {
+  return {J(p.x(), first), J(p.y(), first + 1), J(p.z(), first + 2)};
+}
+
+/// Values of a residual.
+template <class S, int M>
+[[nodiscard]] auto values_of(const Eigen::Matrix<S, M, 1>& r) {
+  Eigen::Matrix<ValueOf<S>, M, 1> result;
+  for (int i = 0; i < M; ++i) result(i) = value_of(r(i));
+  return result;
+}
+
+/// Derivatives of a residual's rows with respect to `Width` variables from `first`.
+template <int Width, int M, class J>
+[[nodiscard]] auto derivatives_by(const Eigen::Matrix<J, M, 1>& r, int first) {
+  Eigen::Matrix<ValueOf<J>, M, Width> result;
+  for (int i = 0; i < M; ++i) {
+    for (int k = 0; k < Width; ++k) result(i, k) = r(i).v(first + k);
+  }
+  return result;
 }
 
 }  // namespace kinecal

@@ -1,7 +1,8 @@
 // Packets: several doubles in one processor register, as a scalar.
 //
-// The templates of geometry/ and kinematics/ take a packet in place of a double and then evaluate as
-// many samples at once as it has lanes; its width follows the instruction set compiled for.
+// The templates of geometry/, kinematics/ and crate/ take a packet in place of a double and then
+// evaluate as many samples at once as it has lanes; its width follows the instruction set compiled
+// for.  A double is a packet of one lane: what is written with the functions below works for both.
 // Source: Parallelism TS 2, std::experimental::simd.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -12,6 +13,62 @@
 namespace kinecal {
 
 using Packet = std::experimental::native_simd<double>;
+
+namespace detail {
+template <class S>
+struct PacketTraits {
+  static constexpr int kLanes = 1;
+};
+template <class T, class Abi>
+struct PacketTraits<std::experimental::simd<T, Abi>> {
+  static constexpr int kLanes = static_cast<int>(std::experimental::simd<T, Abi>::size());
+};
+}  // namespace detail
+
+/// Number of samples that a scalar holds: one, but for packets.
+template <class S>
+inline constexpr int kLanes = detail::PacketTraits<S>::kLanes;
+
+/// One lane of a packet.
+template <class S>
+[[nodiscard]] double lane(const S& x, [[maybe_unused]] int i) {
+  if constexpr (kLanes<S> == 1) {
+    return static_cast<double>(x);
+  } else {
+    return x[static_cast<std::size_t>(i)];
+  }
+}
+
+template <class S>
+void set_lane(S& x, [[maybe_unused]] int i, double value) {
+  if constexpr (kLanes<S> == 1) {
+    x = S(value);
+  } else {
+    x[static_cast<std::size_t>(i)] = value;
+  }
+}
+
+/// Sum of all lanes.
+template <class S>
+[[nodiscard]] double sum_of_lanes(const S& x) {
+  if constexpr (kLanes<S> == 1) {
+    return static_cast<double>(x);
+  } else {
+    return std::experimental::reduce(x);
+  }
+}
+
+/// a where the condition holds, else b; lane by lane.
+template <class Mask, class S>
+[[nodiscard]] S select(const Mask& condition, const S& a, const S& b) {
+  if constexpr (std::is_same_v<Mask, bool>) {
+    return condition ? a : b;
+  } else {
+    S result = b;
+    std::experimental::where(condition, result) = a;
+    return result;
+  }
+}
 
 }  // namespace kinecal
 
@@ -27,7 +84,7 @@ struct NumTraits<std::experimental::simd<T, Abi>> : GenericNumTraits<T> {
     IsComplex = 0,
     IsInteger = 0,
     IsSigned = 1,
-    RequireInitialization = 1,
+    RequireInitialization = 0,
     ReadCost = 1,
     AddCost = 1,
     MulCost = 1

@@ -85,7 +85,7 @@ inline void add_samples(Problem& problem, std::span<const Sample> samples,
 inline void check_terms(const StepConfig& step, const Problem& problem, Diagnostics& diagnostics) {
   int total = 0;
   for (std::size_t t = 0; t < problem.terms().size(); ++t) {
-    const Term& term = *problem.terms()[t];
+    const auto& term = *problem.terms()[t];
     const auto block = std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
                                     [&](const BlockConfig& b) { return b.name == term.name(); });
     const int count = problem.samples_of(static_cast<int>(t));

@@ -27,15 +27,33 @@
 
 namespace kinecal {
 
+/// A constant pose that knows whether it turns: most origins only shift, a quarter of the work.
+struct ConstantPose : Pose<double> {
+  bool turns = false;
+
+  ConstantPose() = default;
+  ConstantPose(const Pose<double>& pose)  // NOLINT: any pose may be constant
+      : Pose(pose), turns(pose.rotation != Matrix3<double>::Identity()) {}
+};
+
+/// The axis of a frame with which a unit vector is parallel: 0, 1, 2 for x, y, z; -1 for none.
+[[nodiscard]] inline int principal_axis(const Vector3<double>& axis) {
+  for (int i = 0; i < 3; ++i) {
+    if (axis.cwiseAbs() == Vector3<double>::Unit(i)) return i;
+  }
+  return -1;
+}
+
 /// One joint on the way, as the walk needs it.
 struct ChainJoint {
   std::string name;
   JointType type = JointType::fixed;
-  Pose<double> fixed;  ///< constant transform from the previous joint (or the base) to this one
+  ConstantPose fixed;  ///< constant transform from the previous joint (or the base) to this one
   Vector3<double> axis = Vector3<double>::UnitX();
   bool corrected = false;  ///< has a frame correction
   bool reversed = false;   ///< passed from child to parent
   Mimic drive;             ///< whose measured position moves it; itself, unless it mimics
+  int principal = principal_axis(axis);  ///< most axes are: about them only two columns turn
 };
 
 template <std::size_t N = std::dynamic_extent>
@@ -44,7 +62,7 @@ struct Chain {
                                     std::array<ChainJoint, N>>;
   std::string base, tip;
   Joints joints;
-  Pose<double> tail;  ///< constant transform from the last joint to the tip
+  ConstantPose tail;  ///< constant transform from the last joint to the tip
 };
 
 /// Joints from `link` up to the root, the link's own parent joint first.

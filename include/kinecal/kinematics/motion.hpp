@@ -60,4 +60,42 @@ template <class S>
   return pose;
 }
 
+/// rotation = rotation * turn by a motion about any unit axis of its frame.
+template <class S, class U>
+void turn_about(Matrix3<S>& rotation, const Vector3<double>& axis, const Motion<U>& motion) {
+  const Matrix3<U> turn = axis_rotation(axis, motion);
+  for (int row = 0; row < 3; ++row) {
+    const Vector3<S> r = rotation.row(row);
+    for (int c = 0; c < 3; ++c) {
+      rotation(row, c) = r(0) * turn(0, c) + r(1) * turn(1, c) + r(2) * turn(2, c);
+    }
+  }
+}
+
+namespace detail {
+/// About axis K the two other columns turn into each other.
+template <int K, class S, class U>
+void turn_columns(Matrix3<S>& rotation, const Motion<U>& motion) {
+  constexpr int kI = (K + 1) % 3, kJ = (K + 2) % 3;
+  for (int row = 0; row < 3; ++row) {
+    const S x = rotation(row, kI), y = rotation(row, kJ);
+    rotation(row, kI) = x * motion.cos + y * motion.sin;
+    rotation(row, kJ) = y * motion.cos - x * motion.sin;
+  }
+}
+}  // namespace detail
+
+/// The same about one of the axes of its frame: 0, 1, 2 for x, y, z.
+template <class S, class U>
+void turn_about(Matrix3<S>& rotation, int principal, const Motion<U>& motion) {
+  switch (principal) {
+    case 0:
+      return detail::turn_columns<0>(rotation, motion);
+    case 1:
+      return detail::turn_columns<1>(rotation, motion);
+    default:
+      return detail::turn_columns<2>(rotation, motion);
+  }
+}
+
 }  // namespace kinecal

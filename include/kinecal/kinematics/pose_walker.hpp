@@ -10,7 +10,13 @@ template <class S>
 struct PoseWalker {
   Pose<S> pose;  ///< of the frame reached so far, in the base
 
-  void fixed(const Pose<double>& transform) { pose = pose * transform; }
+  void fixed(const ConstantPose& transform) {
+    if (transform.turns) {
+      pose = pose * static_cast<const Pose<double>&>(transform);
+    } else {
+      pose.translation = pose * transform.translation;
+    }
+  }
 
   template <class U>
   void correct(std::size_t, const ChainJoint& joint, const JointCorrection<U>& correction) {
@@ -19,7 +25,23 @@ struct PoseWalker {
 
   template <class U>
   void move(std::size_t, const ChainJoint& joint, const Motion<U>& motion) {
-    pose = pose * joint_pose(joint.type, joint.axis, joint.reversed ? motion.inverse() : motion);
+    if (!turns(joint.type)) {
+      pose.translation += axis(joint) * S(joint.reversed ? U(-motion.position) : motion.position);
+    } else if (joint.principal < 0) {
+      turn_about(pose.rotation, joint.axis, joint.reversed ? motion.inverse() : motion);
+    } else {
+      const bool backwards = joint.reversed != (joint.axis(joint.principal) < 0.0);
+      turn_about(pose.rotation, joint.principal, backwards ? motion.inverse() : motion);
+    }
+  }
+
+  /// A joint's axis in the base, while the walk is in its frame.
+  [[nodiscard]] Vector3<S> axis(const ChainJoint& joint) const {
+    if (joint.principal < 0) return rotated(pose.rotation, joint.axis);
+    const Vector3<S> column = joint.principal == 0   ? pose.rotation.col(0)
+                              : joint.principal == 1 ? pose.rotation.col(1)
+                                                     : pose.rotation.col(2);
+    return joint.axis(joint.principal) < 0.0 ? Vector3<S>(-column) : column;
   }
 };
 

@@ -22,6 +22,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "kinecal/kinematics/pose_walker.hpp"
@@ -39,37 +40,80 @@ struct JointIndices {
 /// How one parameter moves all points behind its joint; in the base, per unit of the parameter.
 template <class S>
 struct Twist {
-  int column;
   Vector3<S> linear, angular;
 
   [[nodiscard]] Vector3<S> velocity(const Vector3<S>& p_base) const {
-    return linear + angular.cross(p_base);
+    const Vector3<S>&v = linear, &w = angular, &p = p_base;
+    return {v.x() + w.y() * p.z() - w.z() * p.y(),  // two fused multiply-adds each
+            v.y() + w.z() * p.x() - w.x() * p.z(), v.z() + w.x() * p.y() - w.y() * p.x()};
   }
 };
 
+/// The twists of a chain.  Those that only shift move all points alike and are kept apart.
+template <class S>
+struct ChainTwists {
+  std::vector<Twist<S>> turns;
+  std::vector<Vector3<S>> shifts;
+};
+
+/// The Jacobian's columns of a chain's twists, in the order in which the walker finds them.
+struct TwistColumns {
+  std::vector<int> turns, shifts;
+
+  template <class S>
+  void resize(ChainTwists<S>& twists) const {
+    twists.turns.resize(turns.size());
+    twists.shifts.resize(shifts.size());
+  }
+};
+
+template <std::size_t N>
+[[nodiscard]] TwistColumns twist_columns(const Chain<N>& chain,
+                                         std::span<const JointIndices> columns) {
+  TwistColumns result;
+  const auto add = [](std::vector<int>& list, int column) {
+    if (column >= 0) list.push_back(column);
+  };
+  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+    const ChainJoint& joint = chain.joints[i];
+    const auto frame = [&] {
+      if (!joint.corrected) return;
+      for (std::size_t k = 0; k < 3; ++k) add(result.shifts, columns[i].frame[k]);
+      for (std::size_t k = 3; k < 6; ++k) add(result.turns, columns[i].frame[k]);
+    };
+    if (!joint.reversed) frame();
+    if (moves(joint.type)) add(turns(joint.type) ? result.turns : result.shifts, columns[i].offset);
+    if (joint.reversed) frame();
+  }
+  return result;
+}
+
+/// Fills the twists of a chain.
 template <class S>
 struct TwistWalker {
   std::span<const JointIndices> columns;  ///< of the free parameters, one per joint of the chain
+  ChainTwists<S>& twists;                 ///< as many as twist_columns() lists
   PoseWalker<S> walker = {};
-  std::vector<Twist<S>> twists = {};
+  std::size_t num_turns = 0, num_shifts = 0;  ///< found so far
 
-  void fixed(const Pose<double>& transform) { walker.fixed(transform); }
+  void fixed(const ConstantPose& transform) { walker.fixed(transform); }
 
   template <class U>
   void correct(std::size_t i, const ChainJoint& joint, const JointCorrection<U>& correction) {
     if (joint.reversed) walker.correct(i, joint, correction);
-    const S sign(joint.reversed ? -1.0 : 1.0);
+    const double sign = joint.reversed ? -1.0 : 1.0;
     const Pose<S>& front = walker.pose;
     const Vector3<S> pivot = front * correction.frame.translation;
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
-      if (const int column = columns[i].frame[axis]; column >= 0) {
-        twists.push_back({column, front.rotation.col(k) * sign, Vector3<S>::Zero()});
+      if (columns[i].frame[axis] >= 0) {
+        Vector3<S>& shift = twists.shifts[num_shifts++];
+        shift = front.rotation.col(k);
+        if (joint.reversed) shift = -shift;
       }
-      if (const int column = columns[i].frame[axis + 3]; column >= 0) {
-        const Vector3<U> turn = correction.left_jacobian.col(k);
-        const Vector3<S> angular = rotated(front.rotation, turn) * sign;
-        twists.push_back({column, pivot.cross(angular), angular});
+      if (columns[i].frame[axis + 3] >= 0) {
+        const Vector3<U> turn = correction.left_jacobian.col(k) * U(sign);
+        set_turn(pivot, rotated(front.rotation, turn));
       }
     }
     if (!joint.reversed) walker.correct(i, joint, correction);
@@ -78,16 +122,38 @@ struct TwistWalker {
   template <class U>
   void move(std::size_t i, const ChainJoint& joint, const Motion<U>& motion) {
     walker.move(i, joint, motion);  // a joint's axis is the same before and after it
-    const int column = columns[i].offset;
-    if (column < 0) return;
-    const S gain(joint.reversed ? -columns[i].gain : columns[i].gain);
-    const Vector3<S> axis = rotated(walker.pose.rotation, joint.axis) * gain;
+    if (columns[i].offset < 0) return;
+    const double gain = joint.reversed ? -columns[i].gain : columns[i].gain;
+    Vector3<S> axis = walker.axis(joint);
+    if (gain != 1.0) axis *= S(gain);
     if (turns(joint.type)) {
-      twists.push_back({column, walker.pose.translation.cross(axis), axis});
+      set_turn(walker.pose.translation, axis);
     } else {
-      twists.push_back({column, axis, Vector3<S>::Zero()});
+      twists.shifts[num_shifts++] = axis;
     }
   }
+
+ private:
+  /// The twist of a turn about an axis through a point.
+  void set_turn(const Vector3<S>& point, const Vector3<S>& axis) {
+    Twist<S>& twist = twists.turns[num_turns++];
+    twist.linear = point.cross(axis);
+    twist.angular = axis;
+  }
 };
+
+/// All twists of a chain with their columns, those that only shift as twists without a turn.
+template <class S>
+[[nodiscard]] std::vector<std::pair<int, Twist<S>>> by_column(const ChainTwists<S>& twists,
+                                                              const TwistColumns& columns) {
+  std::vector<std::pair<int, Twist<S>>> result;
+  for (std::size_t i = 0; i < twists.turns.size(); ++i) {
+    result.emplace_back(columns.turns[i], twists.turns[i]);
+  }
+  for (std::size_t i = 0; i < twists.shifts.size(); ++i) {
+    result.emplace_back(columns.shifts[i], Twist<S>{twists.shifts[i], Vector3<S>::Zero()});
+  }
+  return result;
+}
 
 }  // namespace kinecal

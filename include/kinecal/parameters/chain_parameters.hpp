@@ -43,11 +43,12 @@ template <std::size_t N>
 
 /// Corrections of a chain's joints for the values of all parameters.
 /// @param values  of the whole table, in its order; any scalar
+/// @param corrections  out; keeps its memory from one call to the next
 template <class S>
-[[nodiscard]] Corrections<S> corrections_for(const std::vector<JointIndices>& indices,
-                                             std::span<const S> values) {
+void set_corrections(const std::vector<JointIndices>& indices, std::span<const S> values,
+                     Corrections<S>& corrections) {
   const auto value = [&](int i) { return i < 0 ? S(0.0) : values[static_cast<std::size_t>(i)]; };
-  Corrections<S> corrections(indices.size());
+  corrections.resize(indices.size());
   for (std::size_t j = 0; j < indices.size(); ++j) {
     const JointIndices& joint = indices[j];
     if (joint.offset >= 0) corrections[j].offset = make_motion(S(value(joint.offset) * joint.gain));
@@ -58,6 +59,14 @@ template <class S>
     corrections[j].set_frame({value(f[0]), value(f[1]), value(f[2])},
                              {value(f[3]), value(f[4]), value(f[5])});
   }
+}
+
+/// The same as a new list.
+template <class S>
+[[nodiscard]] Corrections<S> corrections_for(const std::vector<JointIndices>& indices,
+                                             std::span<const S> values) {
+  Corrections<S> corrections;
+  set_corrections(indices, values, corrections);
   return corrections;
 }
 

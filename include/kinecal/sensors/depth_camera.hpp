@@ -9,7 +9,8 @@
 //
 // Parameters, in this order: fx fy cx cy (relative), z_offset (metres), z_scaling (relative).
 // Defined for z > 0.  Source: Fetch paper, III-B; the depth correction is that of the camera
-// driver. SPDX-License-Identifier: Apache-2.0
+// driver.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -18,11 +19,12 @@
 
 namespace kinecal {
 
+template <class Q = double>
 struct DepthCamera {
   static constexpr int kParameters = 6;
 
-  double fx, fy, cx, cy;                   ///< recorded intrinsics, pixels
-  double z_offset = 0.0, z_scaling = 1.0;  ///< recorded depth correction, metres and factor
+  Q fx, fy, cx, cy;                   ///< recorded intrinsics, pixels
+  Q z_offset{0.0}, z_scaling{1.0};  ///< recorded depth correction, metres and factor
 
   [[nodiscard]] static DepthCamera from(const CameraInfo& info) {
     return {info.p[0], info.p[5], info.p[2], info.p[6], info.z_offset, info.z_scaling};
@@ -30,7 +32,7 @@ struct DepthCamera {
 
   /// The pixel and raw depth (u, v, z0) from which a point was recorded; pixels and metres.
   /// @param p  (3) recorded point, metres, in the camera's optical frame
-  [[nodiscard]] Vector3<double> measurement(const Vector3<double>& p) const {
+  [[nodiscard]] Vector3<Q> measurement(const Vector3<Q>& p) const {
     return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy, p.z() / z_scaling - z_offset};
   }
 
@@ -39,11 +41,61 @@ struct DepthCamera {
   /// @param v  (6) parameters in the order above
   /// @returns  (3) metres, in the camera's optical frame
   template <class S>
-  [[nodiscard]] Vector3<S> point(const Vector3<double>& m, const std::array<S, 6>& v) const {
+  [[nodiscard]] Vector3<S> point(const Vector3<Q>& m, const std::array<S, 6>& v) const {
     const S z = (m.z() + v[4]) * (1.0 + v[5]);
     return {(m.x() - cx * (1.0 + v[2])) * z / (fx * (1.0 + v[0])),
             (m.y() - cy * (1.0 + v[3])) * z / (fy * (1.0 + v[1])), z};
   }
+};
+
+/// A depth camera under corrected settings: what is the same for all points of a sample is found
+/// once.
+template <class Q>
+struct CorrectedDepthCamera {
+  /// A point in the optical frame and how each parameter moves it, one column each:
+  /// the first two change x alone, the next two y alone.
+  struct Seen {
+    Vector3<Q> point;
+    Q x_by_fx, y_by_fy, x_by_cx, y_by_cy;
+    Vector3<Q> by_offset, by_scaling;
+  };
+
+  /// @param v  (6) parameters in the order above
+  CorrectedDepthCamera(const DepthCamera<Q>& recorded, const std::array<double, 6>& v)
+      : per_fx_(Q(1.0) / (recorded.fx * Q(1.0 + v[0]))),
+        per_fy_(Q(1.0) / (recorded.fy * Q(1.0 + v[1]))),
+        cx_(recorded.cx),
+        cy_(recorded.cy),
+        v_(v) {}
+
+  /// @param m  (3) pixel and raw depth
+  [[nodiscard]] Vector3<Q> point(const Vector3<Q>& m) const {
+    const Q z = (m.z() + Q(v_[4])) * Q(1.0 + v_[5]);
+    return {slope_x(m) * z, slope_y(m) * z, z};
+  }
+
+  [[nodiscard]] Seen see(const Vector3<Q>& m) const {
+    const Q x = slope_x(m), y = slope_y(m), z0 = m.z() + Q(v_[4]);
+    const Q scale(1.0 + v_[5]), z = z0 * scale, px = x * z, py = y * z;
+    return {{px, py, z},
+            px * Q(-1.0 / (1.0 + v_[0])),
+            py * Q(-1.0 / (1.0 + v_[1])),
+            -(cx_ * per_fx_ * z),
+            -(cy_ * per_fy_ * z),
+            {x * scale, y * scale, scale},
+            {x * z0, y * z0, z0}};
+  }
+
+ private:
+  [[nodiscard]] Q slope_x(const Vector3<Q>& m) const {
+    return (m.x() - cx_ * Q(1.0 + v_[2])) * per_fx_;
+  }
+  [[nodiscard]] Q slope_y(const Vector3<Q>& m) const {
+    return (m.y() - cy_ * Q(1.0 + v_[3])) * per_fy_;
+  }
+
+  Q per_fx_, per_fy_, cx_, cy_;
+  std::array<double, 6> v_;
 };
 
 }  // namespace kinecal

@@ -17,18 +17,19 @@
 
 namespace kinecal {
 
+template <class Q = double>
 struct PinholeCamera {
   static constexpr int kParameters = 4;
 
-  double fx, fy, cx, cy;         ///< pixels
-  std::array<double, 5> d = {};  ///< k1 k2 p1 p2 k3
+  Q fx, fy, cx, cy;         ///< pixels
+  std::array<Q, 5> d = {};  ///< k1 k2 p1 p2 k3
 
   /// A distorted image is described by K and D, a rectified one by P alone.
   [[nodiscard]] static PinholeCamera from(const CameraInfo& info) {
     const bool distorted =
         std::any_of(info.d.begin(), info.d.end(), [](double v) { return v != 0.0; });
-    if (!distorted) return {info.p[0], info.p[5], info.p[2], info.p[6]};
-    PinholeCamera camera{info.k[0], info.k[4], info.k[2], info.k[5]};
+    if (!distorted) return {info.p[0], info.p[5], info.p[2], info.p[6], {}};
+    PinholeCamera camera{info.k[0], info.k[4], info.k[2], info.k[5], {}};
     std::copy_n(info.d.begin(), std::min<std::size_t>(info.d.size(), 5), camera.d.begin());
     return camera;
   }
@@ -42,8 +43,8 @@ struct PinholeCamera {
     const S x = p.x() / p.z(), y = p.y() / p.z();
     const S xx = x * x, yy = y * y, xy = x * y, r2 = xx + yy;
     const S radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-    const S u = x * radial + 2.0 * d[2] * xy + d[3] * (r2 + 2.0 * xx);
-    const S w = y * radial + d[2] * (r2 + 2.0 * yy) + 2.0 * d[3] * xy;
+    const S u = x * radial + 2.0 * (d[2] * xy) + d[3] * (r2 + 2.0 * xx);
+    const S w = y * radial + d[2] * (r2 + 2.0 * yy) + 2.0 * (d[3] * xy);
     return {fx * (1.0 + v[0]) * u + cx * (1.0 + v[2]), fy * (1.0 + v[1]) * w + cy * (1.0 + v[3])};
   }
 };

@@ -23,8 +23,8 @@ enum class SensorType { chain3d, camera3d, camera2d };
 
 /// Number of parameters of the sensor itself: the first so many of kCameraParameters.
 [[nodiscard]] constexpr int sensor_parameters(SensorType type) {
-  if (type == SensorType::camera3d) return DepthCamera::kParameters;
-  return type == SensorType::camera2d ? PinholeCamera::kParameters : 0;
+  if (type == SensorType::camera3d) return DepthCamera<>::kParameters;
+  return type == SensorType::camera2d ? PinholeCamera<>::kParameters : 0;
 }
 
 struct Sensor {

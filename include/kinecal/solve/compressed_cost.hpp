@@ -19,7 +19,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "kinecal/solve/normal_equations.hpp"
+#include "kinecal/crate/evaluate.hpp"
 
 namespace kinecal {
 
@@ -56,12 +56,16 @@ struct EquivalentResidual {
 };
 
 /// The whole problem as one Ceres cost function over the free parameters.
+template <class S>
 class CompressedCost final : public ceres::CostFunction {
  public:
   /// @param values  of all parameters of the problem's table; the free ones are replaced
-  CompressedCost(const Problem& problem, const FreeSet& free, Eigen::VectorXd values,
-                 Losses losses = Losses::as_given)
-      : problem_(problem), free_(free), values_(std::move(values)), losses_(losses) {
+  CompressedCost(const BasicProblem<S>& problem, const FreeSet& free, Eigen::VectorXd values,
+                 Losses losses = Losses::as_given, int threads = 1)
+      : free_(free),
+        values_(std::move(values)),
+        losses_(losses),
+        evaluator_(problem, free, threads) {
     set_num_residuals(free.size() + 1);
     mutable_parameter_block_sizes()->push_back(free.size());
   }
@@ -69,16 +73,13 @@ class CompressedCost final : public ceres::CostFunction {
   /// False where a residual is not defined: Ceres then takes a shorter step.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    Eigen::VectorXd values = values_;
     for (int c = 0; c < free_.size(); ++c) {
-      values(free_.parameters()[static_cast<std::size_t>(c)]) = parameters[0][c];
+      values_(free_.parameters()[static_cast<std::size_t>(c)]) = parameters[0][c];
     }
     const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
-    std::optional<UndefinedResidual> undefined;
-    const NormalEquations normal =
-        normal_equations(problem_, {values.data(), static_cast<std::size_t>(values.size())},
-                         derivatives ? &free_ : nullptr, undefined, losses_);
-    if (undefined || !std::isfinite(normal.cost)) return false;
+    const NormalEquations normal = evaluator_.normal_equations(
+        {values_.data(), static_cast<std::size_t>(values_.size())}, derivatives, losses_);
+    if (!std::isfinite(normal.cost)) return false;
     Eigen::Map<Eigen::VectorXd> r(residuals, free_.size() + 1);
     if (!derivatives) {  // the cost is all that is asked for
       r.setZero();
@@ -93,10 +94,11 @@ class CompressedCost final : public ceres::CostFunction {
   }
 
  private:
-  const Problem& problem_;
+  // Ceres evaluates one cost function on one thread at a time.
   const FreeSet& free_;
-  Eigen::VectorXd values_;
+  mutable Eigen::VectorXd values_;
   Losses losses_;
+  mutable Evaluator<S> evaluator_;
 };
 
 }  // namespace kinecal

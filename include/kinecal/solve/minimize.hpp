@@ -16,11 +16,22 @@
 #include <vector>
 
 #include "kinecal/solve/compressed_cost.hpp"
+#include "kinecal/solve/stacked_cost.hpp"
 
 namespace kinecal {
 
+/// How the samples are given to Ceres: summed (compressed_cost.hpp) or one by one
+/// (stacked_cost.hpp).
+enum class CostForm { compressed, stacked };
+
+[[nodiscard]] constexpr std::string_view to_string(CostForm form) {
+  return form == CostForm::compressed ? "compressed" : "stacked";
+}
+
 struct SolveOptions {
   int max_num_iterations = 1000;
+  CostForm form = CostForm::compressed;
+  int threads = 0;  ///< zero: one for each core; the result does not depend on it
   /// Called after each iteration with its number and cost.
   std::function<void(int iteration, double cost)> progress = {};
 };
@@ -63,6 +74,7 @@ struct Minimum {
   bool usable = false, converged = false;
   std::string message;  ///< of the last run
   int iterations = 0;   ///< of all runs
+  int evaluations = 0;  ///< of all samples, of all runs
   double seconds = 0.0;
 };
 
@@ -77,15 +89,23 @@ inline void set_bounds(ceres::Problem& problem, const ParameterTable& table, con
 
 /// One run of Ceres over the free parameters.
 /// @param values  in: where to start; out: where it ended, if that is usable
-inline void run_ceres(const Problem& problem, const FreeSet& free, Eigen::VectorXd& values,
-                      const SolveOptions& options, Losses losses, Minimum& minimum) {
-  CompressedCost cost(problem, free, values, losses);
+template <class S>
+void run_ceres(const BasicProblem<S>& problem, const FreeSet& free, Eigen::VectorXd& values,
+               const SolveOptions& options, Losses losses, Minimum& minimum) {
   std::vector<double> x;
   for (int p : free.parameters()) x.push_back(values(p));
-  ceres::Problem::Options ownership;
-  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem ceres_problem(ownership);
-  ceres_problem.AddResidualBlock(&cost, nullptr, x.data());
+  ceres::Problem::Options problem_options;
+  std::optional<StackedResiduals<S>> stack;
+  if (options.form == CostForm::stacked) {
+    problem_options.evaluation_callback = &stack.emplace(problem, free, values, x.data(), losses);
+  }
+  ceres::Problem ceres_problem(problem_options);
+  if (stack) {
+    stack->add_to(ceres_problem, x.data());
+  } else {
+    ceres_problem.AddResidualBlock(
+        new CompressedCost<S>(problem, free, values, losses, options.threads), nullptr, x.data());
+  }
   set_bounds(ceres_problem, problem.table(), free, x.data());
   ceres::Solver::Options solver = ceres_options(options);
   ProgressCallback progress(options);
@@ -96,6 +116,8 @@ inline void run_ceres(const Problem& problem, const FreeSet& free, Eigen::Vector
   minimum.converged = summary.termination_type == ceres::CONVERGENCE;
   minimum.message = summary.message;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  minimum.evaluations +=
+      summary.num_residual_evaluations + summary.num_jacobian_evaluations;
   minimum.seconds += summary.total_time_in_seconds;
   if (!minimum.usable) return;
   for (int c = 0; c < free.size(); ++c) {
@@ -104,11 +126,11 @@ inline void run_ceres(const Problem& problem, const FreeSet& free, Eigen::Vector
 }
 
 /// The free parameters that are not held by a bound beyond which the cost would fall.
-[[nodiscard]] inline std::vector<int> within_bounds(const Problem& problem, const FreeSet& free,
-                                                    const Eigen::VectorXd& values, Losses losses) {
-  std::optional<UndefinedResidual> undefined;
+template <class S>
+[[nodiscard]] std::vector<int> within_bounds(const BasicProblem<S>& problem, const FreeSet& free,
+                                             const Eigen::VectorXd& values, Losses losses) {
   const NormalEquations normal = normal_equations(
-      problem, {values.data(), static_cast<std::size_t>(values.size())}, &free, undefined, losses);
+      problem, {values.data(), static_cast<std::size_t>(values.size())}, &free, losses);
   std::vector<int> inside;
   for (int c = 0; c < free.size(); ++c) {
     const int index = free.parameters()[static_cast<std::size_t>(c)];
@@ -125,9 +147,10 @@ inline void run_ceres(const Problem& problem, const FreeSet& free, Eigen::Vector
 
 /// Minimizes over the free parameters, within their bounds.
 /// @param values  in: where to start; out: where it ended, if that is usable
-[[nodiscard]] inline Minimum minimize(const Problem& problem, const FreeSet& free,
-                                      Eigen::VectorXd& values, const SolveOptions& options,
-                                      Losses losses) {
+template <class S>
+[[nodiscard]] Minimum minimize(const BasicProblem<S>& problem, const FreeSet& free,
+                               Eigen::VectorXd& values, const SolveOptions& options,
+                               Losses losses) {
   Minimum minimum;
   const Eigen::VectorXd start = values;
   run_ceres(problem, free, values, options, losses, minimum);

@@ -20,21 +20,14 @@ struct StepResult {
   double initial_cost = 0.0, final_cost = 0.0;  ///< 1/2 sum rho(|w r|^2)
   double seconds = 0.0;
   int num_residuals = 0, num_parameters = 0;
+  CostForm form = CostForm::compressed;  ///< which path ran
+  int samples = 0, evaluations = 0;      ///< evaluations of all samples, by Ceres
 };
 
 namespace detail {
 
-/// Number of residuals of a problem, priors counted once for each sample.
-[[nodiscard]] inline int count_residuals(const Problem& problem, std::span<const double> values) {
-  Eigen::Index rows = 0;
-  (void)problem.evaluate(values, nullptr, [&](int, int, const TermResiduals& residuals) {
-    rows += residuals.residual.size();
-  });
-  rows += static_cast<Eigen::Index>(problem.priors().size()) * Prior::kRows * problem.num_samples();
-  return static_cast<int>(rows);
-}
-
-[[nodiscard]] inline bool all_losses_convex(const Problem& problem) {
+template <class S>
+[[nodiscard]] bool all_losses_convex(const BasicProblem<S>& problem) {
   bool convex = true;
   for (const auto& term : problem.terms()) convex = convex && term->options().loss.is_convex();
   for (const PriorTerm& prior : problem.priors()) {
@@ -45,8 +38,10 @@ namespace detail {
 
 /// The name of a term whose loss leaves out half of its features or more; empty if there is none.
 /// Such a "minimum" is a plateau.
-[[nodiscard]] inline std::string mostly_left_out(const Problem& problem,
-                                                 std::span<const double> values) {
+template <class S>
+[[nodiscard]] std::string mostly_left_out(const BasicProblem<S>& problem,
+                                          std::span<const double> values) {
+  if (all_losses_convex(problem)) return {};
   const auto norms = feature_norms(problem, values);
   for (std::size_t t = 0; t < norms.size(); ++t) {
     const TermOptions& options = problem.terms()[t]->options();
@@ -71,17 +66,20 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
 }
 
 /// Costs and counts at the start; false, with the reason, if there is nothing to solve.
-inline bool start(const Problem& problem, std::span<const double> values, StepResult& result) {
-  std::optional<UndefinedResidual> undefined;
-  result.initial_cost = normal_equations(problem, values, nullptr, undefined).cost;
+template <class S>
+bool start(const BasicProblem<S>& problem, std::span<const double> values, int threads,
+           StepResult& result) {
+  result.initial_cost =
+      normal_equations(problem, values, nullptr, Losses::as_given, threads).cost;
   result.final_cost = result.initial_cost;
+  std::optional<UndefinedResidual> undefined;
+  if (!std::isfinite(result.initial_cost)) undefined = undefined_residual(problem, values);
   if (undefined) {
     result.termination = "failed: the residual of '" + undefined->term +
                          "' is not defined at the start for the sample at " + undefined->source +
                          " (a point behind a camera, or points that span no plane)";
     return false;
   }
-  result.num_residuals = count_residuals(problem, values);
   if (!std::isfinite(result.initial_cost)) {
     result.termination = "failed: the cost at the start is not finite";
   } else if (result.num_residuals < result.num_parameters) {
@@ -101,14 +99,20 @@ inline bool start(const Problem& problem, std::span<const double> values, StepRe
 /// @param free    which parameters may change
 /// @param values  of all parameters of the problem's table: where to start, then where it ended.
 ///                Unchanged if the result is not usable (termination says why).
-[[nodiscard]] inline StepResult solve(const Problem& problem, const FreeSet& free,
-                                      Eigen::VectorXd& values, const SolveOptions& options = {}) {
+template <class S>
+[[nodiscard]] StepResult solve(const BasicProblem<S>& problem, const FreeSet& free,
+                               Eigen::VectorXd& values, const SolveOptions& options = {}) {
   StepResult result;
   result.num_parameters = free.size();
+  // Priors count once for each sample.
+  result.num_residuals = problem.num_residuals() + static_cast<int>(problem.priors().size()) *
+                                                       Prior::kRows * (problem.num_samples() - 1);
+  result.form = options.form;
+  result.samples = problem.num_samples();
   Eigen::VectorXd x = values;
   detail::clamp_to_bounds(problem.table(), free, x);
   const std::span<const double> all(x.data(), static_cast<std::size_t>(x.size()));
-  if (!detail::start(problem, all, result)) return result;
+  if (!detail::start(problem, all, options.threads, result)) return result;
   detail::Minimum first;
   if (!detail::all_losses_convex(problem)) {
     first = detail::minimize(problem, free, x, options, Losses::convex);
@@ -116,12 +120,13 @@ inline bool start(const Problem& problem, std::span<const double> values, StepRe
   const detail::Minimum last = detail::minimize(problem, free, x, options, Losses::as_given);
   result.iterations = first.iterations + last.iterations;
   result.seconds = first.seconds + last.seconds;
-  std::optional<UndefinedResidual> undefined;
-  const double cost = normal_equations(problem, all, nullptr, undefined).cost;
+  result.evaluations = first.evaluations + last.evaluations;
+  const double cost =
+      normal_equations(problem, all, nullptr, Losses::as_given, options.threads).cost;
   constexpr double kRounding = 1e-9;  // a start at the minimum may end a few digits above it
   if (!last.usable) {
     result.termination = "failed: " + last.message;
-  } else if (undefined || !std::isfinite(cost)) {
+  } else if (!std::isfinite(cost)) {
     result.termination = "failed: the cost is not finite";
   } else if (cost > result.initial_cost * (1.0 + kRounding)) {
     result.termination = "failed: the cost did not decrease";

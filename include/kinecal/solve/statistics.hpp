@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/crate/problem.hpp"
+#include "kinecal/crate/evaluate.hpp"
 
 namespace kinecal {
 
@@ -46,10 +46,11 @@ struct BlockStatistics {
 }
 
 /// Norms of the unweighted residuals of every feature, for each term of a problem.
-[[nodiscard]] inline std::vector<std::vector<double>> feature_norms(
-    const Problem& problem, std::span<const double> values) {
+template <class S>
+[[nodiscard]] std::vector<std::vector<double>> feature_norms(const BasicProblem<S>& problem,
+                                                             std::span<const double> values) {
   std::vector<std::vector<double>> norms(problem.terms().size());
-  (void)problem.evaluate(values, nullptr, [&](int t, int, const TermResiduals& residuals) {
+  (void)evaluate(problem, values, nullptr, [&](int t, int, const TermResiduals& residuals) {
     const int size = problem.terms()[static_cast<std::size_t>(t)]->feature_size();
     for (Eigen::Index row = 0; row < residuals.residual.size(); row += size) {
       norms[static_cast<std::size_t>(t)].push_back(residuals.residual.segment(row, size).norm());
@@ -59,14 +60,15 @@ struct BlockStatistics {
 }
 
 /// Statistics of all error blocks and priors of a problem, for two sets of parameter values.
-[[nodiscard]] inline std::vector<BlockStatistics> block_statistics(const Problem& problem,
+template <class S>
+[[nodiscard]] std::vector<BlockStatistics> block_statistics(const BasicProblem<S>& problem,
                                                                    std::span<const double> before,
                                                                    std::span<const double> after) {
   std::vector<BlockStatistics> all;
   const auto norms_before = feature_norms(problem, before);
   const auto norms_after = feature_norms(problem, after);
   for (std::size_t t = 0; t < problem.terms().size(); ++t) {
-    const Term& term = *problem.terms()[t];
+    const Term<S>& term = *problem.terms()[t];
     all.push_back({term.name(), term.options().type, term.options().unit,
                    static_cast<int>(norms_after[t].size()),
                    statistics_of(norms_before[t], term.feature_size()),

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/crate/problem.hpp"
+#include "kinecal/crate/evaluate.hpp"
 
 namespace kinecal {
 
@@ -80,14 +80,15 @@ inline void reduce(Eigen::MatrixXd& basis) {
 }  // namespace detail
 
 /// What the samples of a problem tell about its free parameters, near the given values.
-[[nodiscard]] inline Observability observability(const Problem& problem, const FreeSet& free,
+template <class S>
+[[nodiscard]] Observability observability(const BasicProblem<S>& problem, const FreeSet& free,
                                                  std::span<const double> values) {
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free.size(), free.size());
   const auto add = [&](int t, int, const TermResiduals& out) {
     const double weight = problem.terms()[static_cast<std::size_t>(t)]->options().weight;
     normal.noalias() += weight * weight * out.jacobian.transpose() * out.jacobian;
   };
-  (void)problem.evaluate(values, &free, add, Linearization::error_free);
+  (void)evaluate(problem, values, &free, add, Linearization::error_free);
   const Eigen::VectorXd scale =
       normal.diagonal().unaryExpr([](double d) { return d > 0.0 ? std::sqrt(d) : 1.0; });
   normal = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();

@@ -381,6 +381,29 @@ TEST(ReadSamples, ManyMistakesAreNotToldWithoutEnd) {
   EXPECT_THAT(reading.diagnostics.errors[20], HasSubstr("more than 20 mistakes"));
 }
 
+TEST(ReadSamples, AsManyThreadsAsOneLikesReadTheSame) {
+  const std::string path = ::testing::TempDir() + "read_samples_threads.yaml";
+  {
+    std::ofstream out(path, std::ios::binary);
+    for (int i = 0; i < 5000; ++i) out << kSample;  // several pieces
+    out << kJoints << "---\n" << kSample << ", a\n";
+  }
+  for (const unsigned threads : {0u, 1u, 2u, 7u}) {
+    Diagnostics diagnostics;
+    const std::vector<Sample> samples = read_samples(path, diagnostics, threads);
+    ASSERT_EQ(samples.size(), 5001u) << threads;
+    for (std::size_t i = 0; i < 5000; ++i) {
+      ASSERT_EQ(samples[i].source, path + ":" + std::to_string(5 * i + 1)) << threads;
+    }
+    EXPECT_EQ(samples[5000].source, path + ":25003");
+    EXPECT_THAT(diagnostics.errors,
+                ElementsAre(path + ":25001: sample without 'observations'",
+                            AllOf(StartsWith(path + ":25008: not YAML: "),
+                                  HasSubstr("the last sample begins at line 25003;"))));
+  }
+  std::filesystem::remove(path);
+}
+
 std::vector<Sample> read_set(const char* file) {
   Diagnostics diagnostics;
   auto samples = read_samples((test::data_folder() / file).string(), diagnostics);

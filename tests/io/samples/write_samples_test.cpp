@@ -72,8 +72,10 @@ std::vector<Sample> difficult_samples() {
   const auto number = [&] { return normal(random) * std::pow(10.0, 8.0 * normal(random)); };
   std::vector<Sample> samples(50);
   for (Sample& sample : samples) {
-    sample.joint_names = {"pan_joint", "with space", "off", "/ns/tilt: 2", "7"};
-    for (std::size_t i = 0; i < 5; ++i) sample.joint_positions.push_back(number());
+    sample.joint_names = {"pan_joint", "with space",
+                          "off",       "/ns/tilt: 2",
+                          "7",         "\xc2\x85\xe2\x80\xa8\x7f\xc2\x80\xef\xbb\xbf\xc3\xa9"};
+    for (std::size_t i = 0; i < 6; ++i) sample.joint_positions.push_back(number());
     CameraInfo camera;
     camera.width = 640;
     camera.height = 480;

@@ -124,6 +124,12 @@ TEST(YamlText, NamesReadBackAsTheSameString) {
   }
 }
 
+TEST(YamlText, LineBreaksAndControlsOfUnicodeAreEscaped) {
+  const std::string name = "a\xc2\x85\xe2\x80\xa8\xe2\x80\xa9\xef\xbb\xbf\xc3\x85\xc2\xa0";
+  EXPECT_EQ(name_to_yaml(name), "\"a\\x85\\u2028\\u2029\\ufeff\xc3\x85\xc2\xa0\"");
+  EXPECT_EQ(YAML::Load(name_to_yaml(name)).as<std::string>(), name);
+}
+
 TEST(YamlText, NamesAreQuotedOnlyWhereAnotherReaderCouldMistakeThem) {
   EXPECT_EQ(name_to_yaml("shoulder_pan_joint"), "shoulder_pan_joint");
   EXPECT_EQ(name_to_yaml("off"), "\"off\"");

@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/samples/sample_camera.hpp"
@@ -21,7 +24,8 @@ namespace kinecal::detail {
 
 class SampleBuilder {
  public:
-  SampleBuilder(const std::string& file, Diagnostics& diagnostics) : errors_{file, diagnostics} {}
+  /// @param file  as Sample::source names it
+  explicit SampleBuilder(std::string file) : file_(std::move(file)) {}
 
   [[nodiscard]] Sample take() { return std::move(sample_); }
   [[nodiscard]] SampleErrors& errors() { return errors_; }
@@ -32,7 +36,9 @@ class SampleBuilder {
     if (node == SampleNode::sample) {
       line_ = line;
       sample_ = {};
-      sample_.source = Place{errors_.file, line}.str();
+      sample_.joint_names.reserve(joints_);
+      sample_.joint_positions.reserve(joints_);
+      sample_.source = Place{file_, line}.str();
     } else if (node == SampleNode::observation) {
       sample_.observations.emplace_back();
       camera_ = {};
@@ -50,9 +56,9 @@ class SampleBuilder {
     if (node == SampleNode::parameter) camera_.end_parameter(errors_);
   }
 
-  void scalar(SampleNode node, int line, const std::string& text) {
+  void scalar(SampleNode node, int line, std::string_view text) {
     if (node == SampleNode::joint_name) {
-      sample_.joint_names.push_back(text);
+      sample_.joint_names.emplace_back(text);
     } else if (node == SampleNode::sensor) {
       observation().sensor = text;
     } else if (node == SampleNode::frame) {
@@ -86,10 +92,11 @@ class SampleBuilder {
 
   void check_joints(int line) {
     const std::size_t names = sample_.joint_names.size(), values = sample_.joint_positions.size();
+    joints_ = names;
     if (names != values) {
       errors_.add(line, fmt::format("joint_states: {} names but {} positions", names, values));
     }
-    std::vector<std::string> sorted = sample_.joint_names;
+    std::vector<std::string_view> sorted(sample_.joint_names.begin(), sample_.joint_names.end());
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
     if (twice != sorted.end()) {
@@ -99,16 +106,20 @@ class SampleBuilder {
 
   void end_observation(int line) {
     const std::string& name = observation().sensor;
-    const std::string where = fmt::format("sample at line {}, sensor {}", line_, shown(name));
+    const auto where = [&] {
+      return fmt::format("sample at line {}, sensor {}", line_, shown(name));
+    };
     const auto same = [&](const Observation& o) { return o.sensor == name; };
     if (std::any_of(sample_.observations.begin(), sample_.observations.end() - 1, same)) {
-      errors_.add(line, where + " occurs twice");
+      errors_.add(line, where() + " occurs twice");
     }
     observation().camera = camera_.take(line, where, errors_);
   }
 
+  std::string file_;
   SampleErrors errors_;
-  int line_ = 0;  ///< where the sample begins
+  int line_ = 0;            ///< where the sample begins
+  std::size_t joints_ = 0;  ///< of the last sample; the next one has as many
   Sample sample_;
   SampleCamera camera_;
 };

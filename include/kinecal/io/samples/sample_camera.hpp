@@ -6,32 +6,37 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "kinecal/io/camera_info.hpp"
-#include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/samples/sample_schema.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
 
-/// The mistakes of one file of samples.
+/// What is wrong with a file of samples, or with a piece of it.
 struct SampleErrors {
   /// Told of one file; the rest are usually the same one again.
   static constexpr std::size_t kMost = 20;
 
-  std::string file;
-  Diagnostics& diagnostics;
-  std::size_t count = 0;
+  struct Message {
+    int line;
+    std::string text;
+  };
+  std::vector<Message> errors, warnings;
 
-  void add(int line, const std::string& message) {
-    if (count++ < kMost) diagnostics.error({file, line}, message);
+  [[nodiscard]] bool too_many() const { return errors.size() > kMost; }
+  void add(int line, std::string text) {
+    if (!too_many()) errors.push_back({line, std::move(text)});
   }
+  void warn(int line, std::string text) { warnings.push_back({line, std::move(text)}); }
 };
 
 /// A text of the file as a message shows it: short, and without control characters.
@@ -56,7 +61,7 @@ class SampleCamera {
   }
 
   /// @return  false if this text is not one of the camera's
-  [[nodiscard]] bool text(SampleNode node, int line, const std::string& text) {
+  [[nodiscard]] bool text(SampleNode node, int line, std::string_view text) {
     if (node == SampleNode::parameter_value) {
       parameter_.value = text;
       parameter_.line = line;
@@ -89,19 +94,18 @@ class SampleCamera {
     (offset ? info_.z_offset : info_.z_scaling) = value.value_or(0.0);
   }
 
-  /// @param where  "sample at line 37, sensor 'camera'"
+  /// @param where  tells "sample at line 37, sensor 'camera'"
   /// @return       nothing for a sensor that is no camera, or if a list has the wrong size
-  [[nodiscard]] std::optional<CameraInfo> take(int line, const std::string& where,
-                                               SampleErrors& errors) {
+  template <std::invocable Where>
+  [[nodiscard]] std::optional<CameraInfo> take(int line, const Where& where, SampleErrors& errors) {
     const bool blank = is_blank(info_);
     const bool k = has_size("K", k_, 9, true, where, errors);
     const bool r = has_size("R", r_, 9, true, where, errors);
     const bool p = has_size("P", p_, 12, blank, where, errors);
     if (k && r && blank && (info_.z_offset != 0.0 || info_.z_scaling != 1.0)) {
-      errors.diagnostics.warning({errors.file, line},
-                                 where +
-                                     ": z_offset_mm and z_scaling are not used, because "
-                                     "there is no camera_info or it is all zeros");
+      errors.warn(line, where() +
+                            ": z_offset_mm and z_scaling are not used, because there is no "
+                            "camera_info or it is all zeros");
     }
     if (!k || !r || !p || blank) return std::nullopt;
     return std::move(info_);
@@ -132,11 +136,11 @@ class SampleCamera {
   }
 
   /// @param may_be_empty  whether the list may be empty or missing
+  template <std::invocable Where>
   [[nodiscard]] static bool has_size(const char* name, const List& list, std::size_t size,
-                                     bool may_be_empty, const std::string& where,
-                                     SampleErrors& errors) {
+                                     bool may_be_empty, const Where& where, SampleErrors& errors) {
     if (list.size == size || (list.size == 0 && may_be_empty)) return true;
-    errors.add(list.line, fmt::format("{}: {} of camera_info has {} numbers, not {}", where, name,
+    errors.add(list.line, fmt::format("{}: {} of camera_info has {} numbers, not {}", where(), name,
                                       list.size, size));
     return false;
   }

@@ -6,83 +6,75 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/exceptions.h>
-#include <yaml-cpp/mark.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "kinecal/io/samples/sample_builder.hpp"
 #include "kinecal/io/samples/sample_schema.hpp"
-#include "kinecal/io/yaml/yaml_documents.hpp"
+#include "kinecal/io/yaml/yaml_events.hpp"
 
 namespace kinecal::detail {
 
-class SampleHandler final : public YAML::EventHandler {
+class SampleHandler {
  public:
-  SampleHandler(const std::string& file, Diagnostics& diagnostics) : builder_(file, diagnostics) {}
+  /// @param file  as Sample::source names it
+  explicit SampleHandler(std::string file) : builder_(std::move(file)) {}
 
   [[nodiscard]] std::vector<Sample> take() { return std::move(samples_); }
   [[nodiscard]] SampleBuilder& builder() { return builder_; }
   [[nodiscard]] bool last_document_is_empty() const { return last_document_is_empty_; }
 
-  /// @throws YAML::ParserException  where the parser does not move on: before a stray ',' or ']' it
-  ///                                finds empty documents without end
-  void OnDocumentStart(const YAML::Mark& mark) override {
-    progress_.document_starts(mark);
+  void document_starts() {
     levels_.clear();
     skipped_ = 0;
     last_document_is_empty_ = false;
-    errors_before_ = builder_.errors().count;
+    errors_before_ = builder_.errors().errors.size();
   }
-  void OnDocumentEnd() override {}
 
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
+  void null(int line) {
     if (levels_.empty() && skipped_ == 0) {
       last_document_is_empty_ = true;
       return;
     }
-    // The parser has moved on to what follows; the key is what the user looks for.
+    // The parser may have moved on to what follows; the key is what the user looks for.
     const bool is_value = !levels_.empty() && levels_.back().is_map && !at_key();
-    const int line = is_value ? key_line_ : mark.line + 1;
     const SampleNode node = next_node();
-    if (node != SampleNode::unknown) null(node, line);
+    if (node != SampleNode::unknown) null(node, is_value ? key_line_ : line);
   }
 
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    if (skipped_ > 0) return;
+  void alias(int line) {
     const SampleNode node = next_node();
     if (node == SampleNode::unknown) return;
-    error(node, mark, "an alias (*) is not supported here; write the value in its place");
+    error(node, line, "an alias (*) is not supported here; write the value in its place");
   }
 
-  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
-                const std::string& text) override {
+  void scalar(int line, std::string_view text) {
     if (skipped_ > 0) return;
-    if (at_key()) return key(mark, text);
+    if (at_key()) return key(line, text);
     const SampleNode node = next_node();
     if (node == SampleNode::unknown) return;
     if (sample_rule(node).kind == SampleNodeKind::scalar) {
-      builder_.scalar(node, mark.line + 1, text);
+      builder_.scalar(node, line, text);
     } else {
-      error(node, mark, fmt::format("{} is not a {}", shown(text), kind_name(node)));
+      error(node, line, fmt::format("{} is not a {}", shown(text), kind_name(node)));
     }
   }
 
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {
-    start(mark, SampleNodeKind::list);
-  }
-  void OnSequenceEnd() override { finish(); }
+  void list_starts(int line) { start(line, SampleNodeKind::list); }
+  void map_starts(int line) { start(line, SampleNodeKind::map); }
 
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {
-    start(mark, SampleNodeKind::map);
+  void ends() {
+    if (skipped_ > 0) {
+      --skipped_;
+    } else {
+      finish();
+    }
   }
-  void OnMapEnd() override { finish(); }
 
  private:
   struct Level {
@@ -108,56 +100,56 @@ class SampleHandler final : public YAML::EventHandler {
     return std::exchange(value_node_, SampleNode::unknown);
   }
 
-  void key(const YAML::Mark& mark, const std::string& text) {
+  void key(int line, std::string_view text) {
     Level& level = levels_.back();
     level.at_key = false;
-    key_line_ = mark.line + 1;
+    key_line_ = line;
     value_node_ = text.empty() ? SampleNode::unknown : sample_child(level.node, text);
     if (value_node_ == SampleNode::unknown) return;
     if ((seen_ & sample_bit(value_node_)) != 0) {
-      error(level.node, mark,
+      error(level.node, line,
             fmt::format("key '{}' occurs twice; is a '---' missing between samples?", text));
     }
     seen_ |= sample_bit(value_node_);
   }
 
-  void start(const YAML::Mark& mark, SampleNodeKind kind) {
+  void start(int line, SampleNodeKind kind) {
     const SampleNode node = next_node();
     if (node == SampleNode::unknown || sample_rule(node).kind != kind) {
       ++skipped_;
       if (node != SampleNode::unknown) {
-        error(node, mark,
+        error(node, line,
               fmt::format("a {} stands here, not a {}",
                           kind == SampleNodeKind::map ? "map" : "list", kind_name(node)));
       }
       return;
     }
-    begin(node, mark.line + 1);
+    begin(node, line);
   }
 
   void begin(SampleNode node, int line) {
-    seen_ &= ~sample_children(node);
+    seen_ &= ~sample_children(node).bits;
     const bool is_map = sample_rule(node).kind == SampleNodeKind::map;
     levels_.push_back({node, is_map, is_map, line});
     builder_.begin(node, line);
   }
 
   void finish() {
-    if (skipped_ > 0) {
-      --skipped_;
-      return;
-    }
     const Level level = levels_.back();
     levels_.pop_back();
+    if ((sample_children(level.node).required & ~seen_) != 0) tell_missing(level);
+    builder_.end(level.node, level.line);
+    if (level.node == SampleNode::sample && builder_.errors().errors.size() == errors_before_) {
+      samples_.push_back(builder_.take());
+    }
+  }
+
+  void tell_missing(const Level& level) {
     for (const SampleNodeRule& r : kSampleNodeRules) {
       if (r.required && r.parent == level.node && (seen_ & sample_bit(r.node)) == 0) {
         builder_.errors().add(level.line,
                               fmt::format("{} without '{}'", sample_name(level.node), r.key));
       }
-    }
-    builder_.end(level.node, level.line);
-    if (level.node == SampleNode::sample && builder_.errors().count == errors_before_) {
-      samples_.push_back(builder_.take());
     }
   }
 
@@ -168,8 +160,8 @@ class SampleHandler final : public YAML::EventHandler {
     finish();
   }
 
-  void error(SampleNode node, const YAML::Mark& mark, const std::string& message) {
-    builder_.errors().add(mark.line + 1, fmt::format("{}: {}", sample_name(node), message));
+  void error(SampleNode node, int line, const std::string& message) {
+    builder_.errors().add(line, fmt::format("{}: {}", sample_name(node), message));
   }
 
   [[nodiscard]] static const char* kind_name(SampleNode node) {
@@ -182,11 +174,12 @@ class SampleHandler final : public YAML::EventHandler {
   std::vector<Level> levels_;
   std::uint64_t seen_ = 0;  ///< keys met in the maps that are open, see sample_bit()
   SampleNode value_node_ = SampleNode::unknown;
-  int key_line_ = 0;  ///< of the last key
-  int skipped_ = 0;   ///< how deep in something unknown
-  YamlProgress progress_;
+  int key_line_ = 0;               ///< of the last key
+  int skipped_ = 0;                ///< how deep in something unknown
   std::size_t errors_before_ = 0;  ///< this document
   bool last_document_is_empty_ = false;
 };
+
+static_assert(YamlHandler<SampleHandler>);
 
 }  // namespace kinecal::detail

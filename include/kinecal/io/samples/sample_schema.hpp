@@ -13,6 +13,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -116,10 +117,40 @@ inline constexpr auto kSampleNodeRules = sample_node_rules();
   return kSampleNodeRules[static_cast<std::size_t>(node)];
 }
 
+/// One bit for each node, to remember which keys of a map were there.
+[[nodiscard]] constexpr std::uint64_t sample_bit(SampleNode node) {
+  return std::uint64_t{1} << static_cast<int>(node);
+}
+
+/// What may stand under a node.
+struct SampleChildren {
+  std::array<SampleNode, 8> nodes{};
+  std::size_t size = 0;
+  std::uint64_t bits = 0, required = 0;  ///< see sample_bit()
+};
+
+/// Found once, because each key of a file is looked up in it.
+inline constexpr auto kSampleChildren = [] {
+  std::array<SampleChildren, kSampleNodeRules.size() + 1> children{};
+  for (const SampleNodeRule& r : kSampleNodeRules) {
+    SampleChildren& c = children[static_cast<std::size_t>(r.parent)];
+    c.nodes[c.size++] = r.node;
+    c.bits |= sample_bit(r.node);
+    if (r.required) c.required |= sample_bit(r.node);
+  }
+  return children;
+}();
+
+[[nodiscard]] constexpr const SampleChildren& sample_children(SampleNode parent) {
+  return kSampleChildren[static_cast<std::size_t>(parent)];
+}
+
 /// The node under `parent` with this key; `unknown` if there is none.  An item of a list: key "".
 [[nodiscard]] constexpr SampleNode sample_child(SampleNode parent, std::string_view key) {
-  for (const SampleNodeRule& r : kSampleNodeRules) {
-    if (r.parent == parent && (r.key == key || (r.other_key == key && !key.empty()))) return r.node;
+  const SampleChildren& children = sample_children(parent);
+  for (std::size_t i = 0; i < children.size; ++i) {
+    const SampleNodeRule& r = sample_rule(children.nodes[i]);
+    if (r.key == key || (r.other_key == key && !key.empty())) return r.node;
   }
   return SampleNode::unknown;
 }
@@ -129,18 +160,6 @@ inline constexpr auto kSampleNodeRules = sample_node_rules();
   if (node == SampleNode::sample) return "sample";
   const SampleNodeRule& r = sample_rule(node);
   return r.key.empty() ? sample_rule(r.parent).key : r.key;
-}
-
-/// One bit for each node, to remember which keys of a map were there.
-[[nodiscard]] constexpr std::uint64_t sample_bit(SampleNode node) {
-  return std::uint64_t{1} << static_cast<int>(node);
-}
-
-[[nodiscard]] constexpr std::uint64_t sample_children(SampleNode parent) {
-  std::uint64_t mask = 0;
-  for (const SampleNodeRule& r : kSampleNodeRules)
-    mask |= r.parent == parent ? sample_bit(r.node) : 0;
-  return mask;
 }
 
 static_assert(

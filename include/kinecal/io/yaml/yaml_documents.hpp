@@ -1,8 +1,7 @@
-// Documents of a YAML file, without the endless loop of yaml-cpp.
+// Documents of a YAML file as nodes, without the endless loop of yaml-cpp.
 //
 // yaml-cpp 0.7 finds empty documents without end before a stray ',' at the start of a document; it
-// does not move on.  Whoever parses by events looks at where each document starts; whoever loads
-// nodes parses the text once before.
+// does not move on.  So the text is parsed once before nodes are made of it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,28 +14,18 @@
 
 namespace kinecal {
 
-/// Notices a parser that does not move on.
-class YamlProgress {
+namespace detail {
+
+/// Listens to nothing but the starts of documents, and notices a parser that does not move on.
+class YamlDocumentStarts final : public YAML::EventHandler {
  public:
-  /// To be called at each start of a document.
-  /// @throws YAML::ParserException  if it starts where the last one did
-  void document_starts(const YAML::Mark& mark) {
+  /// @throws YAML::ParserException  if a document starts where the last one did
+  void OnDocumentStart(const YAML::Mark& mark) override {
     if (mark.pos <= position_) {
       throw YAML::ParserException(mark, "a character that cannot begin a document");
     }
     position_ = mark.pos;
   }
-
- private:
-  int position_ = -1;
-};
-
-namespace detail {
-
-/// Listens to nothing but the starts of documents.
-class YamlDocumentStarts final : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark& mark) override { progress_.document_starts(mark); }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
   void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
@@ -50,7 +39,7 @@ class YamlDocumentStarts final : public YAML::EventHandler {
   void OnMapEnd() override {}
 
  private:
-  YamlProgress progress_;
+  int position_ = -1;
 };
 
 }  // namespace detail

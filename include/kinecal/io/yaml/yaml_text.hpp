@@ -11,10 +11,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace kinecal {
 
@@ -90,6 +92,22 @@ namespace detail {
   return std::find(kReserved.begin(), kReserved.end(), lower) == kReserved.end();
 }
 
+/// How the first character of a text (UTF-8) is written in double quotes, if not as it is: what
+/// ends a quoted text, and what YAML takes for a line break or refuses.
+/// @return  its size in bytes and the escape; size 0 if it is written as it is
+[[nodiscard]] inline std::pair<std::size_t, std::string> yaml_escape(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (text[0] == '"' || text[0] == '\\') return {1, std::string("\\") + text[0]};
+  if (byte(0) < 0x20 || byte(0) == 0x7f) return {1, fmt::format("\\x{:02x}", byte(0))};
+  if (byte(0) == 0xc2 && text.size() > 1 && byte(1) < 0xa0) {  // U+0080 to U+009f
+    return {2, fmt::format("\\x{:02x}", byte(1))};
+  }
+  if (text.starts_with("\xe2\x80\xa8")) return {3, "\\u2028"};
+  if (text.starts_with("\xe2\x80\xa9")) return {3, "\\u2029"};
+  if (text.starts_with("\xef\xbb\xbf")) return {3, "\\ufeff"};
+  return {};
+}
+
 }  // namespace detail
 
 /// A name (UTF-8) as it is where that is safe, in double quotes with escapes elsewhere.
@@ -97,15 +115,10 @@ namespace detail {
   if (name.empty()) return "''";
   if (detail::is_plain_yaml_word(name)) return std::string(name);
   std::string quoted = "\"";
-  for (const char c : name) {
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      quoted += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-    } else {
-      quoted += c;
-    }
+  while (!name.empty()) {
+    const auto [size, escape] = detail::yaml_escape(name);
+    quoted += size > 0 ? escape : std::string(1, name[0]);
+    name.remove_prefix(size > 0 ? size : 1);
   }
   return quoted + '"';
 }

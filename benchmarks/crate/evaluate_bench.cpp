@@ -34,18 +34,18 @@ struct Work {
 
 double largest_residual(const Work& work) {
   double largest = 0.0;
-  (void)work.problem.evaluate(work.values, nullptr, [&](int, int, const TermResiduals& out) {
+  (void)kinecal::evaluate(work.problem, work.values, nullptr, [&](int, int, const TermResiduals& out) {
     largest = std::max(largest, out.residual.cwiseAbs().maxCoeff());
   });
   return largest;
 }
 
-void evaluate(benchmark::State& state, bool derivatives) {
+void time_evaluation(benchmark::State& state, bool derivatives) {
   const Work work(static_cast<int>(state.range(0)));
   if (largest_residual(work) > 1e-12) state.SkipWithError("residuals are not zero at the truth");
   for (auto _ : state) {
     double sum = 0.0;
-    (void)work.problem.evaluate(work.values, derivatives ? &work.free : nullptr,
+    (void)kinecal::evaluate(work.problem, work.values, derivatives ? &work.free : nullptr,
                                 [&](int, int, const TermResiduals& out) {
                                   sum += out.residual.sum();
                                   benchmark::DoNotOptimize(out.jacobian.data());
@@ -56,12 +56,12 @@ void evaluate(benchmark::State& state, bool derivatives) {
 }
 
 void BM_residuals(benchmark::State& state) {
-  evaluate(state, false);
+  time_evaluation(state, false);
 }
 BENCHMARK(BM_residuals)->Arg(100);
 
 void BM_residuals_and_jacobian(benchmark::State& state) {
-  evaluate(state, true);
+  time_evaluation(state, true);
 }
 BENCHMARK(BM_residuals_and_jacobian)->Arg(100);
 
@@ -83,9 +83,8 @@ BENCHMARK(BM_residuals_and_jacobian_wide_jets)->Arg(100);
 
 void BM_normal_equations(benchmark::State& state) {
   const Work work(static_cast<int>(state.range(0)));
-  std::optional<UndefinedResidual> undefined;
   for (auto _ : state) {
-    NormalEquations sum = normal_equations(work.problem, work.values, &work.free, undefined);
+    NormalEquations sum = normal_equations(work.problem, work.values, &work.free);
     benchmark::DoNotOptimize(sum.hessian.data());
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));

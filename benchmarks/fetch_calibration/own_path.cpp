@@ -1,0 +1,110 @@
+#include "own_path.hpp"
+
+#include "counting.hpp"
+#include "kinecal/errors/point_to_point.hpp"
+#include "kinecal/solve/solve.hpp"
+#include "peak.hpp"
+
+namespace kinecal::bench {
+namespace {
+
+template <class S>
+BasicProblem<S> own_problem(const FetchWork& work, int samples) {
+  BasicProblem<S> problem(work.robot, kBase, work.table, kFreeFrames);
+  problem.add_sensor(work.arm);
+  problem.add_sensor(work.camera);
+  problem.add_block("hand_eye", PointToPoint{}, {work.camera.name, work.arm.name});
+  for (int i = 0; i < samples; ++i) {
+    problem.add_sample(work.samples[static_cast<std::size_t>(i) % work.samples.size()]);
+  }
+  return problem;
+}
+
+FreeSet all_free(const ParameterTable& table) {
+  std::vector<int> all;
+  for (int i = 0; i < table.size(); ++i) all.push_back(i);
+  return FreeSet(all, table.size());
+}
+
+template <class S>
+class OwnPath {
+ public:
+  OwnPath(const FetchWork& work, int samples)
+      : problem_(own_problem<S>(work, samples)),
+        free_(all_free(work.table)),
+        values_(work.initial_values()),
+        evaluator_(problem_, free_) {}
+
+  /// Residuals, and the dense Jacobian, of one pack of samples after the other.
+  void evaluate(Values x, bool jacobian) {
+    evaluator_.for_each_term(x, jacobian, [&](int, const Term<S>& term, auto views, const auto&) {
+      term.evaluate(views, jacobian, Linearization::measured, rows_);
+      detail::hide(rows_);
+    });
+  }
+
+  [[nodiscard]] Sums normal_equations(Values x) {
+    const NormalEquations normal = evaluator_.normal_equations(x);
+    return {normal.cost, normal.gradient, normal.hessian};
+  }
+
+  [[nodiscard]] Stacked stacked(Values x, bool jacobian) {
+    Stacked all{Eigen::VectorXd(problem_.num_residuals()),
+                RowMajor(problem_.num_residuals(), kParameters)};
+    (void)evaluator_.evaluate(x, jacobian, [&](int, int n, const TermResiduals& r) {
+      all.residual.segment<kRows>(kRows * n) = r.residual;
+      if (jacobian) all.jacobian.middleRows<kRows>(kRows * n) = r.jacobian;
+    });
+    return all;
+  }
+
+  [[nodiscard]] Solved solve() {
+    const auto start = std::chrono::steady_clock::now();
+    SolveOptions options;
+    options.threads = 1;
+    Eigen::VectorXd values = values_;
+    const StepResult result = kinecal::solve(problem_, free_, values, options);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    return {seconds.count(), result.final_cost, result.iterations, result.converged, values};
+  }
+
+ private:
+  BasicProblem<S> problem_;
+  FreeSet free_;
+  Eigen::VectorXd values_;
+  Evaluator<S> evaluator_;
+  PackedRows<S> rows_;
+};
+
+/// Operations of one sample, its share of what is done once for all included.
+Flops own_flops(const FetchWork& work) {
+  OwnPath<Counting> path(work, kSamples);
+  const Eigen::VectorXd values = work.timed_values();
+  const Values x(values.data(), kParameters);
+  const auto per_sample = [](const Operations& done) { return double(done.total()) / kSamples; };
+  return {per_sample(operations_of([&] { path.evaluate(x, false); })),
+          per_sample(operations_of([&] { path.evaluate(x, true); })),
+          per_sample(operations_of([&] { (void)path.normal_equations(x); }))};
+}
+
+template <class S>
+Method own_method(const std::string& name, const FetchWork& work, const Flops& flops) {
+  const auto path = std::make_shared<OwnPath<S>>(work, kSamples);
+  return {.name = name,
+          .exact = true,
+          .residuals = [path](Values x) { path->evaluate(x, false); },
+          .residuals_jacobian = [path](Values x) { path->evaluate(x, true); },
+          .normal_equations = [path](Values x) { return path->normal_equations(x); },
+          .stacked = [path](Values x, bool jacobian) { return path->stacked(x, jacobian); },
+          .solve = [&work](int n) { return OwnPath<S>(work, n).solve(); },
+          .flops = flops};
+}
+
+}  // namespace
+
+std::vector<Method> own_methods(const FetchWork& work) {
+  const Flops flops = own_flops(work);
+  return {own_method<double>("scalar", work, flops), own_method<Packet>("packets", work, flops)};
+}
+
+}  // namespace kinecal::bench

@@ -1,0 +1,71 @@
+// The residual of one feature and what changes it, before kinematics enters.
+//
+// Whatever an error block compares, a residual changes only because rigid bodies move (one for each
+// sensor: everything that hangs on its chain) and because cameras are set otherwise:
+//
+//   dr = sum over bodies of  by_body (v, w)  +  sum over camera parameters of  by_camera dk
+//
+// with the twist (v, w) of the body in the base.  A point p with dr = D dp gives by_body =
+// D [I, -[p]x], the row d of D becoming (d, p x d).  The free parameters of a chain come in later,
+// once for all features: see sums.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "kinecal/crate/sensor_view.hpp"
+
+namespace kinecal {
+
+template <class S, int M, int Bodies>
+struct FeatureRows {
+  static constexpr int kMaxCameras = Bodies * DepthCamera<>::kParameters;
+
+  S weight{1.0};  ///< one, or zero where the feature is missing
+  Eigen::Matrix<S, M, 1> residual;
+  std::array<Eigen::Matrix<S, M, 6>, Bodies> by_body;              ///< by linear, by angular
+  std::array<Eigen::Matrix<S, M, 1>, kMaxCameras> by_camera = {};  ///< by each free parameter
+  std::size_t cameras = 0;                                         ///< number of them
+
+  /// Sets the rows of a body: the residual changes by D with a point of it.
+  void set_point(std::size_t body, const Vector3<S>& p, const Eigen::Matrix<S, M, 3>& by_point) {
+    for (int row = 0; row < M; ++row) {
+      const Vector3<S> d = by_point.row(row);
+      by_body[body].row(row) << d.transpose(), p.cross(d).transpose();
+    }
+  }
+
+  /// Sets the columns of the camera that saw the point.
+  /// @param first   where the parameters of that camera start
+  /// @param motion  (3) of the point, by each of them
+  void set_camera(std::size_t first, std::span<const Vector3<S>> motion,
+                  const Eigen::Matrix<S, M, 3>& by_point) {
+    for (std::size_t k = 0; k < motion.size(); ++k) by_camera[first + k] = by_point * motion[k];
+  }
+};
+
+/// The bodies of a feature: on which chain of each sensor of an error block it hangs.
+template <std::size_t Bodies>
+using BodyChains = std::array<std::size_t, Bodies>;
+
+/// Columns of the whole Jacobian that a feature can touch, in this order: those of each body (turns,
+/// then shifts), then those of the cameras.  A parameter that moves both bodies occurs twice.
+template <class S, std::size_t Bodies>
+void local_columns(std::span<const SensorView<S>* const> views, const BodyChains<Bodies>& chains,
+                   std::vector<int>& columns) {
+  columns.clear();
+  const auto append = [&](const std::vector<int>& more) {
+    columns.insert(columns.end(), more.begin(), more.end());
+  };
+  for (std::size_t s = 0; s < Bodies; ++s) {
+    const TwistColumns& twists = views[s]->state().twist_columns[chains[s]];
+    append(twists.turns);
+    append(twists.shifts);
+  }
+  for (const SensorView<S>* view : views) append(view->state().camera_columns);
+}
+
+}  // namespace kinecal
