@@ -40,7 +40,8 @@ Vector3<double> gripper(const Chain<>& chain, const Positions& positions) {
 }
 
 /// The twist of each joint: a walk with a walker that notes how each joint's offset moves the tip.
-std::vector<std::pair<int, Twist<double>>> twists(const Chain<>& chain, const Positions& positions) {
+std::vector<std::pair<int, Twist<double>>> twists(const Chain<>& chain,
+                                                  const Positions& positions) {
   std::vector<JointIndices> columns(chain.joints.size());
   for (std::size_t i = 0; i < columns.size(); ++i) columns[i].offset = static_cast<int>(i);
   const Corrections<double> none(chain.joints.size());

@@ -62,7 +62,7 @@ Sample measure(const Problem& problem, const Eigen::VectorXd& truth, SeededRando
 double rms_mm(const Problem& problem, const Eigen::VectorXd& values) {
   double squares = 0.0;
   (void)evaluate(problem, {values.data(), static_cast<std::size_t>(values.size())}, nullptr,
-                         [&](int, int, const auto& r) { squares += r.residual.squaredNorm(); });
+                 [&](int, int, const auto& r) { squares += r.residual.squaredNorm(); });
   return 1e3 * std::sqrt(squares / problem.num_samples());
 }
 

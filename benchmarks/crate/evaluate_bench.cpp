@@ -34,9 +34,10 @@ struct Work {
 
 double largest_residual(const Work& work) {
   double largest = 0.0;
-  (void)kinecal::evaluate(work.problem, work.values, nullptr, [&](int, int, const TermResiduals& out) {
-    largest = std::max(largest, out.residual.cwiseAbs().maxCoeff());
-  });
+  (void)kinecal::evaluate(work.problem, work.values, nullptr,
+                          [&](int, int, const TermResiduals& out) {
+                            largest = std::max(largest, out.residual.cwiseAbs().maxCoeff());
+                          });
   return largest;
 }
 
@@ -46,10 +47,10 @@ void time_evaluation(benchmark::State& state, bool derivatives) {
   for (auto _ : state) {
     double sum = 0.0;
     (void)kinecal::evaluate(work.problem, work.values, derivatives ? &work.free : nullptr,
-                                [&](int, int, const TermResiduals& out) {
-                                  sum += out.residual.sum();
-                                  benchmark::DoNotOptimize(out.jacobian.data());
-                                });
+                            [&](int, int, const TermResiduals& out) {
+                              sum += out.residual.sum();
+                              benchmark::DoNotOptimize(out.jacobian.data());
+                            });
     benchmark::DoNotOptimize(sum);
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));

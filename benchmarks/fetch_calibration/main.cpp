@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "checks.hpp"
+#include "comparisons.hpp"
 #include "flops.hpp"
 #include "kdl_numeric.hpp"
 #include "own_path.hpp"
@@ -159,6 +160,7 @@ void run(const Options& options) {
     time_solves(methods, n, report.rows);
   }
   print_solves(report, counts);
+  print_comparisons(work, options.rounds, options.most_samples);
   if (!options.json.empty()) write_json(report, options.json);
 }
 

@@ -1,36 +1,18 @@
 #include "own_path.hpp"
 
 #include "counting.hpp"
-#include "kinecal/errors/point_to_point.hpp"
 #include "kinecal/solve/solve.hpp"
+#include "own_problem.hpp"
 #include "peak.hpp"
 
 namespace kinecal::bench {
 namespace {
 
 template <class S>
-BasicProblem<S> own_problem(const FetchWork& work, int samples) {
-  BasicProblem<S> problem(work.robot, kBase, work.table, kFreeFrames);
-  problem.add_sensor(work.arm);
-  problem.add_sensor(work.camera);
-  problem.add_block("hand_eye", PointToPoint{}, {work.camera.name, work.arm.name});
-  for (int i = 0; i < samples; ++i) {
-    problem.add_sample(work.samples[static_cast<std::size_t>(i) % work.samples.size()]);
-  }
-  return problem;
-}
-
-FreeSet all_free(const ParameterTable& table) {
-  std::vector<int> all;
-  for (int i = 0; i < table.size(); ++i) all.push_back(i);
-  return FreeSet(all, table.size());
-}
-
-template <class S>
 class OwnPath {
  public:
   OwnPath(const FetchWork& work, int samples)
-      : problem_(own_problem<S>(work, samples)),
+      : problem_(own_problem<S>(work, work.cycled(samples))),
         free_(all_free(work.table)),
         values_(work.initial_values()),
         evaluator_(problem_, free_) {}

@@ -1,8 +1,10 @@
-#include "kinecal/crate/evaluate.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
+#include "kinecal/crate/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "support/scene.hpp"
 
@@ -131,6 +133,89 @@ TEST(Problem, FeaturesThatAreNoNumbersAreLeftOutEverywhere) {
     EXPECT_TRUE(out.residual.allFinite());
   });
   EXPECT_EQ(rows, 9);
+}
+
+/// Camera against arm, the arm in the image, planes through both, the camera on the ground.
+Problem four_blocks() {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"});
+  problem.add_block("ground", PointToPlane(0, 0, 1, 0), {"camera"});
+  problem.add_prior("restrict", {"camera_joint", 0.0, 1.0, 1.0});
+  return problem;
+}
+
+TEST(Problem, CountsResidualsAndSamplesOfMixedShapesWithMissingFeatures) {
+  const double nan = std::nan("");
+  Problem problem = four_blocks();
+  auto all = samples(6);
+  // Samples: as they are; a feature missing in camera and another in the arm; no arm; no camera;
+  // no feature that camera and arm share; nothing but no-numbers in the eye.
+  all[1].observations[1].features[0].point.x() = nan;
+  all[1].observations[0].features[3].point.z() = nan;
+  all[2].observations.erase(all[2].observations.begin());
+  all[3].observations.erase(all[3].observations.begin() + 1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    all[4].observations[0].features[i].point.setConstant(nan);
+    all[4].observations[1].features[i + 2].point.setConstant(nan);
+  }
+  for (Feature& f : all[5].observations[2].features) f.point.setConstant(nan);
+  for (const Sample& sample : all) problem.add_sample(sample);
+  const int hand_eye = 3 * (4 + 2 + 0 + 0 + 0 + 4);
+  const int reprojection = 2 * (4 + 3 + 0 + 4 + 2 + 0);
+  const int ground = 1 * (4 + 3 + 4 + 0 + 2 + 4);
+  EXPECT_EQ(problem.num_residuals(), hand_eye + reprojection + ground + Prior::kRows);
+  EXPECT_EQ(problem.samples_of(0), 3);
+  EXPECT_EQ(problem.samples_of(1), 4);
+  EXPECT_EQ(problem.samples_of(2), 5);
+  // With another block: hand_eye always; reprojection but for the sample without a camera; ground
+  // but for the one without an arm.
+  EXPECT_EQ(problem.shared_samples(0), 3);
+  EXPECT_EQ(problem.shared_samples(1), 3);
+  EXPECT_EQ(problem.shared_samples(2), 4);
+  EXPECT_EQ(problem.num_samples(), 6);
+
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  std::array<Eigen::Index, 3> rows = {};
+  EXPECT_EQ(evaluate(problem, zero, nullptr,
+                     [&](int t, int, const TermResiduals& out) {
+                       rows[static_cast<std::size_t>(t)] += out.residual.size();
+                     }),
+            std::nullopt);
+  EXPECT_EQ(rows, (std::array<Eigen::Index, 3>{hand_eye, reprojection, ground}));
+}
+
+TEST(Problem, CountsTheSameInPacketsAndInDoubles) {
+  Problem packets = test::scene_problem();
+  BasicProblem<double> numbers = test::scene_problem<double>();
+  packets.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  numbers.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  auto all = samples(7);
+  all[2].observations.pop_back();
+  all[3].observations.erase(all[3].observations.begin());
+  all[5].observations[1].features[2].point.x() = std::nan("");
+  for (const Sample& sample : all) {
+    packets.add_sample(sample);
+    numbers.add_sample(sample);
+  }
+  EXPECT_EQ(packets.num_residuals(), 3 * (6 * 4 - 1));
+  EXPECT_EQ(packets.num_residuals(), numbers.num_residuals());
+  EXPECT_EQ(packets.samples_of(0), numbers.samples_of(0));
+  EXPECT_EQ(packets.touched_parameters(), numbers.touched_parameters());
+  EXPECT_EQ(std::ssize(numbers.packs()), 6 + 1);  // one for the sample that no block takes
+}
+
+/// Packs point into the problem: they go where it goes.
+TEST(Problem, MayBeMoved) {
+  Problem problem = four_blocks();
+  for (const Sample& sample : samples(5)) problem.add_sample(sample);
+  const std::vector<double> x = test::random_values(problem.table(), 0.01, 3);
+  const double cost = normal_equations(problem, x, nullptr).cost;
+  Problem moved = std::move(problem);
+  EXPECT_EQ(normal_equations(moved, x, nullptr).cost, cost);
+  for (const Sample& sample : samples(5)) moved.add_sample(sample);  // its packs take more
+  constexpr double kSums = 1e-13;
+  EXPECT_NEAR(normal_equations(moved, x, nullptr).cost, 2.0 * cost, kSums * cost);
 }
 
 }  // namespace

@@ -111,6 +111,129 @@ TEST(Walk, ReversedChainIsTheInverseAlsoWithCorrections) {
   EXPECT_LE(difference(product, {}), kRounding);
 }
 
+// Axes of the frame: only two columns turn about them.
+
+/// A joint about or along one axis between two origins that turn, and a sibling to walk back from.
+Robot one_joint(JointType type, const Vector3<double>& axis) {
+  using enum JointType;
+  return Robot("one", {{"mount", fixed, "base", "plate", test::origin({1, 2, 3}, {0.3, -0.2, 0.5})},
+                       {"joint", type, "plate", "moved",
+                        test::origin({0.1, -0.2, 0.3}, {-0.4, 0.1, 0.2}), axis},
+                       {"tool", fixed, "moved", "tip", test::origin({0.2, 0, 0.1}, {0, 0.7, 0})}});
+}
+
+struct AxisCase {
+  JointType type;
+  Vector3<double> axis;
+  bool reversed, corrected;
+};
+
+std::vector<AxisCase> axis_cases() {
+  std::vector<AxisCase> cases;
+  using enum JointType;
+  for (const JointType type : {revolute, continuous, prismatic}) {
+    for (int k = 0; k < 3; ++k) {
+      for (const double sign : {1.0, -1.0}) {
+        for (const bool reversed : {false, true}) {
+          for (const bool corrected : {false, true}) {
+            cases.push_back({type, sign * Vector3<double>::Unit(k), reversed, corrected});
+          }
+        }
+      }
+    }
+  }
+  return cases;
+}
+
+/// The chain of a case, offset and correction that are not zero.
+struct AxisChain {
+  Chain<> chain;
+  Corrections<double> corrections;
+
+  explicit AxisChain(const AxisCase& c)
+      : chain(make_chain(one_joint(c.type, c.axis), c.reversed ? "tip" : "base",
+                         c.reversed ? "base" : "tip",
+                         c.corrected ? std::set<std::string>{"joint"} : kNone)),
+        corrections(chain.joints.size()) {
+    corrections[0].offset = make_motion(0.2);
+    if (c.corrected) corrections[0].set_frame({0.01, 0.02, -0.03}, {0.1, -0.3, 0.2});
+  }
+  [[nodiscard]] Pose<double> pose(double position) const {
+    return forward_kinematics(
+        chain, [&](const std::string&) { return position; }, corrections);
+  }
+};
+
+TEST(Walk, AboutAndAlongTheAxesOfTheFrameMatchesTheDefinition) {
+  for (const AxisCase& c : axis_cases()) {
+    const AxisChain of_case(c);
+    ASSERT_EQ(of_case.chain.joints.size(), 1u);
+    ASSERT_GE(of_case.chain.joints[0].principal, 0);
+    ASSERT_EQ(of_case.chain.joints[0].reversed, c.reversed);
+    const Robot robot = one_joint(c.type, c.axis);
+    for (const double q : {-3.1, -0.7, 0.0, 1e-8, 0.4, 2.9}) {
+      Pose<double> motion;
+      if (c.type == JointType::prismatic) {
+        motion.translation = c.axis * (q + 0.2);
+      } else {
+        motion.rotation = exp(Vector3<double>(c.axis * (q + 0.2)));
+      }
+      const Pose<double> there = robot.joint("mount").origin * robot.joint("joint").origin *
+                                 of_case.corrections[0].frame * motion * robot.joint("tool").origin;
+      EXPECT_LE(difference(of_case.pose(q), c.reversed ? there.inverse() : there), kRounding)
+          << to_string(c.type) << " " << c.axis.transpose() << (c.reversed ? " reversed" : "");
+    }
+  }
+}
+
+/// Twists of a chain, a column for the offset and six for the correction.
+std::vector<std::pair<int, Twist<double>>> twists_of(const AxisChain& of_case, double position) {
+  std::vector<JointIndices> columns(1);
+  columns[0].offset = 0;
+  columns[0].gain = -0.5;
+  if (of_case.chain.joints[0].corrected) columns[0].frame = {1, 2, 3, 4, 5, 6};
+  ChainTwists<double> twists;
+  const TwistColumns order = twist_columns(of_case.chain, columns);
+  order.resize(twists);
+  TwistWalker<double> walker{columns, twists};
+  const auto motions =
+      measured_motions(of_case.chain, [&](const std::string&) { return position; });
+  walk(of_case.chain, std::span<const Motion<double>>(motions),
+       std::span<const JointCorrection<double>>(of_case.corrections), walker);
+  EXPECT_LE(difference(walker.walker.pose, of_case.pose(position)), 0.0);
+  return by_column(twists, order);
+}
+
+TEST(Walk, AboutAndAlongTheAxesOfTheFrameIsAsAboutAnyAxis) {
+  for (const AxisCase& c : axis_cases()) {
+    AxisChain any(c);
+    const AxisChain of_frame = any;
+    any.chain.joints[0].principal = -1;
+    for (const double q : {-3.1, 0.0, 0.4}) {
+      EXPECT_LE(difference(any.pose(q), of_frame.pose(q)), kRounding)
+          << to_string(c.type) << " " << c.axis.transpose() << (c.reversed ? " reversed" : "");
+      const auto expected = twists_of(any, q), found = twists_of(of_frame, q);
+      ASSERT_EQ(found.size(), c.corrected ? 7u : 1u);
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].first, expected[i].first);
+        EXPECT_LE((found[i].second.linear - expected[i].second.linear).norm(), kRounding);
+        EXPECT_LE((found[i].second.angular - expected[i].second.angular).norm(), kRounding);
+      }
+    }
+  }
+}
+
+TEST(Walk, TellsTheAxesOfTheFrameFromAllOthers) {
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(principal_axis(Vector3<double>::Unit(k)), k);
+    EXPECT_EQ(principal_axis(-Vector3<double>::Unit(k)), k);
+  }
+  EXPECT_EQ(principal_axis({-0.0, 1.0, -0.0}), 1);
+  EXPECT_EQ(principal_axis({0.0, 0.6, 0.8}), -1);
+  EXPECT_EQ(principal_axis({1e-17, 0.0, 1.0}), -1);
+}
+
 /// The minimal walker of CONCEPTS.md.
 struct Counter {
   int moved = 0;

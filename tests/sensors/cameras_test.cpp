@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "kinecal/geometry/jet.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
@@ -21,6 +23,81 @@ TEST(DepthCamera, FollowsTheDriversDepthFormula) {
       camera.point(Vector3<double>(320, 240, 2.0), std::array<double, 6>{0, 0, 0, 0, 0.01, -0.1});
   EXPECT_LE((p - Vector3<double>(0, 0, 2.01 * 0.9)).norm(), 1e-15);
 }
+
+/// Random settings and measurements: another camera and another pixel in each lane.
+template <class Q>
+struct RandomViews {
+  DepthCamera<Q> camera;
+  Vector3<Q> measured;
+  std::vector<DepthCamera<double>> cameras;
+  std::vector<Vector3<double>> pixels;
+
+  explicit RandomViews(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> focal(400, 600), pixel(0, 500), depth(0.3, 3.0),
+        small(-0.02, 0.02);
+    for (int i = 0; i < kLanes<Q>; ++i) {
+      cameras.push_back({focal(random), focal(random), pixel(random), pixel(random), small(random),
+                         1.0 + small(random)});
+      pixels.push_back(Vector3<double>{pixel(random), pixel(random), depth(random)});
+      set_lane(camera.fx, i, cameras.back().fx);
+      set_lane(camera.fy, i, cameras.back().fy);
+      set_lane(camera.cx, i, cameras.back().cx);
+      set_lane(camera.cy, i, cameras.back().cy);
+      set_lane(camera.z_offset, i, cameras.back().z_offset);
+      set_lane(camera.z_scaling, i, cameras.back().z_scaling);
+      for (int k = 0; k < 3; ++k) set_lane(measured(k), i, pixels.back()(k));
+    }
+  }
+};
+
+/// CorrectedDepthCamera against DepthCamera::point on jets, in each lane.
+template <class Q>
+void expect_the_jets_of_a_depth_camera(const std::array<double, 6>& v, unsigned seed) {
+  constexpr double kRounding = 1e-14;  // a dozen operations on metres, metres per unit
+  const RandomViews<Q> views(seed);
+  const CorrectedDepthCamera<Q> corrected(views.camera, v);
+  const Vector3<Q> point = corrected.point(views.measured);
+  const auto seen = corrected.see(views.measured);
+  using J = Jet<double, 6>;
+  std::array<J, 6> variables;
+  for (std::size_t k = 0; k < 6; ++k) variables[k] = J(v[k], static_cast<int>(k));
+  for (int i = 0; i < kLanes<Q>; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Vector3<double> p = views.cameras[n].point(views.pixels[n], v);
+    const Eigen::Matrix<J, 3, 1> jets = views.cameras[n].point(views.pixels[n], variables);
+    Eigen::Matrix<double, 3, 6> expected, found = Eigen::Matrix<double, 3, 6>::Zero();
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(lane(point(k), i), p(k), kRounding);
+      EXPECT_NEAR(lane(seen.point(k), i), p(k), kRounding);
+      expected.row(k) = jets(k).v.transpose();
+      found(k, 4) = lane(seen.by_offset(k), i);
+      found(k, 5) = lane(seen.by_scaling(k), i);
+    }
+    found(0, 0) = lane(seen.x_by_fx, i);
+    found(1, 1) = lane(seen.y_by_fy, i);
+    found(0, 2) = lane(seen.x_by_cx, i);
+    found(1, 3) = lane(seen.y_by_cy, i);
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), kRounding) << "lane " << i << "\n"
+                                                                   << found << "\njets\n"
+                                                                   << expected;
+  }
+}
+
+class CorrectedDepthCameras : public testing::TestWithParam<unsigned> {};
+
+TEST_P(CorrectedDepthCameras, SeeThePointsOfADepthCameraAndItsDerivatives) {
+  std::array<double, 6> v = {};  // first the settings as recorded
+  if (GetParam() > 0) {
+    std::mt19937 random(GetParam());
+    std::normal_distribution<double> normal(0.0, 0.1);
+    for (double& value : v) value = normal(random);
+  }
+  expect_the_jets_of_a_depth_camera<double>(v, 100 + GetParam());
+  expect_the_jets_of_a_depth_camera<Packet>(v, 200 + GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(AtZeroAndRandom, CorrectedDepthCameras, testing::Range(0u, 20u));
 
 TEST(PinholeCamera, ProjectsWithoutDistortion) {
   const PinholeCamera<> camera{500, 510, 320, 240, {}};

@@ -209,5 +209,86 @@ TEST(Solve, APriorCountsOncePerSampleAndPullsToZero) {
   EXPECT_NEAR(cost / (0.5 * 7 * squares), 1.0, 1e-10);
 }
 
+/// Two thousand samples: several pieces for the threads to share.
+TEST(Solve, GivesTheSameBytesForAnyNumberOfThreads) {
+  const auto samples = noisy_samples(100, 1e-3);
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
+                    {.loss = {LossType::cauchy, 0.002}});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01});
+  for (std::size_t n = 0; n < 2500; ++n) problem.add_sample(samples[n % samples.size()]);
+  const FreeSet free = free_of(problem.table(), kObservable);
+  std::optional<Eigen::VectorXd> one;
+  StepResult of_one;
+  for (const int threads : {1, 2, 3, 7, 0}) {
+    SolveOptions options;
+    options.threads = threads;
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+    const StepResult result = solve(problem, free, values, options);
+    EXPECT_TRUE(result.converged) << result.termination;
+    if (!one) {
+      one = values;
+      of_one = result;
+    }
+    EXPECT_TRUE(values == *one) << threads << " threads";
+    EXPECT_EQ(result.final_cost, of_one.final_cost) << threads << " threads";
+    EXPECT_EQ(result.iterations, of_one.iterations) << threads << " threads";
+  }
+}
+
+TEST(Solve, CountsWhatItSolved) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {});
+  for (const Sample& sample : noisy_samples(7, 1e-3)) problem.add_sample(sample);
+  const FreeSet free = free_of(problem.table(), kObservable);
+  for (const CostForm form : {CostForm::compressed, CostForm::stacked}) {
+    SolveOptions options;
+    options.form = form;
+    int called = 0;
+    double last = 0.0;
+    options.progress = [&](int, double cost) {
+      ++called;
+      last = cost;
+    };
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+    const StepResult result = solve(problem, free, values, options);
+    EXPECT_EQ(result.form, form);
+    EXPECT_EQ(result.samples, 7);
+    EXPECT_EQ(result.num_parameters, free.size());
+    EXPECT_EQ(result.num_residuals, 7 * (4 * 3 + Prior::kRows));
+    EXPECT_EQ(called, result.iterations + 1);  // the start, too
+    EXPECT_GE(result.evaluations, result.iterations);
+    constexpr double kSums = 1e-9;  // the last iteration's cost, perhaps before a step too small
+    EXPECT_NEAR(last, result.final_cost, kSums * last);
+  }
+}
+
+TEST(Solve, RefusesAStartWhoseCostOverflows) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
+                    {.loss = {LossType::tukey, 1.0}});
+  auto samples = noisy_samples(4, 1e-3);
+  samples[2].observations[0].features[1].point.x() = 1e200;
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+  const StepResult result = solve(problem, free_of(problem.table(), {"elbow"}), values);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.termination, "failed: the cost at the start is not finite");
+}
+
+TEST(Solve, RefusesAProblemWithoutSamples) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  for (const CostForm form : {CostForm::compressed, CostForm::stacked}) {
+    SolveOptions options;
+    options.form = form;
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+    const StepResult result = solve(problem, free_of(problem.table(), {"elbow"}), values, options);
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.termination, "failed: 0 residuals cannot tell 1 parameters");
+  }
+}
+
 }  // namespace
 }  // namespace kinecal

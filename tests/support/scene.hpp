@@ -41,8 +41,9 @@ inline const std::set<std::string> kSceneFrames = {"head_pan", "camera_joint", "
                                                    "board"};
 
 /// A problem with all sensors of the scene and no error blocks yet.
-inline Problem scene_problem(const std::string& base = "base_link") {
-  Problem problem(mobile_manipulator(), base, scene_table(), kSceneFrames);
+template <class S = Packet>
+BasicProblem<S> scene_problem(const std::string& base = "base_link") {
+  BasicProblem<S> problem(mobile_manipulator(), base, scene_table(), kSceneFrames);
   problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
   problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
   problem.add_sensor({"eye", SensorType::camera2d, "camera_optical_frame", ""});
@@ -66,11 +67,26 @@ inline std::vector<double> random_values(const ParameterTable& table, double sca
   return values;
 }
 
+/// The pose in the base of a frame of a sensor in a sample, at the given values.
+template <class S>
+Pose<double> tip_pose(const BasicProblem<S>& problem, std::size_t sensor, const std::string& frame,
+                      const Sample& sample, std::span<const double> values) {
+  const SensorModel& model = problem.sensors()[sensor];
+  for (std::size_t c = 0; c < model.chains().size(); ++c) {
+    if (model.chains()[c].tip != frame) continue;
+    return forward_kinematics(
+        model.chains()[c], [&](const std::string& joint) { return *sample.position(joint); },
+        corrections_for(model.parameters()[c], values));
+  }
+  throw std::invalid_argument("no frame " + frame);
+}
+
 /// Samples that fit the problem's robot exactly at the given values: joint positions are random,
 /// each feature is a point in front of the camera, as camera and arm must then have seen it.
-inline std::vector<Sample> exact_samples(const Problem& problem, std::span<const double> values,
-                                         int count, const std::string& arm_frame = "hand",
-                                         unsigned seed = 1, int features = 4) {
+template <class S>
+std::vector<Sample> exact_samples(const BasicProblem<S>& problem, std::span<const double> values,
+                                  int count, const std::string& arm_frame = "hand",
+                                  unsigned seed = 1, int features = 4) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> side(-0.3, 0.3), depth(0.5, 1.2);
   std::vector<Sample> samples;
@@ -85,15 +101,8 @@ inline std::vector<Sample> exact_samples(const Problem& problem, std::span<const
       sample.joint_names.push_back(joint.name);
       sample.joint_positions.push_back(positions(joint.name));
     }
-    const auto position_of = [&](const std::string& joint) { return *sample.position(joint); };
     const auto tip = [&](std::size_t sensor, const std::string& frame) {
-      const SensorModel& model = problem.sensors()[sensor];
-      for (std::size_t c = 0; c < model.chains().size(); ++c) {
-        if (model.chains()[c].tip != frame) continue;
-        return forward_kinematics(model.chains()[c], position_of,
-                                  corrections_for(model.parameters()[c], values));
-      }
-      throw std::invalid_argument("no frame " + frame);
+      return tip_pose(problem, sensor, frame, sample, values);
     };
     std::array<double, 6> camera{};
     std::array<double, 4> eye{};

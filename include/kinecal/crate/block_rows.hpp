@@ -79,8 +79,8 @@ class BlockRows {
     return call(block, jets);
   }
 
-  /// The points with the one that was measured (a camera's, else the second) moved until there is no
-  /// residual.  One Newton step, exact where the block is linear.
+  /// The points with the one that was measured (a camera's, else the second) moved until there is
+  /// no residual.  One Newton step, exact where the block is linear.
   static void take_residual_away(const B& block, Views views, Points& p) {
     const std::size_t moved = kBodies == 1 || views[0]->sees_depth() ? 0 : 1;
     const auto r = call_jets(block, p);

@@ -55,12 +55,14 @@ class BlockTerm final : public Term<S> {
       end = end_of_run(views, first);
       const Chains chains = Block::chains(views, first);
       if constexpr (kIsDifference<B>) {
-        DifferenceMoments<S> moments(Block::cameras(views, first));
+        sums.weights.resize(end - first);
+        sums.residuals.resize(end - first);
         for (std::size_t i = first; i < end; ++i) {
-          const Vector3<S> r = block_(views[0]->points()[i], views[1]->points()[i]);
-          moments.add(views, i, r, add_cost(r, Block::weight(views, i), loss, sums));
+          Vector3<S>& r = sums.residuals[i - first];
+          r = block_(views[0]->points()[i], views[1]->points()[i]);
+          sums.weights[i - first] = add_cost(r, Block::weight(views, i), loss, sums);
         }
-        moments.fill(sums.gram);
+        DifferenceMoments<S>(views, first, sums.weights, sums.residuals).fill(sums.gram);
       } else {
         sums.gram.resize(kBodies, Block::cameras(views, first));
         sums.gram.set_zero();
@@ -138,8 +140,7 @@ class BlockTerm final : public Term<S> {
     return result;
   }
 
-  [[nodiscard]] static LocalSums<S>& sums_of(Views views, const Chains& chains,
-                                             TermSums<S>& sums) {
+  [[nodiscard]] static LocalSums<S>& sums_of(Views views, const Chains& chains, TermSums<S>& sums) {
     BodyChains<2> key{};
     std::copy(chains.begin(), chains.end(), key.begin());
     for (auto& [known, local] : sums.by_chains) {
@@ -151,8 +152,9 @@ class BlockTerm final : public Term<S> {
   }
 
   /// @param jacobian  (kSize x width) where the rows of feature i go, or nullptr
-  [[gnu::flatten]] void evaluate_feature(Views views, std::size_t i, Linearization at, const Twists& twists,
-                        PackedRows<S>& out, S* jacobian, std::size_t width) const {
+  [[gnu::flatten]] void evaluate_feature(Views views, std::size_t i, Linearization at,
+                                         const Twists& twists, PackedRows<S>& out, S* jacobian,
+                                         std::size_t width) const {
     if constexpr (kIsDifference<B>) {
       if (jacobian != nullptr && at == Linearization::measured) {
         const Vector3<S>&a = views[0]->points()[i], &b = views[1]->points()[i];

@@ -4,7 +4,7 @@
 //
 //   sum w,  sum w p,  sum w q p^T,  sum w p x r,  ...
 //
-// and K is put together from them once.  It costs a tenth of multiplying rows out.
+// and K is put together from them.  It costs a tenth of multiplying rows out.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,104 +12,93 @@
 
 namespace kinecal {
 
+/// Some features that hang on the same chains.
 template <class S>
 class DifferenceMoments {
  public:
   using Views = std::span<const SensorView<S>* const>;
 
-  /// @param cameras  number of free camera parameters of both sensors
-  explicit DifferenceMoments(std::size_t cameras) : cameras_(cameras) {}
-
-  /// Adds feature i.
-  /// @param r  (3) its residual
-  /// @param w  its weight
-  void add(Views views, std::size_t i, const Vector3<S>& r, const S& w) {
-    const Vector3<S> a = views[0]->points()[i], b = views[1]->points()[i];
-    const Vector3<S> wa = a * w, wb = b * w;
-    weight_ += w;
-    a_ += wa;
-    b_ += wb;
-    for (int row = 0; row < 3; ++row) {
-      for (int col = 0; col < 3; ++col) {
-        if (row <= col) aa_(row, col) += wa(row) * a(col);
-        if (row <= col) bb_(row, col) += wb(row) * b(col);
-        ba_(row, col) += wb(row) * a(col);
-      }
-    }
-    residual_.add(a, b, r * w);
-    std::size_t c = 0;
-    for (const Vector3<S>& motion : views[0]->camera_motion(i)) add_camera(c++, a, b, motion, r, w);
-    for (const Vector3<S>& motion : views[1]->camera_motion(i)) add_camera(c++, a, b, -motion, r, w);
-  }
+  /// @param first      the first of them
+  /// @param weights    of each
+  /// @param residuals  (3) of each
+  DifferenceMoments(Views views, std::size_t first, std::span<const S> weights,
+                    std::span<const Vector3<S>> residuals)
+      : a_(views[0]->points().data() + first),
+        b_(views[1]->points().data() + first),
+        weights_(weights),
+        residuals_(residuals),
+        motions_{views[0]->camera_motion(first), views[1]->camera_motion(first)} {}
 
   /// Puts K together.
-  void fill(FeatureGram<S>& gram) {
-    gram.resize(2, cameras_);
-    for (int k = 0; k < 3; ++k) {
-      for (int l = 0; l < k; ++l) {
-        aa_(k, l) = aa_(l, k);
-        bb_(k, l) = bb_(l, k);
-      }
+  void fill(FeatureGram<S>& gram) const {
+    const std::size_t cameras_a = motions_[0].size(), cameras = cameras_a + motions_[1].size();
+    gram.resize(2, cameras);
+    S weight(0.0);
+    Vector3<S> sum_a = Vector3<S>::Zero(), sum_b = Vector3<S>::Zero();
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      weight += weights_[i];
+      add_scaled(sum_a, a_[i], weights_[i]);
+      add_scaled(sum_b, b_[i], weights_[i]);
     }
-    set_block(gram, 0, 0, a_, a_, aa_, 1.0);
-    set_block(gram, 6, 6, b_, b_, bb_, 1.0);
-    set_block(gram, 0, 6, a_, b_, ba_, -1.0);
+    set_block(gram, 0, 0, weight, sum_a, sum_a, product(a_, a_), 1.0);
+    set_block(gram, 6, 6, weight, sum_b, sum_b, product(b_, b_), 1.0);
+    set_block(gram, 0, 6, weight, sum_a, sum_b, product(b_, a_), -1.0);
     const std::size_t residual = gram.width() - 1;
-    set_column(gram, residual, residual_);
-    for (std::size_t c = 0; c < cameras_; ++c) {
-      const Camera& camera = camera_[c];
-      set_column(gram, 12 + c, camera.wrench);
-      for (std::size_t d = 0; d <= c; ++d) gram.row(12 + d)[12 + c] = camera.with_camera[d];
-      gram.row(12 + c)[residual] = camera.with_residual;
+    set_column(gram, residual, residuals_.data(), 1, 1.0);
+    for (std::size_t c = 0; c < cameras; ++c) {
+      const Motion u = motion(c, cameras_a);
+      set_column(gram, 12 + c, u.first, u.stride, u.sign);
+      for (std::size_t d = 0; d <= c; ++d) {
+        const Motion v = motion(d, cameras_a);
+        gram.row(12 + d)[12 + c] = dot(u.first, u.stride, v.first, v.stride) * S(u.sign * v.sign);
+      }
+      gram.row(12 + c)[residual] = dot(u.first, u.stride, residuals_.data(), 1) * S(u.sign);
     }
   }
 
  private:
-  static constexpr std::size_t kMaxCameras = 2 * DepthCamera<>::kParameters;
-
-  /// Sum of forces at the features and of their moments as the two bodies feel them.
-  struct Wrench {
-    Vector3<S> force = Vector3<S>::Zero(), about_a = Vector3<S>::Zero(),
-               about_b = Vector3<S>::Zero();
-
-    void add(const Vector3<S>& a, const Vector3<S>& b, const Vector3<S>& f) {
-      force += f;
-      add_cross(about_a, a, f);
-      add_cross(about_b, b, f);
-    }
-    static void add_cross(Vector3<S>& sum, const Vector3<S>& p, const Vector3<S>& f) {
-      sum = {sum.x() + p.y() * f.z() - p.z() * f.y(),  // two fused multiply-adds each
-             sum.y() + p.z() * f.x() - p.x() * f.z(), sum.z() + p.x() * f.y() - p.y() * f.x()};
-    }
+  /// What a camera parameter does to the residual: sign times the motion of each feature.
+  struct Motion {
+    const Vector3<S>* first;
+    std::size_t stride;
+    double sign;
   };
 
-  /// Sums for a camera parameter; `motion` of the points is what it does to the residual.
-  struct Camera {
-    Wrench wrench;
-    S with_residual{0.0};
-    std::array<S, kMaxCameras> with_camera{};  ///< with those before it and itself
-    Vector3<S> motion;                       ///< of the feature that is being added
-  };
-
-  void add_camera(std::size_t c, const Vector3<S>& a, const Vector3<S>& b,
-                  const Vector3<S>& motion, const Vector3<S>& r, const S& w) {
-    Camera& camera = camera_[c];
-    const Vector3<S> weighted = motion * w;
-    camera.motion = motion;
-    camera.wrench.add(a, b, weighted);
-    camera.with_residual += dot(weighted, r);
-    for (std::size_t d = 0; d <= c; ++d) {
-      camera.with_camera[d] += dot(weighted, camera_[d].motion);
-    }
+  [[nodiscard]] Motion motion(std::size_t c, std::size_t cameras_a) const {
+    if (c < cameras_a) return {&motions_[0][c], motions_[0].size(), 1.0};
+    return {&motions_[1][c - cameras_a], motions_[1].size(), -1.0};
   }
 
-  [[nodiscard]] static S dot(const Vector3<S>& u, const Vector3<S>& v) {
-    return u.x() * v.x() + u.y() * v.y() + u.z() * v.z();
+  static void add_scaled(Vector3<S>& sum, const Vector3<S>& p, const S& factor) {
+    for (int k = 0; k < 3; ++k) sum(k) += p(k) * factor;
+  }
+
+  /// sum w q p^T
+  [[nodiscard]] Matrix3<S> product(const Vector3<S>* q, const Vector3<S>* p) const {
+    Matrix3<S> sum = Matrix3<S>::Zero();
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      for (int col = 0; col < 3; ++col) add_scaled_column(sum, col, q[i], p[i](col) * weights_[i]);
+    }
+    return sum;
+  }
+  static void add_scaled_column(Matrix3<S>& sum, int col, const Vector3<S>& q, const S& factor) {
+    for (int row = 0; row < 3; ++row) sum(row, col) += q(row) * factor;
+  }
+
+  /// sum w u . v
+  [[nodiscard]] S dot(const Vector3<S>* u, std::size_t u_stride, const Vector3<S>* v,
+                      std::size_t v_stride) const {
+    S sum(0.0);
+    for (std::size_t i = 0; i < weights_.size(); ++i, u += u_stride, v += v_stride) {
+      sum += ((*u)(0) * (*v)(0) + (*u)(1) * (*v)(1) + (*u)(2) * (*v)(2)) * weights_[i];
+    }
+    return sum;
   }
 
   /// sign * sum w [I, -[p]x]^T [I, -[q]x], from  sum w,  sum w p,  sum w q  and  sum w q p^T.
-  void set_block(FeatureGram<S>& gram, std::size_t row, std::size_t col, const Vector3<S>& p,
-                 const Vector3<S>& q, const Matrix3<S>& qp, double sign) const {
+  static void set_block(FeatureGram<S>& gram, std::size_t row, std::size_t col, const S& weight,
+                        const Vector3<S>& p, const Vector3<S>& q, const Matrix3<S>& qp,
+                        double sign) {
     const Matrix3<S> px = cross_matrix(p), qx = cross_matrix(q);
     const S trace = qp(0, 0) + qp(1, 1) + qp(2, 2), s(sign), zero(0.0);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -117,7 +106,7 @@ class DifferenceMoments {
       S *upper = gram.row(row + i) + col, *lower = gram.row(row + i + 3) + col;
       for (std::size_t j = 0; j < 3; ++j) {
         const auto c = static_cast<int>(j);
-        upper[j] = i == j ? s * weight_ : zero;
+        upper[j] = i == j ? s * weight : zero;
         upper[j + 3] = -s * qx(r, c);
         lower[j] = s * px(r, c);
         lower[j + 3] = s * ((i == j ? trace : zero) - qp(r, c));
@@ -125,22 +114,34 @@ class DifferenceMoments {
     }
   }
 
-  void set_column(FeatureGram<S>& gram, std::size_t col, const Wrench& x) const {
+  /// The forces w x at the features and their moments, as the two bodies feel them.
+  void set_column(FeatureGram<S>& gram, std::size_t col, const Vector3<S>* x, std::size_t stride,
+                  double sign) const {
+    Vector3<S> force = Vector3<S>::Zero(), about_a = force, about_b = force;
+    for (std::size_t i = 0; i < weights_.size(); ++i, x += stride) {
+      const S w = weights_[i] * S(sign);
+      const Vector3<S> f((*x)(0) * w, (*x)(1) * w, (*x)(2) * w);
+      force += f;
+      add_cross(about_a, a_[i], f);
+      add_cross(about_b, b_[i], f);
+    }
     for (std::size_t i = 0; i < 3; ++i) {
       const auto k = static_cast<int>(i);
-      gram.row(i)[col] = x.force(k);
-      gram.row(i + 3)[col] = x.about_a(k);
-      gram.row(i + 6)[col] = -x.force(k);
-      gram.row(i + 9)[col] = -x.about_b(k);
+      gram.row(i)[col] = force(k);
+      gram.row(i + 3)[col] = about_a(k);
+      gram.row(i + 6)[col] = -force(k);
+      gram.row(i + 9)[col] = -about_b(k);
     }
   }
+  static void add_cross(Vector3<S>& sum, const Vector3<S>& p, const Vector3<S>& f) {
+    sum = {sum.x() + p.y() * f.z() - p.z() * f.y(),  // two fused multiply-adds each
+           sum.y() + p.z() * f.x() - p.x() * f.z(), sum.z() + p.x() * f.y() - p.y() * f.x()};
+  }
 
-  S weight_{0.0};
-  Vector3<S> a_ = Vector3<S>::Zero(), b_ = Vector3<S>::Zero();
-  Matrix3<S> aa_ = Matrix3<S>::Zero(), bb_ = Matrix3<S>::Zero(), ba_ = Matrix3<S>::Zero();
-  Wrench residual_;
-  std::size_t cameras_;
-  std::array<Camera, kMaxCameras> camera_;
+  const Vector3<S>*a_, *b_;  ///< of each feature, in the base
+  std::span<const S> weights_;
+  std::span<const Vector3<S>> residuals_;
+  std::array<std::span<const Vector3<S>>, 2> motions_;  ///< of the first feature
 };
 
 }  // namespace kinecal

@@ -145,8 +145,7 @@ class Evaluator {
     return (problem_.packs().size() + piece_size() - 1) / piece_size();
   }
   [[nodiscard]] int pieces_of(int threads) const {
-    return std::clamp(number_of_threads(threads), 1,
-                      std::max(1, static_cast<int>(num_pieces())));
+    return std::clamp(number_of_threads(threads), 1, std::max(1, static_cast<int>(num_pieces())));
   }
 
   template <class Visit>

@@ -51,8 +51,9 @@ struct FeatureRows {
 template <std::size_t Bodies>
 using BodyChains = std::array<std::size_t, Bodies>;
 
-/// Columns of the whole Jacobian that a feature can touch, in this order: those of each body (turns,
-/// then shifts), then those of the cameras.  A parameter that moves both bodies occurs twice.
+/// Columns of the whole Jacobian that a feature can touch, in this order: those of each body
+/// (turns, then shifts), then those of the cameras.  A parameter that moves both bodies occurs
+/// twice.
 template <class S, std::size_t Bodies>
 void local_columns(std::span<const SensorView<S>* const> views, const BodyChains<Bodies>& chains,
                    std::vector<int>& columns) {

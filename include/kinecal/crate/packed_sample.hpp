@@ -9,6 +9,7 @@
 #pragma once
 
 #include <compare>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -27,8 +28,8 @@ struct PackedObservation {
   std::vector<std::size_t> chain;    ///< on which chain of the sensor each feature hangs
   std::vector<std::optional<std::vector<Motion<S>>>> motions;  ///< of each chain's joints, where a
                                                                ///< feature hangs on it
-  std::optional<DepthCamera<S>> depth_camera = {};             ///< as recorded, camera3d only
-  std::optional<PinholeCamera<S>> pinhole_camera = {};         ///< as recorded, camera2d only
+  std::unique_ptr<DepthCamera<S>> depth_camera = {};           ///< as recorded, camera3d only
+  std::unique_ptr<PinholeCamera<S>> pinhole_camera = {};       ///< as recorded, camera2d only
 };
 
 /// What samples must have in common to be evaluated together.
@@ -106,8 +107,8 @@ template <class S>
   for (std::size_t c = 0; c < one.motions.size(); ++c) {
     if (one.motions[c]) pack.motions[c].emplace(one.motions[c]->size());
   }
-  if (one.depth_camera) pack.depth_camera.emplace();
-  if (one.pinhole_camera) pack.pinhole_camera.emplace();
+  if (one.depth_camera) pack.depth_camera = std::make_unique<DepthCamera<S>>();
+  if (one.pinhole_camera) pack.pinhole_camera = std::make_unique<PinholeCamera<S>>();
   return pack;
 }
 

@@ -241,9 +241,9 @@ class BasicProblem {
   std::vector<SensorModel> sensors_;
   std::vector<std::unique_ptr<Term<S>>> terms_;
   std::vector<PriorTerm> priors_;
-  int residuals_ = 0;                           ///< of all features
-  std::vector<std::string> sources_;            ///< of each sample
-  std::map<SampleShape, std::size_t> shapes_;   ///< and the pack of each that is not full
+  int residuals_ = 0;                          ///< of all features
+  std::vector<std::string> sources_;           ///< of each sample
+  std::map<SampleShape, std::size_t> shapes_;  ///< and the pack of each that is not full
   std::vector<PackedSample<S>> packs_;
 };
 

@@ -123,10 +123,12 @@ class SensorModel {
     }
     const CameraInfo& info = *observation.camera;
     if (sensor_.type == SensorType::camera3d) {
-      const DepthCamera<>& c = packed.depth_camera.emplace(DepthCamera<>::from(info));
+      const DepthCamera<>& c =
+          *(packed.depth_camera = std::make_unique<DepthCamera<>>(DepthCamera<>::from(info)));
       check_numbers({c.fx, c.fy, c.cx, c.cy, c.z_offset, c.z_scaling});
     } else {
-      const PinholeCamera<>& c = packed.pinhole_camera.emplace(PinholeCamera<>::from(info));
+      const PinholeCamera<>& c =
+          *(packed.pinhole_camera = std::make_unique<PinholeCamera<>>(PinholeCamera<>::from(info)));
       check_numbers({c.fx, c.fy, c.cx, c.cy, 0.0, 1.0});
       check_distortion(info);
     }

@@ -59,7 +59,7 @@ class SensorView {
   /// The pose of the sensor's own frame in the base.
   [[nodiscard]] const Pose<S>& pose() const { return poses_[0]; }
   [[nodiscard]] const ChainTwists<S>& twists(std::size_t chain) const { return twists_[chain]; }
-  [[nodiscard]] bool sees_depth() const { return observation_->depth_camera.has_value(); }
+  [[nodiscard]] bool sees_depth() const { return observation_->depth_camera != nullptr; }
 
   /// How the free parameters of a depth camera move feature i: metres, in the base, per unit.
   [[nodiscard]] std::span<const Vector3<S>> camera_motion(std::size_t i) const {

@@ -6,10 +6,9 @@
 //   K = sum of  w L^T L      L = [ by_body of each body | by_camera | residual ]
 //
 // whose size depends neither on the number of features nor on that of parameters, and the twists
-// enter once:  J^T J = E^T K E,  J^T r = E^T K e_r,  with E the twists of each body, and the identity
-// for cameras.  K and the sums are of a pack: one sample in each lane.
-// Source: the design of kinecal, ideas 2 and 6.
-// SPDX-License-Identifier: Apache-2.0
+// enter once:  J^T J = E^T K E,  J^T r = E^T K e_r,  with E the twists of each body, and the
+// identity for cameras.  K and the sums are of a pack: one sample in each lane. Source: the design
+// of kinecal, ideas 2 and 6. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -87,7 +86,7 @@ class LocalSums {
   /// Adds the twists' share: E^T K E.
   /// @param twists  of the chain of each body
   void expand(const FeatureGram<S>& gram, Twists twists) {
-    effects_.resize(2 * gram.width());
+    effects_.resize(3 * gram.width());
     std::size_t i = 0;
     for (std::size_t s = 0; s < twists.size(); ++s) {
       const std::size_t first = i;
@@ -131,22 +130,27 @@ class LocalSums {
     return twists->shifts.empty() ? nullptr : twists->shifts[0].data();
   }
 
-  /// Adds the rows of some local columns of body s, two at a time: each number that is read then
-  /// serves twice.
+  /// Adds the rows of some local columns of body s, up to three at a time: each number that is read
+  /// then serves as often.  Eight lanes wide the rows outgrow the nearest cache, and one at a time
+  /// is as quick.
   /// @param first  local column at which body s starts
   /// @param i      local column of the first of them
   /// @returns      the local column after them
   template <int D>
   std::size_t add_columns(const FeatureGram<S>& gram, Twists twists, std::size_t s,
                           std::size_t first, std::size_t i, const S* xi, std::size_t count) {
-    for (; count >= 2; count -= 2, i += 2, xi += 2 * D) {
-      apply<D, 2>(gram, s, xi);
-      add_products<2>(twists, s, first, i);
+    const auto add = [&]<int R>(std::integral_constant<int, R>) {
+      apply<D, R>(gram, s, xi);
+      add_products<R>(twists, s, first, i);
+      i += R;
+      xi += R * D;
+      count -= R;
+    };
+    if constexpr (kLanes<S> < 8) {
+      while (count == 3 || count > 4) add(std::integral_constant<int, 3>{});
+      while (count >= 2) add(std::integral_constant<int, 2>{});
     }
-    if (count == 1) {
-      apply<D, 1>(gram, s, xi);
-      add_products<1>(twists, s, first, i++);
-    }
+    while (count > 0) add(std::integral_constant<int, 1>{});
     return i;
   }
 
@@ -156,24 +160,28 @@ class LocalSums {
     const std::size_t w = gram.width();
     const S* k = gram.row(6 * s);
     std::array<S, R * D> x;
-    std::copy_n(xi, R * D, x.begin());
+    for (std::size_t n = 0; n < R * D; ++n) x[n] = xi[n];
+    S* effects = effects_.data();
     for (std::size_t j = 6 * s; j < w; ++j) {
-      for (std::size_t r = 0; r < R; ++r) {
-        S sum = k[j] * x[r * D];
-        for (std::size_t d = 1; d < D; ++d) sum += k[j + d * w] * x[r * D + d];
-        effects_[r * w + j] = sum;
+      std::array<S, R> sum;
+      for (std::size_t r = 0; r < R; ++r) sum[r] = k[j] * x[r * D];
+      for (std::size_t d = 1; d < D; ++d) {
+        const S factor = k[j + d * w];
+        for (std::size_t r = 0; r < R; ++r) sum[r] += factor * x[r * D + d];
       }
+      for (std::size_t r = 0; r < R; ++r) effects[r * w + j] = sum[r];
     }
   }
 
   /// Adds xi_j^T effects for the local columns j from i on to the rows i ... i + R - 1.
   template <int R>
   void add_products(Twists twists, std::size_t s, std::size_t first, std::size_t i) {
-    const std::size_t w = effects_.size() / 2;
+    const std::size_t w = effects_.size() / 3;
     S* sums = row(i) + i;
     std::size_t skip = i - first;
     for (std::size_t b = s; b < twists.size(); ++b) {
-      const std::size_t turns_here = twists[b]->turns.size(), shifts_here = twists[b]->shifts.size();
+      const std::size_t turns_here = twists[b]->turns.size(),
+                        shifts_here = twists[b]->shifts.size();
       const std::size_t no_turns = std::min(skip, turns_here), no_shifts = skip - no_turns;
       add_products<6, R>(b, turns(twists[b]) + 6 * no_turns, turns_here - no_turns, sums);
       add_products<3, R>(b, shifts(twists[b]) + 3 * no_shifts, shifts_here - no_shifts, sums);
@@ -186,17 +194,19 @@ class LocalSums {
 
   template <int D, int R>
   void add_products(std::size_t body, const S* xi, std::size_t count, S*& sums) {
-    const std::size_t w = effects_.size() / 2;
+    const std::size_t w = effects_.size() / 3;
     std::array<S, R * D> e;
     for (std::size_t r = 0; r < R; ++r) {
-      std::copy_n(&effects_[r * w + 6 * body], D, &e[r * D]);
+      for (std::size_t d = 0; d < D; ++d) e[r * D + d] = effects_[r * w + 6 * body + d];
     }
     for (; count > 0; --count, xi += D, ++sums) {
-      for (std::size_t r = 0; r < R; ++r) {
-        S sum = sums[r * stride_];
-        for (std::size_t d = 0; d < D; ++d) sum += e[r * D + d] * xi[d];
-        sums[r * stride_] = sum;
+      std::array<S, R> sum;
+      for (std::size_t r = 0; r < R; ++r) sum[r] = sums[r * stride_];
+      for (std::size_t d = 0; d < D; ++d) {
+        const S factor = xi[d];
+        for (std::size_t r = 0; r < R; ++r) sum[r] += factor * e[r * D + d];
       }
+      for (std::size_t r = 0; r < R; ++r) sums[r * stride_] = sum[r];
     }
   }
 

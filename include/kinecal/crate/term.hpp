@@ -67,7 +67,9 @@ template <class S>
 struct TermSums {
   S twice_cost{0.0};  ///< sum of rho
   std::vector<std::pair<BodyChains<2>, LocalSums<S>>> by_chains;
-  FeatureGram<S> gram;
+  FeatureGram<S> gram;                ///< of the features at hand, with their
+  std::vector<S> weights;             ///< weights and
+  std::vector<Vector3<S>> residuals;  ///< residuals, where the block is a difference
 
   void set_zero() {
     twice_cost = S(0.0);

@@ -36,10 +36,10 @@ namespace kinecal {
 /// A point in front of a pinhole camera and the pixel at which it was observed.
 template <class S>
 struct Sight {
-  Vector3<S> p_camera;          ///< metres, in the camera's optical frame
-  std::array<S, 4> parameters;  ///< of the camera: fx fy cx cy, relative
-  PinholeCamera<ValueOf<S>> camera;            ///< as recorded
-  Eigen::Matrix<ValueOf<S>, 2, 1> pixel;       ///< observed
+  Vector3<S> p_camera;                    ///< metres, in the camera's optical frame
+  std::array<S, 4> parameters;            ///< of the camera: fx fy cx cy, relative
+  PinholeCamera<ValueOf<S>> camera;       ///< as recorded
+  Eigen::Matrix<ValueOf<S>, 2, 1> pixel;  ///< observed
 };
 
 /// A plane through points, in the base.

@@ -45,10 +45,10 @@ namespace detail {
 [[nodiscard]] inline std::string json(const StepResult& step) {
   return fmt::format(
       R"({{"name": {}, "iterations": {}, "initial_cost": {}, "final_cost": {}, "seconds": {}, )"
-      R"("num_residuals": {}, "num_parameters": {}}})",
+      R"("num_residuals": {}, "num_parameters": {}, "form": {}}})",
       json_string(step.name), step.iterations, json_number(step.initial_cost),
       json_number(step.final_cost), json_number(step.seconds), step.num_residuals,
-      step.num_parameters);
+      step.num_parameters, json_string(to_string(step.form)));
 }
 
 [[nodiscard]] inline std::string json(const BlockStatistics& block) {

@@ -23,7 +23,7 @@ template <class Q = double>
 struct DepthCamera {
   static constexpr int kParameters = 6;
 
-  Q fx, fy, cx, cy;                   ///< recorded intrinsics, pixels
+  Q fx, fy, cx, cy;                 ///< recorded intrinsics, pixels
   Q z_offset{0.0}, z_scaling{1.0};  ///< recorded depth correction, metres and factor
 
   [[nodiscard]] static DepthCamera from(const CameraInfo& info) {
@@ -77,12 +77,8 @@ struct CorrectedDepthCamera {
   [[nodiscard]] Seen see(const Vector3<Q>& m) const {
     const Q x = slope_x(m), y = slope_y(m), z0 = m.z() + Q(v_[4]);
     const Q scale(1.0 + v_[5]), z = z0 * scale, px = x * z, py = y * z;
-    return {{px, py, z},
-            px * Q(-1.0 / (1.0 + v_[0])),
-            py * Q(-1.0 / (1.0 + v_[1])),
-            -(cx_ * per_fx_ * z),
-            -(cy_ * per_fy_ * z),
-            {x * scale, y * scale, scale},
+    return {{px, py, z},          px * Q(-1.0 / (1.0 + v_[0])), py * Q(-1.0 / (1.0 + v_[1])),
+            -(cx_ * per_fx_ * z), -(cy_ * per_fy_ * z),         {x * scale, y * scale, scale},
             {x * z0, y * z0, z0}};
   }
 

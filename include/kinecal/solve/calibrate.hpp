@@ -57,15 +57,17 @@ inline void merge_statistics(std::vector<BlockStatistics>& all, std::vector<Bloc
 }  // namespace detail
 
 /// Solves all steps of a calibration, until one does not converge.
+/// @param solving  how; the number of iterations is that of each step
 [[nodiscard]] inline CalibrationResult calibrate(const Calibration& calibration,
-                                                 const Progress& progress = {}) {
+                                                 const Progress& progress = {},
+                                                 const SolveOptions& solving = {}) {
   CalibrationResult result;
   result.table = calibration.table;
   const Eigen::VectorXd initial = calibration.table.values();
   Eigen::VectorXd values = initial;
   for (const CalibrationStep& step : calibration.steps) {
     for (const auto& [parameter, value] : step.assignments) values(parameter) = value;
-    SolveOptions options;
+    SolveOptions options = solving;
     options.max_num_iterations = step.max_num_iterations;
     if (progress) {
       options.progress = [&](int iteration, double cost) { progress(step.name, iteration, cost); };

@@ -10,6 +10,7 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -116,13 +117,19 @@ void run_ceres(const BasicProblem<S>& problem, const FreeSet& free, Eigen::Vecto
   minimum.converged = summary.termination_type == ceres::CONVERGENCE;
   minimum.message = summary.message;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-  minimum.evaluations +=
-      summary.num_residual_evaluations + summary.num_jacobian_evaluations;
+  minimum.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
   minimum.seconds += summary.total_time_in_seconds;
   if (!minimum.usable) return;
   for (int c = 0; c < free.size(); ++c) {
     values(free.parameters()[static_cast<std::size_t>(c)]) = x[static_cast<std::size_t>(c)];
   }
+}
+
+[[nodiscard]] inline bool has_bounds(const ParameterTable& table, const FreeSet& free) {
+  const auto is_bounded = [&](int p) {
+    return std::isfinite(table[p].lower) || std::isfinite(table[p].upper);
+  };
+  return std::any_of(free.parameters().begin(), free.parameters().end(), is_bounded);
 }
 
 /// The free parameters that are not held by a bound beyond which the cost would fall.
@@ -154,6 +161,7 @@ template <class S>
   Minimum minimum;
   const Eigen::VectorXd start = values;
   run_ceres(problem, free, values, options, losses, minimum);
+  if (!has_bounds(problem.table(), free)) return minimum;
   std::vector<int> inside = free.parameters();
   const int rounds = 2 * free.size() + 2;  // each round usually settles several bounds
   for (int round = 0; minimum.usable && round < rounds; ++round) {

@@ -69,8 +69,7 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
 template <class S>
 bool start(const BasicProblem<S>& problem, std::span<const double> values, int threads,
            StepResult& result) {
-  result.initial_cost =
-      normal_equations(problem, values, nullptr, Losses::as_given, threads).cost;
+  result.initial_cost = normal_equations(problem, values, nullptr, Losses::as_given, threads).cost;
   result.final_cost = result.initial_cost;
   std::optional<UndefinedResidual> undefined;
   if (!std::isfinite(result.initial_cost)) undefined = undefined_residual(problem, values);

@@ -62,8 +62,8 @@ template <class S>
 /// Statistics of all error blocks and priors of a problem, for two sets of parameter values.
 template <class S>
 [[nodiscard]] std::vector<BlockStatistics> block_statistics(const BasicProblem<S>& problem,
-                                                                   std::span<const double> before,
-                                                                   std::span<const double> after) {
+                                                            std::span<const double> before,
+                                                            std::span<const double> after) {
   std::vector<BlockStatistics> all;
   const auto norms_before = feature_norms(problem, before);
   const auto norms_after = feature_norms(problem, after);

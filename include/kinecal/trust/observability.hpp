@@ -82,7 +82,7 @@ inline void reduce(Eigen::MatrixXd& basis) {
 /// What the samples of a problem tell about its free parameters, near the given values.
 template <class S>
 [[nodiscard]] Observability observability(const BasicProblem<S>& problem, const FreeSet& free,
-                                                 std::span<const double> values) {
+                                          std::span<const double> values) {
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free.size(), free.size());
   const auto add = [&](int t, int, const TermResiduals& out) {
     const double weight = problem.terms()[static_cast<std::size_t>(t)]->options().weight;

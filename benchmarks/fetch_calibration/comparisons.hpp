@@ -1,0 +1,14 @@
+// What changes the time of the normal equations: blocks through jets, losses, features, threads.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "work.hpp"
+
+namespace kinecal::bench {
+
+/// Measures and prints them, each beside what it is compared with.
+/// @param rounds        medians are over so many, interleaved
+/// @param most_samples  for the comparison of threads
+void print_comparisons(const FetchWork& work, int rounds, int most_samples);
+
+}  // namespace kinecal::bench

@@ -1,0 +1,136 @@
+// Normal equations that never form a Jacobian against rows that are stacked and multiplied out: for
+// any error blocks, with each loss, for what is free and what is held, in packets and in doubles.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "support/sums.hpp"
+
+namespace kinecal::test {
+
+// A dozen samples of four features: a thousand products are summed, in another order.
+inline constexpr double kOrderOfSums = 1e-10;
+// The same operations in the same order but for what compilers fuse; sums of lanes.
+inline constexpr double kSameArithmetic = 1e-12;
+
+struct Scene {
+  std::string base = "base_link", arm_frame = "hand";
+  double residual = 0.05;    ///< the scale of the losses: some features are on either side of it
+  double residual_of = 1.0;  ///< what the residual is the difference of; for rounding
+};
+
+inline std::vector<std::pair<std::string, FreeSet>> free_sets(const ParameterTable& table) {
+  const FreeSet all = all_free(table);
+  std::vector<int> reversed(all.parameters().rbegin(), all.parameters().rend());
+  std::vector<int> kinematics, cameras, some;
+  for (int i = 0; i < table.size(); ++i) {
+    const std::string& name = table[i].name;
+    const bool joint = name.starts_with("camera_joint") || name.starts_with("second_joint");
+    const bool camera = !joint && (name.starts_with("camera_") || name.starts_with("eye_") ||
+                                   name.starts_with("second_"));
+    (camera ? cameras : kinematics).push_back(i);
+    if (i % 3 == 0) some.push_back(i);
+  }
+  std::vector<std::pair<std::string, FreeSet>> sets = {
+      {"all", all},
+      {"all, reversed", FreeSet(reversed, table.size())},
+      {"none of the cameras", FreeSet(kinematics, table.size())},
+      {"the cameras only", FreeSet(cameras, table.size())},
+      {"every third", FreeSet(some, table.size())},
+      {"nothing", FreeSet({}, table.size())},
+  };
+  for (const char* name : {"torso_joint", "wrist", "finger", "elbow_mount_y", "wrist_mimic_b",
+                           "camera_z_scaling", "eye_cx", "second_fx"}) {
+    sets.emplace_back(name, free_of(table, {name}));
+  }
+  return sets;
+}
+
+/// The gradient of the cost by central differences.
+inline void expect_gradient_of_cost(const Problem& problem, const std::vector<double>& x,
+                                    const NormalEquations& normal) {
+  constexpr double kStep = 1e-6, kDifferences = 1e-5;  // also across the kinks of rho'
+  const Eigen::VectorXd lengths = column_lengths(normal);
+  for (int p = 0; p < problem.table().size(); ++p) {
+    std::vector<double> up = x, down = x;
+    up[static_cast<std::size_t>(p)] += kStep;
+    down[static_cast<std::size_t>(p)] -= kStep;
+    const double numeric = (normal_equations(problem, up, nullptr).cost -
+                            normal_equations(problem, down, nullptr).cost) /
+                           (2 * kStep);
+    EXPECT_NEAR(normal.gradient(p), numeric,
+                kDifferences * lengths(p) * std::sqrt(2.0 * normal.cost))
+        << problem.table()[p].name;
+  }
+}
+
+inline void expect_same_rows(const Problem& packets, const BasicProblem<double>& numbers,
+                             const std::vector<double>& x, const FreeSet& free,
+                             const Scene& scene) {
+  const auto expected = rows_of(numbers, x, &free);
+  const auto found = rows_of(packets, x, &free);
+  ASSERT_EQ(found.size(), expected.size());
+  for (const auto& [key, rows] : expected) {
+    ASSERT_TRUE(found.contains(key));
+    const TermResiduals& same = found.at(key);
+    ASSERT_EQ(same.residual.size(), rows.residual.size());
+    EXPECT_LE((same.residual - rows.residual).norm(), kSameArithmetic * scene.residual_of);
+    EXPECT_LE((same.jacobian - rows.jacobian).norm(), kSameArithmetic * rows.jacobian.norm())
+        << "packets\n"
+        << same.jacobian << "\ndoubles\n"
+        << rows.jacobian;
+  }
+}
+
+/// @param add_blocks  adds the error blocks under test to a problem, with the options given
+template <class AddBlocks>
+void check_sums(const Scene& scene, AddBlocks&& add_blocks) {
+  for (const LossType type : {LossType::none, LossType::huber, LossType::cauchy, LossType::tukey}) {
+    SCOPED_TRACE("loss " + std::to_string(static_cast<int>(type)) + ", base " + scene.base +
+                 ", the arm's points in " + scene.arm_frame);
+    TermOptions options;
+    options.weight = 2.5;
+    options.loss = {type, options.weight * scene.residual};
+    Problem packets = wide_problem<Packet>(scene.base);
+    BasicProblem<double> numbers = wide_problem<double>(scene.base);
+    add_blocks(packets, options);
+    add_blocks(numbers, options);
+    const std::vector<double> x = random_values(packets.table(), 0.05, 4);
+    std::vector<double> truth = x;
+    for (std::size_t i = 0; i < truth.size(); ++i) truth[i] += 1e-2 * static_cast<double>(i % 3);
+    for (const Sample& s : wide_samples(packets, truth, 9, scene.arm_frame)) {
+      packets.add_sample(s);
+      numbers.add_sample(s);
+    }
+    for (const auto& [name, free] : free_sets(packets.table())) {
+      SCOPED_TRACE("free: " + name);
+      const NormalEquations in_packets = normal_equations(packets, x, &free);
+      const NormalEquations in_numbers = normal_equations(numbers, x, &free);
+      expect_same(in_packets, multiplied_out(packets, x, free), kOrderOfSums);
+      expect_same(in_numbers, multiplied_out(numbers, x, free), kOrderOfSums);
+      expect_same(in_packets, in_numbers, kSameArithmetic * scene.residual_of);
+      expect_same_rows(packets, numbers, x, free, scene);
+      const NormalEquations convex = normal_equations(packets, x, &free, Losses::convex);
+      expect_same(convex, multiplied_out(packets, x, free, Losses::convex), kOrderOfSums);
+    }
+    const FreeSet all = all_free(packets.table());
+    const NormalEquations normal = normal_equations(packets, x, &all);
+    EXPECT_GT(normal.cost, 0.0);
+    EXPECT_GT(normal.hessian.norm(), 0.0) << "the losses leave all features out";
+    expect_gradient_of_cost(packets, x, normal);
+    // The cost alone: a jet divides by multiplying with the inverse, a number does not.
+    constexpr double kDivision = 4e-15;
+    EXPECT_NEAR(normal_equations(packets, x, nullptr).cost, normal.cost,
+                kDivision * scene.residual_of * normal.cost);
+  }
+}
+
+/// The same for one block between sensors.
+template <ErrorBlock B>
+void check_sums_of(const Scene& scene, const B& block, const std::vector<std::string>& sensors) {
+  SCOPED_TRACE(sensors.front() + " and " + sensors.back());
+  check_sums(scene, [&](auto& problem, const TermOptions& options) {
+    problem.add_block("block", block, sensors, options);
+  });
+}
+
+}  // namespace kinecal::test
