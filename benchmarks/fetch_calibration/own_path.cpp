@@ -44,6 +44,7 @@ class OwnPath {
     const auto start = std::chrono::steady_clock::now();
     SolveOptions options;
     options.threads = 1;
+    options.function_tolerance = solver_options().function_tolerance;
     Eigen::VectorXd values = values_;
     const StepResult result = kinecal::solve(problem_, free_, values, options);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

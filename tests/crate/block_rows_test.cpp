@@ -23,17 +23,17 @@ TEST(BlockRows, SumToThoseMultipliedOutForPointToPixelOfADepthCamerasPoint) {
 TEST(BlockRows, SumToThoseMultipliedOutForADifferenceOfAUser) {
   test::check_sums_of({}, test::UnknownDifference{}, {"camera", "arm"});
   test::check_sums_of({.base = "finger_left"}, test::UnknownDifference{}, {"arm", "camera"});
-  test::check_sums_of({.residual = 0.5}, test::UnknownDifference{}, {"camera", "twin"});
+  test::check_sums_of({.residual = 2}, test::UnknownDifference{}, {"camera", "twin"});
 }
 
 TEST(BlockRows, SumToThoseMultipliedOutForOneResidual) {
   test::check_sums_of({.residual = 0.2}, test::Distance{}, {"arm", "camera"});
-  test::check_sums_of({.residual = 0.5}, test::Distance{}, {"counterweight", "arm"});
+  test::check_sums_of({.residual = 2}, test::Distance{}, {"counterweight", "arm"});
 }
 
 TEST(BlockRows, SumToThoseMultipliedOutForFiveResiduals) {
   test::check_sums_of({}, test::FiveOfTwo{}, {"camera", "arm"});
-  test::check_sums_of({.residual = 0.5}, test::FiveOfTwo{}, {"second", "camera"});
+  test::check_sums_of({.residual = 2}, test::FiveOfTwo{}, {"second", "camera"});
 }
 
 /// A difference known as one is summed by its moments, another by jets: the same numbers.

@@ -122,22 +122,23 @@ NormalEquations multiplied_out(const BasicProblem<S>& problem, std::span<const d
 /// length of its column.  A parameter that moves both of two points alike has none, but the sums
 /// that cancel were as large as the others: no column counts as shorter than kCancels of the
 /// longest.
-inline Eigen::VectorXd column_lengths(const NormalEquations& n) {
-  constexpr double kCancels =
-      0.03;  // rounding of 1e-16 then is 1e-13 of the product of two columns
+/// @param others  the longest column of parameters that are not free
+inline Eigen::VectorXd column_lengths(const NormalEquations& n, double others = 0.0) {
+  constexpr double kCancels = 0.03;  // rounding of 1e-16: 1e-13 of the product of two columns
   const Eigen::VectorXd lengths = n.hessian.diagonal().cwiseMax(0.0).cwiseSqrt();
   const double longest = lengths.size() == 0 ? 0.0 : lengths.maxCoeff();
-  return lengths.cwiseMax(kCancels * longest);
+  return lengths.cwiseMax(kCancels * std::max(longest, others));
 }
 
 /// Each number of two normal equations agrees, relative to what it is a sum of: products of columns
 /// and of columns and the residual.
+/// @param others  the longest column of parameters that are not free
 inline void expect_same(const NormalEquations& found, const NormalEquations& expected,
-                        double tolerance) {
+                        double tolerance, double others = 0.0) {
   ASSERT_EQ(found.gradient.size(), expected.gradient.size());
   ASSERT_EQ(found.hessian.rows(), expected.hessian.rows());
   EXPECT_NEAR(found.cost, expected.cost, tolerance * expected.cost);
-  const Eigen::VectorXd lengths = column_lengths(expected);
+  const Eigen::VectorXd lengths = column_lengths(expected, others);
   const Eigen::VectorXd of_gradient = std::sqrt(2.0 * expected.cost) * lengths;
   const Eigen::MatrixXd of_hessian = lengths * lengths.transpose();
   const auto within = [tolerance](const auto& a, const auto& b, const auto& scale) {

@@ -68,10 +68,10 @@ struct Jet {
   friend Jet abs(const Jet& x) { return select(x < Jet(S(0.0)), -x, x); }
   /// a where the condition holds, else b; lane by lane.
   template <class Mask>
-  friend Jet select(const Mask& condition, const Jet& a, const Jet& b) {
+  friend Jet select(const Mask& condition, const Jet& x, const Jet& y) {
     Jet result;
-    result.a = kinecal::select(condition, a.a, b.a);
-    for (int k = 0; k < N; ++k) result.v(k) = kinecal::select(condition, a.v(k), b.v(k));
+    result.a = kinecal::select(condition, x.a, y.a);
+    for (int k = 0; k < N; ++k) result.v(k) = kinecal::select(condition, x.v(k), y.v(k));
     return result;
   }
   friend Jet sin(const Jet& x) {

@@ -31,6 +31,9 @@ enum class CostForm { compressed, stacked };
 
 struct SolveOptions {
   int max_num_iterations = 1000;
+  /// An iteration that lowers the cost by less than this part of it is the last.  Costs are compared
+  /// with reference figures to many digits, and an iteration costs little.
+  double function_tolerance = 1e-14;
   CostForm form = CostForm::compressed;
   int threads = 0;  ///< zero: one for each core; the result does not depend on it
   /// Called after each iteration with its number and cost.
@@ -55,8 +58,7 @@ class ProgressCallback final : public ceres::IterationCallback {
   ceres::Solver::Options ceres_options;
   ceres_options.linear_solver_type = ceres::DENSE_QR;
   ceres_options.max_num_iterations = options.max_num_iterations;
-  // The cost is compared with reference figures to many digits, and an iteration costs little.
-  ceres_options.function_tolerance = 1e-14;
+  ceres_options.function_tolerance = options.function_tolerance;
   ceres_options.gradient_tolerance = 1e-16;
   ceres_options.parameter_tolerance = 1e-12;
   // Calibrations have directions that the data hardly see, at the bottom of curved valleys: steps
