@@ -8,6 +8,14 @@
 namespace kinecal {
 namespace {
 
+TEST(Packet, IsAsWideAsTheInstructionSet) {
+  const int lanes = instruction_set() == "x86-64-v4"   ? 8
+                    : instruction_set() == "x86-64-v3" ? 4
+                    : instruction_set() == "x86-64"    ? 2
+                                                       : 1;
+  EXPECT_GE(kLanes<Packet>, lanes) << instruction_set();
+}
+
 TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
   const Robot robot = test::mobile_manipulator();
   const Chain<> chain = make_chain(robot, "hand", "camera_optical_frame", {"wrist", "head_tilt"});

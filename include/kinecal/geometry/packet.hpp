@@ -9,10 +9,27 @@
 
 #include <Eigen/Core>
 #include <experimental/simd>
+#include <string_view>
 
 namespace kinecal {
 
 using Packet = std::experimental::native_simd<double>;
+
+/// The x86-64 level that the including source is compiled for, and so packets: x86-64, x86-64-v3 or
+/// x86-64-v4; "other" on other processors.
+/// Source: x86-64 psABI, micro-architecture levels.
+[[nodiscard]] constexpr std::string_view instruction_set() {
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && \
+    defined(__AVX512DQ__) && defined(__AVX512VL__)
+  return "x86-64-v4";
+#elif defined(__AVX2__) && defined(__FMA__) && defined(__BMI2__) && defined(__F16C__)
+  return "x86-64-v3";
+#elif defined(__x86_64__)
+  return "x86-64";
+#else
+  return "other";
+#endif
+}
 
 namespace detail {
 template <class S>
