@@ -130,7 +130,8 @@ int calibrate(const CalibrateOptions& options) {
       fmt::print("wrote {}\n", (folder->path() / file.name).string());
     }
   }
-  fmt::print("{:.3f} s, of which reading {:.3f} s\n", seconds_since(start), reading);
+  fmt::print("{} samples, {:.3f} s: reading {:.3f} s, {}\n", input.samples.size(),
+             seconds_since(start), reading, solving_text(result));
   return kDone;
 }
 

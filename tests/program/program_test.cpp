@@ -20,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -243,6 +244,13 @@ TEST_F(Program, ExitsWith2AndWritesNothingWhenItDoesNotConverge) {
   EXPECT_EQ(result.code, 2) << result.out;
   EXPECT_THAT(result.err, HasSubstr("not calibrated, nothing written"));
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Program, TellsWhatItDid) {
+  const Outcome result = calibrate();
+  EXPECT_THAT(result.out,
+              ContainsRegex("20 samples, [0-9.]+ s: reading [0-9.]+ s, solving [0-9.]+ "
+                            "s \\([0-9]+ iterations, [0-9.]+ million samples a second, "));
 }
 
 TEST_F(Program, InspectShowsSensorsJointsAndGaps) {

@@ -55,6 +55,19 @@ TEST(TextReport, ShowsMillimetresAndDegrees) {
   EXPECT_THAT(step_lines(result()), HasSubstr("2 parameters, 30 residuals"));
 }
 
+TEST(TextReport, SaysWhatSolvingTook) {
+  CalibrationResult r = result();
+  r.steps[0].samples = 100;
+  r.steps[0].evaluations = 12;
+  r.steps.push_back(r.steps[0]);  // both steps: 10 iterations, 2400 samples in 2 ms
+  const std::string set(instruction_set());
+  EXPECT_EQ(solving_text(r),
+            "solving 0.0020 s (10 iterations, 1.2 million samples a second, " + set + ")");
+  r.steps[1].form = CostForm::stacked;
+  EXPECT_THAT(solving_text(r), HasSubstr(set + ", stacked cost)"));
+  EXPECT_THAT(solving_text({}), HasSubstr("solving 0.0000 s (0 iterations, 0 million"));
+}
+
 TEST(TextReport, NamesWhatTheSamplesCannotTell) {
   const auto table = result().table;
   EXPECT_EQ(observability_text("one", {2, 1.0, {}}, table), "");
