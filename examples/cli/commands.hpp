@@ -1,5 +1,6 @@
 // The commands of the program.  Each returns the exit code: 0 done, 1 bad input, 2 did not
-// converge. SPDX-License-Identifier: Apache-2.0
+// converge.  They are all that main.cpp sees of the libraries built for each instruction set.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -18,7 +19,7 @@ struct CalibrateOptions {
 };
 
 /// Calibrates the robot and writes the results, all or none.
-int calibrate(const CalibrateOptions& options);
+[[gnu::visibility("default")]] int calibrate(const CalibrateOptions& options);
 
 struct CheckOptions {
   std::string urdf, config;
@@ -26,9 +27,12 @@ struct CheckOptions {
 };
 
 /// Finds every mistake in the input without solving.
-int check(const CheckOptions& options);
+[[gnu::visibility("default")]] int check(const CheckOptions& options);
 
 /// Says what is in the samples.
-int inspect(const std::vector<std::string>& samples);
+[[gnu::visibility("default")]] int inspect(const std::vector<std::string>& samples);
+
+/// Name, version and the instruction set that the evaluation was compiled for.
+[[gnu::visibility("default")]] std::string version();
 
 }  // namespace kinecal::cli

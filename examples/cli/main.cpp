@@ -21,7 +21,7 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
 int run(int argc, char** argv) {
   CLI::App app(
       "Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.");
-  app.set_version_flag("--version", "kinecal " KINECAL_VERSION);
+  app.set_version_flag("--version", version());
   app.require_subcommand(1);
 
   CalibrateOptions calibrating;

@@ -152,9 +152,10 @@ class Program : public testing::Test {
     return test::text_of(folder_ / name);
   }
 
-  [[nodiscard]] Outcome run(const std::string& arguments) const {
+  [[nodiscard]] Outcome run(const std::string& arguments,
+                            const std::string& program = KINECAL_PROGRAM) const {
     const std::string command =
-        "cd " + folder_.string() + " && " KINECAL_PROGRAM " " + arguments + " > out.txt 2> err.txt";
+        "cd " + folder_.string() + " && " + program + " " + arguments + " > out.txt 2> err.txt";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out.txt"), read("err.txt")};
   }
@@ -251,6 +252,46 @@ TEST_F(Program, TellsWhatItDid) {
   EXPECT_THAT(result.out,
               ContainsRegex("20 samples, [0-9.]+ s: reading [0-9.]+ s, solving [0-9.]+ "
                             "s \\([0-9]+ iterations, [0-9.]+ million samples a second, "));
+}
+
+/// The program at each level that the processor has: the dynamic loader is told which to look for.
+TEST_F(Program, CalibratesAlikeAtEachLevelOfTheProcessor) {
+  if (!KINECAL_HAS_LEVELS) GTEST_SKIP() << "the program is built without KINECAL_X86_64_LEVELS";
+  const std::string loader = "/lib64/ld-linux-x86-64.so.2";
+  const std::string levels_here = run("--help", loader).out;
+  if (levels_here.find("--glibc-hwcaps-mask") == std::string::npos) {
+    GTEST_SKIP() << "this dynamic loader knows no levels (glibc before 2.33)";
+  }
+  auto all = samples();
+  for (std::size_t n = 0; n < all.size(); ++n) {  // 2 mm off, so that there is a cost to compare
+    all[n].observations[0].features[n % 3].point.x() +=
+        0.002 * std::sin(3.1 * static_cast<double>(n));
+  }
+  write_all(all);
+
+  std::string best;
+  double baseline_cost = 0.0;
+  for (const std::string level : {"x86-64", "x86-64-v3", "x86-64-v4"}) {
+    if (level != "x86-64" && levels_here.find(level + " (supported") == std::string::npos) {
+      std::cout << "not run: " << level << ", which this processor or its loader does not have\n";
+      continue;
+    }
+    const std::string masked = loader + " --glibc-hwcaps-mask " + level + " " KINECAL_PROGRAM;
+    EXPECT_THAT(run("--version", masked).out, HasSubstr("(" + level + ","));
+    const Outcome result =
+        run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output out", masked);
+    ASSERT_EQ(result.code, 0) << level << ": " << result.err;
+    EXPECT_THAT(result.out, HasSubstr("samples a second, " + level + ")"));
+    const double cost =
+        YAML::LoadFile((folder_ / "out/report.json").string())["steps"][0]["final_cost"]
+            .as<double>();
+    if (best.empty()) baseline_cost = cost;
+    constexpr double kRounding = 1e-9;  // sums in another order, and fused; far below what is told
+    EXPECT_NEAR(cost, baseline_cost, kRounding * baseline_cost) << level;
+    best = level;
+  }
+  EXPECT_GT(baseline_cost, 1e-6);
+  EXPECT_THAT(run("--version").out, HasSubstr("(" + best + ",")) << "not chosen at start-up";
 }
 
 TEST_F(Program, InspectShowsSensorsJointsAndGaps) {
