@@ -85,6 +85,13 @@ void check_targets(const CalibrateOptions& options, const std::filesystem::path&
   }
 }
 
+SolveOptions solve_options(const CalibrateOptions& options) {
+  SolveOptions solving;
+  solving.threads = options.threads;
+  if (options.cost == "stacked") solving.form = CostForm::stacked;
+  return solving;
+}
+
 void print_result(const Input& input, const CalibrationResult& result) {
   fmt::print("Robot '{}', {} samples\n{}\n", input.robot.name(), input.samples.size(),
              step_lines(result));
@@ -105,7 +112,8 @@ int calibrate(const CalibrateOptions& options) {
   std::optional<OutputFolder> folder;
   if (!options.dry_run) folder.emplace(options.output);
   const double reading = seconds_since(start);
-  const CalibrationResult result = kinecal::calibrate(input.calibration, progress_line());
+  const CalibrationResult result =
+      kinecal::calibrate(input.calibration, progress_line(), solve_options(options));
   end_progress_line();
   const std::vector<Observability> observability = observe(input.calibration, result);
   const bool ran = !result.steps.empty() && result.steps.back().iterations > 0;

@@ -16,6 +16,8 @@ struct CalibrateOptions {
   std::string offsets = "rising";
   bool upstream_names = false;
   bool dry_run = false;
+  int threads = 0;  ///< zero: one for each core
+  std::string cost = "compressed";
 };
 
 /// Calibrates the robot and writes the results, all or none.

@@ -44,6 +44,17 @@ int run(int argc, char** argv) {
   calibrate_command->add_flag("--upstream-names", calibrating.upstream_names,
                               "name the files as robot_calibration does, with the date");
   calibrate_command->add_flag("--dry-run", calibrating.dry_run, "calibrate, but write nothing");
+  calibrate_command
+      ->add_option("--threads", calibrating.threads,
+                   "how many threads share the work, one for each core by default; the result does "
+                   "not depend on it")
+      ->check(CLI::Range(1, 1024));
+  calibrate_command
+      ->add_option("--cost", calibrating.cost,
+                   "how Ceres is given the samples: summed, or each feature by itself (slower, for "
+                   "comparison)")
+      ->check(CLI::IsMember({"compressed", "stacked"}))
+      ->capture_default_str();
 
   CheckOptions checking;
   CLI::App* check_command =

@@ -219,6 +219,30 @@ TEST_F(Program, GivesTheSameBytesForTheSameInput) {
   EXPECT_EQ(read("out/calibration.yaml"), yaml);
 }
 
+TEST_F(Program, ThreadsDoNotChangeAByteOfTheResult) {
+  ASSERT_EQ(calibrate("--threads 1").code, 0);
+  const std::string one = read("out/calibration.yaml");
+  ASSERT_EQ(calibrate("--threads 3").code, 0);
+  EXPECT_EQ(read("out/calibration.yaml"), one);
+  EXPECT_EQ(calibrate("--threads 0").code, 1);
+}
+
+TEST_F(Program, TheStackedCostEndsAtTheSameParametersAndIsRecorded) {
+  ASSERT_EQ(calibrate().code, 0);
+  const auto elbow = [&] {
+    return YAML::LoadFile((folder_ / "out/calibration.yaml").string())["elbow"].as<double>();
+  };
+  const auto form = [&] {
+    return YAML::LoadFile((folder_ / "out/report.json").string())["steps"][0]["form"]
+        .as<std::string>();
+  };
+  const double compressed = elbow();
+  EXPECT_EQ(form(), "compressed");
+  ASSERT_EQ(calibrate("--cost stacked").code, 0);
+  EXPECT_NEAR(elbow(), compressed, 1e-9);
+  EXPECT_EQ(form(), "stacked");
+}
+
 TEST_F(Program, UpstreamNamesCarryTheDateAndLeaveOutTheNameCamera) {
   ASSERT_EQ(calibrate("--upstream-names").code, 0);
   std::vector<std::string> names;

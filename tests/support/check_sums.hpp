@@ -119,7 +119,7 @@ void check_sums(const Scene& scene, AddBlocks&& add_blocks) {
       expect_same(in_packets, in_numbers, kSameArithmetic * scene.residual_of, longest);
       expect_same_rows(packets, numbers, x, free, scene);
       const NormalEquations convex = normal_equations(packets, x, &free, Losses::convex);
-      expect_same(convex, multiplied_out(packets, x, free, Losses::convex), kOrderOfSums);
+      expect_same(convex, multiplied_out(packets, x, free, Losses::convex), kOrderOfSums, longest);
     }
     const NormalEquations normal = normal_equations(packets, x, &all);
     EXPECT_GT(normal.cost, 0.0);

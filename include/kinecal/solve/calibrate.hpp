@@ -69,6 +69,7 @@ inline void merge_statistics(std::vector<BlockStatistics>& all, std::vector<Bloc
     for (const auto& [parameter, value] : step.assignments) values(parameter) = value;
     SolveOptions options = solving;
     options.max_num_iterations = step.max_num_iterations;
+    options.progress = {};
     if (progress) {
       options.progress = [&](int iteration, double cost) { progress(step.name, iteration, cost); };
     }
