@@ -40,18 +40,27 @@ class FeatureGram {
   /// Adds w L^T L of one feature.
   template <int M, int Bodies>
   void add(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
-    std::array<S, 6 * Bodies + FeatureRows<S, M, Bodies>::kMaxCameras + 1> l;
-    for (int m = 0; m < M; ++m) {
+    constexpr std::size_t kRows = M;
+    using Columns =
+        std::array<std::array<S, kRows>, 6 * Bodies + FeatureRows<S, M, Bodies>::kMaxCameras + 1>;
+    Columns l;  // column by column
+    for (std::size_t m = 0; m < kRows; ++m) {
+      const auto row = static_cast<int>(m);
       std::size_t n = 0;
       for (std::size_t s = 0; s < Bodies; ++s) {
-        for (int k = 0; k < 6; ++k) l[n++] = rows.by_body[s](m, k);
+        for (int k = 0; k < 6; ++k) l[n++][m] = rows.by_body[s](row, k);
       }
-      for (std::size_t c = 0; c < rows.cameras; ++c) l[n++] = rows.by_camera[c](m);
-      l[n++] = rows.residual(m);
-      for (std::size_t i = 0; i + 1 < n; ++i) {
-        const S wl = weight * l[i];
-        S* k = row(i);
-        for (std::size_t j = i; j < n; ++j) k[j] += wl * l[j];
+      for (std::size_t c = 0; c < rows.cameras; ++c) l[n++][m] = rows.by_camera[c](row);
+      l[n][m] = rows.residual(row);
+    }
+    for (std::size_t i = 0; i + 1 < width_; ++i) {
+      std::array<S, kRows> weighted;
+      for (std::size_t m = 0; m < kRows; ++m) weighted[m] = weight * l[i][m];
+      S* k = row(i);
+      for (std::size_t j = i; j < width_; ++j) {
+        S sum = k[j];
+        for (std::size_t m = 0; m < kRows; ++m) sum += weighted[m] * l[j][m];
+        k[j] = sum;
       }
     }
   }
