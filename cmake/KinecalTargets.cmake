@@ -59,6 +59,8 @@ target_compile_options(kinecal_build_options INTERFACE
   $<$<BOOL:${KINECAL_WARNINGS_AS_ERRORS}>:-Werror>
   $<$<BOOL:${KINECAL_NATIVE}>:-march=native>
   $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=all>
+  # What the address sanitizer and the processor find as well would double the time to compile.
+  $<$<BOOL:${KINECAL_SANITIZE}>:-fno-sanitize=null,alignment,object-size,vptr>
   $<$<BOOL:${KINECAL_SANITIZE}>:-fno-omit-frame-pointer>)
 target_link_options(kinecal_build_options INTERFACE
   $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined>)

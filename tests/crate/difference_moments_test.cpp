@@ -10,8 +10,10 @@ namespace kinecal {
 namespace {
 
 /// Moments against the products of rows that jets made, number by number and lane by lane.
+/// @param first  the features from this one on
 template <class S>
-void expect_products_of_rows(const std::vector<std::string>& sensors, const FreeSet& free) {
+void expect_products_of_rows(const std::vector<std::string>& sensors, const FreeSet& free,
+                             std::size_t first = 0) {
   BasicProblem<S> problem = test::wide_problem<S>();
   problem.add_block("b", PointToPoint{}, sensors, {});
   const auto x = test::random_values(problem.table(), 0.05, 3);
@@ -20,19 +22,20 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
   int packs = 0;
   Evaluator<S>(problem, free).for_each_term(x, true, [&](int, auto&, auto views, auto&) {
     ++packs;
-    DifferenceMoments<S> moments(Rows::cameras(views, 0));
     FeatureGram<S> by_moments, by_rows;
-    by_rows.resize(2, Rows::cameras(views, 0));
+    by_rows.resize(2, Rows::cameras(views, first));
     by_rows.set_zero();
-    for (std::size_t i = 0; i < Rows::features(views); ++i) {
-      const S weight = views[0]->points()[i].x() + S(2.0);  // another one in each lane
+    std::vector<S> weights;
+    std::vector<Vector3<S>> residuals;
+    for (std::size_t i = first; i < Rows::features(views); ++i) {
+      weights.push_back(views[0]->points()[i].x() + S(2.0));  // another one in each lane
       const auto rows =
           Rows::template rows<true>(test::UnknownDifference{}, views, i, Linearization::measured);
-      by_rows.add(rows, weight);
-      moments.add(views, i, rows.residual, weight);
+      by_rows.add(rows, weights.back());
+      residuals.push_back(rows.residual);
     }
     by_rows.complete();
-    moments.fill(by_moments);
+    DifferenceMoments<S>(views, first, weights, residuals).fill(by_moments);
     ASSERT_EQ(by_moments.width(), by_rows.width());
     // Four features, their points a metre or two from the base: products of up to ten.
     constexpr double kRounding = 1e-13;
@@ -57,6 +60,7 @@ void check_sensors() {
            {"camera", "arm"}, {"arm", "camera"}, {"arm", "finger"}, {"second", "camera"}}) {
     SCOPED_TRACE(sensors[0] + " and " + sensors[1]);
     expect_products_of_rows<S>(sensors, test::all_free(table));
+    expect_products_of_rows<S>(sensors, test::all_free(table), 2);  // features two and three
     expect_products_of_rows<S>(sensors, test::free_of(table, {"wrist", "second_cy", "camera_fx"}));
     expect_products_of_rows<S>(sensors, test::free_of(table, {"elbow"}));
   }

@@ -67,11 +67,29 @@ TEST(Loss, BoundsItsTangent) {
     for (const double scale : {0.007, 1.0, 30.0}) {
       for (const double s : squares_around(scale)) {
         const auto value = Loss{type, scale}(s);
-        constexpr double kRounding = 1e-14;
-        EXPECT_LE(value.derivative * s, value.rho + kRounding * std::min(s, scale * scale));
+        constexpr double kRounding = 1e-15;
+        EXPECT_LE(value.derivative * s, value.rho + kRounding * scale * scale);
         EXPECT_GE(value.derivative, 0.0);
         EXPECT_LE(value.derivative, 1.0);
       }
+    }
+  }
+}
+
+/// Far below the scale a loss is the square itself, to all its digits: near the minimum of exact
+/// samples a cost of fewer looks as if it no longer fell.
+TEST(Loss, KeepsItsDigitsWhereTheResidualIsSmall) {
+  for (const LossType type : kAll) {
+    for (const double ratio : {1e-4, 1e-8, 1e-12, 1e-20}) {
+      constexpr double kRounding = 1e-15, kScale = 0.3;
+      const double s = ratio * kScale * kScale;
+      // s - s^2 / (2 c^2) + ... for cauchy, s - s^2 / c^2 + ... for tukey
+      const double second = type == LossType::cauchy ? 0.5 : type == LossType::tukey ? 1.0 : 0.0;
+      const double third = second * second * ratio * ratio / 3.0 * (second == 0.5 ? 4.0 : 1.0);
+      const double expected = s * (1.0 - second * ratio + third);
+      EXPECT_NEAR(Loss({type, kScale})(s).rho, expected,
+                  (4 * kRounding + ratio * ratio * ratio) * s)
+          << static_cast<int>(type) << " at " << ratio << " of its scale, squared";
     }
   }
 }

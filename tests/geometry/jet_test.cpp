@@ -3,6 +3,8 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "kinecal/geometry/rotation.hpp"
 
 namespace kinecal {
@@ -14,7 +16,7 @@ constexpr double kRounding = 1e-14;  // a few dozen operations on numbers of siz
 template <class T>
 T everything(const T& x, const T& y, const T& z) {
   using std::abs, std::atan2, std::cos, std::exp, std::log, std::sin, std::sqrt;
-  T sum = x * y - z / x + 2.0 * y - z * 0.5 + 1.0 / z + y / 4.0;
+  T sum = x * y - z / x + 2.0 * y - z * 0.5 + T(1.0) / z + y / 4.0;
   sum += sin(x * z) * cos(y) + exp(-x) * log(y + 1.0);
   sum -= sqrt(x * x + y * y + 0.5) * atan2(z - 1.0, x + y);
   sum *= abs(x - y) + abs(y - x) + 1.0;
@@ -87,6 +89,42 @@ TEST(Jet, OfPacketsIsSelectedLaneByLaneWithItsDerivatives) {
     EXPECT_EQ(lane(chosen.v(0), i), value > 0 ? 2.0 * value : 0.0);
     EXPECT_EQ(lane(chosen.v(1), i), value > 0 ? 0.0 : 1.0);
   }
+}
+
+template <class J>
+concept Mixes = requires(J j) {
+  j + 1.0;
+  1.0 + j;
+  j - 1.0;
+  1.0 - j;
+  j * 2.0;
+  2.0 * j;
+  j / 2.0;
+};
+template <class J>
+concept DividesNumbers = requires(J j) {
+  1.0 / j;
+};
+template <class J>
+concept ComparesWithNumbers = requires(J j) {
+  j < 0.0;
+  0.0 < j;
+  j >= 1.0;
+};
+template <class J>
+concept SelectsNumbers = requires(J j) {
+  select(j < j, j, 0.0);
+};
+
+/// A block that takes one takes the other: it is checked with jets of doubles alone.
+TEST(Jet, OfPacketsMixesWithNumbersAsThatOfDoublesDoes) {
+  using OfDoubles = Jet<double, 3>;
+  using OfPackets = Jet<Packet, 3>;
+  EXPECT_TRUE(Mixes<OfDoubles>);
+  EXPECT_TRUE(Mixes<OfPackets>);
+  EXPECT_EQ(DividesNumbers<OfPackets>, DividesNumbers<OfDoubles>) << "1.0 / x";
+  EXPECT_EQ(ComparesWithNumbers<OfPackets>, ComparesWithNumbers<OfDoubles>) << "x < 0.0";
+  EXPECT_EQ(SelectsNumbers<OfPackets>, SelectsNumbers<OfDoubles>) << "select(x < y, x, 0.0)";
 }
 
 TEST(Jet, ANumberHasNoDerivatives) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "kinecal/geometry/pose.hpp"

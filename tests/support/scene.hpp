@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinecal/crate/problem.hpp"
+#include "support/instances.hpp"
 #include "support/robots.hpp"
 
 namespace kinecal::test {

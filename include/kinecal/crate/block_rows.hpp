@@ -49,10 +49,19 @@ class BlockRows {
   [[nodiscard]] static Rows rows(const B& block, Views views, std::size_t i, Linearization at) {
     if constexpr (PlanePairBlock<B>) {
       return plane_rows<B, S>(block, views, kDerivatives);
-    } else if constexpr (SightBlock<B>) {
-      return sight_rows<kDerivatives>(block, views, i);
     } else {
-      return point_rows<kDerivatives>(block, views, i, at);
+      Rows rows;
+      if constexpr (SightBlock<B>) {
+        rows = sight_rows<kDerivatives>(block, views, i);
+      } else {
+        rows = point_rows<kDerivatives>(block, views, i, at);
+      }
+      // What is missing counts nothing, whatever it would be.
+      const auto missing = rows.weight == S(0.0);
+      for (int m = 0; m < kSize; ++m) {
+        rows.residual(m) = select(missing, S(0.0), rows.residual(m));
+      }
+      return rows;
     }
   }
 

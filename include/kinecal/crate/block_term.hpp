@@ -143,18 +143,19 @@ class BlockTerm final : public Term<S> {
   [[nodiscard]] static LocalSums<S>& sums_of(Views views, const Chains& chains, TermSums<S>& sums) {
     BodyChains<2> key{};
     std::copy(chains.begin(), chains.end(), key.begin());
-    for (auto& [known, local] : sums.by_chains) {
-      if (known == key) return local;
-    }
+    // In the order of the chains, whichever was met first: sums are added up in it.
+    const auto place = std::find_if(sums.by_chains.begin(), sums.by_chains.end(),
+                                    [&key](const auto& known) { return !(known.first < key); });
+    if (place != sums.by_chains.end() && place->first == key) return place->second;
     std::vector<int> columns;
     local_columns(views, chains, columns);
-    return sums.by_chains.emplace_back(key, LocalSums<S>(std::move(columns))).second;
+    return sums.by_chains.emplace(place, key, LocalSums<S>(std::move(columns)))->second;
   }
 
   /// @param jacobian  (kSize x width) where the rows of feature i go, or nullptr
-  [[gnu::flatten]] void evaluate_feature(Views views, std::size_t i, Linearization at,
-                                         const Twists& twists, PackedRows<S>& out, S* jacobian,
-                                         std::size_t width) const {
+  KINECAL_FLATTEN void evaluate_feature(Views views, std::size_t i, Linearization at,
+                                        const Twists& twists, PackedRows<S>& out, S* jacobian,
+                                        std::size_t width) const {
     if constexpr (kIsDifference<B>) {
       if (jacobian != nullptr && at == Linearization::measured) {
         const Vector3<S>&a = views[0]->points()[i], &b = views[1]->points()[i];

@@ -90,7 +90,7 @@ class SensorView {
   }
 
  private:
-  [[gnu::flatten]] void walk_chain(const SensorModel& model, std::size_t c) {
+  KINECAL_FLATTEN void walk_chain(const SensorModel& model, std::size_t c) {
     const std::span<const Motion<S>> motions = *observation_->motions[c];
     const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
     if (!derivatives_) {
@@ -105,7 +105,7 @@ class SensorView {
     poses_[c] = walker.walker.pose;
   }
 
-  [[gnu::flatten]] void place_camera_points() {
+  KINECAL_FLATTEN void place_camera_points() {
     const CorrectedDepthCamera<S> camera(*observation_->depth_camera, state_->camera_values);
     camera_motion_.resize(points_.size() * state_->free_camera.size());
     Vector3<S>* motion = camera_motion_.data();

@@ -41,8 +41,8 @@ struct Loss {
       case LossType::cauchy:
         return {c2 * log1p(s / c2), one / (one + s / c2)};
       case LossType::tukey: {
-        const S t = select(s >= c2, S(0.0), one - s / c2);
-        return {c2 / S(3.0) * (one - t * t * t), t * t};
+        const S u = select(s >= c2, one, s / c2), t = one - u;
+        return {c2 * u * (one - u * (one - u * S(1.0 / 3.0))), t * t};
       }
       case LossType::none:
         break;

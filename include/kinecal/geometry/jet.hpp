@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <concepts>
+#include <type_traits>
 
 #include "kinecal/geometry/packet.hpp"
 
@@ -26,8 +27,8 @@ struct Jet {
 
   Jet() = default;
   Jet(const S& value) : a(value) {}  // NOLINT: a number is a jet without derivatives
-  template <std::integral I>
-  Jet(I value) : a(static_cast<double>(value)) {}  // NOLINT
+  template <class A>
+  requires std::is_arithmetic_v<A> Jet(A value) : a(static_cast<double>(value)) {}  // NOLINT
   /// The k-th variable: its derivative with respect to itself is one.
   Jet(const S& value, int k) : a(value) { v(k) = S(1.0); }
   Jet(const S& value, const Gradient& gradient) : a(value), v(gradient) {}
@@ -52,6 +53,19 @@ struct Jet {
   friend Jet operator*(const Jet& x, const S& s) { return {x.a * s, x.v * s}; }
   friend Jet operator*(const S& s, const Jet& x) { return x * s; }
   friend Jet operator/(const Jet& x, const S& s) { return x * (S(1.0) / s); }
+
+  // Jets of packets with numbers, as jets of doubles have them.
+  static constexpr bool kOfPackets = !std::same_as<S, double>;
+  // clang-format off
+  friend Jet operator+(const Jet& x, double s) requires kOfPackets { return x + S(s); }
+  friend Jet operator+(double s, const Jet& x) requires kOfPackets { return S(s) + x; }
+  friend Jet operator-(const Jet& x, double s) requires kOfPackets { return x - S(s); }
+  friend Jet operator-(double s, const Jet& x) requires kOfPackets { return S(s) - x; }
+  friend Jet operator*(const Jet& x, double s) requires kOfPackets { return x * S(s); }
+  friend Jet operator*(double s, const Jet& x) requires kOfPackets { return S(s) * x; }
+  friend Jet operator/(const Jet& x, double s) requires kOfPackets { return x / S(s); }
+  friend Jet operator/(double s, const Jet& x) requires kOfPackets { return Jet(S(s)) / x; }
+  // clang-format on
 
   // Of packets, a mask: one answer for each lane; see select() in geometry/packet.hpp.
   friend auto operator==(const Jet& x, const Jet& y) { return x.a == y.a; }

@@ -11,6 +11,14 @@
 #include <experimental/simd>
 #include <string_view>
 
+/// For functions that compose many small ones and run once for each pack of samples: all of them
+/// become one.  Sanitizers make such functions huge, and nobody measures there.
+#if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)
+#define KINECAL_FLATTEN [[gnu::flatten]]
+#else
+#define KINECAL_FLATTEN
+#endif
+
 namespace kinecal {
 
 using Packet = std::experimental::native_simd<double>;
