@@ -37,8 +37,8 @@ struct Work {
   BasicProblem<Packet> problem;
   Evaluator<Packet> evaluator;
 
-  Work(std::string name, BasicProblem<Packet> made, const FreeSet& free, int threads = 1)
-      : name(std::move(name)), problem(std::move(made)), evaluator(problem, free, threads) {}
+  Work(std::string title, BasicProblem<Packet> made, const FreeSet& free, int threads = 1)
+      : name(std::move(title)), problem(std::move(made)), evaluator(problem, free, threads) {}
 };
 
 /// Prints how long each takes in units of the first.
