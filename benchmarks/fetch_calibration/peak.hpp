@@ -19,19 +19,6 @@
 
 namespace kinecal::bench {
 
-/// Name of the instruction set compiled for.
-[[nodiscard]] inline std::string isa() {
-#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
-  return "x86-64-v4";
-#elif defined(__AVX2__) && defined(__FMA__)
-  return "x86-64-v3";
-#elif defined(__x86_64__)
-  return "x86-64";
-#else
-  return "other";
-#endif
-}
-
 [[nodiscard]] constexpr int lanes() {
   return static_cast<int>(Packet::size());
 }

@@ -52,8 +52,8 @@ namespace detail {
 
 /// The evaluation of one sample: ns, ratio to the first row, share of the peak where it is known.
 inline void print_evaluations(const Report& report) {
-  fmt::print("peak of one core {:.1f} GFLOP/s ({}, {} lanes)\n\n", report.peak_gflops, isa(),
-             lanes());
+  fmt::print("peak of one core {:.1f} GFLOP/s ({}, {} lanes)\n\n", report.peak_gflops,
+             instruction_set(), lanes());
   fmt::print("ns a sample, times faster than {}, share of the peak\n", report.rows.front().name);
   fmt::print("{:<12} {:>22} {:>22} {:>22}\n", "", "residuals", "+ Jacobian", "+ normal equations");
   const Row& first = report.rows.front();
@@ -120,7 +120,7 @@ inline void print_solves(const Report& report, const std::vector<int>& counts) {
         solves);
   }
   return fmt::format("{{\"rows\":[{}],\"peak_gflops\":{},\"isa\":\"{}\",\"threads\":{}}}\n", rows,
-                     detail::json_number(report.peak_gflops), isa(), report.threads);
+                     detail::json_number(report.peak_gflops), instruction_set(), report.threads);
 }
 
 /// @throws std::runtime_error  if the file cannot be written
