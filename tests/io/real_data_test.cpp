@@ -47,10 +47,9 @@ TEST(FetchSynth, TheTruthCostsWhatItShould) {
   for (const auto& line : YAML::LoadFile((folder / "truth.yaml").string())) {
     truth(fetch.result.table.index(line.first.as<std::string>())) = line.second.as<double>();
   }
-  std::optional<UndefinedResidual> undefined;
   const double cost =
       normal_equations(fetch.calibration.steps[0].problem,
-                       {truth.data(), static_cast<std::size_t>(truth.size())}, nullptr, undefined)
+                       {truth.data(), static_cast<std::size_t>(truth.size())}, nullptr)
           .cost;
   EXPECT_NEAR(cost / 1.036399372e-3, 1.0, 1e-9);
 }
