@@ -89,9 +89,14 @@ template <class Mask, class S>
   if constexpr (std::is_same_v<Mask, bool>) {
     return condition ? a : b;
   } else {
+#if defined(__clang__)
+    // clang 14 makes nothing of where() with the masks of AVX-512.
+    return S([&](auto i) { return condition[i] ? a[i] : b[i]; });
+#else
     S result = b;
     std::experimental::where(condition, result) = a;
     return result;
+#endif
   }
 }
 
