@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/errors/difference.hpp"
 #include "kinecal/errors/error_block.hpp"
 #include "kinecal/errors/loss.hpp"
 #include "kinecal/errors/plane_fit.hpp"

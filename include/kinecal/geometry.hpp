@@ -7,3 +7,4 @@
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/geometry/rpy.hpp"
+#include "kinecal/geometry/traced.hpp"

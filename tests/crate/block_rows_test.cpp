@@ -19,11 +19,12 @@ TEST(BlockRows, SumToThoseMultipliedOutForPointToPixelOfADepthCamerasPoint) {
   test::check_sums_of({.residual = 20, .residual_of = 500}, PointToPixel{}, {"camera", "eye"});
 }
 
-/// Known as a difference or not: it is summed by moments or by jets.
+/// Seen to be a difference or not: it is summed by moments or by jets.
 TEST(BlockRows, SumToThoseMultipliedOutForADifferenceOfAUser) {
   test::check_sums_of({}, test::UnknownDifference{}, {"camera", "arm"});
-  test::check_sums_of({.base = "finger_left"}, test::UnknownDifference{}, {"arm", "camera"});
-  test::check_sums_of({.residual = 2}, test::UnknownDifference{}, {"camera", "twin"});
+  test::check_sums_of({}, test::HiddenDifference{}, {"camera", "arm"});
+  test::check_sums_of({.base = "finger_left"}, test::HiddenDifference{}, {"arm", "camera"});
+  test::check_sums_of({.residual = 2}, test::HiddenDifference{}, {"camera", "twin"});
 }
 
 TEST(BlockRows, SumToThoseMultipliedOutForOneResidual) {
@@ -42,7 +43,7 @@ TEST(BlockRows, OfADifferenceDoNotDependOnWhetherItIsKnownAsOne) {
            {"camera", "arm"}, {"camera", "second"}, {"counterweight", "finger"}}) {
     Problem known = test::wide_problem<Packet>(), unknown = test::wide_problem<Packet>();
     known.add_block("b", PointToPoint{}, sensors, {.weight = 3.0, .loss = {LossType::cauchy, 0.2}});
-    unknown.add_block("b", test::UnknownDifference{}, sensors,
+    unknown.add_block("b", test::HiddenDifference{}, sensors,
                       {.weight = 3.0, .loss = {LossType::cauchy, 0.2}});
     const auto x = test::random_values(known.table(), 0.1, 9);
     for (const Sample& s : test::wide_samples(known, x, 7)) {

@@ -6,11 +6,21 @@
 
 namespace kinecal::test {
 
-/// PointToPoint again, but nobody knows that it is a difference: its derivatives are found by jets.
+/// PointToPoint again, written by a user.
 struct UnknownDifference {
   template <class S>
   [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
     return {p_a.x() - p_b.x(), p_a.y() - p_b.y(), p_a.z() - p_b.z()};
+  }
+};
+
+/// PointToPoint again, with a piece that is never used: nobody can know that it is a difference,
+/// and jets find its derivatives.
+struct HiddenDifference {
+  template <class S>
+  [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
+    const S x = p_a.x() - p_b.x();
+    return {select(x < S(1e9), x, -x), p_a.y() - p_b.y(), p_a.z() - p_b.z()};
   }
 };
 

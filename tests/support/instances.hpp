@@ -9,6 +9,8 @@ namespace kinecal {
 
 extern template class SensorView<Packet>;
 extern template class LocalSums<Packet>;
+extern template class DifferenceGram<Packet>;
+extern template class FeatureGram<Packet>;
 extern template class BlockTerm<PointToPoint, Packet>;
 extern template class BlockTerm<PointToPixel, Packet>;
 extern template class BlockTerm<PointToPlane, Packet>;

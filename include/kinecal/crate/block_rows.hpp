@@ -50,12 +50,7 @@ class BlockRows {
     if constexpr (PlanePairBlock<B>) {
       return plane_rows<B, S>(block, views, kDerivatives);
     } else {
-      Rows rows;
-      if constexpr (SightBlock<B>) {
-        rows = sight_rows<kDerivatives>(block, views, i);
-      } else {
-        rows = point_rows<kDerivatives>(block, views, i, at);
-      }
+      Rows rows = defined_rows<kDerivatives>(block, views, i, at);
       // What is missing counts nothing, whatever it would be.
       const auto missing = rows.weight == S(0.0);
       for (int m = 0; m < kSize; ++m) {
@@ -66,6 +61,16 @@ class BlockRows {
   }
 
  private:
+  template <bool kDerivatives>
+  [[nodiscard]] static Rows defined_rows(const B& block, Views views, std::size_t i,
+                                         Linearization at) {
+    if constexpr (SightBlock<B>) {
+      return sight_rows<kDerivatives>(block, views, i);
+    } else {
+      return point_rows<kDerivatives>(block, views, i, at);
+    }
+  }
+
   using PointJet = Jet<S, 3 * static_cast<int>(kBodies)>;
   using Residual = Eigen::Matrix<S, kSize, 1>;
   using ByPoint = Eigen::Matrix<S, kSize, 3>;

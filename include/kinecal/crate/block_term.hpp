@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "kinecal/crate/block_rows.hpp"
-#include "kinecal/crate/difference_moments.hpp"
 #include "kinecal/crate/jacobian_rows.hpp"
 
 namespace kinecal {
@@ -19,7 +18,8 @@ class BlockTerm final : public Term<S> {
 
   BlockTerm(std::string name, B block, std::vector<int> sensors, TermOptions options)
       : Term<S>(std::move(name), std::move(sensors), std::move(options)),
-        block_(std::move(block)) {}
+        block_(std::move(block)),
+        is_difference_(kinecal::is_difference(block_)) {}
 
   [[nodiscard]] int feature_size() const override { return kSize; }
 
@@ -54,24 +54,18 @@ class BlockTerm final : public Term<S> {
     for (std::size_t first = 0, end = 0; first < Block::features(views); first = end) {
       end = end_of_run(views, first);
       const Chains chains = Block::chains(views, first);
-      if constexpr (kIsDifference<B>) {
-        sums.weights.resize(end - first);
-        sums.residuals.resize(end - first);
-        for (std::size_t i = first; i < end; ++i) {
-          Vector3<S>& r = sums.residuals[i - first];
-          r = block_(views[0]->points()[i], views[1]->points()[i]);
-          sums.weights[i - first] = add_cost(r, Block::weight(views, i), loss, sums);
+      if (add_difference(views, first, end, loss, sums)) continue;
+      sums.gram.resize(kBodies, Block::cameras(views, first));
+      for (std::size_t i = first; i < end; ++i) {
+        const Rows rows = Block::template rows<true>(block_, views, i, Linearization::measured);
+        const S weight = add_cost(rows.residual, rows.weight, loss, sums);
+        if (i == first) {
+          sums.gram.set(rows, weight);
+        } else {
+          sums.gram.add(rows, weight);
         }
-        DifferenceMoments<S>(views, first, sums.weights, sums.residuals).fill(sums.gram);
-      } else {
-        sums.gram.resize(kBodies, Block::cameras(views, first));
-        sums.gram.set_zero();
-        for (std::size_t i = first; i < end; ++i) {
-          const Rows rows = Block::template rows<true>(block_, views, i, Linearization::measured);
-          sums.gram.add(rows, add_cost(rows.residual, rows.weight, loss, sums));
-        }
-        sums.gram.complete();
       }
+      sums.gram.complete();
       sums_of(views, chains, sums).expand(sums.gram, twists(views, chains));
     }
   }
@@ -88,16 +82,17 @@ class BlockTerm final : public Term<S> {
       auto& run = out.next_run();
       run.features = end - first;
       if (!derivatives) continue;
-      local_columns(views, Block::chains(views, first), run.columns);
+      run.chains = key(Block::chains(views, first));
+      run.width = num_columns(views, first);
       run.jacobian = values;
-      values += run.features * kSize * run.columns.size();
+      values += run.features * kSize * run.width;
     }
     if (derivatives) out.jacobian.resize(values);
     std::size_t i = 0;
     for (std::size_t r = 0; r < out.num_runs; ++r) {
       const auto& run = out.runs[r];
       const Twists of_run = twists(views, Block::chains(views, i));
-      const std::size_t width = run.columns.size();
+      const std::size_t width = run.width;
       S* jacobian = derivatives ? &out.jacobian[run.jacobian] : nullptr;
       for (std::size_t n = 0; n < run.features; ++n, ++i) {
         evaluate_feature(views, i, at, of_run, out, jacobian, width);
@@ -106,12 +101,41 @@ class BlockTerm final : public Term<S> {
     }
   }
 
+  void columns(Views views, const BodyChains<2>& chains, std::vector<int>& out) const override {
+    Chains of_bodies;
+    std::copy_n(chains.begin(), kBodies, of_bodies.begin());
+    local_columns(views, of_bodies, out);
+  }
+
  private:
   using Block = BlockRows<B, S>;
   using Rows = typename Block::Rows;
   static constexpr std::size_t kBodies = Block::kBodies;
   using Chains = BodyChains<kBodies>;
-  using Twists = std::array<const ChainTwists<S>*, kBodies>;
+  using Twists = std::array<BodyTwists<S>, kBodies>;
+
+  static constexpr bool kMayBeDifference = PointPairBlock<B> && kSize == 3;
+
+  /// The features from `first` to `end` by their moments.
+  /// @returns  false if the block is not a difference
+  bool add_difference(Views views, std::size_t first, std::size_t end, const Loss& loss,
+                      TermSums<S>& sums) const {
+    if constexpr (kMayBeDifference) {
+      if (!is_difference_) return false;
+      const Chains chains = Block::chains(views, first);
+      sums.weights.resize(end - first);
+      sums.residuals.resize(end - first);
+      for (std::size_t i = first; i < end; ++i) {
+        Vector3<S>& r = sums.residuals[i - first];
+        r = block_(views[0]->points()[i], views[1]->points()[i]);
+        sums.weights[i - first] = add_cost(r, Block::weight(views, i), loss, sums);
+      }
+      sums.difference.set(views, first, sums.weights, sums.residuals);
+      const auto centered = sums.difference.centered(twists(views, chains));
+      sums_of(views, chains, sums).expand(sums.difference, centered);
+    }
+    return kMayBeDifference;
+  }
 
   /// The first feature after `first` that hangs on other chains.
   [[nodiscard]] static std::size_t end_of_run(Views views, std::size_t first) {
@@ -119,6 +143,22 @@ class BlockTerm final : public Term<S> {
     const Chains chains = Block::chains(views, first);
     while (end < Block::features(views) && Block::chains(views, end) == chains) ++end;
     return end;
+  }
+
+  [[nodiscard]] static BodyChains<2> key(const Chains& chains) {
+    BodyChains<2> result{};
+    std::copy(chains.begin(), chains.end(), result.begin());
+    return result;
+  }
+
+  /// How many columns features touch that hang on the same chains as feature i.
+  [[nodiscard]] static std::size_t num_columns(Views views, std::size_t i) {
+    std::size_t n = 0;
+    for (const BodyTwists<S>& body : twists(views, Block::chains(views, i))) {
+      n += body.turns.size() + body.shifts.size();
+    }
+    for (const SensorView<S>* view : views) n += view->state().camera_columns.size();
+    return n;
   }
 
   /// Adds what a feature costs.
@@ -135,29 +175,30 @@ class BlockTerm final : public Term<S> {
   }
 
   [[nodiscard]] static Twists twists(Views views, const Chains& chains) {
-    Twists result{};
-    for (std::size_t s = 0; s < kBodies; ++s) result[s] = &views[s]->twists(chains[s]);
+    Twists result;
+    for (std::size_t s = 0; s < kBodies; ++s) {
+      result[s] = BodyTwists<S>(views[s]->twists(chains[s]));
+    }
     return result;
   }
 
   [[nodiscard]] static LocalSums<S>& sums_of(Views views, const Chains& chains, TermSums<S>& sums) {
-    BodyChains<2> key{};
-    std::copy(chains.begin(), chains.end(), key.begin());
+    const BodyChains<2> of_chains = key(chains);
     // In the order of the chains, whichever was met first: sums are added up in it.
     const auto place = std::find_if(sums.by_chains.begin(), sums.by_chains.end(),
-                                    [&key](const auto& known) { return !(known.first < key); });
-    if (place != sums.by_chains.end() && place->first == key) return place->second;
+                                    [&](const auto& known) { return !(known.first < of_chains); });
+    if (place != sums.by_chains.end() && place->first == of_chains) return place->second;
     std::vector<int> columns;
     local_columns(views, chains, columns);
-    return sums.by_chains.emplace(place, key, LocalSums<S>(std::move(columns)))->second;
+    return sums.by_chains.emplace(place, of_chains, LocalSums<S>(std::move(columns)))->second;
   }
 
   /// @param jacobian  (kSize x width) where the rows of feature i go, or nullptr
   KINECAL_FLATTEN void evaluate_feature(Views views, std::size_t i, Linearization at,
                                         const Twists& twists, PackedRows<S>& out, S* jacobian,
                                         std::size_t width) const {
-    if constexpr (kIsDifference<B>) {
-      if (jacobian != nullptr && at == Linearization::measured) {
+    if constexpr (kMayBeDifference) {
+      if (is_difference_ && jacobian != nullptr && at == Linearization::measured) {
         const Vector3<S>&a = views[0]->points()[i], &b = views[1]->points()[i];
         store(i, block_(a, b), Block::weight(views, i), out);
         write_difference(views, i, twists, jacobian, width);
@@ -177,6 +218,7 @@ class BlockTerm final : public Term<S> {
   }
 
   B block_;
+  bool is_difference_;
 };
 
 }  // namespace kinecal

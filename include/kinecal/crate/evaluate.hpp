@@ -22,8 +22,10 @@ namespace detail {
 
 /// One lane of packed rows: the features that are there.
 template <class S>
-void unpack(const PackedRows<S>& rows, int lane_index, int feature_size, int columns,
-            TermResiduals& out) {
+void unpack(const Term<S>& term, typename Term<S>::Views views, const PackedRows<S>& rows,
+            int lane_index, int columns, TermResiduals& out) {
+  const int feature_size = term.feature_size();
+  std::vector<int> of_run;
   Eigen::Index present = 0;
   for (const S& weight : rows.weight) present += lane(weight, lane_index) > 0.0 ? 1 : 0;
   out.resize(present * feature_size, columns);
@@ -31,13 +33,14 @@ void unpack(const PackedRows<S>& rows, int lane_index, int feature_size, int col
   std::size_t feature = 0, value = 0;
   for (std::size_t r = 0; r < rows.num_runs; ++r) {
     const auto& run = rows.runs[r];
+    if (columns >= 0) term.columns(views, run.chains, of_run);
     for (const std::size_t end = feature + run.features; feature < end; ++feature) {
       const bool there = lane(rows.weight[feature], lane_index) > 0.0;
       for (int m = 0; m < feature_size; ++m) {
         const std::size_t i = feature * static_cast<std::size_t>(feature_size) + std::size_t(m);
         if (there) out.residual(row) = lane(rows.residual[i], lane_index);
         if (columns >= 0) {
-          for (const int column : run.columns) {
+          for (const int column : of_run) {
             const double derivative = lane(rows.jacobian[value++], lane_index);
             if (there) out.jacobian(row, column) += derivative;
           }
@@ -87,7 +90,7 @@ class Evaluator {
     for_each_term(values, derivatives, [&](int t, const Term<S>& term, auto views, auto& pack) {
       term.evaluate(views, derivatives, at, rows_);
       for (std::size_t i = 0; i < pack.samples.size(); ++i) {
-        detail::unpack(rows_, static_cast<int>(i), term.feature_size(), columns, residuals_);
+        detail::unpack(term, views, rows_, static_cast<int>(i), columns, residuals_);
         if (residuals_.residual.allFinite()) {
           visit(t, pack.samples[i], std::as_const(residuals_));
         } else if (!undefined) {

@@ -7,7 +7,7 @@
 //
 // with the twist (v, w) of the body in the base.  A point p with dr = D dp gives by_body =
 // D [I, -[p]x], the row d of D becoming (d, p x d).  The free parameters of a chain come in later,
-// once for all features: see sums.hpp.
+// once for all features: see local_sums.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -17,11 +17,11 @@ void write_rows(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, S* 
     S* column = out;
     for (std::size_t s = 0; s < static_cast<std::size_t>(Bodies); ++s) {
       const Eigen::Matrix<S, 1, 6> l = rows.by_body[s].row(m);
-      for (const Twist<S>& t : twists[s]->turns) {
+      for (const Twist<S>& t : twists[s].turns) {
         *column++ = (l(0) * t.linear.x() + l(1) * t.linear.y() + l(2) * t.linear.z()) +
                     (l(3) * t.angular.x() + l(4) * t.angular.y() + l(5) * t.angular.z());
       }
-      for (const Vector3<S>& v : twists[s]->shifts) {
+      for (const Vector3<S>& v : twists[s].shifts) {
         *column++ = l(0) * v.x() + l(1) * v.y() + l(2) * v.z();
       }
     }
@@ -41,10 +41,10 @@ void write_difference(std::span<const SensorView<S>* const> views, std::size_t i
     ++out;
   };
   const Vector3<S> a = views[0]->points()[i], b = views[1]->points()[i];  // no aliases of out
-  for (const Twist<S>& t : twists[0]->turns) write(t.velocity(a));
-  for (const Vector3<S>& v : twists[0]->shifts) write(v);
-  for (const Twist<S>& t : twists[1]->turns) write(-t.velocity(b));
-  for (const Vector3<S>& v : twists[1]->shifts) write(-v);
+  for (const Twist<S>& t : twists[0].turns) write(t.velocity(a));
+  for (const Vector3<S>& v : twists[0].shifts) write(v);
+  for (const Twist<S>& t : twists[1].turns) write(t.opposite_velocity(b));
+  for (const Vector3<S>& v : twists[1].shifts) write(-v);
   for (const Vector3<S>& v : views[0]->camera_motion(i)) write(v);
   for (const Vector3<S>& v : views[1]->camera_motion(i)) write(-v);
 }

@@ -107,18 +107,33 @@ class SensorView {
 
   KINECAL_FLATTEN void place_camera_points() {
     const CorrectedDepthCamera<S> camera(*observation_->depth_camera, state_->camera_values);
-    camera_motion_.resize(points_.size() * state_->free_camera.size());
-    Vector3<S>* motion = camera_motion_.data();
-    for (std::size_t i = 0; i < observation_->measured.size(); ++i) {
-      const Pose<S>& pose = poses_[observation_->chain[i]];
-      if (!derivatives_) {
-        points_[i] = pose * camera.point(observation_->measured[i]);
-        continue;
-      }
-      const auto seen = camera.see(observation_->measured[i]);
-      points_[i] = pose * seen.point;
-      for (const int k : state_->free_camera) *motion++ = turned(pose.rotation, seen, k);
+    const std::size_t features = points_.size(), parameters = state_->free_camera.size();
+    const Pose<S> pose = poses_[0];  // what a camera sees is in its own frame
+    const Vector3<S>* measured = observation_->measured.data();
+    Vector3<S>* points = points_.data();
+    if (!derivatives_) {
+      for (std::size_t i = 0; i < features; ++i) points[i] = pose * camera.point(measured[i]);
+      return;
     }
+    camera_motion_.resize(features * parameters);
+    Vector3<S>* motion = camera_motion_.data();
+    for (std::size_t i = 0; i < features; ++i, motion += parameters) {
+      const auto seen = camera.see(measured[i]);
+      points[i] = pose * seen.point;
+      if (parameters == 6) {  // most often
+        for_all(std::make_index_sequence<6>{},
+                [&](auto k) { motion[k] = turned(pose.rotation, seen, static_cast<int>(k)); });
+      } else {
+        for (std::size_t k = 0; k < parameters; ++k) {
+          motion[k] = turned(pose.rotation, seen, state_->free_camera[k]);
+        }
+      }
+    }
+  }
+
+  template <std::size_t... K, class F>
+  static void for_all(std::index_sequence<K...>, F&& f) {
+    (f(std::integral_constant<std::size_t, K>{}), ...);
   }
 
   /// How parameter k moves a point, in the base.

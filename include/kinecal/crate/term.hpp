@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/crate/sums.hpp"
-#include "kinecal/errors/error_block.hpp"
+#include "kinecal/crate/difference_gram.hpp"
+#include "kinecal/crate/feature_gram.hpp"
+#include "kinecal/crate/local_sums.hpp"
+#include "kinecal/errors/difference.hpp"
 #include "kinecal/errors/loss.hpp"
 #include "kinecal/errors/plane_fit.hpp"
 
@@ -46,7 +48,8 @@ struct PackedRows {
   /// Features next to each other that hang on the same chains.
   struct Run {
     std::size_t features = 0;
-    std::vector<int> columns;  ///< of the whole Jacobian: see local_columns()
+    BodyChains<2> chains{};    ///< those on which they hang
+    std::size_t width = 0;     ///< number of columns: see Term::columns()
     std::size_t jacobian = 0;  ///< where its values start
   };
   std::vector<Run> runs;     ///< the first `num_runs` of them
@@ -67,9 +70,10 @@ template <class S>
 struct TermSums {
   S twice_cost{0.0};  ///< sum of rho
   std::vector<std::pair<BodyChains<2>, LocalSums<S>>> by_chains;
-  FeatureGram<S> gram;                ///< of the features at hand, with their
-  std::vector<S> weights;             ///< weights and
-  std::vector<Vector3<S>> residuals;  ///< residuals, where the block is a difference
+  FeatureGram<S> gram;                ///< of the features at hand
+  DifferenceGram<S> difference;       ///< the same where the block is a difference, and
+  std::vector<S> weights;             ///< the features' weights and
+  std::vector<Vector3<S>> residuals;  ///< residuals
 
   void set_zero() {
     twice_cost = S(0.0);
@@ -116,6 +120,8 @@ class Term {
   /// @param derivatives  the Jacobian, too
   virtual void evaluate(Views views, bool derivatives, Linearization at,
                         PackedRows<S>& out) const = 0;
+  /// The columns of the whole Jacobian that features on these chains can touch: local_columns().
+  virtual void columns(Views views, const BodyChains<2>& chains, std::vector<int>& out) const = 0;
 
  private:
   std::string name_;

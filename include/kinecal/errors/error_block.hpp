@@ -97,11 +97,6 @@ auto probe(const B& block) {
 }
 }  // namespace detail
 
-/// True for a block that is the difference of its two points, r = p_a - p_b: its derivatives are I
-/// and -I and need not be multiplied with.  Specialized beside such a block.
-template <class B>
-inline constexpr bool kIsDifference = false;
-
 /// Number of residuals for one feature (for one pair of planes).
 template <ErrorBlock B>
 inline constexpr int kResiduals =

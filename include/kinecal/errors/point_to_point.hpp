@@ -18,8 +18,4 @@ struct PointToPoint {
 
 static_assert(PointPairBlock<PointToPoint> && kResiduals<PointToPoint> == 3);
 
-template <>
-inline constexpr bool kIsDifference<PointToPoint> = true;
-static_assert(PointPairBlock<PointToPoint> && kResiduals<PointToPoint> == 3);
-
 }  // namespace kinecal

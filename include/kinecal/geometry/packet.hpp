@@ -88,6 +88,8 @@ template <class Mask, class S>
 [[nodiscard]] S select(const Mask& condition, const S& a, const S& b) {
   if constexpr (std::is_same_v<Mask, bool>) {
     return condition ? a : b;
+  } else if constexpr (requires { condition(a, b); }) {  // of a scalar of its own kind
+    return condition(a, b);
   } else {
 #if defined(__clang__)
     // clang 14 makes nothing of where() with the masks of AVX-512.

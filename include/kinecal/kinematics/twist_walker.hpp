@@ -47,6 +47,12 @@ struct Twist {
     return {v.x() + w.y() * p.z() - w.z() * p.y(),  // two fused multiply-adds each
             v.y() + w.z() * p.x() - w.x() * p.z(), v.z() + w.x() * p.y() - w.y() * p.x()};
   }
+  /// -velocity(p_base), at the same price
+  [[nodiscard]] Vector3<S> opposite_velocity(const Vector3<S>& p_base) const {
+    const Vector3<S>&v = linear, &w = angular, &p = p_base;
+    return {(w.z() * p.y() - v.x()) - w.y() * p.z(), (w.x() * p.z() - v.y()) - w.z() * p.x(),
+            (w.y() * p.x() - v.z()) - w.x() * p.y()};
+  }
 };
 
 /// The twists of a chain.  Those that only shift move all points alike and are kept apart.
@@ -54,6 +60,28 @@ template <class S>
 struct ChainTwists {
   std::vector<Twist<S>> turns;
   std::vector<Vector3<S>> shifts;
+};
+
+/// A chain's twists, where they are.
+template <class S>
+struct BodyTwists {
+  std::span<const Twist<S>> turns;
+  std::span<const Vector3<S>> shifts;
+
+  BodyTwists() = default;
+  BodyTwists(std::span<const Twist<S>> those_that_turn, std::span<const Vector3<S>> the_others)
+      : turns(those_that_turn), shifts(the_others) {}
+  explicit BodyTwists(const ChainTwists<S>& twists) : BodyTwists(twists.turns, twists.shifts) {}
+
+  /// As numbers, 6 or 3 of each.
+  [[nodiscard]] const S* turn_numbers() const {
+    static_assert(sizeof(Twist<S>) == 6 * sizeof(S));
+    return turns.empty() ? nullptr : turns[0].linear.data();
+  }
+  [[nodiscard]] const S* shift_numbers() const {
+    static_assert(sizeof(Vector3<S>) == 3 * sizeof(S));
+    return shifts.empty() ? nullptr : shifts[0].data();
+  }
 };
 
 /// The Jacobian's columns of a chain's twists, in the order in which the walker finds them.

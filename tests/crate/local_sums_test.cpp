@@ -1,4 +1,4 @@
-#include "kinecal/crate/sums.hpp"
+#include "kinecal/crate/local_sums.hpp"
 
 #include <gtest/gtest.h>
 

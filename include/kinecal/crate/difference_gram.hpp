@@ -1,0 +1,216 @@
+// The matrix K of local_sums.hpp for points that are only subtracted: r = p_a - p_b.
+//
+// With derivatives I and -I the sums over the features are moments of the points.  Taken about the
+// centers c of either side's points, a shift turns nothing and a turn shifts nothing:
+//
+//   force   sum w v = W v,  the same on both sides
+//   moment  sum w q x (u x p) = (tr C - C) u      C = sum w p q^T
+//
+// for a twist (v, u) whose linear part v is that of the center.  The second side's twists are
+// negated, so that both sides add up.  fetch_calibration_bench prints what this saves against
+// multiplying rows out.  Source: Euler's equations of a rigid body.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "kinecal/crate/sensor_view.hpp"
+
+namespace kinecal {
+
+template <class S>
+class DifferenceGram {
+ public:
+  using Views = std::span<const SensorView<S>* const>;
+
+  static constexpr bool kShiftsFeltAsForces = true;
+  [[nodiscard]] static constexpr std::size_t force(std::size_t) { return 0; }
+  [[nodiscard]] static constexpr std::size_t moment(std::size_t body) { return 3 + 3 * body; }
+  [[nodiscard]] static constexpr std::size_t rest() { return 9; }
+  [[nodiscard]] std::size_t width() const { return rest() + columns_.size(); }
+  [[nodiscard]] const S* camera_row(std::size_t c) const {
+    return &products_[c * columns_.size() + c];
+  }
+
+  /// Sums over features that hang on the same chains.
+  /// @param first      the first of them
+  /// @param weights    of each
+  /// @param residuals  (3) of each
+  void set(Views views, std::size_t first, std::span<const S> weights,
+           std::span<const Vector3<S>> residuals) {
+    set_points({views[0]->points().data() + first, views[1]->points().data() + first}, weights);
+    const std::array<std::span<const Vector3<S>>, 2> motions = {views[0]->camera_motion(first),
+                                                                views[1]->camera_motion(first)};
+    const std::size_t features = weights.size(), of_first = motions[0].size();
+    columns_.resize(of_first + motions[1].size() + 1);
+    forces_.resize(columns_.size() * features);
+    products_.resize(columns_.size() * columns_.size());
+    for (std::size_t c = 0; c < of_first; ++c) {
+      set_column(c, &motions[0][c], of_first, weights, 1.0);
+    }
+    for (std::size_t c = 0; c < motions[1].size(); ++c) {
+      set_column(of_first + c, &motions[1][c], motions[1].size(), weights, -1.0);
+    }
+    set_column(columns_.size() - 1, residuals.data(), 1, weights, 1.0);
+    for (std::size_t c = 0; c < of_first; ++c) {
+      set_products(c, &motions[0][c], of_first, features, 1.0);
+    }
+    for (std::size_t c = 0; c < motions[1].size(); ++c) {
+      set_products(of_first + c, &motions[1][c], motions[1].size(), features, -1.0);
+    }
+  }
+
+  /// The twists of both sides as K takes them: linear parts at the centers, the second side's
+  /// negated.
+  /// @returns  views of what is kept here
+  [[nodiscard]] std::array<BodyTwists<S>, 2> centered(const std::array<BodyTwists<S>, 2>& twists) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      std::vector<Twist<S>>& turns = centered_[s].turns;
+      turns.resize(twists[s].turns.size());
+      for (std::size_t i = 0; i < turns.size(); ++i) {
+        const Twist<S>& t = twists[s].turns[i];
+        const Vector3<S> v = t.velocity(centers_[s]);
+        turns[i].linear = s == 0 ? v : Vector3<S>(-v);
+        turns[i].angular = s == 0 ? t.angular : Vector3<S>(-t.angular);
+      }
+    }
+    std::vector<Vector3<S>>& shifts = centered_[1].shifts;
+    shifts.resize(twists[1].shifts.size());
+    for (std::size_t i = 0; i < shifts.size(); ++i) shifts[i] = -twists[1].shifts[i];
+    return {BodyTwists<S>{centered_[0].turns, twists[0].shifts}, BodyTwists<S>(centered_[1])};
+  }
+
+  /// K xi of R twists of a body: see FeatureGram.  With D = 3 moments are left out.
+  template <int D, int R>
+  void effects(std::size_t body, const S* xi, S* __restrict effects) const {
+    const S weight = weight_;
+    for (std::size_t d = 0; d < 3; ++d) {
+      for (std::size_t r = 0; r < R; ++r) effects[d * R + r] = weight * xi[r * D + d];
+    }
+    if constexpr (D == 6) {
+      for (std::size_t b = body; b < 2; ++b) {
+        const S* inertia = inertia_[body + b].data();
+        S* moments = effects + R * moment(b);
+        for (std::size_t k = 0; k < 3; ++k, inertia += 3, moments += R) {
+          for (std::size_t r = 0; r < R; ++r) moments[r] = dot(inertia, xi + r * D + 3);
+        }
+      }
+    }
+    effects += R * rest();
+    const Column *column = columns_.data(), *end = column + columns_.size();
+    for (; column != end; ++column, effects += R) {
+      for (std::size_t r = 0; r < R; ++r) {
+        S felt = dot(column->force.data(), xi + r * D);
+        if constexpr (D == 6) felt += dot(column->moment[body].data(), xi + r * D + 3);
+        effects[r] = felt;
+      }
+    }
+  }
+
+ private:
+  /// What a camera parameter, or the residual, exerts on both sides.
+  struct Column {
+    Vector3<S> force;
+    std::array<Vector3<S>, 2> moment;  ///< about the centers
+  };
+
+  void set_points(const std::array<const Vector3<S>*, 2>& points, std::span<const S> weights) {
+    weight_ = S(0.0);
+    for (const S& w : weights) weight_ += w;
+    const S share = S(1.0) / select(weight_ > S(0.0), weight_, S(1.0));
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Vector3<S>* p = points[s];
+      Vector3<S> sum = Vector3<S>::Zero();
+      for (std::size_t i = 0; i < weights.size(); ++i) add_scaled(sum, p[i], weights[i]);
+      const Vector3<S> center(sum(0) * share, sum(1) * share, sum(2) * share);
+      from_center_[s].resize(weights.size());
+      Vector3<S>* from_center = from_center_[s].data();
+      for (std::size_t i = 0; i < weights.size(); ++i) from_center[i] = p[i] - center;
+      centers_[s] = center;
+    }
+    set_inertia<true>(inertia_[0], from_center_[0].data(), from_center_[0].data(), weights);
+    set_inertia<false>(inertia_[1], from_center_[1].data(), from_center_[0].data(), weights);
+    set_inertia<true>(inertia_[2], from_center_[1].data(), from_center_[1].data(), weights);
+  }
+
+  /// sum w (p^T q I - p q^T)
+  /// @tparam Same  p and q are the same points: only one triangle is summed
+  template <bool Same>
+  static void set_inertia(Matrix3<S>& inertia, const Vector3<S>* p, const Vector3<S>* q,
+                          std::span<const S> weights) {
+    Matrix3<S> c = Matrix3<S>::Zero();
+    for (std::size_t i = 0; i < weights.size(); ++i, ++p, ++q) {
+      for (int col = 0; col < 3; ++col) {
+        const S scaled = (*q)(col)*weights[i];
+        for (int row = Same ? col : 0; row < 3; ++row) c(row, col) += (*p)(row)*scaled;
+      }
+    }
+    const S trace = c(0, 0) + c(1, 1) + c(2, 2);
+    for (int col = 0; col < 3; ++col) {
+      inertia(col, col) = trace - c(col, col);
+      for (int row = Same ? col + 1 : 0; row < 3; ++row) {
+        if (row == col) continue;
+        inertia(row, col) = -c(row, col);
+        if constexpr (Same) inertia(col, row) = inertia(row, col);
+      }
+    }
+  }
+
+  /// @param x     (3) of each feature: the motion by a parameter, or the residual
+  /// @param sign  of it
+  void set_column(std::size_t c, const Vector3<S>* x, std::size_t stride,
+                  std::span<const S> weights, double sign) {
+    const Vector3<S>*p_a = from_center_[0].data(), *p_b = from_center_[1].data();
+    Vector3<S>* forces = &forces_[c * weights.size()];
+    Vector3<S> force = Vector3<S>::Zero(), about_a = force, about_b = force;
+    for (const S& weight : weights) {
+      const S w = sign < 0.0 ? S(-weight) : weight;
+      const Vector3<S> f((*x)(0) * w, (*x)(1) * w, (*x)(2) * w);
+      force += f;
+      add_cross(about_a, *p_a++, f);
+      add_cross(about_b, *p_b++, f);
+      *forces++ = f;
+      x += stride;
+    }
+    columns_[c] = {force, {about_a, about_b}};
+  }
+
+  /// The products of camera parameter c with itself and those after it, and with the residual.
+  void set_products(std::size_t c, const Vector3<S>* x, std::size_t stride, std::size_t features,
+                    double sign) {
+    const Vector3<S>* forces = &forces_[c * features];
+    const std::size_t columns = columns_.size();
+    for (S *product = &products_[c * columns + c], *end = &products_[c * columns] + columns;
+         product != end; ++product) {
+      S sum(0.0);
+      const Vector3<S>* u = x;
+      for (std::size_t i = 0; i < features; ++i, u += stride)
+        sum += dot(u->data(), (forces++)->data());
+      *product = sign < 0.0 ? S(-sum) : sum;
+    }
+  }
+
+  [[nodiscard]] static S dot(const S* u, const S* v) {
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  }
+  static void add_scaled(Vector3<S>& sum, const Vector3<S>& p, const S& factor) {
+    for (int k = 0; k < 3; ++k) sum(k) += p(k) * factor;
+  }
+  static void add_cross(Vector3<S>& sum, const Vector3<S>& p, const Vector3<S>& f) {
+    sum = {sum.x() + p.y() * f.z() - p.z() * f.y(),  // two fused multiply-adds each
+           sum.y() + p.z() * f.x() - p.x() * f.z(), sum.z() + p.x() * f.y() - p.y() * f.x()};
+  }
+
+  S weight_;                           ///< of all features
+  std::array<Vector3<S>, 2> centers_;  ///< of the points of both sides, in the base
+  std::array<Matrix3<S>, 3> inertia_;  ///< first, mixed, second
+  std::vector<Column> columns_;        ///< of each camera parameter and the residual
+  std::vector<S> products_;            ///< of each with each: the upper triangle
+  std::array<std::vector<Vector3<S>>, 2> from_center_;  ///< each point
+  std::vector<Vector3<S>> forces_;                      ///< weight times motion, column by column
+  std::array<ChainTwists<S>, 2> centered_;
+};
+
+}  // namespace kinecal

@@ -1,0 +1,114 @@
+// Normal equations from features: first one small matrix for each sample, of whatever they compare.
+//
+// The columns of a body's parameters are by_body xi_k with the twists xi_k of its chain, the same
+// for all features.  So per sample a small matrix is summed over the features,
+//
+//   K = sum of  w L^T L      L = [ by_body of each body | by_camera | residual ]
+//
+// whose size depends neither on the number of features nor on that of parameters; the twists enter
+// once: see local_sums.hpp.  Source: the design of kinecal, ideas 2 and 6.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "kinecal/crate/feature_rows.hpp"
+
+namespace kinecal {
+
+/// The matrix K of a pack; its upper triangle, and both triangles of each body's own 6 x 6.
+template <class S>
+class FeatureGram {
+ public:
+  /// A shift may also turn: what it does is felt as a force and as a moment.
+  static constexpr bool kShiftsFeltAsForces = false;
+  /// Where effects() puts the force and the moment that a body feels.
+  [[nodiscard]] static constexpr std::size_t force(std::size_t body) { return 6 * body; }
+  [[nodiscard]] static constexpr std::size_t moment(std::size_t body) { return 6 * body + 3; }
+  /// Where it puts the products with the columns of the cameras and with the residual.
+  [[nodiscard]] std::size_t rest() const { return 6 * bodies_; }
+  [[nodiscard]] std::size_t width() const { return width_; }
+
+  /// Its contents are not defined.
+  /// @param bodies, cameras  number of bodies and of free camera parameters
+  void resize(std::size_t bodies, std::size_t cameras) {
+    bodies_ = bodies;
+    width_ = 6 * bodies + cameras + 1;
+    k_.resize(width_ * width_);
+  }
+  [[nodiscard]] S* row(std::size_t i) { return &k_[i * width_]; }
+  [[nodiscard]] const S* row(std::size_t i) const { return &k_[i * width_]; }
+  /// The products of the column of camera parameter c with those from it on.
+  [[nodiscard]] const S* camera_row(std::size_t c) const { return row(rest() + c) + rest() + c; }
+
+  /// K = w L^T L of the first feature.
+  template <int M, int Bodies>
+  void set(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
+    sum<true>(rows, weight);
+  }
+  /// Adds that of a further one.
+  template <int M, int Bodies>
+  void add(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
+    sum<false>(rows, weight);
+  }
+  /// Completes each body's own block, which is read as a whole.
+  void complete() {
+    for (std::size_t s = 0; s < bodies_; ++s) {
+      for (std::size_t i = 6 * s; i < 6 * s + 6; ++i) {
+        for (std::size_t j = 6 * s; j < i; ++j) row(i)[j] = row(j)[i];
+      }
+    }
+  }
+
+  /// K xi of R twists of a body, for that body and what stands to the right of it.
+  /// @param xi       (R x D) D = 6: linear and angular; D = 3: linear only
+  /// @param effects  (width x R)
+  template <int D, int R>
+  void effects(std::size_t body, const S* xi, S* __restrict effects) const {
+    const std::size_t width = width_;
+    const S *k = row(6 * body) + 6 * body, *end = row(6 * body) + width;
+    for (effects += R * 6 * body; k != end; ++k, effects += R) {
+      std::array<S, R> sum;
+      for (std::size_t r = 0; r < R; ++r) sum[r] = *k * xi[r * D];
+      for (std::size_t d = 1; d < D; ++d) {
+        const S factor = k[d * width];
+        for (std::size_t r = 0; r < R; ++r) sum[r] += factor * xi[r * D + d];
+      }
+      for (std::size_t r = 0; r < R; ++r) effects[r] = sum[r];
+    }
+  }
+
+ private:
+  template <bool kFirst, int M, int Bodies>
+  void sum(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
+    constexpr std::size_t kRows = M;
+    using Columns =
+        std::array<std::array<S, kRows>, 6 * Bodies + FeatureRows<S, M, Bodies>::kMaxCameras + 1>;
+    Columns l;  // column by column
+    for (std::size_t m = 0; m < kRows; ++m) {
+      const auto row = static_cast<int>(m);
+      std::size_t n = 0;
+      for (std::size_t s = 0; s < Bodies; ++s) {
+        for (int k = 0; k < 6; ++k) l[n++][m] = rows.by_body[s](row, k);
+      }
+      for (std::size_t c = 0; c < rows.cameras; ++c) l[n++][m] = rows.by_camera[c](row);
+      l[n][m] = rows.residual(row);
+    }
+    for (std::size_t i = 0; i + 1 < width_; ++i) {
+      std::array<S, kRows> weighted;
+      for (std::size_t m = 0; m < kRows; ++m) weighted[m] = weight * l[i][m];
+      S* k = row(i);
+      for (std::size_t j = i; j < width_; ++j) {
+        S sum = weighted[0] * l[j][0];
+        if constexpr (!kFirst) sum += k[j];
+        for (std::size_t m = 1; m < kRows; ++m) sum += weighted[m] * l[j][m];
+        k[j] = sum;
+      }
+    }
+  }
+
+  std::size_t bodies_ = 0, width_ = 0;
+  std::vector<S> k_;
+};
+
+}  // namespace kinecal

@@ -1,0 +1,154 @@
+// Normal equations of features, without forming their Jacobian.
+//
+// A pack's features have been summed to a small matrix K over [ twist of each body | cameras |
+// residual ] (feature_gram.hpp, difference_gram.hpp).  Here the twists of the parameters enter:
+//
+//   J^T J = E^T K E      J^T r = E^T K e_r
+//
+// with E the twists of each body, and the identity for cameras.  Everything is of a pack: one
+// sample in each lane.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "kinecal/crate/normal_equations.hpp"
+#include "kinecal/geometry/packet.hpp"
+#include "kinecal/kinematics/twist_walker.hpp"
+
+namespace kinecal {
+
+/// Normal equations of features that hang on the same chains, summed over samples lane by lane.
+template <class S>
+class LocalSums {
+ public:
+  using Twists = std::span<const BodyTwists<S>>;
+
+  explicit LocalSums(std::vector<int> columns)
+      : columns_(std::move(columns)), stride_(columns_.size() + 1) {
+    set_zero();
+  }
+
+  void set_zero() { sums_.assign(stride_ * columns_.size(), S(0.0)); }
+
+  /// Adds the twists' share: E^T K E.
+  /// @param gram    K
+  /// @param twists  of each body, as K takes them
+  template <class Gram>
+  void expand(const Gram& gram, Twists twists) {
+    effects_.resize(kMostAtOnce * gram.width());
+    std::size_t i = 0;
+    for (std::size_t s = 0; s < twists.size(); ++s) {
+      const std::size_t first = i;
+      i = add_columns<6>(gram, twists, s, first, i, twists[s].turn_numbers(),
+                         twists[s].turns.size());
+      i = add_columns<3>(gram, twists, s, first, i, twists[s].shift_numbers(),
+                         twists[s].shifts.size());
+    }
+    for (std::size_t c = 0; gram.rest() + c + 1 < gram.width(); ++c, ++i) {
+      S* sums = row(i) + i;
+      const S* k = gram.camera_row(c);
+      for (std::size_t j = gram.rest() + c; j < gram.width(); ++j) *sums++ += *k++;
+    }
+  }
+
+  /// Adds all lanes to the sums over the whole Jacobian's columns.
+  void add_to(NormalEquations& total) const {
+    const std::size_t n = columns_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const S* sums = row(i);
+      const int a = columns_[i];
+      for (std::size_t j = i; j < n; ++j) {
+        const int b = columns_[j];
+        const double h = sum_of_lanes(sums[j]);
+        total.hessian(a, b) += h;
+        if (i != j) total.hessian(b, a) += h;
+      }
+      total.gradient(a) += sum_of_lanes(sums[n]);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMostAtOnce = 3;
+
+  /// Row i: for each local column j >= i the sum of their products, then that with the residual.
+  [[nodiscard]] S* row(std::size_t i) { return &sums_[i * stride_]; }
+  [[nodiscard]] const S* row(std::size_t i) const { return &sums_[i * stride_]; }
+
+  /// Adds the rows of some local columns of body s, up to three at a time: each number that is read
+  /// then serves as often.  Eight lanes wide, one at a time was measured to be as quick.
+  /// @param first  local column at which body s starts
+  /// @param i      local column of the first of them
+  /// @returns      the local column after them
+  template <int D, class Gram>
+  std::size_t add_columns(const Gram& gram, Twists twists, std::size_t s, std::size_t first,
+                          std::size_t i, const S* xi, std::size_t count) {
+    const auto add = [&]<int R>(std::integral_constant<int, R>) {
+      gram.template effects<D, R>(s, xi, effects_.data());
+      add_products<D, R>(gram, twists, s, i - first, row(i) + i);
+      i += R;
+      xi += R * D;
+      count -= R;
+    };
+    if constexpr (kLanes<S> < 8) {
+      while (count == 3 || count > 4) add(std::integral_constant<int, 3>{});
+      while (count >= 2) add(std::integral_constant<int, 2>{});
+    }
+    while (count > 0) add(std::integral_constant<int, 1>{});
+    return i;
+  }
+
+  /// Adds xi_j^T effects for the columns j of body s after the first `skip`, and all further ones.
+  /// @tparam D     of the columns whose effects they are
+  /// @param  sums  of the first of these columns with the first of those j
+  template <int D, int R, class Gram>
+  void add_products(const Gram& gram, Twists twists, std::size_t s, std::size_t skip, S* sums) {
+    constexpr int kFelt = D == 3 && Gram::kShiftsFeltAsForces ? 3 : 6;
+    // Packets may alias anything: what is not in a variable of its own is read again and again.
+    const std::size_t stride = stride_;
+    const S* effects = effects_.data();
+    for (std::size_t b = s; b < twists.size(); ++b, skip = 0) {
+      const std::size_t turns = twists[b].turns.size(), shifts = twists[b].shifts.size();
+      const std::size_t no_turns = std::min(skip, turns), no_shifts = skip - no_turns;
+      const S *force = effects + R * gram.force(b), *moment = effects + R * gram.moment(b);
+      sums = add_dots<6, kFelt, R>(force, moment, twists[b].turn_numbers() + 6 * no_turns,
+                                   turns - no_turns, sums, stride);
+      sums = add_dots<3, 3, R>(force, moment, twists[b].shift_numbers() + 3 * no_shifts,
+                               shifts - no_shifts, sums, stride);
+    }
+    const S* end = effects + R * gram.width();
+    for (effects += R * gram.rest(); effects != end; effects += R, ++sums) {
+      for (std::size_t r = 0; r < R; ++r) sums[r * stride] += effects[r];
+    }
+  }
+
+  /// @tparam D     numbers of each xi
+  /// @tparam Felt  how many of them meet an effect
+  /// @returns      the sums after them
+  template <int D, int Felt, int R>
+  static S* add_dots(const S* force, const S* moment, const S* xi, std::size_t count, S* sums,
+                     std::size_t stride) {
+    std::array<S, R * Felt> e;
+    for (std::size_t n = 0; n < R * 3; ++n) e[n] = force[n];
+    for (std::size_t n = R * 3; n < R * Felt; ++n) e[n] = moment[n - R * 3];
+    for (const S* end = sums + count; sums != end; xi += D, ++sums) {
+      std::array<S, R> sum;
+      for (std::size_t r = 0; r < R; ++r) sum[r] = sums[r * stride];
+      for (std::size_t d = 0; d < Felt; ++d) {
+        const S factor = xi[d];
+        for (std::size_t r = 0; r < R; ++r) sum[r] += factor * e[d * R + r];
+      }
+      for (std::size_t r = 0; r < R; ++r) sums[r * stride] = sum[r];
+    }
+    return sums;
+  }
+
+  std::vector<int> columns_;
+  std::size_t stride_;
+  std::vector<S> sums_;
+  std::vector<S> effects_;
+};
+
+}  // namespace kinecal
