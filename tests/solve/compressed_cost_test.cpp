@@ -83,9 +83,9 @@ TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
     const Problem problem = noisy_problem({type, 0.3});
     const FreeSet free = all_free(problem);
     const auto x = test::random_values(problem.table(), 0.02, 5);
-    const CompressedCost<Packet> cost(
-        problem, free,
-        Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(x.data(), problem.table().size())));
+    Evaluator<Packet> evaluator(problem, free);
+    const CompressedCost<Packet> cost(evaluator, Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                                                     x.data(), problem.table().size())));
     const auto n = static_cast<Eigen::Index>(free.size());
     const auto cost_at = [&](const std::vector<double>& values) {
       Eigen::VectorXd r(n + 1);

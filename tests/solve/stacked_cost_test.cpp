@@ -206,7 +206,8 @@ TEST(StackedResiduals, RefuseValuesForWhichAResidualIsNotDefined) {
   options.evaluation_callback = &stack;
   ceres::Problem ceres_problem(options);
   stack.add_to(ceres_problem, x.data());
-  const CompressedCost<Packet> compressed(problem, free, zero);
+  Evaluator<Packet> evaluator(problem, free);
+  const CompressedCost<Packet> compressed(evaluator, zero);
   Eigen::Vector2d r;
   for (const double pan : {0.0, M_PI, 0.01}) {
     x[0] = pan;

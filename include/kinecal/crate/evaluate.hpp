@@ -65,6 +65,9 @@ class Evaluator {
     for (const SensorModel& sensor : problem.sensors()) states_.emplace_back(sensor, free);
   }
 
+  [[nodiscard]] const BasicProblem<S>& problem() const { return problem_; }
+  [[nodiscard]] const FreeSet& free() const { return free_; }
+
   /// Calls visit(int term index, const Term<S>&, Term<S>::Views, const PackedSample<S>&) for all
   /// terms, pack by pack.
   /// @param values       of all parameters of the table
@@ -155,11 +158,14 @@ class Evaluator {
   void for_each_term(std::span<const PackedSample<S>> packs, bool derivatives, Worker& worker,
                      Visit&& visit) const {
     worker.views.resize(states_.size());
+    for (std::size_t s = 0; s < states_.size(); ++s) {
+      worker.views[s].start(problem_.sensors()[s], states_[s], derivatives);
+    }
     std::vector<const SensorView<S>*> of_term;
     for (const PackedSample<S>& pack : packs) {
       for (std::size_t s = 0; s < states_.size(); ++s) {
         if (!pack.seen[s]) continue;
-        worker.views[s].update(problem_.sensors()[s], states_[s], *pack.seen[s], derivatives);
+        worker.views[s].update(*pack.seen[s]);
       }
       for (const int t : pack.shape->terms) {
         const Term<S>& term = *problem_.terms()[static_cast<std::size_t>(t)];

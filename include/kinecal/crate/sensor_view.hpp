@@ -1,6 +1,7 @@
 // A sensor's features in the base, for given parameters, and how each parameter moves them.
 //
-// Filled once per pack of samples and shared by all error blocks.  Kinematics contributes one twist
+// Filled once per pack of samples and shared by all error blocks; what lies before the first joint
+// that moves, once per evaluation.  Kinematics contributes one twist
 // per parameter for all points of a chain; a depth camera's own parameters move each point in its
 // own way.
 // SPDX-License-Identifier: Apache-2.0
@@ -68,16 +69,23 @@ class SensorView {
     return std::span(camera_motion_).subspan(i * n, n);
   }
 
+  /// Begins an evaluation: what does not depend on the samples.
   /// @param derivatives  twists and camera motions, too
-  void update(const SensorModel& model, const SensorState& state, const PackedObservation<S>& seen,
-              bool derivatives) {
+  void start(const SensorModel& model, const SensorState& state, bool derivatives) {
+    model_ = &model;
     state_ = &state;
-    observation_ = &seen;
     derivatives_ = derivatives;
     poses_.resize(model.chains().size());
     twists_.resize(model.chains().size());
+    starts_.resize(model.chains().size());
+    for (std::size_t c = 0; c < starts_.size(); ++c) start_chain(c);
+  }
+
+  /// Goes on to a pack of samples.
+  void update(const PackedObservation<S>& seen) {
+    observation_ = &seen;
     for (std::size_t c = 0; c < poses_.size(); ++c) {
-      if (seen.motions[c]) walk_chain(model, c);
+      if (seen.motions[c]) walk_chain(c);
     }
     points_.resize(seen.measured.size());
     if (seen.depth_camera) {
@@ -90,18 +98,40 @@ class SensorView {
   }
 
  private:
-  KINECAL_FLATTEN void walk_chain(const SensorModel& model, std::size_t c) {
-    const std::span<const Motion<S>> motions = *observation_->motions[c];
+  /// How far the walk of a chain comes before anything moves.
+  struct Start {
+    Pose<S> pose;
+    std::size_t joint = 0, turns = 0, shifts = 0;
+  };
+
+  void start_chain(std::size_t c) {
+    const Chain<>& chain = model_->chains()[c];
     const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
     if (!derivatives_) {
       PoseWalker<S> walker;
-      walk(model.chains()[c], motions, corrections, walker);
-      poses_[c] = walker.pose;
+      const std::size_t joint = walk_to_first_motion(chain, corrections, walker);
+      starts_[c] = {walker.pose, joint, 0, 0};
       return;
     }
     state_->twist_columns[c].resize(twists_[c]);
     TwistWalker<S> walker{state_->columns[c], twists_[c]};
-    walk(model.chains()[c], motions, corrections, walker);
+    const std::size_t joint = walk_to_first_motion(chain, corrections, walker);
+    starts_[c] = {walker.walker.pose, joint, walker.num_turns, walker.num_shifts};
+  }
+
+  KINECAL_FLATTEN void walk_chain(std::size_t c) {
+    const Chain<>& chain = model_->chains()[c];
+    const std::span<const Motion<S>> motions = *observation_->motions[c];
+    const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
+    const Start& start = starts_[c];
+    if (!derivatives_) {
+      PoseWalker<S> walker{start.pose};
+      walk_on(chain, start.joint, motions, corrections, walker);
+      poses_[c] = walker.pose;
+      return;
+    }
+    TwistWalker<S> walker{state_->columns[c], twists_[c], {start.pose}, start.turns, start.shifts};
+    walk_on(chain, start.joint, motions, corrections, walker);
     poses_[c] = walker.walker.pose;
   }
 
@@ -156,9 +186,11 @@ class SensorView {
     }
   }
 
+  const SensorModel* model_ = nullptr;
   const SensorState* state_ = nullptr;
   bool derivatives_ = false;
   const PackedObservation<S>* observation_ = nullptr;
+  std::vector<Start> starts_;              ///< of each chain
   std::vector<Pose<S>> poses_;             ///< of each chain's tip in the base
   std::vector<ChainTwists<S>> twists_;     ///< of each chain
   std::vector<Vector3<S>> points_;         ///< of each feature, in the base

@@ -37,8 +37,10 @@ struct EquivalentResidual {
     const Eigen::LDLT<Eigen::MatrixXd> ldlt(scaled);
     // H = D P^T L diag(d) L^T P D;  A = diag(sqrt d) L^T P D;  A^-T g = diag(1/sqrt d) L^-1 P D^-1
     // g
-    Eigen::MatrixXd rows = ldlt.transpositionsP() * Eigen::MatrixXd::Identity(n, n);
-    rows = ldlt.matrixU() * rows;
+    Eigen::MatrixXd rows = ldlt.matrixU();
+    for (Eigen::Index k = n - 1; k >= 0; --k) {  // times P
+      rows.col(k).swap(rows.col(ldlt.transpositionsP().coeff(k)));
+    }
     Eigen::VectorXd projected =
         ldlt.transpositionsP() * scale.cwiseInverse().cwiseProduct(normal.gradient);
     ldlt.matrixL().solveInPlace(projected);
@@ -59,15 +61,15 @@ struct EquivalentResidual {
 template <class S>
 class CompressedCost final : public ceres::CostFunction {
  public:
-  /// @param values  of all parameters of the problem's table; the free ones are replaced
-  CompressedCost(const BasicProblem<S>& problem, const FreeSet& free, Eigen::VectorXd values,
-                 Losses losses = Losses::as_given, int threads = 1)
-      : free_(free),
+  /// @param evaluator  of the problem and its free parameters; outlives the cost
+  /// @param values     of all parameters of the problem's table; the free ones are replaced
+  CompressedCost(Evaluator<S>& evaluator, Eigen::VectorXd values, Losses losses = Losses::as_given)
+      : evaluator_(evaluator),
+        free_(evaluator.free()),
         values_(std::move(values)),
-        losses_(losses),
-        evaluator_(problem, free, threads) {
-    set_num_residuals(free.size() + 1);
-    mutable_parameter_block_sizes()->push_back(free.size());
+        losses_(losses) {
+    set_num_residuals(free_.size() + 1);
+    mutable_parameter_block_sizes()->push_back(free_.size());
   }
 
   /// False where a residual is not defined: Ceres then takes a shorter step.
@@ -95,10 +97,10 @@ class CompressedCost final : public ceres::CostFunction {
 
  private:
   // Ceres evaluates one cost function on one thread at a time.
+  Evaluator<S>& evaluator_;
   const FreeSet& free_;
   mutable Eigen::VectorXd values_;
   Losses losses_;
-  mutable Evaluator<S> evaluator_;
 };
 
 }  // namespace kinecal

@@ -31,8 +31,8 @@ enum class CostForm { compressed, stacked };
 
 struct SolveOptions {
   int max_num_iterations = 1000;
-  /// An iteration that lowers the cost by less than this part of it is the last.  Costs are compared
-  /// with reference figures to many digits, and an iteration costs little.
+  /// An iteration that lowers the cost by less than this part of it is the last.  Costs are
+  /// compared with reference figures to many digits, and an iteration costs little.
   double function_tolerance = 1e-14;
   CostForm form = CostForm::compressed;
   int threads = 0;  ///< zero: one for each core; the result does not depend on it
@@ -76,6 +76,7 @@ class ProgressCallback final : public ceres::IterationCallback {
 struct Minimum {
   bool usable = false, converged = false;
   std::string message;  ///< of the last run
+  double cost = 0.0;    ///< at the end of the last run
   int iterations = 0;   ///< of all runs
   int evaluations = 0;  ///< of all samples, of all runs
   double seconds = 0.0;
@@ -90,11 +91,13 @@ inline void set_bounds(ceres::Problem& problem, const ParameterTable& table, con
   }
 }
 
-/// One run of Ceres over the free parameters.
+/// One run of Ceres over the evaluator's free parameters.
 /// @param values  in: where to start; out: where it ended, if that is usable
 template <class S>
-void run_ceres(const BasicProblem<S>& problem, const FreeSet& free, Eigen::VectorXd& values,
-               const SolveOptions& options, Losses losses, Minimum& minimum) {
+void run_ceres(Evaluator<S>& evaluator, Eigen::VectorXd& values, const SolveOptions& options,
+               Losses losses, Minimum& minimum) {
+  const BasicProblem<S>& problem = evaluator.problem();
+  const FreeSet& free = evaluator.free();
   std::vector<double> x;
   for (int p : free.parameters()) x.push_back(values(p));
   ceres::Problem::Options problem_options;
@@ -106,8 +109,8 @@ void run_ceres(const BasicProblem<S>& problem, const FreeSet& free, Eigen::Vecto
   if (stack) {
     stack->add_to(ceres_problem, x.data());
   } else {
-    ceres_problem.AddResidualBlock(
-        new CompressedCost<S>(problem, free, values, losses, options.threads), nullptr, x.data());
+    ceres_problem.AddResidualBlock(new CompressedCost<S>(evaluator, values, losses), nullptr,
+                                   x.data());
   }
   set_bounds(ceres_problem, problem.table(), free, x.data());
   ceres::Solver::Options solver = ceres_options(options);
@@ -118,6 +121,7 @@ void run_ceres(const BasicProblem<S>& problem, const FreeSet& free, Eigen::Vecto
   minimum.usable = summary.IsSolutionUsable();
   minimum.converged = summary.termination_type == ceres::CONVERGENCE;
   minimum.message = summary.message;
+  minimum.cost = summary.final_cost;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   minimum.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
   minimum.seconds += summary.total_time_in_seconds;
@@ -136,14 +140,15 @@ void run_ceres(const BasicProblem<S>& problem, const FreeSet& free, Eigen::Vecto
 
 /// The free parameters that are not held by a bound beyond which the cost would fall.
 template <class S>
-[[nodiscard]] std::vector<int> within_bounds(const BasicProblem<S>& problem, const FreeSet& free,
-                                             const Eigen::VectorXd& values, Losses losses) {
-  const NormalEquations normal = normal_equations(
-      problem, {values.data(), static_cast<std::size_t>(values.size())}, &free, losses);
+[[nodiscard]] std::vector<int> within_bounds(Evaluator<S>& evaluator, const Eigen::VectorXd& values,
+                                             Losses losses) {
+  const FreeSet& free = evaluator.free();
+  const NormalEquations normal = evaluator.normal_equations(
+      {values.data(), static_cast<std::size_t>(values.size())}, true, losses);
   std::vector<int> inside;
   for (int c = 0; c < free.size(); ++c) {
     const int index = free.parameters()[static_cast<std::size_t>(c)];
-    const Parameter& parameter = problem.table()[index];
+    const Parameter& parameter = evaluator.problem().table()[index];
     constexpr double kAtBound = 1e-12;  // of the value
     const double near = kAtBound * (1e-3 + std::abs(values(index)));
     const double slope = normal.gradient(c);
@@ -154,25 +159,27 @@ template <class S>
   return inside;
 }
 
-/// Minimizes over the free parameters, within their bounds.
+/// Minimizes over the evaluator's free parameters, within their bounds.
 /// @param values  in: where to start; out: where it ended, if that is usable
 template <class S>
-[[nodiscard]] Minimum minimize(const BasicProblem<S>& problem, const FreeSet& free,
-                               Eigen::VectorXd& values, const SolveOptions& options,
-                               Losses losses) {
+[[nodiscard]] Minimum minimize(Evaluator<S>& evaluator, Eigen::VectorXd& values,
+                               const SolveOptions& options, Losses losses) {
+  const BasicProblem<S>& problem = evaluator.problem();
+  const FreeSet& free = evaluator.free();
   Minimum minimum;
   const Eigen::VectorXd start = values;
-  run_ceres(problem, free, values, options, losses, minimum);
+  run_ceres(evaluator, values, options, losses, minimum);
   if (!has_bounds(problem.table(), free)) return minimum;
   std::vector<int> inside = free.parameters();
   const int rounds = 2 * free.size() + 2;  // each round usually settles several bounds
   for (int round = 0; minimum.usable && round < rounds; ++round) {
-    std::vector<int> next = within_bounds(problem, free, values, losses);
+    std::vector<int> next = within_bounds(evaluator, values, losses);
     if (next == inside || next.empty()) return minimum;
     inside = std::move(next);
     // From the start again: crawling along a bound also drifts along what cannot be observed.
     for (const int p : inside) values(p) = start(p);
-    run_ceres(problem, FreeSet(inside, problem.table().size()), values, options, losses, minimum);
+    Evaluator<S> of_inside(problem, FreeSet(inside, problem.table().size()), options.threads);
+    run_ceres(of_inside, values, options, losses, minimum);
   }
   return minimum;
 }

@@ -67,12 +67,13 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
 
 /// Costs and counts at the start; false, with the reason, if there is nothing to solve.
 template <class S>
-bool start(const BasicProblem<S>& problem, std::span<const double> values, int threads,
-           StepResult& result) {
-  result.initial_cost = normal_equations(problem, values, nullptr, Losses::as_given, threads).cost;
+bool start(Evaluator<S>& evaluator, std::span<const double> values, StepResult& result) {
+  result.initial_cost = evaluator.normal_equations(values, false).cost;
   result.final_cost = result.initial_cost;
   std::optional<UndefinedResidual> undefined;
-  if (!std::isfinite(result.initial_cost)) undefined = undefined_residual(problem, values);
+  if (!std::isfinite(result.initial_cost)) {
+    undefined = undefined_residual(evaluator.problem(), values);
+  }
   if (undefined) {
     result.termination = "failed: the residual of '" + undefined->term +
                          "' is not defined at the start for the sample at " + undefined->source +
@@ -111,23 +112,22 @@ template <class S>
   Eigen::VectorXd x = values;
   detail::clamp_to_bounds(problem.table(), free, x);
   const std::span<const double> all(x.data(), static_cast<std::size_t>(x.size()));
-  if (!detail::start(problem, all, options.threads, result)) return result;
+  Evaluator<S> evaluator(problem, free, options.threads);
+  if (!detail::start(evaluator, all, result)) return result;
   detail::Minimum first;
   if (!detail::all_losses_convex(problem)) {
-    first = detail::minimize(problem, free, x, options, Losses::convex);
+    first = detail::minimize(evaluator, x, options, Losses::convex);
   }
-  const detail::Minimum last = detail::minimize(problem, free, x, options, Losses::as_given);
+  const detail::Minimum last = detail::minimize(evaluator, x, options, Losses::as_given);
   result.iterations = first.iterations + last.iterations;
   result.seconds = first.seconds + last.seconds;
   result.evaluations = first.evaluations + last.evaluations;
-  const double cost =
-      normal_equations(problem, all, nullptr, Losses::as_given, options.threads).cost;
   constexpr double kRounding = 1e-9;  // a start at the minimum may end a few digits above it
   if (!last.usable) {
     result.termination = "failed: " + last.message;
-  } else if (!std::isfinite(cost)) {
+  } else if (!std::isfinite(last.cost)) {
     result.termination = "failed: the cost is not finite";
-  } else if (cost > result.initial_cost * (1.0 + kRounding)) {
+  } else if (last.cost > result.initial_cost * (1.0 + kRounding)) {
     result.termination = "failed: the cost did not decrease";
   } else if (const std::string term = detail::mostly_left_out(problem, all); !term.empty()) {
     result.termination = "failed: the loss of '" + term +
@@ -135,7 +135,7 @@ template <class S>
   } else {
     result.converged = last.converged;
     result.termination = (last.converged ? "converged: " : "did not converge: ") + last.message;
-    result.final_cost = cost;
+    result.final_cost = last.cost;
     values = x;
   }
   return result;
