@@ -9,5 +9,6 @@
 #include "kinecal/kinematics/nearest_name.hpp"
 #include "kinecal/kinematics/pose_walker.hpp"
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/kinematics/robot_data.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
 #include "kinecal/kinematics/walk.hpp"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -86,7 +88,7 @@ class Robot {
     if (!moves(joint.type)) return;
     const double length = joint.axis.norm();
     if (!(length > 0.0)) throw RobotError("joint '" + joint.name + "' has an axis of length zero");
-    joint.axis /= length;
+    if (std::abs(length - 1.0) > kUnitLength) joint.axis /= length;
   }
 
   void check_mimic(const Joint& first) const {
@@ -103,6 +105,10 @@ class Robot {
       joint = &this->joint(joint->mimic->joint);
     }
   }
+
+  /// A vector divided by its length is that near to 1.  It is not divided again, so that a joint of
+  /// one robot is the same in another, bit by bit.
+  static constexpr double kUnitLength = 4.0 * std::numeric_limits<double>::epsilon();
 
   std::string name_;
   std::vector<Joint> joints_;
