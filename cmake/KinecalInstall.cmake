@@ -9,4 +9,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/kinecalConfigVersion.cmak
   COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/kinecalConfig.cmake
               ${PROJECT_BINARY_DIR}/kinecalConfigVersion.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/KinecalAddRobot.cmake
         DESTINATION ${package_dir})
