@@ -4,10 +4,16 @@
 
 #include "kinecal/errors.hpp"
 #include "kinecal/solve.hpp"
+#include "robots/pendulum.hpp"
+
+static_assert(kinecal::RobotData<pendulum::Robot>);
+static_assert(pendulum::Robot::kJoints.size() == 1);
+static_assert(pendulum::Robot::kJoints[0].name == "pivot");
+static_assert(pendulum::Robot::kJoints[0].origin.translation[2] == 0.75);
 
 int main() {
   using namespace kinecal;
-  const Robot robot("pendulum", {{"pivot", JointType::revolute, "world", "bob", {}, {0, 0, 1}}});
+  const Robot robot = robot_from<pendulum::Robot>();
   ParameterTable table;
   table.add({.name = "pivot"});
   Problem problem(robot, "world", table, {});
@@ -19,7 +25,7 @@ int main() {
     problem.add_sample({{"pivot"},
                         {q},
                         {{"bob", {{"bob", {1, 0, 0}}}},
-                         {"tracker", {{"world", {std::cos(true_q), std::sin(true_q), 0}}}}},
+                         {"tracker", {{"world", {std::cos(true_q), std::sin(true_q), 0.75}}}}},
                         "sample"});
   }
   Eigen::VectorXd values = problem.table().values();
