@@ -6,7 +6,7 @@
 #   kinecal_add_robot(fetch URDF urdf/fetch.urdf)
 #   target_link_libraries(my_program PRIVATE fetch)
 #
-#   #include "robots/fetch.hpp"             // robots/<target>.hpp
+#   #include "robots/fetch.hpp"                       // robots/<target>.hpp
 #   constexpr auto& joints = fetch::Robot::kJoints;   // <namespace>::Robot, a kinecal::RobotData
 #
 # URDF       relative to the current source directory; may be made by the build itself

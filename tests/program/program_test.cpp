@@ -14,6 +14,7 @@
 #include "kinecal/io/samples/write_samples.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
+#include "support/run_program.hpp"
 
 namespace kinecal {
 namespace {
@@ -118,25 +119,16 @@ std::vector<Sample> samples() {
   return all;
 }
 
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
+using test::Outcome;
 
-class Program : public testing::Test {
+class Program : public test::ProgramTest {
  protected:
   Program() {
-    char folder[] = "/tmp/kinecal_program_XXXXXX";
-    folder_ = mkdtemp(folder);
     write("tiny.urdf", kUrdf);
     write("c.yaml", kConfig);
     write_all(samples());
   }
-  ~Program() override { fs::remove_all(folder_); }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
   void write_all(const std::vector<Sample>& all) const {
     std::ofstream file(folder_ / "s.yaml");
     write_samples(file, all);
@@ -148,16 +140,10 @@ class Program : public testing::Test {
     ASSERT_NE(at, std::string::npos) << from;
     write(name, text.replace(at, from.size(), to));
   }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    return test::text_of(folder_ / name);
-  }
 
   [[nodiscard]] Outcome run(const std::string& arguments,
                             const std::string& program = KINECAL_PROGRAM) const {
-    const std::string command =
-        "cd " + folder_.string() + " && " + program + " " + arguments + " > out.txt 2> err.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out.txt"), read("err.txt")};
+    return ProgramTest::run(program + " " + arguments);
   }
   [[nodiscard]] Outcome calibrate(const std::string& more = "") const {
     return run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output out " + more);
@@ -173,8 +159,6 @@ class Program : public testing::Test {
     EXPECT_EQ(checked.code, 1) << checked.out;
     EXPECT_THAT(checked.err, message);
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Program, CalibratesAndWritesAllFiles) {

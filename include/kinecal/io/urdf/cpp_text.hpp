@@ -28,11 +28,12 @@ namespace kinecal::detail {
   return all;
 }
 
-/// A string literal.  Bytes beyond ASCII are escaped, too: no compiler has to agree what they mean.
+/// A string literal.  Bytes beyond ASCII are escaped, too, and '?', which may begin a trigraph: no
+/// compiler has to agree what they mean.
 [[nodiscard]] inline std::string cpp_string(std::string_view text) {
   std::string literal = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') {
+    if (c == '"' || c == '\\' || c == '?') {
       literal += {'\\', c};
     } else if (c >= ' ' && c <= '~') {
       literal += c;
