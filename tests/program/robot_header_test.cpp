@@ -81,7 +81,7 @@ TEST_F(RobotHeaderProgram, ReplacesTheHeaderAsAWhole) {
 }
 
 TEST_F(RobotHeaderProgram, AMistakeIsToldWithFileAndLine) {
-  expect_refused("</joint>", "", StartsWith("bad.urdf:9: malformed XML"));
+  expect_refused("</joint>", "", StartsWith("bad.urdf:10: malformed XML"));
   expect_refused("<parent link=\"base\"/>", "<parent link=\"bass\"/>",
                  AllOf(StartsWith("bad.urdf:5: "), HasSubstr("bass"), HasSubstr("shoulder")));
   expect_refused("0 0 0.5", "0 0 half", StartsWith("bad.urdf:6: joint 'shoulder': xyz="));
