@@ -54,11 +54,18 @@ struct BelowItself {
   static constexpr std::array<JointData, 1> kJoints = {
       {{.name = "j", .parent = "a", .child = "a"}}};
 };
+struct TwoRoots {
+  static constexpr std::string_view kName = "two_roots";
+  static constexpr std::array<JointData, 2> kJoints = {{
+      {.name = "left", .parent = "a", .child = "b"},
+      {.name = "right", .parent = "c", .child = "d"},
+  }};
+};
 struct OfNumbers {
   static constexpr std::string_view kName = "of_numbers";
   static constexpr std::array<int, 1> kJoints = {1};
 };
-static_assert(!RobotData<BelowItself> && !RobotData<OfNumbers>);
+static_assert(!RobotData<BelowItself> && !RobotData<TwoRoots> && !RobotData<OfNumbers>);
 static_assert(!RobotData<Robot> && !RobotData<int>);
 
 TEST(RobotData, ItsRobotAtRunTimeHasTheSameJoints) {

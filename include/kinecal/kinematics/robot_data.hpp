@@ -47,12 +47,16 @@ struct JointData {
   std::optional<LimitsData> limits = {};
 };
 
-/// True if every joint stands behind the one that moves its parent link.
+/// True if the joints are a tree in which each stands behind the one that moves its parent link;
+/// the first joint's parent is the root.
 [[nodiscard]] constexpr bool parents_first(std::span<const JointData> joints) {
-  for (std::size_t later = 0; later < joints.size(); ++later) {
-    for (std::size_t i = 0; i <= later; ++i) {
-      if (joints[i].parent == joints[later].child) return false;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const std::string_view root = joints.front().parent, parent = joints[i].parent;
+    bool is_placed = parent == root;
+    for (std::size_t above = i; above-- > 0 && !is_placed;) {  // mostly the next one
+      is_placed = joints[above].child == parent;
     }
+    if (!is_placed || joints[i].child == root) return false;
   }
   return true;
 }

@@ -75,7 +75,7 @@ namespace detail {
                      "has taken, such as 'my_robot'");
   }
   const std::string name = source.robot().attribute("name").value();
-  const std::string words = joined_words(name);
+  std::string words = joined_words(name);
   if (is_namespace(words)) return words;
   throw InputError(source.place(source.robot()).str() + ": the robot's name '" + name +
                    "' cannot be made a namespace; choose one (NAMESPACE)");
