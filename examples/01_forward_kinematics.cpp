@@ -34,13 +34,13 @@ Robot make_robot() {
 }
 
 /// Where the gripper's origin is at these positions.
-Vector3<double> gripper(const Chain<>& chain, const Positions& positions) {
+Vector3<double> gripper(const RuntimeChain& chain, const Positions& positions) {
   return forward_kinematics(chain, [&](const std::string& joint) { return positions.at(joint); })
       .translation;
 }
 
 /// The twist of each joint: a walk with a walker that notes how each joint's offset moves the tip.
-std::vector<std::pair<int, Twist<double>>> twists(const Chain<>& chain,
+std::vector<std::pair<int, Twist<double>>> twists(const RuntimeChain& chain,
                                                   const Positions& positions) {
   std::vector<JointIndices> columns(chain.joints.size());
   for (std::size_t i = 0; i < columns.size(); ++i) columns[i].offset = static_cast<int>(i);
@@ -58,7 +58,7 @@ std::vector<std::pair<int, Twist<double>>> twists(const Chain<>& chain,
 }  // namespace
 
 int main() {
-  const Chain<> chain = make_chain(make_robot(), "base", "gripper");
+  const RuntimeChain chain = make_chain(make_robot(), "base", "gripper");
   const Positions positions = {
       {"lift", 0.05}, {"shoulder", 30 * kDegree}, {"elbow", 45 * kDegree}, {"wrist", 20 * kDegree}};
 

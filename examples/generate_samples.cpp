@@ -108,7 +108,7 @@ class TrueRobot {
   /// Where a link really is when the joints report these positions.
   [[nodiscard]] Pose<double> pose(const std::string& base, const std::string& tip,
                                   const Positions& positions) const {
-    const Chain<> chain = make_chain(robot_, base, tip, kFrames);
+    const RuntimeChain chain = make_chain(robot_, base, tip, kFrames);
     const Eigen::VectorXd values = truth_.values();
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
     return forward_kinematics(

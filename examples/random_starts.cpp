@@ -133,7 +133,7 @@ class TrueRobot {
     positions["head_pan"] = std::atan2(beside.y(), beside.x()) + random.uniform(-0.4, 0.4);
     const Vector3<double> below = gripper_from("face");
     positions["head_tilt"] = std::atan2(-below.z(), below.x()) + random.uniform(-0.3, 0.3);
-    const Chain<> chain = make_chain(robot_, "optical", "gripper", kFrames);
+    const RuntimeChain chain = make_chain(robot_, "optical", "gripper", kFrames);
     const Pose<double> camera_T_leds = pose(with_virtual_frame(chain, "leds"), positions);
     Observation arm{"arm", {}}, camera{"camera", {}, example_camera_info()};
     for (const Vector3<double>& led : kLeds) {
@@ -152,7 +152,7 @@ class TrueRobot {
   }
 
  private:
-  [[nodiscard]] Pose<double> pose(const Chain<>& chain, const Positions& positions) const {
+  [[nodiscard]] Pose<double> pose(const RuntimeChain& chain, const Positions& positions) const {
     const Eigen::VectorXd values = truth_.values();
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
     return forward_kinematics(

@@ -32,7 +32,7 @@ namespace kinecal::bench {
 /// A chain of KDL segments with the indices of the parameters that act on them.
 class KdlChain {
  public:
-  KdlChain(const Chain<>& chain, const ParameterTable& table) : tail_(to_kdl(chain.tail)) {
+  KdlChain(const RuntimeChain& chain, const ParameterTable& table) : tail_(to_kdl(chain.tail)) {
     const std::vector<JointIndices> parameters = chain_parameters(chain, table);
     for (std::size_t i = 0; i < chain.joints.size(); ++i) {
       const ChainJoint& joint = chain.joints[i];
@@ -50,7 +50,8 @@ class KdlChain {
   }
 
   /// Measured positions in the order of the segments, zero for fixed ones.
-  [[nodiscard]] std::vector<double> positions(const Chain<>& chain, const Sighting& seen) const {
+  [[nodiscard]] std::vector<double> positions(const RuntimeChain& chain,
+                                              const Sighting& seen) const {
     std::vector<double> all;
     for (const ChainJoint& joint : chain.joints) {
       all.push_back(moves(joint.type) ? seen(joint.name) : 0.0);

@@ -113,7 +113,7 @@ class MadeSamples {
   }
 
   const Robot& robot_;
-  Chain<> arm_, head_;
+  RuntimeChain arm_, head_;
   Corrections<double> arm_corrections_, head_corrections_;
   std::array<double, 6> depth_{};
   std::mt19937 random_{1};

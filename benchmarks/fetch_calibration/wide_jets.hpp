@@ -61,7 +61,7 @@ struct WalkModel {
   /// @param residual  (12) metres
   template <class S>
   void residuals(const WalkState<S>& state, const WalkSample& sample, S* residual) const {
-    const auto tip = [](const Chain<>& chain, const std::vector<Motion<double>>& motions,
+    const auto tip = [](const RuntimeChain& chain, const std::vector<Motion<double>>& motions,
                         const Corrections<S>& corrections) {
       PoseWalker<S> walker;
       walk(chain, std::span<const Motion<double>>(motions),

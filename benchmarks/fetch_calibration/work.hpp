@@ -103,7 +103,7 @@ struct FetchWork {
 /// The chains that both of our own ways to evaluate and the yardstick walk: constant transforms
 /// are folded into the joints, so all of them meet the same joints.
 struct FetchChains {
-  Chain<> arm, camera;
+  RuntimeChain arm, camera;
   std::array<int, 6> camera_parameters{};  ///< in the table, in the order of kCameraParameters
 
   explicit FetchChains(const FetchWork& work)

@@ -12,7 +12,7 @@ namespace {
 
 struct Work {
   Robot robot = test::mobile_manipulator();
-  Chain<> chain = make_chain(robot, "hand", "camera_optical_frame");
+  RuntimeChain chain = make_chain(robot, "hand", "camera_optical_frame");
   Corrections<double> corrections = Corrections<double>(chain.joints.size());
   std::vector<Motion<double>> motions =
       measured_motions(chain, [](const std::string& joint) { return 0.1 * double(joint.size()); });

@@ -4,6 +4,11 @@
 
 #include "kinecal/crate/block_rows.hpp"
 #include "kinecal/crate/block_term.hpp"
+#include "kinecal/crate/camera_parameters.hpp"
+#include "kinecal/crate/compiled_walk.hpp"
+#include "kinecal/crate/crate.hpp"
+#include "kinecal/crate/crate_checks.hpp"
+#include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/crate/difference_gram.hpp"
 #include "kinecal/crate/evaluate.hpp"
 #include "kinecal/crate/feature_gram.hpp"
@@ -19,3 +24,4 @@
 #include "kinecal/crate/sensor_model.hpp"
 #include "kinecal/crate/sensor_view.hpp"
 #include "kinecal/crate/term.hpp"
+#include "kinecal/crate/type_list.hpp"

@@ -3,5 +3,6 @@
 #pragma once
 
 #include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/parameters/free_parameters.hpp"
 #include "kinecal/parameters/parameter.hpp"
 #include "kinecal/parameters/parameter_table.hpp"

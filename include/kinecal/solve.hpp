@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/solve/calibrate_crate.hpp"
 #include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/minimize.hpp"
 #include "kinecal/solve/solve.hpp"

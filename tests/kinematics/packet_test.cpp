@@ -1,7 +1,8 @@
 // The walk in packets: as many samples at once as a register holds, the same numbers as one by one.
+#include "kinecal/geometry/packet.hpp"
+
 #include <gtest/gtest.h>
 
-#include "kinecal/geometry/packet.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
 #include "support/robots.hpp"
 
@@ -18,7 +19,8 @@ TEST(Packet, IsAsWideAsTheInstructionSet) {
 
 TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
   const Robot robot = test::mobile_manipulator();
-  const Chain<> chain = make_chain(robot, "hand", "camera_optical_frame", {"wrist", "head_tilt"});
+  const RuntimeChain chain =
+      make_chain(robot, "hand", "camera_optical_frame", {"wrist", "head_tilt"});
   Corrections<double> corrections(chain.joints.size());
   std::vector<JointIndices> columns(chain.joints.size());
   for (std::size_t i = 0; i < chain.joints.size(); ++i) {

@@ -58,7 +58,7 @@ TEST(Walk, MatchesTheDefinitionBetweenAnyTwoLinks) {
       const auto position_of = [&](const std::string& joint) { return positions(joint); };
       const Pose<double> expected = by_hand(robot, base, tip, positions);
       for (const auto& corrected : {kNone, kCorrected}) {
-        const Chain<> chain = make_chain(robot, base, tip, corrected);
+        const RuntimeChain chain = make_chain(robot, base, tip, corrected);
         EXPECT_LE(difference(forward_kinematics(chain, position_of), expected), kRounding)
             << base << " -> " << tip;
       }
@@ -66,20 +66,9 @@ TEST(Walk, MatchesTheDefinitionBetweenAnyTwoLinks) {
   }
 }
 
-TEST(Walk, StaticChainAgreesWithRuntimeChain) {
-  const Chain<> runtime = make_chain(test::mobile_manipulator(), "hand", "camera_optical_frame");
-  const Chain<6> fixed_size = to_static<6>(runtime);
-  test::RandomPositions positions(3);
-  const auto position_of = [&](const std::string& joint) { return positions(joint); };
-  EXPECT_EQ(difference(forward_kinematics(runtime, position_of),
-                       forward_kinematics(fixed_size, position_of)),
-            0.0);
-  EXPECT_THROW((void)to_static<5>(runtime), RobotError);
-}
-
 TEST(Walk, CorrectionStandsBetweenOriginAndMotionAndOffsetAddsToThePosition) {
   const Robot robot = test::mobile_manipulator();
-  const Chain<> chain = make_chain(robot, "upper_arm", "forearm", {"elbow"});
+  const RuntimeChain chain = make_chain(robot, "upper_arm", "forearm", {"elbow"});
   Corrections<double> corrections(chain.joints.size());
   const Vector3<double> t(0.01, -0.02, 0.03), w(0.1, -0.2, 0.3);
   corrections[0].set_frame(t, w);
@@ -94,8 +83,8 @@ TEST(Walk, CorrectionStandsBetweenOriginAndMotionAndOffsetAddsToThePosition) {
 
 TEST(Walk, ReversedChainIsTheInverseAlsoWithCorrections) {
   const Robot robot = test::mobile_manipulator();
-  const Chain<> there = make_chain(robot, "base_link", "hand", kCorrected);
-  const Chain<> back = make_chain(robot, "hand", "base_link", kCorrected);
+  const RuntimeChain there = make_chain(robot, "base_link", "hand", kCorrected);
+  const RuntimeChain back = make_chain(robot, "hand", "base_link", kCorrected);
   ASSERT_EQ(there.joints.size(), back.joints.size());
   Corrections<double> corrections(there.joints.size());
   for (std::size_t i = 0; i < corrections.size(); ++i) {
@@ -147,7 +136,7 @@ std::vector<AxisCase> axis_cases() {
 
 /// The chain of a case, offset and correction that are not zero.
 struct AxisChain {
-  Chain<> chain;
+  RuntimeChain chain;
   Corrections<double> corrections;
 
   explicit AxisChain(const AxisCase& c)
@@ -244,7 +233,7 @@ struct Counter {
 static_assert(Walker<Counter, double>);
 
 TEST(Walk, TellsAnyWalkerWhatItMeets) {
-  const Chain<> chain = make_chain(test::mobile_manipulator(), "base_link", "hand");
+  const RuntimeChain chain = make_chain(test::mobile_manipulator(), "base_link", "hand");
   const std::vector<Motion<double>> motions(chain.joints.size());
   const Corrections<double> corrections(chain.joints.size());
   Counter counter;
@@ -304,7 +293,7 @@ constexpr int kMaxParameters = 48;
 using Wide = ceres::Jet<double, kMaxParameters>;
 
 /// One parameter for each offset and frame axis of the chain, in the order of the chain.
-std::vector<JointIndices> all_free(const Chain<>& chain, int& count) {
+std::vector<JointIndices> all_free(const RuntimeChain& chain, int& count) {
   std::vector<JointIndices> indices;
   std::map<std::string, int> by_joint;
   count = 0;
@@ -347,7 +336,7 @@ TEST_P(Twists, AgreeWithAutodiffThroughTheWholeWalk) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   for (const auto& [base, tip] : kWays) {
-    const Chain<> chain = make_chain(robot, base, tip, kCorrected);
+    const RuntimeChain chain = make_chain(robot, base, tip, kCorrected);
     int count = 0;
     const std::vector<JointIndices> indices = all_free(chain, count);
     ASSERT_LE(count, kMaxParameters);

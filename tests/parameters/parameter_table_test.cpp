@@ -34,7 +34,7 @@ TEST(FreeSet, GivesColumnsToFreeParametersOnly) {
 
 TEST(ChainParameters, AMimicJointMovesWithTheOffsetOfItsDriver) {
   const Robot robot = test::mobile_manipulator();
-  const Chain<> chain = make_chain(robot, "forearm", "counterweight");
+  const RuntimeChain chain = make_chain(robot, "forearm", "counterweight");
   ParameterTable table;
   table.add({.name = "wrist"});
   const auto indices = chain_parameters(chain, table);
@@ -48,7 +48,7 @@ TEST(ChainParameters, AMimicJointMovesWithTheOffsetOfItsDriver) {
 
 TEST(ChainParameters, HeldParametersHaveValuesButNoColumns) {
   const Robot robot = test::mobile_manipulator();
-  const Chain<> chain = make_chain(robot, "upper_arm", "hand", {"elbow_mount"});
+  const RuntimeChain chain = make_chain(robot, "upper_arm", "hand", {"elbow_mount"});
   ParameterTable table;
   for (const char* name : {"elbow", "wrist"}) table.add({.name = name});
   for (auto axis : kFrameAxes) table.add({.name = parameter_name("elbow_mount", axis)});

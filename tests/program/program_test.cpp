@@ -87,8 +87,8 @@ error_blocks:
 
 std::vector<Sample> samples() {
   const Robot robot = parse_urdf(kUrdf, "tiny.urdf");
-  const Chain<> arm = make_chain(robot, "base_link", "hand");
-  const Chain<> camera = make_chain(robot, "base_link", "camera_optical_frame");
+  const RuntimeChain arm = make_chain(robot, "base_link", "hand");
+  const RuntimeChain camera = make_chain(robot, "base_link", "camera_optical_frame");
   std::vector<Sample> all;
   for (int n = 0; n < 20; ++n) {
     Sample sample;

@@ -159,7 +159,7 @@ class Evaluator {
                      Visit&& visit) const {
     worker.views.resize(states_.size());
     for (std::size_t s = 0; s < states_.size(); ++s) {
-      worker.views[s].start(problem_.sensors()[s], states_[s], derivatives);
+      worker.views[s].start(problem_.sensors()[s], states_[s], derivatives, problem_.walks()[s]);
     }
     std::vector<const SensorView<S>*> of_term;
     for (const PackedSample<S>& pack : packs) {

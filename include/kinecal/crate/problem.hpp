@@ -32,11 +32,13 @@ class BasicProblem {
     (void)robot_.parent_joint(base_);
   }
 
+  /// @param walks  along its chains, if they are compiled
   /// @throws RobotError  if there is no chain from the base to the sensor
   /// @throws std::logic_error  if samples have been added: they would not know of it
-  void add_sensor(const Sensor& sensor) {
+  void add_sensor(const Sensor& sensor, std::vector<CompiledWalk<S>> walks = {}) {
     check_no_samples();
     sensors_.emplace_back(robot_, base_, sensor, table_, frames_);
+    walks_.push_back(std::move(walks));
   }
 
   /// Adds an error block between sensors, which are added before.
@@ -94,6 +96,8 @@ class BasicProblem {
 
   [[nodiscard]] const ParameterTable& table() const { return table_; }
   [[nodiscard]] const std::vector<SensorModel>& sensors() const { return sensors_; }
+  /// Compiled walks of each sensor.
+  [[nodiscard]] const std::vector<std::vector<CompiledWalk<S>>>& walks() const { return walks_; }
   [[nodiscard]] const std::vector<std::unique_ptr<Term<S>>>& terms() const { return terms_; }
   [[nodiscard]] const std::vector<PriorTerm>& priors() const { return priors_; }
   [[nodiscard]] int num_samples() const { return static_cast<int>(sources_.size()); }
@@ -239,6 +243,7 @@ class BasicProblem {
   ParameterTable table_;
   std::set<std::string> frames_;
   std::vector<SensorModel> sensors_;
+  std::vector<std::vector<CompiledWalk<S>>> walks_;  ///< of each sensor
   std::vector<std::unique_ptr<Term<S>>> terms_;
   std::vector<PriorTerm> priors_;
   int residuals_ = 0;                          ///< of all features

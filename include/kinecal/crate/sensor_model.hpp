@@ -35,7 +35,7 @@ class SensorModel {
   SensorModel(const Robot& robot, const std::string& base, Sensor sensor,
               const ParameterTable& table, const std::set<std::string>& frames)
       : sensor_(std::move(sensor)), camera_parameters_(sensor_parameters(sensor_.type), -1) {
-    const Chain<> chain = make_chain(robot, base, sensor_.frame, frames);
+    const RuntimeChain chain = make_chain(robot, base, sensor_.frame, frames);
     add_chain(chain, table);
     for (const std::string& frame : frames) {
       if (!robot.has_joint(frame)) add_chain(with_virtual_frame(chain, frame), table);
@@ -47,7 +47,7 @@ class SensorModel {
   }
 
   [[nodiscard]] const Sensor& sensor() const { return sensor_; }
-  [[nodiscard]] const std::vector<Chain<>>& chains() const { return chains_; }
+  [[nodiscard]] const std::vector<RuntimeChain>& chains() const { return chains_; }
   /// Table indices of each chain's parameters.
   [[nodiscard]] const std::vector<std::vector<JointIndices>>& parameters() const {
     return parameters_;
@@ -74,7 +74,7 @@ class SensorModel {
   }
 
  private:
-  void add_chain(const Chain<>& chain, const ParameterTable& table) {
+  void add_chain(const RuntimeChain& chain, const ParameterTable& table) {
     chain_by_frame_.emplace(chain.tip, chains_.size());
     chains_.push_back(chain);
     parameters_.push_back(chain_parameters(chain, table));
@@ -93,7 +93,7 @@ class SensorModel {
   }
 
   [[nodiscard]] std::vector<Motion<double>> motions(const Sample& sample,
-                                                    const Chain<>& chain) const {
+                                                    const RuntimeChain& chain) const {
     return measured_motions(chain, [&](const std::string& joint) {
       const std::optional<double> position = sample.position(joint);
       if (!position) {
@@ -178,7 +178,7 @@ class SensorModel {
 
   Sensor sensor_;
   std::vector<int> camera_parameters_;
-  std::vector<Chain<>> chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames
+  std::vector<RuntimeChain> chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames
   std::vector<std::vector<JointIndices>> parameters_;
   std::map<std::string, std::size_t> chain_by_frame_;
 };

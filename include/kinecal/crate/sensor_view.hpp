@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "kinecal/crate/compiled_walk.hpp"
 #include "kinecal/crate/sensor_model.hpp"
 
 namespace kinecal {
@@ -71,14 +72,23 @@ class SensorView {
 
   /// Begins an evaluation: what does not depend on the samples.
   /// @param derivatives  twists and camera motions, too
-  void start(const SensorModel& model, const SensorState& state, bool derivatives) {
+  /// @param walks  those that are compiled; chains that they do not lead along are walked as usual
+  void start(const SensorModel& model, const SensorState& state, bool derivatives,
+             std::span<const CompiledWalk<S>> walks = {}) {
     model_ = &model;
     state_ = &state;
     derivatives_ = derivatives;
     poses_.resize(model.chains().size());
     twists_.resize(model.chains().size());
     starts_.resize(model.chains().size());
-    for (std::size_t c = 0; c < starts_.size(); ++c) start_chain(c);
+    for (std::size_t c = 0; c < starts_.size(); ++c) {
+      start_chain(c);
+      for (const CompiledWalk<S>& walk : walks) {
+        const bool fits =
+            walk.tip == model.chains()[c].tip && (!derivatives || walk.columns == state.columns[c]);
+        if (fits) starts_[c].compiled = &walk;
+      }
+    }
   }
 
   /// Goes on to a pack of samples.
@@ -101,36 +111,50 @@ class SensorView {
   /// How far the walk of a chain comes before anything moves.
   struct Start {
     Pose<S> pose;
-    std::size_t joint = 0, turns = 0, shifts = 0;
+    std::size_t joint = 0;
+    std::ptrdiff_t turns = 0, shifts = 0;
+    const CompiledWalk<S>* compiled = nullptr;  ///< for the rest of it
   };
 
   void start_chain(std::size_t c) {
-    const Chain<>& chain = model_->chains()[c];
+    const RuntimeChain& chain = model_->chains()[c];
     const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
     if (!derivatives_) {
       PoseWalker<S> walker;
       const std::size_t joint = walk_to_first_motion(chain, corrections, walker);
-      starts_[c] = {walker.pose, joint, 0, 0};
+      starts_[c] = {walker.pose, joint, 0, 0, nullptr};
       return;
     }
     state_->twist_columns[c].resize(twists_[c]);
-    TwistWalker<S> walker{state_->columns[c], twists_[c]};
+    TwistWalker<S> walker(state_->columns[c], twists_[c]);
     const std::size_t joint = walk_to_first_motion(chain, corrections, walker);
-    starts_[c] = {walker.walker.pose, joint, walker.num_turns, walker.num_shifts};
+    starts_[c] = {walker.walker.pose, joint, walker.turn - twists_[c].turns.data(),
+                  walker.shift - twists_[c].shifts.data(), nullptr};
   }
 
   KINECAL_FLATTEN void walk_chain(std::size_t c) {
-    const Chain<>& chain = model_->chains()[c];
+    const RuntimeChain& chain = model_->chains()[c];
     const std::span<const Motion<S>> motions = *observation_->motions[c];
     const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
     const Start& start = starts_[c];
+    Twist<S>* turn = twists_[c].turns.data() + start.turns;
+    Vector3<S>* shift = twists_[c].shifts.data() + start.shifts;
+    if (start.compiled != nullptr) {
+      poses_[c] = start.pose;
+      if (derivatives_) {
+        start.compiled->with_twists(motions, corrections, poses_[c], turn, shift);
+      } else {
+        start.compiled->pose_only(motions, corrections, poses_[c]);
+      }
+      return;
+    }
     if (!derivatives_) {
       PoseWalker<S> walker{start.pose};
       walk_on(chain, start.joint, motions, corrections, walker);
       poses_[c] = walker.pose;
       return;
     }
-    TwistWalker<S> walker{state_->columns[c], twists_[c], {start.pose}, start.turns, start.shifts};
+    TwistWalker<S> walker(state_->columns[c], turn, shift, start.pose);
     walk_on(chain, start.joint, motions, corrections, walker);
     poses_[c] = walker.walker.pose;
   }

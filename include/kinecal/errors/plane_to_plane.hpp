@@ -13,6 +13,8 @@
 namespace kinecal {
 
 struct PlaneToPlane {
+  static constexpr const char *kType = "plane_to_plane", *kUnit = "1";
+
   double normal_scale = 1.0;
   double offset_scale = 1.0;  ///< 1 / metre
 

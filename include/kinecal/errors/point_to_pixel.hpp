@@ -11,6 +11,8 @@
 namespace kinecal {
 
 struct PointToPixel {
+  static constexpr const char *kType = "chain3d_to_camera2d", *kUnit = "px";
+
   /// @returns  (2) pixels
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 2, 1> operator()(const Sight<S>& sight) const {

@@ -13,6 +13,10 @@ namespace kinecal {
 
 class PointToPlane {
  public:
+  static constexpr const char *kType = "chain3d_to_plane", *kUnit = "m";
+
+  /// The floor: z = 0.
+  PointToPlane() : PointToPlane(0.0, 0.0, 1.0, 0.0) {}
   /// The plane a x + b y + c z + d = 0 in the base, metres.
   /// @throws std::invalid_argument  if (a, b, c) is zero
   PointToPlane(double a, double b, double c, double d) : normal_(a, b, c), d_(d) {

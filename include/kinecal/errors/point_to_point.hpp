@@ -8,6 +8,8 @@
 namespace kinecal {
 
 struct PointToPoint {
+  static constexpr const char *kType = "chain3d_to_chain3d", *kUnit = "m";
+
   /// @param p_a, p_b  (3) the feature as either sensor has it, metres, in the base
   /// @returns         (3) metres
   template <class S>

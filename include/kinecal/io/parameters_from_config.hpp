@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/crate/camera_parameters.hpp"
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/kinematics/robot.hpp"
@@ -43,30 +44,8 @@ namespace kinecal {
 
 namespace detail {
 
-inline void add_if_new(ParameterTable& table, const std::string& name, const std::string& unit,
-                       double initial = 0.0) {
-  if (table.find(name) < 0)
-    table.add({.name = name, .unit = unit, .initial = initial, .value = initial});
-}
-
-/// A camera's parameters start from what its driver had been told when the samples were recorded.
-inline void add_camera(ParameterTable& table, const ModelConfig& model,
-                       std::span<const Sample> samples) {
-  const Sensor sensor = sensor_from(model);
-  const int count = sensor_parameters(sensor.type);
-  double initial[6] = {};
-  for (const Sample& sample : samples) {
-    const Observation* seen = sample.observation(model.name);
-    if (seen == nullptr || !seen->camera) continue;
-    initial[4] = seen->camera->z_offset;
-    initial[5] = seen->camera->z_scaling - 1.0;
-    break;
-  }
-  for (int i = 0; i < count; ++i) {
-    const auto part = kCameraParameters[static_cast<std::size_t>(i)];
-    add_if_new(table, parameter_name(sensor.parameter_prefix(), part),
-               part == "z_offset" ? "m" : "1", initial[i]);
-  }
+inline void add_if_new(ParameterTable& table, const std::string& name, const std::string& unit) {
+  if (table.find(name) < 0) table.add({.name = name, .unit = unit});
 }
 
 inline void add_frame(ParameterTable& table, const std::string& frame) {
@@ -213,7 +192,9 @@ inline void check_collisions(const ParameterTable& table, const Robot& robot, co
   ParameterTable table;
   const std::set<std::string> recorded = feature_frames(samples);
   for (const StepConfig& step : config.steps) {
-    for (const ModelConfig& model : step.models) detail::add_camera(table, model, samples);
+    for (const ModelConfig& model : step.models) {
+      add_camera_parameters(table, sensor_from(model), samples);
+    }
     for (const FreeFrameConfig& frame : step.free_frames) {
       detail::check_frame(frame, robot, recorded, !samples.empty(), diagnostics);
       detail::add_frame(table, frame.name);

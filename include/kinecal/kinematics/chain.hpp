@@ -10,17 +10,14 @@
 // `fixed` gathers everything constant before the joint: its own origin and the fixed joints that
 // nobody corrects, so the walk meets only joints that move or are corrected.
 //
-// The number of joints N is part of the type or std::dynamic_extent; both are one template, and the
-// walk of a chain of known length unrolls.
+// This chain is put together at run time; one that the compiler knows is in static_chain.hpp.  The
+// walk is the same for both.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <set>
-#include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "kinecal/kinematics/robot.hpp"
@@ -56,12 +53,9 @@ struct ChainJoint {
   int principal = principal_axis(axis);  ///< most axes are: about them only two columns turn
 };
 
-template <std::size_t N = std::dynamic_extent>
-struct Chain {
-  using Joints = std::conditional_t<N == std::dynamic_extent, std::vector<ChainJoint>,
-                                    std::array<ChainJoint, N>>;
+struct RuntimeChain {
   std::string base, tip;
-  Joints joints;
+  std::vector<ChainJoint> joints;
   ConstantPose tail;  ///< constant transform from the last joint to the tip
 };
 
@@ -83,7 +77,7 @@ struct Chain {
 /// @param corrected  names of the joints with a frame correction; they are kept even when fixed
 /// @throws RobotError  if a link does not exist (with the nearest name), the two are not connected,
 ///                     or a joint between them is floating or planar
-[[nodiscard]] inline Chain<> make_chain(const Robot& robot, const std::string& base,
+[[nodiscard]] inline RuntimeChain make_chain(const Robot& robot, const std::string& base,
                                         const std::string& tip,
                                         const std::set<std::string>& corrected = {}) {
   std::vector<const Joint*> up = joints_to_root(robot, base);
@@ -101,7 +95,7 @@ struct Chain {
   }
   std::reverse(down.begin(), down.end());
 
-  Chain<> chain{base, tip, {}, {}};
+  RuntimeChain chain{base, tip, {}, {}};
   Pose<double> fixed;
   const auto pass = [&](const Joint& joint, bool reversed) {
     if (joint.type == JointType::floating || joint.type == JointType::planar) {
@@ -126,25 +120,12 @@ struct Chain {
 
 /// The same chain with a virtual frame beyond its tip: a corrected, fixed joint of that name with
 /// an origin of identity.  Such frames (a checkerboard, a marker, a tracker) are in no URDF.
-[[nodiscard]] inline Chain<> with_virtual_frame(Chain<> chain, const std::string& frame) {
+[[nodiscard]] inline RuntimeChain with_virtual_frame(RuntimeChain chain, const std::string& frame) {
   chain.joints.push_back({frame, JointType::fixed, chain.tail, Vector3<double>::UnitX(), true,
                           false, Mimic{frame, 1.0, 0.0}});
   chain.tail = {};
   chain.tip = frame;
   return chain;
-}
-
-/// The same chain with its number of joints in the type.
-/// @throws RobotError  if it has not N joints
-template <std::size_t N>
-[[nodiscard]] Chain<N> to_static(const Chain<>& chain) {
-  if (chain.joints.size() != N) {
-    throw RobotError("the chain from '" + chain.base + "' to '" + chain.tip + "' has " +
-                     std::to_string(chain.joints.size()) + " joints, not " + std::to_string(N));
-  }
-  Chain<N> result{chain.base, chain.tip, {}, chain.tail};
-  std::copy(chain.joints.begin(), chain.joints.end(), result.joints.begin());
-  return result;
 }
 
 }  // namespace kinecal

@@ -10,6 +10,7 @@
 
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/motion.hpp"
+#include "kinecal/kinematics/static_chain.hpp"
 
 namespace kinecal {
 
@@ -31,8 +32,8 @@ using Corrections = std::vector<JointCorrection<S>>;
 
 /// The measured motions of a chain's joints for one sample.
 /// @param position_of  callable: name of a joint -> its measured position, radians or metres
-template <class PositionOf, std::size_t N>
-[[nodiscard]] std::vector<Motion<double>> measured_motions(const Chain<N>& chain,
+template <class PositionOf>
+[[nodiscard]] std::vector<Motion<double>> measured_motions(const RuntimeChain& chain,
                                                            PositionOf&& position_of) {
   std::vector<Motion<double>> motions;
   motions.reserve(chain.joints.size());
@@ -43,6 +44,29 @@ template <class PositionOf, std::size_t N>
                           : Motion<double>{});
   }
   return motions;
+}
+
+/// The same for a chain that the compiler knows.
+template <StaticChain C, class PositionOf>
+[[nodiscard]] std::vector<Motion<double>> measured_motions(const C&, PositionOf&& position_of) {
+  std::vector<Motion<double>> motions;
+  motions.reserve(C::kSize);
+  for (const detail::StaticJointData& joint : C::kJoints) {
+    const MimicData& drive = joint.drive;
+    motions.push_back(
+        moves(joint.type)
+            ? make_motion(drive.multiplier * position_of(std::string(drive.joint)) + drive.offset)
+            : Motion<double>{});
+  }
+  return motions;
+}
+
+[[nodiscard]] inline std::size_t num_joints(const RuntimeChain& chain) {
+  return chain.joints.size();
+}
+template <StaticChain C>
+[[nodiscard]] std::size_t num_joints(const C&) {
+  return C::kSize;
 }
 
 }  // namespace kinecal

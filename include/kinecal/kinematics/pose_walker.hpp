@@ -18,13 +18,19 @@ struct PoseWalker {
     }
   }
 
-  template <class U>
-  void correct(std::size_t, const ChainJoint& joint, const JointCorrection<U>& correction) {
+  /// A constant that the compiler knows.
+  template <class C, std::size_t I>
+  void fixed(const detail::FixedOf<C, I>&) {
+    multiply_by_constant<detail::FixedOf<C, I>>(pose);
+  }
+
+  template <class Joint, class U>
+  void correct(std::size_t, const Joint& joint, const JointCorrection<U>& correction) {
     pose = joint.reversed ? pose * correction.frame.inverse() : pose * correction.frame;
   }
 
-  template <class U>
-  void move(std::size_t, const ChainJoint& joint, const Motion<U>& motion) {
+  template <class Joint, class U>
+  void move(std::size_t, const Joint& joint, const Motion<U>& motion) {
     if (!turns(joint.type)) {
       pose.translation += axis(joint) * S(joint.reversed ? U(-motion.position) : motion.position);
     } else if (joint.principal < 0) {
@@ -36,8 +42,9 @@ struct PoseWalker {
   }
 
   /// A joint's axis in the base, while the walk is in its frame.
-  [[nodiscard]] Vector3<S> axis(const ChainJoint& joint) const {
-    if (joint.principal < 0) return rotated(pose.rotation, joint.axis);
+  template <class Joint>
+  [[nodiscard]] Vector3<S> axis(const Joint& joint) const {
+    if (joint.principal < 0) return rotated(pose.rotation, Vector3<double>(joint.axis));
     const Vector3<S> column = joint.principal == 0   ? pose.rotation.col(0)
                               : joint.principal == 1 ? pose.rotation.col(1)
                                                      : pose.rotation.col(2);
@@ -48,10 +55,11 @@ struct PoseWalker {
 static_assert(Walker<PoseWalker<double>, double>);
 
 /// Forward kinematics: the pose of the chain's tip in its base.
+/// @param chain        a RuntimeChain or a Chain
 /// @param position_of  callable: name of a joint -> its measured position, radians or metres
 /// @param corrections  one per joint of the chain
-template <std::size_t N, class PositionOf, class S>
-[[nodiscard]] Pose<S> forward_kinematics(const Chain<N>& chain, PositionOf&& position_of,
+template <class Chain, class PositionOf, class S>
+[[nodiscard]] Pose<S> forward_kinematics(const Chain& chain, PositionOf&& position_of,
                                          const Corrections<S>& corrections) {
   const std::vector<Motion<double>> motions = measured_motions(chain, position_of);
   PoseWalker<S> walker;
@@ -61,9 +69,9 @@ template <std::size_t N, class PositionOf, class S>
 }
 
 /// Forward kinematics of the robot as it is, without corrections.
-template <std::size_t N, class PositionOf>
-[[nodiscard]] Pose<double> forward_kinematics(const Chain<N>& chain, PositionOf&& position_of) {
-  return forward_kinematics(chain, position_of, Corrections<double>(chain.joints.size()));
+template <class Chain, class PositionOf>
+[[nodiscard]] Pose<double> forward_kinematics(const Chain& chain, PositionOf&& position_of) {
+  return forward_kinematics(chain, position_of, Corrections<double>(num_joints(chain)));
 }
 
 }  // namespace kinecal

@@ -35,6 +35,8 @@ struct JointIndices {
   int offset = -1;
   double gain = 1.0;  ///< of the offset: the multiplier of a mimic joint
   std::array<int, 6> frame = {-1, -1, -1, -1, -1, -1};  ///< x y z a b c
+
+  bool operator==(const JointIndices&) const = default;
 };
 
 /// How one parameter moves all points behind its joint; in the base, per unit of the parameter.
@@ -95,9 +97,8 @@ struct TwistColumns {
   }
 };
 
-template <std::size_t N>
-[[nodiscard]] TwistColumns twist_columns(const Chain<N>& chain,
-                                         std::span<const JointIndices> columns) {
+[[nodiscard]] inline TwistColumns twist_columns(const RuntimeChain& chain,
+                                                std::span<const JointIndices> columns) {
   TwistColumns result;
   const auto add = [](std::vector<int>& list, int column) {
     if (column >= 0) list.push_back(column);
@@ -117,17 +118,29 @@ template <std::size_t N>
 }
 
 /// Fills the twists of a chain.
-template <class S>
+/// @tparam Columns  the columns of the free parameters, by joint of the chain; of a chain that the
+///                  compiler knows, constants
+template <class S, class Columns = std::span<const JointIndices>>
 struct TwistWalker {
-  std::span<const JointIndices> columns;  ///< of the free parameters, one per joint of the chain
-  ChainTwists<S>& twists;                 ///< as many as twist_columns() lists
+  Columns columns;
+  Twist<S>* turn;     ///< where the next twist goes that turns;
+  Vector3<S>* shift;  ///< the next that only shifts
   PoseWalker<S> walker = {};
-  std::size_t num_turns = 0, num_shifts = 0;  ///< found so far
 
-  void fixed(const ConstantPose& transform) { walker.fixed(transform); }
+  /// @param twists  as many as twist_columns() lists
+  TwistWalker(const Columns& free, ChainTwists<S>& twists)
+      : columns(free), turn(twists.turns.data()), shift(twists.shifts.data()) {}
+  /// Goes on in the middle of a chain.
+  TwistWalker(const Columns& free, Twist<S>* next_turn, Vector3<S>* next_shift, const Pose<S>& pose)
+      : columns(free), turn(next_turn), shift(next_shift), walker{pose} {}
 
-  template <class U>
-  void correct(std::size_t i, const ChainJoint& joint, const JointCorrection<U>& correction) {
+  template <class ConstantPose>
+  void fixed(const ConstantPose& transform) {
+    walker.fixed(transform);
+  }
+
+  template <class I, class Joint, class U>
+  void correct(I i, const Joint& joint, const JointCorrection<U>& correction) {
     if (joint.reversed) walker.correct(i, joint, correction);
     const double sign = joint.reversed ? -1.0 : 1.0;
     const Pose<S>& front = walker.pose;
@@ -135,38 +148,38 @@ struct TwistWalker {
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       if (columns[i].frame[axis] >= 0) {
-        Vector3<S>& shift = twists.shifts[num_shifts++];
-        shift = front.rotation.col(k);
-        if (joint.reversed) shift = -shift;
+        *shift = front.rotation.col(k);
+        if (joint.reversed) *shift = -*shift;
+        ++shift;
       }
       if (columns[i].frame[axis + 3] >= 0) {
-        const Vector3<U> turn = correction.left_jacobian.col(k) * U(sign);
-        set_turn(pivot, rotated(front.rotation, turn));
+        const Vector3<U> turned = correction.left_jacobian.col(k) * U(sign);
+        add_turn(pivot, rotated(front.rotation, turned));
       }
     }
     if (!joint.reversed) walker.correct(i, joint, correction);
   }
 
-  template <class U>
-  void move(std::size_t i, const ChainJoint& joint, const Motion<U>& motion) {
+  template <class I, class Joint, class U>
+  void move(I i, const Joint& joint, const Motion<U>& motion) {
     walker.move(i, joint, motion);  // a joint's axis is the same before and after it
     if (columns[i].offset < 0) return;
     const double gain = joint.reversed ? -columns[i].gain : columns[i].gain;
     Vector3<S> axis = walker.axis(joint);
     if (gain != 1.0) axis *= S(gain);
     if (turns(joint.type)) {
-      set_turn(walker.pose.translation, axis);
+      add_turn(walker.pose.translation, axis);
     } else {
-      twists.shifts[num_shifts++] = axis;
+      *shift++ = axis;
     }
   }
 
  private:
   /// The twist of a turn about an axis through a point.
-  void set_turn(const Vector3<S>& point, const Vector3<S>& axis) {
-    Twist<S>& twist = twists.turns[num_turns++];
-    twist.linear = point.cross(axis);
-    twist.angular = axis;
+  void add_turn(const Vector3<S>& point, const Vector3<S>& axis) {
+    turn->linear = point.cross(axis);
+    turn->angular = axis;
+    ++turn;
   }
 };
 

@@ -10,8 +10,10 @@
 
 #include <concepts>
 #include <span>
+#include <utility>
 
 #include "kinecal/kinematics/corrections.hpp"
+#include "kinecal/kinematics/static_chain.hpp"
 
 namespace kinecal {
 
@@ -24,45 +26,83 @@ concept Walker = requires(W& w, std::size_t i, const ChainJoint& joint, const Mo
   w.move(i, joint, motion);
 };
 
+namespace detail {
+
+/// Calls visit(index, joint) for the joints from `first` on, until it returns false.
+template <class F>
+void for_joints(const RuntimeChain& chain, std::size_t first, F&& visit) {
+  for (std::size_t i = first; i < chain.joints.size(); ++i) {
+    if (!visit(i, chain.joints[i])) return;
+  }
+}
+/// The same with indices and joints that the compiler knows; `first` is the first or kFirstMotion.
+template <StaticChain C, class F>
+void for_joints(const C&, std::size_t first, F&& visit) {
+  const auto from = [&]<std::size_t First>(std::integral_constant<std::size_t, First>) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (void)(visit(std::integral_constant<std::size_t, First + I>{}, StaticJoint<C, First + I>{}) &&
+             ...);
+    }
+    (std::make_index_sequence<C::kSize - First>{});
+  };
+  if (first == 0) {
+    from(std::integral_constant<std::size_t, 0>{});
+  } else {
+    from(std::integral_constant<std::size_t, C::kFirstMotion>{});
+  }
+}
+
+[[nodiscard]] inline const ConstantPose& tail_of(const RuntimeChain& chain) {
+  return chain.tail;
+}
+template <StaticChain C>
+[[nodiscard]] FixedOf<C, C::kSize> tail_of(const C&) {
+  return {};
+}
+
+}  // namespace detail
+
 /// The part of a walk before anything moves: the same for all positions of the joints.
 /// @returns  the joint at whose motion walk_on() goes on; the number of joints if none moves
-template <std::size_t N, class S, class W>
-[[nodiscard]] std::size_t walk_to_first_motion(const Chain<N>& chain,
+template <class Chain, class S, class W>
+[[nodiscard]] std::size_t walk_to_first_motion(const Chain& chain,
                                                std::span<const JointCorrection<S>> corrections,
                                                W& walker) {
-  std::size_t i = 0;
-  for (; i < chain.joints.size(); ++i) {
-    const ChainJoint& joint = chain.joints[i];
+  std::size_t passed = 0;
+  detail::for_joints(chain, 0, [&](auto i, const auto& joint) {
     walker.fixed(joint.fixed);
     if (joint.corrected && !joint.reversed) walker.correct(i, joint, corrections[i]);
-    if (moves(joint.type)) break;
+    if (moves(joint.type)) return false;
     if (joint.corrected && joint.reversed) walker.correct(i, joint, corrections[i]);
-  }
-  return i;
+    ++passed;
+    return true;
+  });
+  return passed;
 }
 
 /// The rest of it.
 /// @param first  what walk_to_first_motion() returned
-template <std::size_t N, class Q, class S, class W>
-void walk_on(const Chain<N>& chain, std::size_t first, std::span<const Motion<Q>> motions,
+template <class Chain, class Q, class S, class W>
+void walk_on(const Chain& chain, std::size_t first, std::span<const Motion<Q>> motions,
              std::span<const JointCorrection<S>> corrections, W& walker) {
-  for (std::size_t i = first; i < chain.joints.size(); ++i) {
-    const ChainJoint& joint = chain.joints[i];
+  detail::for_joints(chain, first, [&](auto i, const auto& joint) {
     if (i != first) {
       walker.fixed(joint.fixed);
       if (joint.corrected && !joint.reversed) walker.correct(i, joint, corrections[i]);
     }
     if (moves(joint.type)) walker.move(i, joint, motions[i] + corrections[i].offset);
     if (joint.corrected && joint.reversed) walker.correct(i, joint, corrections[i]);
-  }
-  walker.fixed(chain.tail);
+    return true;
+  });
+  walker.fixed(detail::tail_of(chain));
 }
 
 /// Walks a chain from base to tip.
+/// @param chain        a RuntimeChain or a Chain
 /// @param motions      measured motion of each joint of the chain (any scalar)
 /// @param corrections  correction of each joint of the chain (any scalar)
-template <std::size_t N, class Q, class S, class W>
-void walk(const Chain<N>& chain, std::span<const Motion<Q>> motions,
+template <class Chain, class Q, class S, class W>
+void walk(const Chain& chain, std::span<const Motion<Q>> motions,
           std::span<const JointCorrection<S>> corrections, W& walker) {
   walk_on(chain, walk_to_first_motion(chain, corrections, walker), motions, corrections, walker);
 }

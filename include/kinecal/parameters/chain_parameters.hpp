@@ -12,8 +12,7 @@ namespace kinecal {
 
 /// Indices of the parameters of each joint of a chain, by name.  A mimic joint is moved by the
 /// offset of the joint that drives it.
-template <std::size_t N>
-[[nodiscard]] std::vector<JointIndices> chain_parameters(const Chain<N>& chain,
+[[nodiscard]] inline std::vector<JointIndices> chain_parameters(const RuntimeChain& chain,
                                                          const ParameterTable& table) {
   std::vector<JointIndices> indices;
   for (const ChainJoint& joint : chain.joints) {

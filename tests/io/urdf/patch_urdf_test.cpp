@@ -107,7 +107,7 @@ std::vector<Pose<double>> corrected_kinematics(const Robot& robot,
   }
   std::vector<Pose<double>> poses;
   for (const std::string& link : robot.link_names()) {
-    const Chain<> chain = make_chain(robot, robot.joints().front().parent, link, corrected);
+    const RuntimeChain chain = make_chain(robot, robot.joints().front().parent, link, corrected);
     Corrections<double> corrections(chain.joints.size());
     for (std::size_t i = 0; i < chain.joints.size(); ++i) {
       const ChainJoint& joint = chain.joints[i];

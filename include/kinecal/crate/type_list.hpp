@@ -1,0 +1,42 @@
+// Lists of types: what a crate is put together with.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <tuple>
+#include <type_traits>
+
+namespace kinecal::detail {
+
+template <class... Ts>
+struct TypeList {
+  static constexpr std::size_t kSize = sizeof...(Ts);
+  template <class T>
+  static constexpr bool kContains = (std::is_same_v<T, Ts> || ...);
+  template <template <class...> class To>
+  using As = To<Ts...>;
+  template <class T>
+  using With = std::conditional_t<kContains<T>, TypeList, TypeList<Ts..., T>>;
+};
+
+/// The types of both lists, each once, in this order.
+template <class A, class B>
+struct Joined;
+template <class A>
+struct Joined<A, TypeList<>> {
+  using type = A;
+};
+template <class A, class T, class... Ts>
+struct Joined<A, TypeList<T, Ts...>> : Joined<typename A::template With<T>, TypeList<Ts...>> {};
+
+/// All lists as one.
+template <class... Lists>
+struct AllOf {
+  using type = TypeList<>;
+};
+template <class First, class... Rest>
+struct AllOf<First, Rest...> : Joined<First, typename AllOf<Rest...>::type> {};
+
+template <bool kTake, class T>
+using OnlyIf = std::conditional_t<kTake, TypeList<T>, TypeList<>>;
+
+}  // namespace kinecal::detail

@@ -1,0 +1,95 @@
+// Poses that the compiler knows: what is zero or one in them costs nothing.
+//
+// A type P with P::kPose (a PoseData) stands for the pose.  Most origins of a URDF only shift, and
+// along one axis; a turn of 90 degrees exchanges columns.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/kinematics/robot_data.hpp"
+
+namespace kinecal {
+
+/// a * b
+[[nodiscard]] constexpr PoseData operator*(const PoseData& a, const PoseData& b) {
+  PoseData product;
+  for (std::size_t r = 0; r < 3; ++r) {
+    const double *row = &a.rotation[3 * r], *t = b.translation.data();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double* m = &b.rotation[c];
+      product.rotation[3 * r + c] = row[0] * m[0] + row[1] * m[3] + row[2] * m[6];
+    }
+    product.translation[r] = row[0] * t[0] + row[1] * t[1] + row[2] * t[2] + a.translation[r];
+  }
+  return product;
+}
+
+namespace detail {
+
+/// Column `Col` of the rotation, or the translation (3).
+template <class P, int Col>
+struct ConstantColumn {
+  [[nodiscard]] static constexpr double at(std::size_t k) {
+    return Col < 3 ? P::kPose.rotation[3 * k + std::size_t(Col)] : P::kPose.translation[k];
+  }
+  static constexpr std::size_t kFirst = at(0) != 0.0 ? 0 : at(1) != 0.0 ? 1 : at(2) != 0.0 ? 2 : 3;
+};
+
+template <class C, std::size_t K, class S>
+[[nodiscard]] S times(const S& x) {
+  if constexpr (C::at(K) == 1.0) {
+    return x;
+  } else if constexpr (C::at(K) == -1.0) {
+    return -x;
+  } else {
+    return x * C::at(K);
+  }
+}
+
+template <class C, std::size_t K, class S>
+void add_times(S& sum, const S& x) {
+  if constexpr (K <= C::kFirst || C::at(K) == 0.0) {
+    return;
+  } else if constexpr (C::at(K) == 1.0) {
+    sum += x;
+  } else if constexpr (C::at(K) == -1.0) {
+    sum -= x;
+  } else {
+    sum += x * C::at(K);
+  }
+}
+
+/// A row of a matrix times a constant column.
+template <class C, class S, int Options>
+[[nodiscard]] S row_times(const Eigen::Matrix<S, 3, 3, Options>& m, int row) {
+  static_assert(C::kFirst < 3);
+  S sum = times<C, C::kFirst>(m(row, static_cast<int>(C::kFirst)));
+  add_times<C, 1>(sum, m(row, 1));
+  add_times<C, 2>(sum, m(row, 2));
+  return sum;
+}
+
+template <class P>
+inline constexpr bool kTurns =
+    !(P::kPose.rotation == std::array{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+
+}  // namespace detail
+
+/// pose = pose * P::kPose
+template <class P, class S>
+void multiply_by_constant(Pose<S>& pose) {
+  if constexpr (detail::ConstantColumn<P, 3>::kFirst < 3) {
+    for (int row = 0; row < 3; ++row) {
+      pose.translation(row) += detail::row_times<detail::ConstantColumn<P, 3>>(pose.rotation, row);
+    }
+  }
+  if constexpr (detail::kTurns<P>) {
+    const Matrix3<S> r = pose.rotation;
+    for (int row = 0; row < 3; ++row) {
+      pose.rotation(row, 0) = detail::row_times<detail::ConstantColumn<P, 0>>(r, row);
+      pose.rotation(row, 1) = detail::row_times<detail::ConstantColumn<P, 1>>(r, row);
+      pose.rotation(row, 2) = detail::row_times<detail::ConstantColumn<P, 2>>(r, row);
+    }
+  }
+}
+
+}  // namespace kinecal

@@ -1,0 +1,197 @@
+// What may be wrong, as types: free parameters with slots that the compiler knows.
+//
+//   JointOffset<"elbow_flex_joint">                  one number, added to the measured position
+//   FrameOffset<"head_pan_joint">                    six: x y z a b c; or FrameOffset<"…",
+//   Axes::xyz> VirtualFrame<"checkerboard">                     six of a frame that is in no URDF
+//   CameraIntrinsics<"camera">                       four: fx fy cx cy
+//   DepthCorrection<"camera">                        two: z_offset z_scaling
+//   DepthIntrinsics<"camera">                        all six of a depth camera
+//
+// Their names are those of parameter.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/kinematics/fixed_string.hpp"
+#include "kinecal/kinematics/twist_walker.hpp"
+#include "kinecal/parameters/parameter.hpp"
+
+namespace kinecal {
+
+/// Axes of a frame correction: x y z of the translation, a b c of the rotation vector.
+struct Axes {
+  bool x = false, y = false, z = false, a = false, b = false, c = false;
+
+  static const Axes all, xyz, abc;
+
+  [[nodiscard]] constexpr std::array<bool, 6> flags() const { return {x, y, z, a, b, c}; }
+  [[nodiscard]] constexpr Axes operator|(const Axes& o) const {
+    return {x || o.x, y || o.y, z || o.z, a || o.a, b || o.b, c || o.c};
+  }
+  bool operator==(const Axes&) const = default;
+};
+inline constexpr Axes Axes::all = {true, true, true, true, true, true};
+inline constexpr Axes Axes::xyz = {true, true, true, false, false, false};
+inline constexpr Axes Axes::abc = {false, false, false, true, true, true};
+
+/// One number: whose, and which of it ("" for a joint's offset).
+struct ParameterId {
+  std::string_view owner, part;
+
+  [[nodiscard]] std::string name() const {
+    return part.empty() ? std::string(owner) : parameter_name(owner, part);
+  }
+  /// Equal names, however they are put together.
+  [[nodiscard]] constexpr bool same_name(const ParameterId& other) const {
+    if (length() != other.length()) return false;
+    for (std::size_t i = 0; i < length(); ++i) {
+      if (at(i) != other.at(i)) return false;
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] constexpr std::size_t length() const {
+    return owner.size() + (part.empty() ? 0 : 1 + part.size());
+  }
+  [[nodiscard]] constexpr char at(std::size_t i) const {
+    if (i < owner.size()) return owner[i];
+    return i == owner.size() ? '_' : part[i - owner.size() - 1];
+  }
+};
+
+enum class ParameterKind { joint_offset, frame_offset, virtual_frame, camera, depth };
+
+template <FixedString Joint>
+struct JointOffset {
+  static constexpr ParameterKind kKind = ParameterKind::joint_offset;
+  static constexpr std::string_view kOwner = Joint;
+  static constexpr std::array<ParameterId, 1> kIds = {{{Joint, ""}}};
+};
+
+namespace detail {
+
+/// Some of an owner's parts.
+template <FixedString Owner, std::size_t Count, std::size_t N>
+[[nodiscard]] consteval std::array<ParameterId, Count> ids_of(
+    const std::array<std::string_view, N>& parts, const std::array<bool, N>& chosen) {
+  std::array<ParameterId, Count> ids{};
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (chosen[i]) ids[n++] = {Owner, parts[i]};
+  }
+  return ids;
+}
+
+[[nodiscard]] consteval std::size_t count(const std::array<bool, 6>& chosen) {
+  return static_cast<std::size_t>(std::count(chosen.begin(), chosen.end(), true));
+}
+
+template <FixedString Owner, Axes Chosen>
+inline constexpr auto kFrameIds = ids_of<Owner, count(Chosen.flags())>(kFrameAxes, Chosen.flags());
+
+template <FixedString Owner, bool Intrinsics, bool Depth>
+inline constexpr auto kCameraIds = ids_of<Owner, (Intrinsics ? 4 : 0) + (Depth ? 2 : 0)>(
+    kCameraParameters, std::array{Intrinsics, Intrinsics, Intrinsics, Intrinsics, Depth, Depth});
+
+}  // namespace detail
+
+template <FixedString Joint, Axes Chosen = Axes::all>
+struct FrameOffset {
+  static constexpr ParameterKind kKind = ParameterKind::frame_offset;
+  static constexpr std::string_view kOwner = Joint;
+  static constexpr auto kIds = detail::kFrameIds<Joint, Chosen>;
+};
+
+template <FixedString Frame, Axes Chosen = Axes::all>
+struct VirtualFrame {
+  static constexpr FixedString kName = Frame;
+  static constexpr ParameterKind kKind = ParameterKind::virtual_frame;
+  static constexpr std::string_view kOwner = Frame;
+  static constexpr auto kIds = detail::kFrameIds<Frame, Chosen>;
+};
+
+template <FixedString Camera>
+struct CameraIntrinsics {
+  static constexpr ParameterKind kKind = ParameterKind::camera;
+  static constexpr std::string_view kOwner = Camera;
+  static constexpr auto kIds = detail::kCameraIds<Camera, true, false>;
+};
+
+template <FixedString Camera>
+struct DepthCorrection {
+  static constexpr ParameterKind kKind = ParameterKind::depth;
+  static constexpr std::string_view kOwner = Camera;
+  static constexpr auto kIds = detail::kCameraIds<Camera, false, true>;
+};
+
+template <FixedString Camera>
+struct DepthIntrinsics {
+  static constexpr ParameterKind kKind = ParameterKind::depth;
+  static constexpr std::string_view kOwner = Camera;
+  static constexpr auto kIds = detail::kCameraIds<Camera, true, true>;
+};
+
+template <class P>
+concept FreeParameter = requires {
+  { P::kKind } -> std::convertible_to<ParameterKind>;
+  { P::kOwner } -> std::convertible_to<std::string_view>;
+  P::kIds[0].owner;
+};
+
+/// Free parameters in this order; the numbers of each follow each other.
+template <FreeParameter... Ps>
+struct FreeParameters {
+  static constexpr std::size_t kSize = (std::size_t(0) + ... + Ps::kIds.size());
+  /// Of each number.
+  static constexpr std::array<ParameterId, kSize> kIds = [] {
+    std::array<ParameterId, kSize> ids{};
+    std::size_t n = 0;
+    const auto append = [&](const auto& of_parameter) {
+      for (const ParameterId& id : of_parameter) ids[n++] = id;
+    };
+    (append(Ps::kIds), ...);
+    return ids;
+  }();
+
+  /// The slot of a number, or -1.
+  [[nodiscard]] static constexpr int find(std::string_view owner, std::string_view part) {
+    for (std::size_t i = 0; i < kSize; ++i) {
+      if (kIds[i].owner == owner && kIds[i].part == part) return static_cast<int>(i);
+    }
+    return -1;
+  }
+
+  /// True if no two numbers have the same name.
+  [[nodiscard]] static constexpr bool are_distinct() {
+    for (std::size_t i = 0; i < kSize; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (kIds[i].same_name(kIds[j])) return false;
+      }
+    }
+    return true;
+  }
+
+  /// The slot of the first number of a parameter.
+  template <FreeParameter P>
+  static constexpr int kSlot = find(P::kIds[0].owner, P::kIds[0].part);
+};
+
+/// The slots of each joint of a chain: chain_parameters() while compiling.
+/// @tparam C  a chain
+/// @tparam F  FreeParameters
+template <StaticChain C, class F>
+inline constexpr std::array<JointIndices, C::kSize> kColumnsOf = [] {
+  std::array<JointIndices, C::kSize> columns{};
+  for (std::size_t i = 0; i < C::kSize; ++i) {
+    const detail::StaticJointData& joint = C::kJoints[i];
+    if (moves(joint.type)) {
+      columns[i].offset = F::find(joint.drive.joint, "");
+      columns[i].gain = joint.drive.multiplier;
+    }
+    if (!joint.corrected) continue;
+    for (std::size_t k = 0; k < 6; ++k) columns[i].frame[k] = F::find(joint.name, kFrameAxes[k]);
+  }
+  return columns;
+}();
+
+}  // namespace kinecal

@@ -1,0 +1,69 @@
+// Calibrating with a crate: samples in, values with the names of its types out.
+//
+//   const CrateResult<HandEye> result = calibrate(HandEye(), samples);
+//   const double elbow = result.value<JointOffset<"elbow_flex_joint">>();
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/crate/crate.hpp"
+#include "kinecal/solve/calibrate.hpp"
+
+namespace kinecal {
+
+template <class C>
+struct CrateResult : CalibrationResult {
+  /// What was found for a free parameter: a number, or (N) in the order of its names.
+  template <FreeParameter P>
+  [[nodiscard]] auto value() const {
+    static_assert(C::Free::find(P::kIds[0].owner, P::kIds[0].part) >= 0,
+                  "kinecal: this parameter is not free in the crate; add it there or ask for "
+                  "another");
+    if constexpr (P::kIds.size() == 1) {
+      return table[P::kIds[0].name()].value;
+    } else {
+      Eigen::Matrix<double, static_cast<int>(P::kIds.size()), 1> all;
+      for (std::size_t i = 0; i < P::kIds.size(); ++i) {
+        all(static_cast<Eigen::Index>(i)) = table[P::kIds[i].name()].value;
+      }
+      return all;
+    }
+  }
+};
+
+/// The calibration of one step that a crate stands for; with it, reports and result files are made
+/// as those of the program.  Free parameters on which no residual of these samples depends keep
+/// their initial values.
+/// @throws SampleError  naming the sample and what is missing or wrong in it
+/// @throws std::invalid_argument  if there are no samples that a block could take
+template <class C>
+[[nodiscard]] Calibration make_calibration(const C& crate, std::span<const Sample> samples,
+                                           const std::string& step = "calibration") {
+  Calibration calibration;
+  calibration.table = C::table(samples);
+  Problem problem = crate.problem(calibration.table);
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  const std::vector<int> touched = problem.touched_parameters();
+  if (touched.empty()) {
+    throw std::invalid_argument("no sample has usable features of all sensors of an error block");
+  }
+  std::vector<int> free = C::free(calibration.table).parameters();
+  std::erase_if(free,
+                [&](int p) { return !std::binary_search(touched.begin(), touched.end(), p); });
+  FreeSet columns(std::move(free), calibration.table.size());
+  calibration.steps.push_back(
+      {step, SolveOptions{}.max_num_iterations, std::move(problem), std::move(columns), {}});
+  return calibration;
+}
+
+/// Makes the calibration of a crate and solves it.
+/// @throws  as make_calibration()
+template <class... Parts>
+[[nodiscard]] CrateResult<Crate<Parts...>> calibrate(const Crate<Parts...>& crate,
+                                                     std::span<const Sample> samples,
+                                                     const SolveOptions& options = {}) {
+  Calibration calibration = make_calibration(crate, samples);
+  calibration.steps.front().max_num_iterations = options.max_num_iterations;
+  return {calibrate(calibration, {}, options)};
+}
+
+}  // namespace kinecal
