@@ -9,7 +9,8 @@
 
 namespace kinecal {
 
-template <ErrorBlock B, class S>
+/// @tparam Expected  how many columns its bodies have where the compiler knows, or nothing
+template <ErrorBlock B, class S, class Expected = void>
 class BlockTerm final : public Term<S> {
  public:
   static constexpr int kSize = kResiduals<B>;
@@ -94,6 +95,11 @@ class BlockTerm final : public Term<S> {
       const Twists of_run = twists(views, Block::chains(views, i));
       const std::size_t width = run.width;
       S* jacobian = derivatives ? &out.jacobian[run.jacobian] : nullptr;
+      if (derivatives && at == Linearization::measured &&
+          write_differences(views, i, run.features, of_run, out, jacobian)) {
+        i += run.features;
+        continue;
+      }
       for (std::size_t n = 0; n < run.features; ++n, ++i) {
         evaluate_feature(views, i, at, of_run, out, jacobian, width);
         if (derivatives) jacobian += kSize * width;
@@ -193,18 +199,37 @@ class BlockTerm final : public Term<S> {
     return sums.by_chains.emplace(place, of_chains, LocalSums<S>(std::move(columns)))->second;
   }
 
+  /// Residuals and Jacobian of some features.
+  /// @returns  false if the block is not a difference
+  KINECAL_FLATTEN bool write_differences(Views views, std::size_t first, std::size_t features,
+                                         const Twists& twists, PackedRows<S>& out,
+                                         S* jacobian) const {
+    if constexpr (kMayBeDifference) {
+      if (!is_difference_) return false;
+      for (std::size_t i = first; i < first + features; ++i) {
+        const Vector3<S>&a = views[0]->points()[i], &b = views[1]->points()[i];
+        store(i, block_(a, b), Block::weight(views, i), out);
+      }
+      const auto size = [&](std::size_t s) {
+        return BodySizes{twists[s].turns.size(), twists[s].shifts.size(),
+                         views[s]->camera_motion(first).size()};
+      };
+      const Sizes sizes{size(0), size(1)};
+      if constexpr (!std::is_void_v<Expected>) {
+        if (sizes.a == Expected::a && sizes.b == Expected::b) {
+          kinecal::write_differences(views, first, features, twists, Expected{}, jacobian);
+          return true;
+        }
+      }
+      kinecal::write_differences(views, first, features, twists, sizes, jacobian);
+    }
+    return kMayBeDifference;
+  }
+
   /// @param jacobian  (kSize x width) where the rows of feature i go, or nullptr
   KINECAL_FLATTEN void evaluate_feature(Views views, std::size_t i, Linearization at,
                                         const Twists& twists, PackedRows<S>& out, S* jacobian,
                                         std::size_t width) const {
-    if constexpr (kMayBeDifference) {
-      if (is_difference_ && jacobian != nullptr && at == Linearization::measured) {
-        const Vector3<S>&a = views[0]->points()[i], &b = views[1]->points()[i];
-        store(i, block_(a, b), Block::weight(views, i), out);
-        write_difference(views, i, twists, jacobian, width);
-        return;
-      }
-    }
     const Rows rows = jacobian != nullptr ? Block::template rows<true>(block_, views, i, at)
                                           : Block::template rows<false>(block_, views, i, at);
     store(i, rows.residual, rows.weight, out);

@@ -117,8 +117,8 @@ class Crate {
     for_each(Blocks{}, [&]<class P>(P*) {
       const P& part = std::get<P>(blocks_);
       const auto& names = P::kSensorNames;
-      problem.add_block(std::string(P::kName), part.error, {names.begin(), names.end()},
-                        part.options);
+      problem.template add_block<SizesOf<P>>(std::string(P::kName), part.error,
+                                             {names.begin(), names.end()}, part.options);
     });
     for_each(Priors{}, [&]<class P>(P*) {
       const P& part = std::get<P>(priors_);
@@ -212,6 +212,42 @@ class Crate {
   /// A sensor's chain with the corrections that are free here.
   template <class C, class VirtualFrame = void>
   using ChainWithFrames = detail::CorrectedChain<C, FramesHere, VirtualFrame>;
+
+  /// How many columns the bodies of a block's sensors have, seen in the sensors' own frames.
+  template <class Sensor>
+  [[nodiscard]] static constexpr BodySizes sizes() {
+    BodySizes size;
+    using C = ChainWithFrames<typename Sensor::Chain>;
+    for (std::size_t i = 0; i < C::kSize; ++i) {
+      const JointIndices& joint = kColumnsOf<C, Free>[i];
+      for (std::size_t k = 0; k < 6; ++k) {
+        if (joint.frame[k] >= 0) ++(k < 3 ? size.shifts : size.turns);
+      }
+      if (joint.offset >= 0) ++(turns(C::kJoints[i].type) ? size.turns : size.shifts);
+    }
+    if (Sensor::kType != SensorType::chain3d) {
+      for (const std::string_view part : kCameraParameters) {
+        if (Free::find(Sensor::kName, part) >= 0) ++size.cameras;
+      }
+    }
+    return size;
+  }
+  template <class... Ts>
+  [[nodiscard]] static constexpr BodySizes sizes_of(std::string_view name,
+                                                    detail::TypeList<Ts...>) {
+    BodySizes size;
+    (void)((Ts::kName == name ? (size = sizes<Ts>(), true) : false) || ...);
+    return size;
+  }
+  template <class P>
+  [[nodiscard]] static constexpr auto sizes_of_block() {
+    if constexpr (P::kSensorNames.size() == 2) {
+      return KnownSizes<sizes_of(P::kSensorNames[0], Sensors{}),
+                        sizes_of(P::kSensorNames[1], Sensors{})>{};
+    }
+  }
+  template <class P>
+  using SizesOf = decltype(sizes_of_block<P>());
 
   template <FixedString Name, class... Ts>
   [[nodiscard]] static auto& part_of(std::tuple<Ts...>& parts) {

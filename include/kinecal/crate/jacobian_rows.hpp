@@ -29,24 +29,52 @@ void write_rows(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, S* 
   }
 }
 
-/// The same for r = p_a - p_b of feature i: the columns are the velocities of the points.
-/// @param out  (3 x width), row-major
-template <class S, class Twists>
-void write_difference(std::span<const SensorView<S>* const> views, std::size_t i,
-                      const Twists& twists, S* out, std::size_t width) {
+/// How many columns a body and its camera have.
+struct BodySizes {
+  std::size_t turns = 0, shifts = 0, cameras = 0;
+
+  [[nodiscard]] constexpr std::size_t columns() const { return turns + shifts + cameras; }
+  bool operator==(const BodySizes&) const = default;
+};
+
+/// Sizes of two bodies that the compiler knows: loops over them unroll.
+template <BodySizes A, BodySizes B>
+struct KnownSizes {
+  static constexpr BodySizes a = A, b = B;
+};
+/// Sizes that are known when it runs.
+struct Sizes {
+  BodySizes a, b;
+};
+
+/// The same for r = p_a - p_b of some features: the columns are the velocities of the points.
+/// @param sizes  Sizes or KnownSizes, which must be right
+/// @param out    (3 features x columns), row-major
+template <class S, class AnySizes>
+void write_differences(std::span<const SensorView<S>* const> views, std::size_t first,
+                       std::size_t features, const std::array<BodyTwists<S>, 2>& twists,
+                       const AnySizes& sizes, S* __restrict out) {
+  const Twist<S>*turns_a = twists[0].turns.data(), *turns_b = twists[1].turns.data();
+  const Vector3<S>*shifts_a = twists[0].shifts.data(), *shifts_b = twists[1].shifts.data();
+  const Vector3<S>* cameras_a = views[0]->camera_motion(first).data();
+  const Vector3<S>* cameras_b = views[1]->camera_motion(first).data();
+  const Vector3<S>*points_a = &views[0]->points()[first], *points_b = &views[1]->points()[first];
+  const std::size_t width = sizes.a.columns() + sizes.b.columns();
   const auto write = [&out, width](const Vector3<S>& v) {
     out[0] = v.x();
     out[width] = v.y();
     out[2 * width] = v.z();
     ++out;
   };
-  const Vector3<S> a = views[0]->points()[i], b = views[1]->points()[i];  // no aliases of out
-  for (const Twist<S>& t : twists[0].turns) write(t.velocity(a));
-  for (const Vector3<S>& v : twists[0].shifts) write(v);
-  for (const Twist<S>& t : twists[1].turns) write(t.opposite_velocity(b));
-  for (const Vector3<S>& v : twists[1].shifts) write(-v);
-  for (const Vector3<S>& v : views[0]->camera_motion(i)) write(v);
-  for (const Vector3<S>& v : views[1]->camera_motion(i)) write(-v);
+  for (std::size_t i = 0; i < features; ++i, out += 2 * width) {
+    const Vector3<S> a = points_a[i], b = points_b[i];
+    for (std::size_t k = 0; k < sizes.a.turns; ++k) write(turns_a[k].velocity(a));
+    for (std::size_t k = 0; k < sizes.a.shifts; ++k) write(shifts_a[k]);
+    for (std::size_t k = 0; k < sizes.b.turns; ++k) write(turns_b[k].opposite_velocity(b));
+    for (std::size_t k = 0; k < sizes.b.shifts; ++k) write(-shifts_b[k]);
+    for (std::size_t k = 0; k < sizes.a.cameras; ++k) write(*cameras_a++);
+    for (std::size_t k = 0; k < sizes.b.cameras; ++k) write(-*cameras_b++);
+  }
 }
 
 }  // namespace kinecal

@@ -42,9 +42,10 @@ class BasicProblem {
   }
 
   /// Adds an error block between sensors, which are added before.
+  /// @tparam Expected  KnownSizes of its two bodies, where the compiler knows them
   /// @throws std::invalid_argument  if a sensor does not exist, or their number or kind is wrong
   /// @throws std::logic_error       if samples have been added: they would not know of it
-  template <ErrorBlock B>
+  template <class Expected = void, ErrorBlock B>
   void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
     check_no_samples();
@@ -63,7 +64,8 @@ class BasicProblem {
             (is_pinhole ? "sees pixels, a point is needed" : "sees points, a camera2d is needed"));
       }
     }
-    terms_.push_back(std::make_unique<BlockTerm<B, S>>(name, block, std::move(indices), options));
+    terms_.push_back(
+        std::make_unique<BlockTerm<B, S, Expected>>(name, block, std::move(indices), options));
   }
 
   /// Adds a prior; it counts once for each sample.
