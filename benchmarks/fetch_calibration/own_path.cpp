@@ -1,6 +1,7 @@
 #include "own_path.hpp"
 
 #include "counting.hpp"
+#include "fetch_crate.hpp"
 #include "kinecal/solve/solve.hpp"
 #include "own_problem.hpp"
 #include "peak.hpp"
@@ -8,11 +9,27 @@
 namespace kinecal::bench {
 namespace {
 
+/// The work as it is put together at run time.
+template <class S>
+BasicProblem<S> from_models(const FetchWork& work, int samples) {
+  return own_problem<S>(work, work.cycled(samples));
+}
+
+/// The same from the types of a crate.
+template <class S>
+BasicProblem<S> from_crate(const FetchWork& work, int samples) {
+  BasicProblem<S> problem = FetchCrate().problem<S>(work.table);
+  for (const Sample& sample : work.cycled(samples)) problem.add_sample(sample);
+  return problem;
+}
+
 template <class S>
 class OwnPath {
  public:
-  OwnPath(const FetchWork& work, int samples)
-      : problem_(own_problem<S>(work, work.cycled(samples))),
+  using MakeProblem = BasicProblem<S> (*)(const FetchWork&, int samples);
+
+  OwnPath(const FetchWork& work, int samples, MakeProblem make_problem)
+      : problem_(make_problem(work, samples)),
         free_(all_free(work.table)),
         values_(work.initial_values()),
         evaluator_(problem_, free_) {}
@@ -61,7 +78,7 @@ class OwnPath {
 
 /// Operations of one sample, its share of what is done once for all included.
 Flops own_flops(const FetchWork& work) {
-  OwnPath<Counting> path(work, kSamples);
+  OwnPath<Counting> path(work, kSamples, from_models);
   const Eigen::VectorXd values = work.timed_values();
   const Values x(values.data(), kParameters);
   const auto per_sample = [](const Operations& done) { return double(done.total()) / kSamples; };
@@ -71,23 +88,27 @@ Flops own_flops(const FetchWork& work) {
 }
 
 template <class S>
-Method own_method(const std::string& name, const FetchWork& work, const Flops& flops) {
-  const auto path = std::make_shared<OwnPath<S>>(work, kSamples);
-  return {.name = name,
-          .exact = true,
-          .residuals = [path](Values x) { path->evaluate(x, false); },
-          .residuals_jacobian = [path](Values x) { path->evaluate(x, true); },
-          .normal_equations = [path](Values x) { return path->normal_equations(x); },
-          .stacked = [path](Values x, bool jacobian) { return path->stacked(x, jacobian); },
-          .solve = [&work](int n) { return OwnPath<S>(work, n).solve(); },
-          .flops = flops};
+Method own_method(const std::string& name, const FetchWork& work, const Flops& flops,
+                  typename OwnPath<S>::MakeProblem make_problem) {
+  const auto path = std::make_shared<OwnPath<S>>(work, kSamples, make_problem);
+  return {
+      .name = name,
+      .exact = true,
+      .residuals = [path](Values x) { path->evaluate(x, false); },
+      .residuals_jacobian = [path](Values x) { path->evaluate(x, true); },
+      .normal_equations = [path](Values x) { return path->normal_equations(x); },
+      .stacked = [path](Values x, bool jacobian) { return path->stacked(x, jacobian); },
+      .solve = [&work, make_problem](int n) { return OwnPath<S>(work, n, make_problem).solve(); },
+      .flops = flops};
 }
 
 }  // namespace
 
 std::vector<Method> own_methods(const FetchWork& work) {
   const Flops flops = own_flops(work);
-  return {own_method<double>("scalar", work, flops), own_method<Packet>("packets", work, flops)};
+  return {own_method<double>("scalar", work, flops, from_models<double>),
+          own_method<Packet>("packets", work, flops, from_models<Packet>),
+          own_method<Packet>("crate", work, {}, from_crate<Packet>)};
 }
 
 }  // namespace kinecal::bench

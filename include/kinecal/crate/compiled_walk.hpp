@@ -17,11 +17,11 @@ struct CompiledWalk {
 
   std::string tip;                    ///< of the chain
   std::vector<JointIndices> columns;  ///< for which with_twists is compiled
-  /// From the first motion on; `pose` is that of walk_to_first_motion(), then the tip's.
-  void (*pose_only)(Motions, CorrectionsOfJoints, Pose<S>& pose);
+  /// From the first motion on, where walk_to_first_motion() came to; gives the tip's pose.
+  void (*pose_only)(Motions, CorrectionsOfJoints, const Pose<S>& first, Pose<S>& tip);
   /// The same with the twists that are found on the way, from `turn` and `shift` on.
-  void (*with_twists)(Motions, CorrectionsOfJoints, Pose<S>& pose, Twist<S>* turn,
-                      Vector3<S>* shift);
+  void (*with_twists)(Motions, CorrectionsOfJoints, const Pose<S>& first, Pose<S>& tip,
+                      Twist<S>* turn, Vector3<S>* shift);
 };
 
 namespace detail {
@@ -39,16 +39,18 @@ struct WalkOf {
   using Motions = typename CompiledWalk<S>::Motions;
   using Corrections = typename CompiledWalk<S>::CorrectionsOfJoints;
 
-  KINECAL_FLATTEN static void pose_only(Motions motions, Corrections corrections, Pose<S>& pose) {
-    PoseWalker<S> walker{pose};
+  KINECAL_FLATTEN static void pose_only(Motions motions, Corrections corrections,
+                                        const Pose<S>& first, Pose<S>& tip) {
+    PoseWalker<S> walker{first};
     walk_on(C{}, C::kFirstMotion, motions, corrections, walker);
-    pose = walker.pose;
+    tip = walker.pose;
   }
-  KINECAL_FLATTEN static void with_twists(Motions motions, Corrections corrections, Pose<S>& pose,
-                                          Twist<S>* turn, Vector3<S>* shift) {
-    TwistWalker<S, StaticColumns<C, F>> walker({}, turn, shift, pose);
+  KINECAL_FLATTEN static void with_twists(Motions motions, Corrections corrections,
+                                          const Pose<S>& first, Pose<S>& tip, Twist<S>* turn,
+                                          Vector3<S>* shift) {
+    TwistWalker<S, StaticColumns<C, F>> walker({}, turn, shift, first);
     walk_on(C{}, C::kFirstMotion, motions, corrections, walker);
-    pose = walker.walker.pose;
+    tip = walker.walker.pose;
   }
 };
 

@@ -140,11 +140,10 @@ class SensorView {
     Twist<S>* turn = twists_[c].turns.data() + start.turns;
     Vector3<S>* shift = twists_[c].shifts.data() + start.shifts;
     if (start.compiled != nullptr) {
-      poses_[c] = start.pose;
       if (derivatives_) {
-        start.compiled->with_twists(motions, corrections, poses_[c], turn, shift);
+        start.compiled->with_twists(motions, corrections, start.pose, poses_[c], turn, shift);
       } else {
-        start.compiled->pose_only(motions, corrections, poses_[c]);
+        start.compiled->pose_only(motions, corrections, start.pose, poses_[c]);
       }
       return;
     }
