@@ -1,0 +1,197 @@
+#include "kinecal/crate/crate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "kinecal/errors.hpp"
+#include "support/static_robot.hpp"
+#include "support/sums.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::StaticRobot;
+template <FixedString Tip>
+using FromBase = Chain<StaticRobot, "base", Tip>;
+
+using Arm = Chain3d<"arm", FromBase<"tip">>;
+using Camera = Camera3d<"camera", FromBase<"camera_frame">>;
+using Eye = Camera2d<"eye", FromBase<"base">>;  // looks up
+using HandEye =
+    Crate<Arm, Camera, JointOffset<"pan">, JointOffset<"elbow">, JointOffset<"wrist">,
+          FrameOffset<"camera_joint">, FrameOffset<"mount", Axes::xyz>, DepthIntrinsics<"camera">,
+          VirtualFrame<"board">, Block<"hand_eye", PointToPoint, "camera", "arm">>;
+using Floor = Crate<Camera, JointOffset<"lift">, JointOffset<"head_tilt">,
+                    FrameOffset<"camera_joint">, DepthIntrinsics<"camera">,
+                    Block<"floor", PointToPlane, "camera">, PriorOn<"keep", "camera_joint">>;
+using Counterweight = Crate<Chain3d<"weight", FromBase<"counterweight">>, Arm, JointOffset<"wrist">,
+                            FrameOffset<"weight", Axes{.z = true, .a = true}>,
+                            Block<"weight", PointToPoint, "weight", "arm">>;
+using Pixels =
+    Crate<Arm, Eye, CameraIntrinsics<"eye">, Block<"pixels", PointToPixel, "arm", "eye">>;
+using All = Crate<HandEye, Floor, Counterweight, Pixels>;
+
+static_assert(All::Sensors::kSize == 4 && All::Blocks::kSize == 4 && All::Priors::kSize == 1);
+static_assert(All::Free::kSize == 3 + 6 + 3 + 6 + 6 + 1 + 2 + 4 + 1, "each once");
+static_assert(std::is_same_v<Crate<HandEye, HandEye>::Parameters, HandEye::Parameters>);
+
+/// The same calibration put together at run time.
+template <class S>
+BasicProblem<S> by_hand() {
+  ParameterTable table = All::table({});
+  BasicProblem<S> problem(robot_from<StaticRobot>(), "base", table,
+                          {"camera_joint", "mount", "board", "weight"});
+  problem.add_sensor({"arm", SensorType::chain3d, "tip", ""});
+  problem.add_sensor({"camera", SensorType::camera3d, "camera_frame", ""});
+  problem.add_sensor({"weight", SensorType::chain3d, "counterweight", ""});
+  problem.add_sensor({"eye", SensorType::camera2d, "base", ""});
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  problem.add_block("floor", PointToPlane(0, 0, 1, 0), {"camera"});
+  problem.add_block("weight", PointToPoint{}, {"weight", "arm"});
+  problem.add_block("pixels", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01, .unit = "px"});
+  problem.add_prior("keep", {"camera_joint", 1.0, 2.0, 3.0}, {.type = "outrageous", .unit = "1"});
+  return problem;
+}
+
+All crate() {
+  All crate;
+  crate.block<"pixels">().options.weight = 0.01;
+  crate.prior<"keep">().position_scale = 2.0;
+  crate.prior<"keep">().rotation_scale = 3.0;
+  return crate;
+}
+
+/// Samples anywhere, in some of which the arm's features are on the board.
+std::vector<Sample> some_samples(int count) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> angle(-0.4, 0.4), side(-0.3, 0.3), depth(0.5, 1.2);
+  const auto points = [&](const std::string& frame, double size = 1.0) {
+    std::vector<Feature> features;
+    for (int i = 0; i < 4; ++i) {
+      features.push_back(
+          {frame, size * Vector3<double>(side(random), side(random), depth(random))});
+    }
+    return features;
+  };
+  std::vector<Sample> samples;
+  for (int n = 0; n < count; ++n) {
+    Sample& sample = samples.emplace_back();
+    for (const JointData& joint : StaticRobot::kJoints) {
+      if (!moves(joint.type) || joint.mimic) continue;
+      sample.joint_names.emplace_back(joint.name);
+      sample.joint_positions.push_back(angle(random));
+    }
+    CameraInfo info;
+    info.k = {550, 0, 320, 0, 560, 240, 0, 0, 1};
+    info.p = {550, 0, 320, 0, 0, 560, 240, 0, 0, 0, 1, 0};
+    info.z_offset = 0.01;
+    info.z_scaling = 1.02;
+    sample.observations = {{"arm", points(n % 3 == 2 ? "board" : "tip", 0.1), {}},
+                           {"camera", points("camera_frame"), info},
+                           {"weight", points("counterweight"), {}}};
+    if (n % 2 == 0) {
+      sample.observations.push_back({"eye", points("base", 300.0), info});
+    }
+  }
+  return samples;
+}
+
+template <class S>
+void expect_the_same(const FreeSet& free) {
+  BasicProblem<S> expected = by_hand<S>(), found = crate().problem<S>(All::table({}));
+  for (const Sample& sample : some_samples(3 * kLanes<S> + 2)) {
+    expected.add_sample(sample);
+    found.add_sample(sample);
+  }
+  ASSERT_EQ(found.terms().size(), expected.terms().size());
+  for (int t = 0; t < 4; ++t) EXPECT_GT(found.samples_of(t), 0);
+  const std::vector<double> x = test::random_values(expected.table(), 0.05, 3);
+  test::expect_same(normal_equations(found, x, &free), normal_equations(expected, x, &free), 1e-12);
+  const double cost = normal_equations(expected, x, nullptr).cost;
+  EXPECT_NEAR(normal_equations(found, x, nullptr).cost, cost, 1e-13 * cost);
+  const auto rows = test::rows_of(found, x, &free);
+  for (const auto& [key, of_term] : test::rows_of(expected, x, &free)) {
+    const TermResiduals& same = rows.at(key);
+    EXPECT_LE((same.residual - of_term.residual).norm(), 1e-13 * (1 + of_term.residual.norm()));
+    EXPECT_LE((same.jacobian - of_term.jacobian).norm(), 1e-13 * (1 + of_term.jacobian.norm()));
+  }
+}
+
+template <class S>
+void expect_the_same() {
+  const ParameterTable table = All::table({});
+  expect_the_same<S>(All::free(table));
+  // Not what its walks are compiled for: they give way.
+  expect_the_same<S>(test::all_free(table));
+  expect_the_same<S>(test::free_of(table, {"elbow", "camera_joint_a", "camera_z_offset"}));
+  expect_the_same<S>(FreeSet({}, table.size()));
+}
+
+TEST(Crate, EvaluatesAsTheSameProblemOfRunTime) {
+  expect_the_same<double>();
+}
+
+TEST(Crate, EvaluatesAsTheSameProblemOfRunTimeInPackets) {
+  expect_the_same<Packet>();
+}
+
+TEST(Crate, NamesItsParametersAsAConfigurationDoes) {
+  const ParameterTable table = All::table({});
+  std::vector<std::string> names;
+  const FreeSet free = All::free(table);
+  for (const int i : free.parameters()) names.push_back(table[i].name);
+  EXPECT_THAT(names, testing::ElementsAre(
+                         "pan", "elbow", "wrist", "camera_joint_x", "camera_joint_y",
+                         "camera_joint_z", "camera_joint_a", "camera_joint_b", "camera_joint_c",
+                         "mount_x", "mount_y", "mount_z", "camera_fx", "camera_fy", "camera_cx",
+                         "camera_cy", "camera_z_offset", "camera_z_scaling", "board_x", "board_y",
+                         "board_z", "board_a", "board_b", "board_c", "lift", "head_tilt",
+                         "weight_z", "weight_a", "eye_fx", "eye_fy", "eye_cx", "eye_cy"));
+  EXPECT_EQ(table["lift"].unit, "m");
+  EXPECT_EQ(table["pan"].unit, "rad");
+  EXPECT_EQ(table["mount_a"].unit, "rad");
+  EXPECT_EQ(table["camera_z_offset"].unit, "m");
+  EXPECT_EQ(table["camera_fx"].unit, "1");
+}
+
+TEST(Crate, StartsCamerasWhereTheirDriversWere) {
+  const std::vector<Sample> samples = some_samples(1);
+  const ParameterTable table = All::table(samples);
+  EXPECT_EQ(table["camera_z_offset"].value, 0.01);
+  EXPECT_EQ(table["camera_z_scaling"].initial, 1.02 - 1.0);
+}
+
+TEST(Crate, SaysWhatKindItsBlocksAre) {
+  const Problem problem = crate().problem(All::table({}));
+  std::vector<std::string> kinds;
+  for (const auto& term : problem.terms()) {
+    kinds.push_back(term->name() + " " + term->options().type + " " + term->options().unit);
+  }
+  EXPECT_THAT(kinds,
+              testing::ElementsAre("hand_eye chain3d_to_chain3d m", "floor chain3d_to_plane m",
+                                   "weight chain3d_to_chain3d m", "pixels chain3d_to_camera2d px"));
+}
+
+TEST(Crate, WalksAreUsedWhereTheyFit) {
+  const Problem problem = crate().problem(All::table({}));
+  const FreeSet free = All::free(problem.table());
+  ASSERT_EQ(problem.walks().size(), 4u);
+  for (std::size_t s = 0; s < 4; ++s) {
+    const SensorModel& sensor = problem.sensors()[s];
+    const SensorState state(sensor, free);
+    for (std::size_t c = 0; c < sensor.chains().size(); ++c) {
+      const auto& walks = problem.walks()[s];
+      const auto fits = [&](const CompiledWalk<Packet>& walk) {
+        return walk.tip == sensor.chains()[c].tip && walk.columns == state.columns[c];
+      };
+      const bool is_seen = sensor.sensor().type == SensorType::chain3d || c == 0;
+      EXPECT_EQ(std::count_if(walks.begin(), walks.end(), fits), is_seen ? 1 : 0)
+          << sensor.sensor().name << ", " << sensor.chains()[c].tip;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kinecal

@@ -1,0 +1,116 @@
+#include "kinecal/solve/calibrate_crate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "kinecal/errors.hpp"
+#include "support/static_robot.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::StaticRobot;
+template <FixedString Tip>
+using FromBase = Chain<StaticRobot, "base", Tip>;
+using Pan = JointOffset<"pan">;
+using Elbow = JointOffset<"elbow">;
+using Mount = FrameOffset<"mount", Axes::xyz>;
+
+/// A tracker fixed to the base sees points of the tip.
+using Tracked = Crate<Chain3d<"arm", FromBase<"tip">>, Chain3d<"tracker", FromBase<"base">>, Pan,
+                      Elbow, Mount, Block<"tracking", PointToPoint, "arm", "tracker">>;
+/// The same and what no sample of this file says anything of.
+using WithCamera =
+    Crate<Tracked, Camera3d<"camera", FromBase<"camera_frame">>, DepthCorrection<"camera">,
+          Block<"hand_eye", PointToPoint, "camera", "arm">>;
+
+/// Samples of a robot with these values, in the order of the crate's slots.
+std::vector<Sample> exact_samples(const std::vector<double>& truth, int count) {
+  const ParameterTable table = Tracked::table({});
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(table.size());
+  const FreeSet free = Tracked::free(table);
+  for (int c = 0; c < free.size(); ++c) {
+    values(free.parameters()[static_cast<std::size_t>(c)]) = truth[static_cast<std::size_t>(c)];
+  }
+  const Problem problem = Tracked().problem(table);
+  const SensorModel& arm = problem.sensors()[0];
+  const Corrections<double> corrections = corrections_for(
+      arm.parameters()[0],
+      std::span<const double>(values.data(), static_cast<std::size_t>(values.size())));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> angle(-1.0, 1.0);
+  std::vector<Sample> samples;
+  for (int n = 0; n < count; ++n) {
+    Sample& sample = samples.emplace_back();
+    sample.source = "sample " + std::to_string(n);
+    for (const char* joint : {"lift", "pan", "elbow", "wrist"}) {
+      sample.joint_names.emplace_back(joint);
+      sample.joint_positions.push_back(angle(random));
+    }
+    const Pose<double> tip = forward_kinematics(
+        arm.chains()[0], [&](const std::string& joint) { return *sample.position(joint); },
+        corrections);
+    sample.observations = {{"arm", {}, {}}, {"tracker", {}, {}}};
+    for (int i = 0; i < 3; ++i) {
+      const Vector3<double> p(0.1 * i, 0.05, 0.02 * i * i);
+      sample.observations[0].features.push_back({"tip", p});
+      sample.observations[1].features.push_back({"base", tip * p});
+    }
+  }
+  return samples;
+}
+
+TEST(CalibrateCrate, FindsWhatWasPutIn) {
+  const std::vector<double> truth = {0.02, -0.03, 0.004, -0.005, 0.006};
+  const CrateResult<Tracked> result = calibrate(Tracked(), exact_samples(truth, 12));
+  ASSERT_TRUE(result.converged) << result.termination;
+  EXPECT_LT(result.steps[0].final_cost, 1e-20);
+  EXPECT_NEAR(result.value<Pan>(), truth[0], 1e-10);
+  EXPECT_NEAR(result.value<Elbow>(), truth[1], 1e-10);
+  const Vector3<double> mount = result.value<Mount>();
+  EXPECT_LE((mount - Vector3<double>(truth[2], truth[3], truth[4])).norm(), 1e-10);
+}
+
+TEST(CalibrateCrate, TakesTheOptionsOfItsBlocksAndOfSolving) {
+  const std::vector<Sample> samples = exact_samples({0.02, -0.03, 0.004, -0.005, 0.006}, 12);
+  Tracked crate;
+  crate.block<"tracking">().options.weight = 10.0;
+  SolveOptions options;
+  options.max_num_iterations = 1;
+  const auto one = calibrate(Tracked(), samples, options),
+             weighted = calibrate(crate, samples, options);
+  EXPECT_EQ(one.steps[0].iterations, 1);
+  EXPECT_FALSE(one.converged);
+  EXPECT_NEAR(weighted.steps[0].initial_cost, 100.0 * one.steps[0].initial_cost,
+              1e-12 * weighted.steps[0].initial_cost);
+}
+
+TEST(CalibrateCrate, HoldsWhatTheSamplesSayNothingOf) {
+  const std::vector<Sample> samples = exact_samples({0.02, -0.03, 0.004, -0.005, 0.006}, 12);
+  const auto result = calibrate(WithCamera(), samples);
+  ASSERT_TRUE(result.converged) << result.termination;
+  EXPECT_EQ(result.steps[0].num_parameters, 5);
+  EXPECT_EQ(result.value<DepthCorrection<"camera">>().norm(), 0.0);
+  EXPECT_NEAR(result.value<Pan>(), 0.02, 1e-10);
+}
+
+TEST(CalibrateCrate, RefusesSamplesThatDoNotFit) {
+  EXPECT_THROW((void)calibrate(Tracked(), {}), std::invalid_argument);
+  std::vector<Sample> samples = exact_samples({0, 0, 0, 0, 0}, 3);
+  samples[1].joint_names[1] = "pna";
+  try {
+    (void)calibrate(Tracked(), samples);
+    FAIL() << "the joint is missing";
+  } catch (const SampleError& e) {
+    EXPECT_NE(std::string(e.what()).find("sample 1: joint 'pan' is not in the sample"),
+              std::string::npos)
+        << e.what();
+  }
+  samples.resize(1);
+  samples[0].observations.pop_back();
+  EXPECT_THROW((void)calibrate(Tracked(), samples), std::invalid_argument) << "no tracker";
+}
+
+}  // namespace
+}  // namespace kinecal
