@@ -37,7 +37,7 @@ function(kinecal_add_library name)
 endfunction()
 
 kinecal_add_library(core
-  FOLDERS geometry kinematics parameters samples sensors errors crate
+  FOLDERS geometry kinematics parameters samples sensors errors crate core
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(solve
   FOLDERS solve trust
