@@ -2,11 +2,14 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kinecal)
-install(EXPORT kinecalTargets NAMESPACE kinecal:: DESTINATION ${package_dir})
+foreach(component core solve io kinecal)
+  install(EXPORT kinecal-${component} NAMESPACE kinecal:: DESTINATION ${package_dir})
+endforeach()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/kinecalConfig.cmake.in
   ${PROJECT_BINARY_DIR}/kinecalConfig.cmake INSTALL_DESTINATION ${package_dir})
+# Not ARCH_INDEPENDENT: the headers are, but the programs beside them are of one architecture.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/kinecalConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/kinecalConfig.cmake
               ${PROJECT_BINARY_DIR}/kinecalConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/KinecalAddRobot.cmake

@@ -32,7 +32,7 @@ function(kinecal_add_library name)
   target_sources(kinecal_${name} INTERFACE FILE_SET HEADERS
                  BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})
   target_link_libraries(kinecal_${name} INTERFACE ${ARG_LINK})
-  install(TARGETS kinecal_${name} EXPORT kinecalTargets
+  install(TARGETS kinecal_${name} EXPORT kinecal-${name}
           FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
