@@ -1,4 +1,4 @@
-# Installation: headers, targets and the package files that find_package(kinecal) reads.
+# Installation: headers, targets and the package files that find_package(kinecal) and pkg-config read.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kinecal)
@@ -14,3 +14,10 @@ install(FILES ${PROJECT_BINARY_DIR}/kinecalConfig.cmake
               ${PROJECT_BINARY_DIR}/kinecalConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/KinecalAddRobot.cmake
         DESTINATION ${package_dir})
+
+# For those who build without CMake.  Its paths are relative to itself, so that the folder may move.
+set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+file(RELATIVE_PATH prefix_from_pc /${pkgconfig_dir} /)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/package/kinecal-core.pc.in
+  ${PROJECT_BINARY_DIR}/kinecal-core.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/kinecal-core.pc DESTINATION ${pkgconfig_dir})

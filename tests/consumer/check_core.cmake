@@ -1,4 +1,4 @@
-# Included by run.cmake: kinecal::core needs Eigen alone.
+# Included by run.cmake: kinecal::core needs Eigen alone, by CMake and by pkg-config.
 set(configure_core ${CMAKE_COMMAND} -S ${WORK}/consumer/core -B ${WORK}/core ${options})
 
 # Where something is missing, find_package says for which component, and what.
@@ -18,3 +18,19 @@ expect_not_found(cor "there is no component 'cor', only core, solve, io and kine
 execute_process(COMMAND ${configure_core} -DCOMPONENTS=core COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/core/core COMMAND_ERROR_IS_FATAL ANY)
+
+# The installed folder may move: pkg-config finds what is beside kinecal-core.pc.
+find_program(pkg_config pkg-config)
+if(NOT pkg_config)
+  message("without pkg-config kinecal-core.pc is not tested")
+  return()
+endif()
+file(RENAME ${prefix} ${WORK}/moved)
+set(ENV{PKG_CONFIG_PATH} ${WORK}/moved/share/pkgconfig)
+execute_process(COMMAND ${pkg_config} --cflags --libs kinecal-core OUTPUT_VARIABLE flags
+                COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+execute_process(COMMAND ${COMPILER} -std=c++20 ${WORK}/consumer/core/main.cpp ${flags}
+                        -o ${WORK}/core/by_pkg_config COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK}/core/by_pkg_config COMMAND_ERROR_IS_FATAL ANY)
+file(RENAME ${WORK}/moved ${prefix})
