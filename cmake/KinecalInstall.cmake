@@ -21,3 +21,6 @@ file(RELATIVE_PATH prefix_from_pc /${pkgconfig_dir} /)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/package/kinecal-core.pc.in
   ${PROJECT_BINARY_DIR}/kinecal-core.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/kinecal-core.pc DESTINATION ${pkgconfig_dir})
+
+install(FILES ${PROJECT_SOURCE_DIR}/package.xml  # by which ROS knows what is installed
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal)

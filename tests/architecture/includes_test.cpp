@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <pugixml.hpp>
 #include <string>
 #include <vector>
 
@@ -124,6 +125,16 @@ TEST(Architecture, EveryHeaderHasALicenceAndFitsIntoTheHead) {
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 270) << file.path();
     EXPECT_THAT(text, testing::StartsWith("// ")) << file.path();
   }
+}
+
+TEST(Architecture, RosSeesTheVersionThatCMakeHas) {
+  pugi::xml_document xml;
+  ASSERT_TRUE(xml.load_file((fs::path(KINECAL_SOURCE_DIR) / "package.xml").c_str()));
+  const pugi::xml_node package = xml.child("package");
+  EXPECT_STREQ(package.attribute("format").value(), "3");
+  EXPECT_STREQ(package.child_value("name"), "kinecal");
+  EXPECT_STREQ(package.child_value("version"), KINECAL_VERSION);
+  EXPECT_STREQ(package.child("export").child_value("build_type"), "cmake");
 }
 
 }  // namespace
