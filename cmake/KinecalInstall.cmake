@@ -22,5 +22,7 @@ configure_file(${PROJECT_SOURCE_DIR}/cmake/package/kinecal-core.pc.in
   ${PROJECT_BINARY_DIR}/kinecal-core.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/kinecal-core.pc DESTINATION ${pkgconfig_dir})
 
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/cmake/package/copyright
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/package.xml  # by which ROS knows what is installed
         DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal)

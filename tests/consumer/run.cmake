@@ -1,6 +1,7 @@
 # Builds and runs the consumer against kinecal as its users have it:
-#   cmake -DMODE=install|source -DSOURCE=... -DBUILD=... -DWORK=... -DCOMPILER=... -P run.cmake
+#   cmake -DMODE=install|deb|source -DSOURCE=... -DBUILD=... -DWORK=... -DCOMPILER=... -P run.cmake
 # install  what `cmake --install` installs
+# deb      the package that `cpack` makes of the same, unpacked into a folder of its own
 # source   what FetchContent fetches
 file(REMOVE_RECURSE ${WORK})
 set(prefix ${WORK}/prefix)
@@ -9,6 +10,19 @@ set(options -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -G Ninja
 if(MODE STREQUAL install)
   execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix}
                   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+elseif(MODE STREQUAL deb)
+  set(prefix ${WORK}/root/usr)
+  foreach(tool dpkg-deb dpkg-shlibdeps file)
+    find_program(${tool}_program ${tool})
+    if(NOT ${tool}_program)
+      message("skipped: there is no ${tool}")
+      return()
+    endif()
+  endforeach()
+  execute_process(COMMAND ${CMAKE_CPACK_COMMAND} -G DEB --config ${BUILD}/CPackConfig.cmake -B ${WORK}
+                  COMMAND_ERROR_IS_FATAL ANY)
+  file(GLOB package ${WORK}/kinecal_*.deb)
+  execute_process(COMMAND dpkg-deb -x ${package} ${WORK}/root COMMAND_ERROR_IS_FATAL ANY)
 endif()
 
 if(PROGRAM AND NOT MODE STREQUAL source)
@@ -39,4 +53,6 @@ set(HERE ${CMAKE_CURRENT_LIST_DIR})
 if(MODE STREQUAL install)
   include(${HERE}/check_core.cmake)
 endif()
-include(${HERE}/check_robot_header.cmake)
+if(NOT MODE STREQUAL deb)
+  include(${HERE}/check_robot_header.cmake)
+endif()

@@ -1,0 +1,27 @@
+# `cpack` in a build tree makes kinecal_<version>_<architecture>.deb: the programs, the headers and all
+# that is needed to build against them.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "kinecal developers")
+set(CPACK_PACKAGE_CONTACT "kinecal developers <kinecal@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION
+"kinecal takes a URDF, a list of what may be wrong (joint zeros, frames, camera
+intrinsics, depth offset and scale) and recorded samples, and gives back the
+corrected URDF and camera files, with figures that say how good they are.
+It reads the configurations and samples of robot_calibration and needs no ROS.
+
+The package holds the program, kinecal, and the header-only C++20 library.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS  # what the headers include and kinecalConfig.cmake looks for
+  "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), liburdfdom-dev, libyaml-cpp-dev, libyaml-dev, \
+libpugixml-dev, libfmt-dev, pkg-config")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "cmake (>= 3.25), g++ (>= 4:12)")
+# To these, what the programs are linked with; the libraries of KinecalLevels.cmake are their own.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
+  ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/kinecal)
+include(CPack)
