@@ -10,18 +10,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/parameters.hpp"
 #include "simulation.hpp"
+#include "true_robot.hpp"
 
 namespace {
 
 using namespace kinecal;
 using namespace kinecal::examples;
-using Positions = std::map<std::string, double>;
 
 constexpr const char* kUsage =
     "usage: generate_example_samples URDF OUTPUT_FOLDER [--samples 100] [--seed 1]\n";
@@ -95,41 +94,33 @@ ParameterTable random_truth(SeededRandom& random) {
   return truth;
 }
 
-/// A robot as it really is.
-class TrueRobot {
+/// A camera as it really is.
+class TrueCamera {
  public:
-  TrueRobot(const Robot& robot, const ParameterTable& truth)
-      : robot_(robot), truth_(truth), camera_(DepthCamera<>::from(example_camera_info())) {
-    for (std::size_t i = 0; i < camera_errors_.size(); ++i) {
-      camera_errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
+  explicit TrueCamera(const ParameterTable& truth)
+      : camera_(DepthCamera<>::from(example_camera_info())) {
+    for (std::size_t i = 0; i < errors_.size(); ++i) {
+      errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
     }
   }
 
-  /// Where a link really is when the joints report these positions.
-  [[nodiscard]] Pose<double> pose(const std::string& base, const std::string& tip,
-                                  const Positions& positions) const {
-    const RuntimeChain chain = make_chain(robot_, base, tip, kFrames);
-    const Eigen::VectorXd values = truth_.values();
-    const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-    return forward_kinematics(
-        chain, [&](const std::string& joint) { return positions.at(joint); },
-        corrections_for(chain_parameters(chain, truth_), all));
-  }
-
-  /// What the camera's driver reports of a point.
+  /// What its driver reports of a point.
   /// @param p_camera  (3) metres, in the optical frame
   [[nodiscard]] Feature record(const Vector3<double>& p_camera, SeededRandom& random) const {
-    return {kOpticalFrame, recorded_point(camera_, p_camera, camera_errors_, {}, random)};
+    return {kOpticalFrame, recorded_point(camera_, p_camera, errors_, {}, random)};
   }
 
-  [[nodiscard]] const Robot& robot() const { return robot_; }
-  [[nodiscard]] const DepthCamera<>& camera() const { return camera_; }
+  [[nodiscard]] const DepthCamera<>& driver() const { return camera_; }
 
  private:
-  const Robot& robot_;
-  const ParameterTable& truth_;
   DepthCamera<> camera_;
-  std::array<double, 6> camera_errors_{};
+  std::array<double, 6> errors_{};
+};
+
+/// The robot of this example: what moves and what sees.
+struct Simulated {
+  TrueRobot robot;
+  TrueCamera camera;
 };
 
 bool within_limits(const Robot& robot, const Positions& positions) {
@@ -167,9 +158,9 @@ bool is_clear(const TrueRobot& robot, const Positions& positions) {
 }
 
 /// The LEDs in the optical frame if the camera sees them all; otherwise none.
-std::vector<Vector3<double>> visible_leds(const TrueRobot& robot, const Positions& positions) {
-  if (!within_limits(robot.robot(), positions)) return {};
-  const Pose<double> camera_T_gripper = robot.pose(kOpticalFrame, kGripper, positions);
+std::vector<Vector3<double>> visible_leds(const Simulated& simulated, const Positions& positions) {
+  if (!within_limits(simulated.robot.robot(), positions)) return {};
+  const Pose<double> camera_T_gripper = simulated.robot.pose(kOpticalFrame, kGripper, positions);
   const Vector3<double> way = -camera_T_gripper.translation.normalized();
   constexpr double kLedAngle = 55.0 * kDegree;  // at which an LED is still bright
   if (camera_T_gripper.rotation.col(2).dot(way) < std::cos(kLedAngle)) return {};
@@ -177,23 +168,15 @@ std::vector<Vector3<double>> visible_leds(const TrueRobot& robot, const Position
   for (const Vector3<double>& led : kLeds) {
     leds.push_back(camera_T_gripper * led);
     const double z = leds.back().z();
-    if (z < 0.4 || z > 1.2 || !is_in_image(robot.camera(), leds.back())) return {};
+    if (z < 0.4 || z > 1.2 || !is_in_image(simulated.camera.driver(), leds.back())) return {};
   }
   return leds;
 }
 
-Sample sample_at(const Positions& positions) {
-  Sample sample;
-  for (const auto& [joint, position] : positions) {
-    sample.joint_names.push_back(joint);
-    sample.joint_positions.push_back(position);
-  }
-  return sample;
-}
-
 /// The arm at random where the camera sees the LEDs.
 /// @throws std::runtime_error  if such a pose is not found
-Sample led_sample(const TrueRobot& robot, SeededRandom& random) {
+Sample led_sample(const Simulated& simulated, SeededRandom& random) {
+  const TrueRobot& robot = simulated.robot;
   Positions positions = zero_positions(robot.robot());
   std::vector<Vector3<double>> leds;
   constexpr int kTries = 100000;  // one in a few hundred will do
@@ -206,13 +189,13 @@ Sample led_sample(const TrueRobot& robot, SeededRandom& random) {
     }
     if (!is_clear(robot, positions)) continue;
     look_at_gripper(robot, positions, random);
-    leds = visible_leds(robot, positions);
+    leds = visible_leds(simulated, positions);
   }
   if (leds.empty()) throw std::runtime_error("no pose in which the camera sees the gripper");
   Sample sample = sample_at(positions);
   Observation camera{"camera", {}, example_camera_info()}, arm{"arm", {}};
   for (std::size_t i = 0; i < kLeds.size(); ++i) {
-    camera.features.push_back(robot.record(leds[i], random));
+    camera.features.push_back(simulated.camera.record(leds[i], random));
     arm.features.push_back({kGripper, kLeds[i]});
   }
   sample.observations = {camera, arm};
@@ -220,7 +203,8 @@ Sample led_sample(const TrueRobot& robot, SeededRandom& random) {
 }
 
 /// The arm tucked, the head over the floor: a grid of pixels with the points they show.
-Sample ground_sample(const TrueRobot& robot, SeededRandom& random) {
+Sample ground_sample(const Simulated& simulated, SeededRandom& random) {
+  const TrueRobot& robot = simulated.robot;
   Positions positions = zero_positions(robot.robot());
   const std::vector<double> tucked = {1.32, 1.40, -0.2, 1.72, 0.0, 1.66, 0.0};
   for (std::size_t i = 0; i < tucked.size(); ++i) positions[kArmJoints[i]] = tucked[i];
@@ -231,12 +215,12 @@ Sample ground_sample(const TrueRobot& robot, SeededRandom& random) {
   Observation camera{"camera", {}, example_camera_info()};
   for (const double v : {-0.8, -0.3, 0.2, 0.7}) {  // of half the image
     for (const double u : {-0.8, -0.4, 0.0, 0.4, 0.8}) {
-      const DepthCamera<>& c = robot.camera();
+      const DepthCamera<>& c = simulated.camera.driver();
       const Vector3<double> ray(u * c.cx / c.fx, v * c.cy / c.fy, 1.0);
       const double down = -(base_T_camera.rotation.row(2) * ray).value();
       const double depth = base_T_camera.translation.z() / down;
       if (depth < 0.0 || depth > 3.0) continue;  // the sky, or too far to be measured well
-      camera.features.push_back(robot.record(ray * depth, random));
+      camera.features.push_back(simulated.camera.record(ray * depth, random));
     }
   }
   Sample sample = sample_at(positions);
@@ -262,12 +246,12 @@ void generate(const Options& options) {
   const Robot robot = read_urdf(options.urdf);
   SeededRandom random(options.seed);
   const ParameterTable truth = random_truth(random);
-  const TrueRobot true_robot(robot, truth);
+  const Simulated simulated{TrueRobot(robot, truth, kFrames), TrueCamera(truth)};
   std::vector<Sample> samples;
-  for (int n = 0; n < options.samples; ++n) samples.push_back(led_sample(true_robot, random));
+  for (int n = 0; n < options.samples; ++n) samples.push_back(led_sample(simulated, random));
   const int bad = options.samples / 3;
   if (options.samples > 0) spoil(samples[static_cast<std::size_t>(bad)], random);
-  for (int n = 0; n < kGroundSamples; ++n) samples.push_back(ground_sample(true_robot, random));
+  for (int n = 0; n < kGroundSamples; ++n) samples.push_back(ground_sample(simulated, random));
 
   const std::filesystem::path folder = options.folder;
   std::filesystem::create_directories(folder);

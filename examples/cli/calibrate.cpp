@@ -11,8 +11,8 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/results/result_files.hpp"
 #include "kinecal/report.hpp"
+#include "output.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -44,32 +44,6 @@ ResultFileOptions file_options(const CalibrateOptions& options) {
   return files;
 }
 
-std::vector<Observability> observe(const Calibration& calibration,
-                                   const CalibrationResult& result) {
-  const Eigen::VectorXd values = result.table.values();
-  std::vector<Observability> all;
-  for (const CalibrationStep& step : calibration.steps) {
-    all.push_back(observability(step.problem, step.free,
-                                {values.data(), static_cast<std::size_t>(values.size())}));
-  }
-  return all;
-}
-
-void print_doubts(const Input& input, const CalibrationResult& result,
-                  const std::vector<Observability>& observability) {
-  for (std::size_t s = 0; s < observability.size(); ++s) {
-    const std::string text =
-        observability_text(input.calibration.steps[s].name, observability[s], result.table);
-    if (!text.empty()) fmt::print(stderr, "warning: {}\n", text);
-  }
-  for (const std::string& line : active_bounds(input.calibration, result)) {
-    fmt::print(stderr, "warning: {}\n", line);
-  }
-  for (const std::string& line : suspicious_values(result)) {
-    fmt::print(stderr, "warning: {}\n", line);
-  }
-}
-
 /// Results must not replace what they were made from.
 void check_targets(const CalibrateOptions& options, const std::filesystem::path& folder,
                    const std::vector<OutputFile>& files) {
@@ -92,14 +66,6 @@ SolveOptions solve_options(const CalibrateOptions& options) {
   return solving;
 }
 
-void print_result(const Input& input, const CalibrationResult& result) {
-  fmt::print("Robot '{}', {} samples\n{}\n", input.robot.name(), input.samples.size(),
-             step_lines(result));
-  fmt::print("Error blocks, before -> after (rms of components; median and max of features)\n{}\n",
-             error_block_table(result));
-  fmt::print("Parameters\n{}\n", parameter_table(result));
-}
-
 }  // namespace
 
 int calibrate(const CalibrateOptions& options) {
@@ -118,9 +84,9 @@ int calibrate(const CalibrateOptions& options) {
   const std::vector<Observability> observability = observe(input.calibration, result);
   const bool ran = !result.steps.empty() && result.steps.back().iterations > 0;
   if (result.converged || ran) {
-    print_result(input, result);
+    print_result(input.robot.name(), input.samples.size(), result);
     std::fflush(stdout);
-    print_doubts(input, result, observability);
+    print_doubts(input.calibration, result, observability);
   }
   if (!result.converged) {
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
@@ -128,15 +94,11 @@ int calibrate(const CalibrateOptions& options) {
     return kNotConverged;
   }
   if (folder) {
-    std::vector<OutputFile> files =
-        result_files(input.robot, input.urdf_text, options.urdf, input.calibration, result,
-                     input.samples, file_options(options));
-    files.push_back({"report.json", json_report(result, observability)});
+    const std::vector<OutputFile> files =
+        output_files(input.robot, {options.urdf, input.urdf_text}, input.calibration, result,
+                     observability, input.samples, file_options(options));
     check_targets(options, folder->path(), files);
-    folder->write(files);
-    for (const OutputFile& file : files) {
-      fmt::print("wrote {}\n", (folder->path() / file.name).string());
-    }
+    write(*folder, files);
   }
   fmt::print("{} samples, {:.3f} s: reading {:.3f} s, {}\n", input.samples.size(),
              seconds_since(start), reading, solving_text(result));

@@ -1,0 +1,147 @@
+// What the programs of all robots have in common: options, samples, the report.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <optional>
+
+#include "../cli/output.hpp"
+#include "kinecal/io/samples/read_samples.hpp"
+#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/report/text.hpp"
+#include "simulate.hpp"
+
+namespace kinecal::examples {
+namespace {
+
+enum ExitCode { kGood = 0, kBadInput = 1, kNotGood = 2 };
+
+struct Options {
+  std::string samples, write_samples, output;
+  int pairs = 100, planes = 25;
+  std::uint64_t seed = 1;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--samples", options.samples, "calibrate on these instead of simulated ones")
+      ->type_name("FILE");
+  app.add_option("--write-samples", options.write_samples, "write the samples")->type_name("FILE");
+  app.add_option("--output", options.output, "folder for the results, as of 'kinecal calibrate'")
+      ->type_name("DIR");
+  app.add_option("--pairs", options.pairs, "simulated samples for each block of two sensors")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--planes", options.planes, "simulated samples for each block of a plane")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "of the simulation")->capture_default_str();
+}
+
+std::vector<Sample> read(const std::string& file) {
+  Diagnostics diagnostics;
+  std::vector<Sample> samples = read_samples(file, diagnostics);
+  diagnostics.throw_if_errors();
+  for (const std::string& warning : diagnostics.warnings) {
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+  return samples;
+}
+
+void write(const std::string& path, const std::vector<Sample>& samples) {
+  std::ofstream file(path);
+  write_samples(file, samples);
+  if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
+}
+
+/// The error blocks on samples that the calibration has not seen.
+struct HeldOut {
+  std::vector<BlockStatistics> blocks;  ///< by the URDF, and as calibrated
+  std::vector<BlockStatistics> noise;   ///< by the truth
+};
+
+HeldOut hold_out(const RobotExample& example, const std::vector<Sample>& samples,
+                 const CalibrationResult& result, const ParameterTable& truth) {
+  const Calibration calibration = example.calibration(samples);
+  const Problem& problem = calibration.steps.front().problem;
+  const auto values = [&](const ParameterTable& known) {
+    Eigen::VectorXd all = problem.table().values();
+    for (const Parameter& parameter : known)
+      all(problem.table().index(parameter.name)) = parameter.value;
+    return all;
+  };
+  const auto span = [](const Eigen::VectorXd& v) {
+    return std::span<const double>(v.data(), static_cast<std::size_t>(v.size()));
+  };
+  const Eigen::VectorXd before = problem.table().values();
+  const Eigen::VectorXd after = values(result.table), real = values(truth);
+  HeldOut held_out{block_statistics(problem, span(before), span(after)),
+                   block_statistics(problem, span(real), span(real))};
+  held_out.blocks.resize(problem.terms().size());  // without the priors
+  return held_out;
+}
+
+/// Prints the error blocks; true if the calibrated robot is as good as the true one, nearly.
+bool is_as_good_as_the_truth(const HeldOut& held_out) {
+  constexpr double kNearly = 1.1;
+  bool good = true;
+  TextTable table({"error block", "features", "unit", "by the URDF", "calibrated", "noise alone"});
+  for (std::size_t i = 0; i < held_out.blocks.size(); ++i) {
+    const BlockStatistics& block = held_out.blocks[i];
+    const double noise = held_out.noise[i].after.rms;
+    const auto text = [&](double value) { return detail::in_reading_unit(value, block.unit); };
+    table.add({block.name, fmt::format("{}", block.count), detail::reading_unit(block.unit),
+               text(block.before.rms), text(block.after.rms), text(noise)});
+    good = good && block.after.rms <= kNearly * noise;
+  }
+  fmt::print("On samples held out (rms of components)\n{}\n", table.str());
+  return good;
+}
+
+int calibrate(const RobotExample& example, const Options& options) {
+  std::optional<Simulation> simulation;
+  if (options.samples.empty()) simulation.emplace(example, options.seed);
+  const std::vector<Sample> samples =
+      simulation ? simulation->samples(options.pairs, options.planes) : read(options.samples);
+  if (!options.write_samples.empty()) write(options.write_samples, samples);
+  std::optional<OutputFolder> folder;
+  if (!options.output.empty()) folder.emplace(options.output);
+
+  const Calibration calibration = example.calibration(samples);
+  const CalibrationResult result = kinecal::calibrate(calibration);
+  const std::vector<Observability> observability = cli::observe(calibration, result);
+  cli::print_result(example.robot.name(), samples.size(), result);
+  std::fflush(stdout);
+  cli::print_doubts(calibration, result, observability);
+  if (!result.converged) return kNotGood;
+  if (folder) {
+    const cli::UrdfFile urdf{example.urdf, read_urdf_text(example.urdf)};
+    cli::write(*folder,
+               cli::output_files(example.robot, urdf, calibration, result, observability, samples));
+  }
+  if (!simulation) return kGood;
+  const std::vector<Sample> unseen = simulation->samples(options.pairs, options.planes);
+  if (is_as_good_as_the_truth(hold_out(example, unseen, result, simulation->truth()))) return kGood;
+  fmt::print(stderr, "error: samples that were held out show more than noise\n");
+  return kNotGood;
+}
+
+}  // namespace
+
+int calibrate_robot(const RobotExample& example, int argc, char** argv) {
+  CLI::App app("Calibrates the robot '" + example.robot.name() + "' on simulated samples.");
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+    return calibrate(example, options);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kGood : kBadInput;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "error: {}\n", e.what());
+  }
+  return kBadInput;
+}
+
+}  // namespace kinecal::examples

@@ -1,0 +1,74 @@
+// The program of a robot: a crate and its URDF are all it takes.
+//
+//   int main(int argc, char** argv) {
+//     return calibrate_robot(fetch::Fetch(), "fetch/fetch.urdf", argc, argv);
+//   }
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/solve/calibrate_crate.hpp"
+#include "robot_example.hpp"
+
+namespace kinecal::examples {
+
+template <SensorPart S>
+[[nodiscard]] ExampleSensor describe_sensor() {
+  ExampleSensor example{.sensor = S::sensor()};
+  if constexpr (requires { S::kTarget; }) example.target = S::kTarget;
+  if constexpr (requires { S::kMeasuring; }) example.measuring = S::kMeasuring;
+  example.moves = S::Chain::kFirstMotion < S::Chain::kSize;
+  return example;
+}
+
+/// The plane whose points have residual zero, found from the residuals of four points.
+template <PointBlock B>
+[[nodiscard]] ExamplePlane plane_of(const B& block) {
+  static_assert(kResiduals<B> == 1,
+                "kinecal: samples are simulated for blocks of two sensors and for planes; this "
+                "block takes one sensor and is no plane: give the program --samples of your own");
+  const auto residual = [&](const Vector3<double>& p) { return block(p)(0); };
+  const double distance = residual(Vector3<double>::Zero());
+  Vector3<double> normal;
+  for (int i = 0; i < 3; ++i) normal(i) = residual(Vector3<double>::Unit(i)) - distance;
+  return {normal / normal.norm(), distance / normal.norm()};
+}
+
+template <BlockPart B>
+[[nodiscard]] ExampleBlock describe_block() {
+  ExampleBlock example{.name = std::string(B::kName)};
+  for (const std::string_view sensor : B::kSensorNames) example.sensors.emplace_back(sensor);
+  if constexpr (PointBlock<typename B::Error>) example.plane = plane_of(B().error);
+  return example;
+}
+
+/// @param crate  of any kinecal::Crate; weights and losses are its own
+template <class C>
+[[nodiscard]] RobotExample describe(const C& crate, const std::string& urdf) {
+  RobotExample example{.urdf = urdf, .robot = C::robot(), .base = C::base()};
+  C::Sensors::for_each(
+      [&]<class S>(std::type_identity<S>) { example.sensors.push_back(describe_sensor<S>()); });
+  C::Blocks::for_each(
+      [&]<class B>(std::type_identity<B>) { example.blocks.push_back(describe_block<B>()); });
+  C::Parameters::for_each([&]<class P>(std::type_identity<P>) {
+    for (const ParameterId& id : P::kIds) {
+      example.free.push_back({id.name(), std::string(id.owner), std::string(id.part)});
+    }
+    constexpr bool kIsVirtual = P::kKind == ParameterKind::virtual_frame;
+    if (kIsVirtual) example.virtual_frame = P::kOwner;
+    if (kIsVirtual || P::kKind == ParameterKind::frame_offset) example.frames.emplace(P::kOwner);
+  });
+  example.calibration = [crate](std::span<const Sample> samples) {
+    return make_calibration(crate, samples);
+  };
+  return example;
+}
+
+template <class C>
+requires requires {
+  typename C::Blocks;
+}
+[[nodiscard]] int calibrate_robot(const C& crate, const std::string& urdf, int argc, char** argv) {
+  return calibrate_robot(describe(crate, urdf), argc, argv);
+}
+
+}  // namespace kinecal::examples

@@ -1,0 +1,57 @@
+// Fetch: four LEDs in the gripper and the floor, seen by the depth camera in the head.
+//
+// The parameters are those of its paper: seven joints of the arm, the tilt of the head, the frames
+// of head and camera, the camera itself.  The zero of the pan joint is the yaw of its frame.
+// Source: Fetch paper, III
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/crate.hpp"
+#include "kinecal/errors.hpp"
+#include "robots/fetch.hpp"
+#include "simulated.hpp"
+
+namespace fetch {
+
+using namespace kinecal;
+
+template <FixedString Tip>
+using To = Chain<Robot, "base_link", Tip>;
+
+struct Arm : Chain3d<"arm", To<"gripper_led_frame">> {
+  static constexpr examples::Target kTarget = {2, 2, 0.053, 0.071, {}, true};
+};
+using Camera = Camera3d<"camera", To<"head_camera_rgb_optical_frame">>;
+
+/// The camera measures an LED at 0.8 m to 1 mm; beyond 3 sigma something went wrong.
+struct SameLeds : Block<"hand_eye", PointToPoint, "camera", "arm"> {
+  SameLeds() { options.weight = 1.0 / 0.001, options.loss = {LossType::huber, 3.0}; }
+};
+/// The floor at 1.5 m to 3 mm; samples of the LEDs do not show it.
+struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
+  OnFloor() {
+    options.weight = 1.0 / 0.003, options.loss = {LossType::huber, 3.0}, options.alone = true;
+  }
+};
+/// A turn of the head tilt is one of the camera's frame the other way, and a turn of arm and head
+/// about the vertical shows nowhere: drawing and joint decide.
+struct KeepCamera : PriorOn<"restrict_camera", "head_camera_rgb_joint"> {
+  KeepCamera() { joint_scale = 0.0, position_scale = 0.0, rotation_scale = 5.0; }
+};
+struct KeepShoulder : PriorOn<"restrict_shoulder_pan", "shoulder_pan_joint"> {
+  KeepShoulder() { joint_scale = 5.0, position_scale = 0.0, rotation_scale = 0.0; }
+};
+
+using HandEye =
+    Crate<Arm, Camera, JointOffset<"shoulder_pan_joint">, JointOffset<"shoulder_lift_joint">,
+          JointOffset<"upperarm_roll_joint">, JointOffset<"elbow_flex_joint">,
+          JointOffset<"forearm_roll_joint">, JointOffset<"wrist_flex_joint">,
+          JointOffset<"wrist_roll_joint">, JointOffset<"head_tilt_joint">,
+          FrameOffset<"head_pan_joint">, FrameOffset<"head_camera_rgb_joint">,
+          DepthIntrinsics<"camera">, SameLeds, KeepCamera, KeepShoulder>;
+using Ground = Crate<Camera, DepthIntrinsics<"camera">, OnFloor>;
+using Fetch = Crate<HandEye, Ground>;
+/// The LEDs alone would not show the lift.
+using FetchWithTorso = Crate<Fetch, JointOffset<"torso_lift_joint">>;
+
+}  // namespace fetch
