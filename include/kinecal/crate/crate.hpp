@@ -1,15 +1,15 @@
 // A crate: a robot's sensors, free parameters and error blocks as one type.
 //
 //   using Arm = Chain3d<"arm", Chain<fetch::Robot, "torso_lift_link", "wrist_roll_link">>;
-//   using Head = Camera3d<"camera", Chain<fetch::Robot, "torso_lift_link",
-//   "camera_optical_frame">>; using HandEye = Crate<Arm, Head, JointOffset<"elbow_flex_joint">,
-//   DepthIntrinsics<"camera">,
+//   using Head = Camera3d<"camera", Chain<fetch::Robot, "torso_lift_link", "camera_frame">>;
+//   using HandEye = Crate<Arm, Head, JointOffset<"elbow_flex_joint">, DepthIntrinsics<"camera">,
 //                         Block<"hand_eye", PointToPoint, "camera", "arm">>;
 //
 // The order of the parts does not matter but for that of the parameters.  Crates are parts, too:
-// Crate<HandEye, Ground> has the parameters of both, each once, and the blocks of both.  Names are
-// checked against the robot while compiling (crate_checks.hpp).  A crate fills the same Problem as
-// a configuration does, with walks that are compiled for its chains.
+// Crate<HandEye, Ground> has the parameters of both, each once, and the blocks of both; a list of
+// parameters that several crates share is one, too.  Names are checked against the robot while
+// compiling (crate_checks.hpp).  A crate fills the same Problem as a configuration does, with walks
+// that are compiled for its chains.
 // Source: the design of kinecal, idea 7.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -76,8 +76,15 @@ class Crate {
   using Priors = typename Lists::Priors;
   using Free = typename Parameters::template As<FreeParameters>;
 
-  static_assert(Sensors::kSize > 0, "kinecal: this Crate has no sensors; add those of its blocks");
-  static_assert(Blocks::kSize > 0, "kinecal: this Crate has no Block; add what is to be minimized");
+  /// Checked here and not before: a part of another crate needs no sensor or block of its own.
+  Crate() {
+    static_assert(Sensors::kSize > 0,
+                  "kinecal: this Crate has no sensors; add those of its blocks");
+    static_assert(Blocks::kSize > 0,
+                  "kinecal: this Crate has no Block; add what is to be minimized");
+    static_assert(blocks_hold(Blocks{}) && parameters_hold(Parameters{}) &&
+                  all_are_needed(Parameters{}));
+  }
 
   /// The error block of a name, with its options.
   template <FixedString Name>
@@ -133,8 +140,16 @@ class Crate {
  private:
   using FramesHere = detail::Frames<Parameters>;
 
+  struct NoSensor {
+    struct Chain {
+      using Robot = void;
+      static constexpr std::string_view kBase = "";
+    };
+  };
   template <class List>
-  struct First;
+  struct First {
+    using type = NoSensor;
+  };
   template <class T, class... Ts>
   struct First<detail::TypeList<T, Ts...>> {
     using type = T;
@@ -175,8 +190,6 @@ class Crate {
   [[nodiscard]] static constexpr bool all_are_needed(detail::TypeList<Ts...>) {
     return (detail::CheckDependence<Ts, Sensors, Blocks>::kHolds && ...);
   }
-  static_assert(blocks_hold(Blocks{}) && parameters_hold(Parameters{}) &&
-                all_are_needed(Parameters{}));
 
   template <class P>
   static void add_parameter(ParameterTable& table) {
