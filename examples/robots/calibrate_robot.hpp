@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "instances.hpp"
 #include "kinecal/solve/calibrate_crate.hpp"
 #include "robot_example.hpp"
 
