@@ -55,45 +55,51 @@ void write(const std::string& path, const std::vector<Sample>& samples) {
   if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
 }
 
-/// The error blocks on samples that the calibration has not seen.
+/// An error block on samples that the calibration has not seen.
 struct HeldOut {
-  std::vector<BlockStatistics> blocks;  ///< by the URDF, and as calibrated
-  std::vector<BlockStatistics> noise;   ///< by the truth
+  std::string name, unit;
+  int features = 0;
+  double by_urdf = 0.0, calibrated = 0.0, noise = 0.0;  ///< rms of components; by the truth: noise
+  double metres = 1.0;                                  ///< that a unit stands for
 };
 
-HeldOut hold_out(const RobotExample& example, const std::vector<Sample>& samples,
-                 const CalibrationResult& result, const ParameterTable& truth) {
+std::vector<HeldOut> hold_out(const RobotExample& example, Simulation& simulation,
+                              const Options& options, const CalibrationResult& result) {
+  const std::vector<Sample> samples = simulation.samples(options.pairs, options.planes);
   const Calibration calibration = example.calibration(samples);
   const Problem& problem = calibration.steps.front().problem;
-  const auto values = [&](const ParameterTable& known) {
+  const auto statistics = [&](const ParameterTable& known) {
     Eigen::VectorXd all = problem.table().values();
-    for (const Parameter& parameter : known)
-      all(problem.table().index(parameter.name)) = parameter.value;
-    return all;
+    const Eigen::VectorXd before = all;
+    for (const Parameter& p : known) all(problem.table().index(p.name)) = p.value;
+    const auto size = static_cast<std::size_t>(all.size());
+    return block_statistics(problem, {before.data(), size}, {all.data(), size});
   };
-  const auto span = [](const Eigen::VectorXd& v) {
-    return std::span<const double>(v.data(), static_cast<std::size_t>(v.size()));
-  };
-  const Eigen::VectorXd before = problem.table().values();
-  const Eigen::VectorXd after = values(result.table), real = values(truth);
-  HeldOut held_out{block_statistics(problem, span(before), span(after)),
-                   block_statistics(problem, span(real), span(real))};
-  held_out.blocks.resize(problem.terms().size());  // without the priors
-  return held_out;
+  const auto found = statistics(result.table), real = statistics(simulation.truth());
+  std::vector<HeldOut> blocks;
+  for (std::size_t i = 0; i < problem.terms().size(); ++i) {
+    HeldOut& block = blocks.emplace_back();
+    block = {found[i].name,       found[i].unit,      found[i].count,
+             found[i].before.rms, found[i].after.rms, real[i].after.rms};
+    if (block.unit == "px") {
+      block.metres = simulation.metres_a_pixel(example.blocks[i].sensors.back());
+    }
+  }
+  return blocks;
 }
 
 /// Prints the error blocks; true if the calibrated robot is as good as the true one, nearly.
-bool is_as_good_as_the_truth(const HeldOut& held_out) {
+bool is_as_good_as_the_truth(const std::vector<HeldOut>& blocks) {
   constexpr double kNearly = 1.1;
   bool good = true;
-  TextTable table({"error block", "features", "unit", "by the URDF", "calibrated", "noise alone"});
-  for (std::size_t i = 0; i < held_out.blocks.size(); ++i) {
-    const BlockStatistics& block = held_out.blocks[i];
-    const double noise = held_out.noise[i].after.rms;
+  TextTable table(
+      {"error block", "features", "unit", "by the URDF", "calibrated", "noise alone", "mm"});
+  for (const HeldOut& block : blocks) {
     const auto text = [&](double value) { return detail::in_reading_unit(value, block.unit); };
-    table.add({block.name, fmt::format("{}", block.count), detail::reading_unit(block.unit),
-               text(block.before.rms), text(block.after.rms), text(noise)});
-    good = good && block.after.rms <= kNearly * noise;
+    table.add({block.name, fmt::format("{}", block.features), detail::reading_unit(block.unit),
+               text(block.by_urdf), text(block.calibrated), text(block.noise),
+               fmt::format("{:.3f}", 1e3 * block.metres * block.calibrated)});
+    good = good && block.calibrated <= kNearly * block.noise;
   }
   fmt::print("On samples held out (rms of components)\n{}\n", table.str());
   return good;
@@ -121,8 +127,7 @@ int calibrate(const RobotExample& example, const Options& options) {
                cli::output_files(example.robot, urdf, calibration, result, observability, samples));
   }
   if (!simulation) return kGood;
-  const std::vector<Sample> unseen = simulation->samples(options.pairs, options.planes);
-  if (is_as_good_as_the_truth(hold_out(example, unseen, result, simulation->truth()))) return kGood;
+  if (is_as_good_as_the_truth(hold_out(example, *simulation, options, result))) return kGood;
   fmt::print(stderr, "error: samples that were held out show more than noise\n");
   return kNotGood;
 }

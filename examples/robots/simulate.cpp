@@ -107,6 +107,11 @@ std::vector<Sample> Simulation::samples(int pairs, int planes) {
   return all;
 }
 
+double Simulation::metres_a_pixel(const std::string& camera) const {
+  const auto& [sum, count] = depths_.at(camera);
+  return sum / count / DepthCamera<>::from(example_camera_info()).fx;
+}
+
 Simulation::Scene Simulation::scene_of(const ExampleBlock& block) const {
   std::vector<const ExampleSensor*> sensors;
   for (const std::string& name : block.sensors) {
@@ -178,7 +183,10 @@ Observation Simulation::observe(const ExampleSensor& eye,
     if (known >= 0) errors[i] = truth_[known].value;
   }
   if (is_camera(eye)) seen.camera = example_camera_info();
+  auto& [depth, count] = depths_[eye.sensor.name];
   for (const Vector3<double>& point : points) {
+    depth += point.z();
+    ++count;
     Vector3<double> reported = point;
     if (eye.sensor.type == SensorType::camera3d) {
       reported = recorded_point(DepthCamera<>::from(*seen.camera), point, errors,

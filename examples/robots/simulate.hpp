@@ -32,6 +32,10 @@ class Simulation {
   /// What is wrong with the robot, by the names of the parameters.
   [[nodiscard]] const ParameterTable& truth() const { return truth_; }
 
+  /// What a pixel of a camera covers at the points it has seen so far, on average.
+  /// @returns  metres
+  [[nodiscard]] double metres_a_pixel(const std::string& camera) const;
+
  private:
   using Violation = std::function<double(const Positions&)>;  ///< zero where all is seen
 
@@ -58,7 +62,8 @@ class Simulation {
   SeededRandom random_;
   ParameterTable truth_;
   TrueRobot robot_;
-  std::vector<const Joint*> joints_;  ///< that have a position of their own
+  std::vector<const Joint*> joints_;                      ///< that have a position of their own
+  std::map<std::string, std::pair<double, int>> depths_;  ///< by camera: their sum and number
 };
 
 }  // namespace kinecal::examples

@@ -47,8 +47,8 @@ using HandEye =
           JointOffset<"upperarm_roll_joint">, JointOffset<"elbow_flex_joint">,
           JointOffset<"forearm_roll_joint">, JointOffset<"wrist_flex_joint">,
           JointOffset<"wrist_roll_joint">, JointOffset<"head_tilt_joint">,
-          FrameOffset<"head_pan_joint">, FrameOffset<"head_camera_rgb_joint">,
-          DepthIntrinsics<"camera">, SameLeds, KeepCamera, KeepShoulder>;
+          DepthIntrinsics<"camera">, FrameOffset<"head_pan_joint">,
+          FrameOffset<"head_camera_rgb_joint">, SameLeds, KeepCamera, KeepShoulder>;
 using Ground = Crate<Camera, DepthIntrinsics<"camera">, OnFloor>;
 using Fetch = Crate<HandEye, Ground>;
 /// The LEDs alone would not show the lift.
