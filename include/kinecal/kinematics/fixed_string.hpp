@@ -29,6 +29,10 @@ template <std::size_t N, std::size_t M>
   return std::string_view(a) == std::string_view(b);
 }
 
+/// A text as a constant that can be referred to.
+template <FixedString Text>
+inline constexpr std::string_view kView = Text;
+
 /// A list of texts as a type.
 template <FixedString... Texts>
 struct Names {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,42 +12,53 @@ namespace kinecal {
 
 /// Number of insertions, deletions, replacements and swaps of neighbours between two names; letters
 /// of different case count as equal.  Source: Damerau-Levenshtein, restricted.
-[[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
-  const auto same = [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) ==
-           std::tolower(static_cast<unsigned char>(y));
-  };
-  std::vector<std::size_t> two_back, previous(b.size() + 1), current(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) previous[j] = j;
+[[nodiscard]] constexpr std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  const auto same = [&](char x, char y) { return x == y || lower(x) == lower(y); };
+  std::vector<std::size_t> two_back, previous, current;  // of a table, one row for each letter of a
+  for (std::size_t j = 0; j <= b.size(); ++j) current.push_back(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    current[0] = i;
+    two_back.swap(previous);
+    previous.swap(current);
+    current.clear();
+    current.push_back(i);
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t replaced = previous[j - 1] + (same(a[i - 1], b[j - 1]) ? 0 : 1);
-      current[j] = std::min({replaced, previous[j] + 1, current[j - 1] + 1});
+      std::size_t distance = std::min({replaced, previous[j] + 1, current[j - 1] + 1});
       if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1])) {
-        current[j] = std::min(current[j], two_back[j - 2] + 1);
+        distance = std::min(distance, two_back[j - 2] + 1);
       }
+      current.push_back(distance);
     }
-    two_back = previous;
-    std::swap(previous, current);
   }
-  return previous[b.size()];
+  return current[b.size()];
 }
 
-/// The candidate nearest to `name`, if it is near enough to be a misspelling: at most a third of
-/// the name's letters differ.
+/// The nearest of the candidates seen so far.
+struct NearestName {
+  std::string_view name = {};  ///< empty if none is near enough
+  std::size_t distance = 0;    ///< of the next one, less than this
+
+  /// Near enough to be a misspelling: at most a third of the name's letters differ.
+  [[nodiscard]] static constexpr NearestName none(std::string_view misspelt) {
+    return {{}, misspelt.size() / 3 + 1};
+  }
+  [[nodiscard]] constexpr NearestName or_nearer(std::string_view candidate,
+                                                std::string_view misspelt) const {
+    const std::size_t n = misspelt.size(), m = candidate.size();
+    if (std::max(n, m) - std::min(n, m) >= distance) return *this;  // so many insertions at least
+    const std::size_t d = edit_distance(misspelt, candidate);
+    return d < distance ? NearestName{candidate, d} : *this;
+  }
+};
+
+/// The candidate nearest to `name`, if one is near enough.
 template <class Names>
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view name, const Names& names) {
-  std::optional<std::string> nearest;
-  std::size_t least = name.size() / 3 + 1;
-  for (const auto& candidate : names) {
-    const std::size_t distance = edit_distance(name, candidate);
-    if (distance < least) {
-      least = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest;
+  NearestName nearest = NearestName::none(name);
+  for (const std::string_view candidate : names) nearest = nearest.or_nearer(candidate, name);
+  if (nearest.name.empty()) return std::nullopt;
+  return std::string(nearest.name);
 }
 
 /// "; did you mean 'x'?" for the nearest candidate, or nothing.
