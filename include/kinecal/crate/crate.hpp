@@ -2,14 +2,14 @@
 //
 //   using Arm = Chain3d<"arm", Chain<fetch::Robot, "torso_lift_link", "wrist_roll_link">>;
 //   using Head = Camera3d<"camera", Chain<fetch::Robot, "torso_lift_link", "camera_frame">>;
-//   using HandEye = Crate<Arm, Head, JointOffset<"elbow_flex_joint">, DepthIntrinsics<"camera">,
+//   using HandEye = Crate<Arm, Head,
+//                         JointOffset<"elbow_flex_joint">, DepthIntrinsics<"camera">,
 //                         Block<"hand_eye", PointToPoint, "camera", "arm">>;
 //
 // The order of the parts does not matter but for that of the parameters.  Crates are parts, too:
-// Crate<HandEye, Ground> has the parameters of both, each once, and the blocks of both; a list of
-// parameters that several crates share is one, too.  Names are checked against the robot while
-// compiling (crate_checks.hpp).  A crate fills the same Problem as a configuration does, with walks
-// that are compiled for its chains.
+// Crate<HandEye, Ground> has the parameters of both, each once, and the blocks of both.  Names are
+// checked against the robot while compiling (crate_checks.hpp).  A crate fills the same Problem as
+// a configuration does, with walks that are compiled for its chains.
 // Source: the design of kinecal, idea 7.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -32,9 +32,8 @@ struct ListsOf {
   using Parameters = OnlyIf<FreeParameter<P>, P>;
   using Blocks = OnlyIf<BlockPart<P>, P>;
   using Priors = OnlyIf<PriorPart<P>, P>;
-  static_assert(SensorPart<P> || FreeParameter<P> || BlockPart<P> || PriorPart<P>,
-                "kinecal: a part of this Crate is none; parts are sensors, free parameters, Block, "
-                "PriorOn and other crates");
+  static constexpr bool kIsPart = SensorPart<P> || FreeParameter<P> || BlockPart<P> || PriorPart<P>;
+  static constexpr Unless<kIsPart, PartOfCrate<P>> kCheck = {};
 };
 template <class... Parts>
 struct ListsOf<Crate<Parts...>> {
@@ -76,16 +75,6 @@ class Crate {
   using Priors = typename Lists::Priors;
   using Free = typename Parameters::template As<FreeParameters>;
 
-  /// Checked here and not before: a part of another crate needs no sensor or block of its own.
-  Crate() {
-    static_assert(Sensors::kSize > 0,
-                  "kinecal: this Crate has no sensors; add those of its blocks");
-    static_assert(Blocks::kSize > 0,
-                  "kinecal: this Crate has no Block; add what is to be minimized");
-    static_assert(blocks_hold(Blocks{}) && parameters_hold(Parameters{}) &&
-                  all_are_needed(Parameters{}));
-  }
-
   /// The error block of a name, with its options.
   template <FixedString Name>
   [[nodiscard]] auto& block() {
@@ -98,7 +87,7 @@ class Crate {
   }
 
   [[nodiscard]] static Robot robot() { return robot_from<RobotOf>(); }
-  [[nodiscard]] static std::string base() { return std::string(FirstSensor::Chain::kBase); }
+  [[nodiscard]] static std::string base() { return std::string(BaseChain::kBase); }
 
   /// All parameters: those of the depth cameras, and those that are free with their whole frames.
   /// @param samples  a camera's settings start from what its driver had when they were recorded
@@ -140,55 +129,12 @@ class Crate {
  private:
   using FramesHere = detail::Frames<Parameters>;
 
-  struct NoSensor {
-    struct Chain {
-      using Robot = void;
-      static constexpr std::string_view kBase = "";
-    };
-  };
-  template <class List>
-  struct First {
-    using type = NoSensor;
-  };
-  template <class T, class... Ts>
-  struct First<detail::TypeList<T, Ts...>> {
-    using type = T;
-  };
-  using FirstSensor = typename First<Sensors>::type;
-  using RobotOf = typename FirstSensor::Chain::Robot;
+  using BaseChain = typename detail::FirstChain<Sensors>::type;
+  using RobotOf = typename BaseChain::Robot;
 
   template <class... Ts, class F>
   static constexpr void for_each(detail::TypeList<Ts...>, F&& f) {
     (f(static_cast<Ts*>(nullptr)), ...);
-  }
-
-  template <class... Ts>
-  [[nodiscard]] static constexpr bool share_robot_and_base(detail::TypeList<Ts...>) {
-    return ((std::is_same_v<typename Ts::Chain::Robot, RobotOf> &&
-             Ts::Chain::kBase == FirstSensor::Chain::kBase) &&
-            ...);
-  }
-  static_assert(share_robot_and_base(Sensors{}),
-                "kinecal: the chains of this Crate start at different links or are of different "
-                "robots; features are compared in one base, give all chains the same");
-  static_assert(detail::have_distinct_names(Sensors{}),
-                "kinecal: two sensors of this Crate have the same name; rename one of them");
-  static_assert(detail::have_distinct_names(Blocks{}),
-                "kinecal: two blocks of this Crate have the same name; rename one of them");
-  static_assert(Free::are_distinct(),
-                "kinecal: a free parameter occurs twice in this Crate; leave one of them out");
-
-  template <class... Ts>
-  [[nodiscard]] static constexpr bool blocks_hold(detail::TypeList<Ts...>) {
-    return (detail::CheckBlock<Ts, Sensors>::kHolds && ...);
-  }
-  template <class... Ts>
-  [[nodiscard]] static constexpr bool parameters_hold(detail::TypeList<Ts...>) {
-    return (detail::CheckParameter<Ts, RobotOf, Sensors>::kHolds && ...);
-  }
-  template <class... Ts>
-  [[nodiscard]] static constexpr bool all_are_needed(detail::TypeList<Ts...>) {
-    return (detail::CheckDependence<Ts, Sensors, Blocks>::kHolds && ...);
   }
 
   template <class P>
@@ -264,16 +210,22 @@ class Crate {
 
   template <FixedString Name, class... Ts>
   [[nodiscard]] static auto& part_of(std::tuple<Ts...>& parts) {
-    constexpr std::array<bool, sizeof...(Ts)> kIs = {(Ts::kName == std::string_view(Name))...};
-    constexpr auto kFound =
-        static_cast<std::size_t>(std::find(kIs.begin(), kIs.end(), true) - kIs.begin());
-    static_assert(kFound < sizeof...(Ts),
-                  "kinecal: the crate has no part of this name; correct the name");
-    return std::get<kFound>(parts);
+    using Names = detail::PartNames<detail::TypeList<Ts...>>;
+    using Found = LookedUp<kView<Name>, Names>;
+    [[maybe_unused]] constexpr detail::Unless<Found::kExists, detail::PartOfName<Name, Found>>
+        kCheck = {};
+    if constexpr (Found::kExists) {
+      return std::get<Names::index(Name)>(parts);
+    } else {
+      return parts;
+    }
   }
 
   typename Blocks::template As<std::tuple> blocks_;
   typename Priors::template As<std::tuple> priors_;
+
+  static constexpr
+      typename detail::CheckCrate<Sensors, Parameters, Blocks, Priors>::type kCheck = {};
 };
 
 }  // namespace kinecal

@@ -10,76 +10,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
-
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/kinematics/fixed_string.hpp"
+#include "kinecal/kinematics/chain_checks.hpp"
 #include "kinecal/kinematics/static_pose.hpp"
+#include "kinecal/kinematics/static_robot.hpp"
 
 namespace kinecal {
 
 namespace detail {
-
-inline constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
-
-/// Index of a joint by name, or kNowhere.
-template <RobotData R>
-[[nodiscard]] constexpr std::size_t joint_index(std::string_view name) {
-  for (std::size_t i = 0; i < R::kJoints.size(); ++i) {
-    if (R::kJoints[i].name == name) return i;
-  }
-  return kNowhere;
-}
-
-/// Index of the joint above a link, or kNowhere.
-template <RobotData R>
-[[nodiscard]] constexpr std::size_t joint_above(std::string_view link) {
-  for (std::size_t i = 0; i < R::kJoints.size(); ++i) {
-    if (R::kJoints[i].child == link) return i;
-  }
-  return kNowhere;
-}
-
-template <RobotData R>
-[[nodiscard]] constexpr bool has_link(std::string_view link) {
-  return joint_above<R>(link) != kNowhere || R::kJoints[0].parent == link;
-}
-
-/// Number of joints from `base` down to `tip`; kNowhere if it is not below.
-template <RobotData R>
-[[nodiscard]] constexpr std::size_t depth_below(std::string_view base, std::string_view tip) {
-  std::size_t depth = 0;
-  for (; tip != base; ++depth) {
-    const std::size_t joint = joint_above<R>(tip);
-    if (joint == kNowhere) return kNowhere;
-    tip = R::kJoints[joint].parent;
-  }
-  return depth;
-}
-
-/// The joints from `base` down to `tip`, in this order.
-template <RobotData R, std::size_t Depth>
-[[nodiscard]] constexpr std::array<std::size_t, Depth> way_down(std::string_view tip) {
-  std::array<std::size_t, Depth> way{};
-  for (std::size_t i = Depth; i-- > 0;) {
-    way[i] = joint_above<R>(tip);
-    tip = R::kJoints[way[i]].parent;
-  }
-  return way;
-}
-
-/// The joint whose position moves it, with the law of all mimics on the way: see drive().
-template <RobotData R>
-[[nodiscard]] constexpr MimicData static_drive(std::size_t joint) {
-  MimicData result{R::kJoints[joint].name, 1.0, 0.0};
-  for (std::size_t n = 0; R::kJoints[joint].mimic && n < R::kJoints.size(); ++n) {
-    const MimicData& mimic = *R::kJoints[joint].mimic;
-    result = {mimic.joint, result.multiplier * mimic.multiplier,
-              result.multiplier * mimic.offset + result.offset};
-    joint = joint_index<R>(mimic.joint);
-  }
-  return result;
-}
 
 /// A unit vector as plain numbers.
 struct StaticAxis {
@@ -138,20 +76,14 @@ struct Chain {
   using Robot = R;
   static constexpr std::string_view kBase = Base, kTip = Tip, kVirtual = Virtual;
 
-  static_assert(detail::has_link<R>(Base),
-                "kinecal: the base of this Chain is not a link of the robot; correct its name");
-  static_assert(!detail::has_link<R>(Base) || detail::has_link<R>(Tip),
-                "kinecal: the tip of this Chain is not a link of the robot; correct its name");
-  static constexpr std::size_t kDepth =
-      detail::has_link<R>(Base) ? detail::depth_below<R>(Base, Tip) : detail::kNowhere;
-  static_assert(!detail::has_link<R>(Base) || !detail::has_link<R>(Tip) ||
-                    kDepth != detail::kNowhere,
-                "kinecal: the tip of this Chain is not below its base; start at a link above both "
-                "or use make_chain(), which leads between any two links");
-
  private:
-  static constexpr bool kExists = kDepth != detail::kNowhere;
-  static constexpr std::array kWay = detail::way_down < R, kExists ? kDepth : 0 > (Tip);
+  using BaseLink = LookedUp<kBase, detail::LinkNames<R>>;
+  using TipLink = LookedUp<kTip, detail::LinkNames<R>>;
+  static constexpr bool kHasLinks = BaseLink::kExists && TipLink::kExists;
+  static constexpr std::size_t kDepth =
+      kHasLinks ? detail::depth_below<R>(kBase, kTip) : detail::kNowhere;
+  static constexpr bool kIsBelow = kDepth != detail::kNowhere;
+  static constexpr auto kWay = detail::way_down<R, (kIsBelow ? kDepth : 0)>(kTip);
 
   [[nodiscard]] static constexpr bool is_kept(const JointData& joint) {
     return moves(joint.type) || Frames::contains(joint.name);
@@ -161,16 +93,6 @@ struct Chain {
     for (const std::size_t i : kWay) n += is_kept(R::kJoints[i]) ? 1 : 0;
     return n;
   }
-  [[nodiscard]] static constexpr bool has_joints_that_do_not_turn_or_slide() {
-    for (const std::size_t i : kWay) {
-      const JointType type = R::kJoints[i].type;
-      if (type == JointType::floating || type == JointType::planar) return true;
-    }
-    return false;
-  }
-  static_assert(!has_joints_that_do_not_turn_or_slide(),
-                "kinecal: a joint of this Chain is floating or planar; chains take fixed, "
-                "revolute, continuous and prismatic joints");
 
  public:
   static constexpr std::size_t kSize = count();
@@ -215,6 +137,21 @@ struct Chain {
     while (i < kSize && !moves(kFolding.joints[i].type)) ++i;
     return i;
   }();
+
+ private:
+  [[nodiscard]] static constexpr bool is_taken(std::size_t joint) {
+    const JointType type = R::kJoints[joint].type;
+    return type != JointType::floating && type != JointType::planar;
+  }
+
+  static constexpr bool kTurnOrSlide = std::all_of(kWay.begin(), kWay.end(), is_taken);
+  static constexpr detail::FirstOf<
+      detail::Unless<BaseLink::kExists, detail::BaseOfChain<Base, BaseLink>>,
+      detail::Unless<TipLink::kExists, detail::TipOfChain<Tip, TipLink>>,
+      detail::Unless<kIsBelow, detail::WayOfChain<Base, Tip>>,
+      detail::Unless<kTurnOrSlide, detail::JointsOfChain<Base, Tip>>,
+      typename detail::CheckFrames<R, Frames>::type>
+      kCheck = {};
 };
 
 namespace detail {

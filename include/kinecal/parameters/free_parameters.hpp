@@ -171,6 +171,16 @@ struct FreeParameters {
     return true;
   }
 
+  /// True if all numbers of a parameter are among these.
+  template <FreeParameter P>
+  [[nodiscard]] static constexpr bool have() {
+    const auto is_one = [](const ParameterId& id) { return find(id.owner, id.part) >= 0; };
+    return std::all_of(P::kIds.begin(), P::kIds.end(), is_one);
+  }
+
+  /// Whose they are, to be looked up.
+  static constexpr std::array<std::string_view, sizeof...(Ps)> kNames = {Ps::kOwner...};
+
   /// The slot of the first number of a parameter.
   template <FreeParameter P>
   static constexpr int kSlot = find(P::kIds[0].owner, P::kIds[0].part);

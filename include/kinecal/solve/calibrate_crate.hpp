@@ -15,10 +15,12 @@ struct CrateResult : CalibrationResult {
   /// What was found for a free parameter: a number, or (N) in the order of its names.
   template <FreeParameter P>
   [[nodiscard]] auto value() const {
-    static_assert(C::Free::find(P::kIds[0].owner, P::kIds[0].part) >= 0,
-                  "kinecal: this parameter is not free in the crate; add it there or ask for "
-                  "another");
-    if constexpr (P::kIds.size() == 1) {
+    using Owner = LookedUp<P::kOwner, typename C::Free>;
+    constexpr bool kIsFree = C::Free::template have<P>();
+    [[maybe_unused]] constexpr detail::Unless<kIsFree, detail::ValueOf<P, Owner>> kCheck = {};
+    if constexpr (!kIsFree) {
+      return 0.0;
+    } else if constexpr (P::kIds.size() == 1) {
       return table[P::kIds[0].name()].value;
     } else {
       Eigen::Matrix<double, static_cast<int>(P::kIds.size()), 1> all;

@@ -1,0 +1,106 @@
+// What must hold of a crate's error blocks, each told in a sentence while it is compiled: see
+// sentence.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/crate/crate_parts.hpp"
+#include "kinecal/crate/type_list.hpp"
+#include "kinecal/kinematics/known_name.hpp"
+#include "kinecal/kinematics/sentence.hpp"
+
+namespace kinecal::detail {
+
+/// The names of parts, to be looked up.
+template <class List>
+struct PartNames;
+template <class... Parts>
+struct PartNames<TypeList<Parts...>> {
+  static constexpr std::array<std::string_view, sizeof...(Parts)> kNames = {Parts::kName...};
+
+  [[nodiscard]] static constexpr std::size_t index(std::string_view name) {
+    return static_cast<std::size_t>(std::find(kNames.begin(), kNames.end(), name) - kNames.begin());
+  }
+  /// True if no two are the same.
+  [[nodiscard]] static constexpr bool differ() {
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+      if (index(kNames[i]) != i) return false;
+    }
+    return true;
+  }
+};
+
+template <class... Sensors>
+[[nodiscard]] constexpr SensorType type_of_sensor(std::string_view name, TypeList<Sensors...>) {
+  SensorType type = SensorType::chain3d;
+  (void)((Sensors::kName == name ? (type = Sensors::kType, true) : false) || ...);
+  return type;
+}
+
+template <class Residual, bool kIsTemplated = false>
+struct ResidualOfBlock {
+  static_assert(kIsTemplated,
+                "kinecal: this error block is not a residual templated on its scalar; write "
+                "template <class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const");
+};
+
+/// @tparam Found  what LookedUp found
+template <class Block, FixedString Sensor, class Found, bool kIsInCrate = false>
+struct SensorOfBlock {
+  static_assert(kIsInCrate,
+                "kinecal: a sensor of this error block is not in the crate; add it or correct its "
+                "name");
+};
+
+template <class Block, bool kFits = false>
+struct NumberOfSensors {
+  static_assert(
+      kFits,
+      "kinecal: this error block is given too many or too few sensors; one whose residual "
+      "takes a point has one sensor, the others two");
+};
+
+template <class Block, bool kFit = false>
+struct KindsOfSensors {
+  static_assert(kFit,
+                "kinecal: this error block is given a sensor of the wrong kind; a Camera2d stands "
+                "second in a block that takes a sight, and nowhere else");
+};
+
+template <ErrorBlock Residual>
+[[nodiscard]] constexpr bool takes(std::size_t sensors) {
+  return sensors == std::size_t(kSensors<Residual>);
+}
+template <class Residual>
+[[nodiscard]] constexpr bool takes(std::size_t) {
+  return true;  // what is no residual is told before
+}
+
+template <class Block, class Sensors>
+[[nodiscard]] constexpr bool kinds_fit() {
+  for (std::size_t i = 0; i < Block::kSensorNames.size(); ++i) {
+    const SensorType type = type_of_sensor(Block::kSensorNames[i], Sensors{});
+    const bool takes_pixels = SightBlock<typename Block::Error> && i == 1;
+    if ((type == SensorType::camera2d) != takes_pixels) return false;
+  }
+  return true;
+}
+
+template <class Block, FixedString Sensor, class Sensors>
+struct CheckSensorOfBlock {
+  using Found = LookedUp<kView<Sensor>, PartNames<Sensors>>;
+  using type = Unless<Found::kExists, SensorOfBlock<Block, Sensor, Found>>;
+};
+
+/// That a block can compare its sensors.
+template <class Block, class Sensors>
+struct CheckBlock;
+template <FixedString Name, class Residual, FixedString... Of, class Sensors>
+struct CheckBlock<Block<Name, Residual, Of...>, Sensors> {
+  using B = Block<Name, Residual, Of...>;
+  using type = FirstOf<Unless<ErrorBlock<Residual>, ResidualOfBlock<Residual>>,
+                       typename CheckSensorOfBlock<B, Of, Sensors>::type...,
+                       Unless<takes<Residual>(sizeof...(Of)), NumberOfSensors<B>>,
+                       Unless<kinds_fit<B, Sensors>(), KindsOfSensors<B>>>;
+};
+
+}  // namespace kinecal::detail

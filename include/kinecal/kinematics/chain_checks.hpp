@@ -1,0 +1,57 @@
+// What must hold of a Chain, each told in a sentence while it is compiled: see sentence.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/kinematics/fixed_string.hpp"
+#include "kinecal/kinematics/known_name.hpp"
+#include "kinecal/kinematics/sentence.hpp"
+#include "kinecal/kinematics/static_robot.hpp"
+
+namespace kinecal::detail {
+
+/// @tparam Found  what LookedUp found
+template <FixedString Base, class Found, bool kIsLink = false>
+struct BaseOfChain {
+  static_assert(kIsLink,
+                "kinecal: the base of this Chain is not a link of the robot; correct its name");
+};
+
+template <FixedString Tip, class Found, bool kIsLink = false>
+struct TipOfChain {
+  static_assert(kIsLink,
+                "kinecal: the tip of this Chain is not a link of the robot; correct its name");
+};
+
+template <FixedString Base, FixedString Tip, bool kTipIsBelowBase = false>
+struct WayOfChain {
+  static_assert(kTipIsBelowBase,
+                "kinecal: the tip of this Chain is not below its base; start at a link above both "
+                "or use make_chain(), which leads between any two links");
+};
+
+template <FixedString Base, FixedString Tip, bool kTurnOrSlide = false>
+struct JointsOfChain {
+  static_assert(kTurnOrSlide,
+                "kinecal: a joint of this Chain is floating or planar; chains take fixed, "
+                "revolute, continuous and prismatic joints");
+};
+
+template <FixedString Joint, class Found, bool kIsJoint = false>
+struct FrameOfChain {
+  static_assert(kIsJoint,
+                "kinecal: the robot has no joint of a name in the Names of this Chain; correct it");
+};
+
+/// That the joints with a frame correction exist, where they are named.
+template <class R, class Frames>
+struct CheckFrames {
+  using type = Holds;
+};
+template <FixedString Joint, class Found>
+using CheckFrame = Unless<Found::kExists, FrameOfChain<Joint, Found>>;
+template <class R, FixedString... Joints>
+struct CheckFrames<R, Names<Joints...>> {
+  using type = FirstOf<CheckFrame<Joints, LookedUp<kView<Joints>, JointNames<R>>>...>;
+};
+
+}  // namespace kinecal::detail
