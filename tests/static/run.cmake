@@ -1,0 +1,56 @@
+# What must compile and what must not, with one compiler:
+#   cmake -DCOMPILER=... -DINCLUDES=<folders> -P run.cmake
+# right.cpp compiles; wrong.cpp does not, and the compiler's errors are those that it expects.
+cmake_minimum_required(VERSION 3.25)
+set(call ${CMAKE_COMMAND} -E env LC_ALL=C ${COMPILER} -std=c++20 -fsyntax-only)
+foreach(folder IN LISTS INCLUDES)
+  list(APPEND call -I${folder})
+endforeach()
+execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version COMMAND_ERROR_IS_FATAL ANY)
+if(version MATCHES "clang")
+  list(APPEND call -ferror-limit=0)
+endif()
+
+execute_process(COMMAND ${call} ${CMAKE_CURRENT_LIST_DIR}/right.cpp COMMAND_ERROR_IS_FATAL ANY)
+
+# Semicolons and brackets would be read as lists.
+function(read_as_text variable)
+  string(REGEX REPLACE "[][;]" "," text "${${variable}}")
+  set(${variable} "${text}" PARENT_SCOPE)
+endfunction()
+
+set(source ${CMAKE_CURRENT_LIST_DIR}/wrong.cpp)
+execute_process(COMMAND ${call} ${source} ERROR_VARIABLE output)
+file(READ ${source} wrong)
+read_as_text(output)
+read_as_text(wrong)
+
+function(fail text)
+  message(NOTICE "${output}")
+  message(FATAL_ERROR "${COMPILER} ${text}")
+endfunction()
+
+# The sentences, in order.
+string(REGEX MATCHALL "// expect: [^\n]*" expected "${wrong}")
+string(REGEX MATCHALL "error: [^\n]*" errors "${output}")
+foreach(sentence error IN ZIP_LISTS expected errors)
+  string(REPLACE "// expect: " "kinecal: " sentence "${sentence}")
+  string(FIND "${error}" "${sentence}" place)
+  if(NOT sentence OR place EQUAL -1)
+    fail("should say '${sentence}', and says '${error}'")
+  endif()
+endforeach()
+
+# The suggestions, in order, each letter by letter: DidYouMean<'a', 'r', 'm'>.
+string(REGEX MATCHALL "// meant: [^\n]*" meant "${wrong}")
+string(REGEX MATCHALL "DidYouMean<[^>]*>" suggested "${output}")
+foreach(name suggestion IN ZIP_LISTS meant suggested)
+  string(REGEX REPLACE "// meant: (nothing)?" "" name "${name}")
+  string(REGEX REPLACE "DidYouMean<|>|'|, " "" suggestion "${suggestion}")
+  if(NOT name STREQUAL suggestion)
+    fail("should suggest '${name}', and suggests '${suggestion}'")
+  endif()
+endforeach()
+
+list(LENGTH expected count)
+message(STATUS "${COMPILER}: ${count} wrong lines are told as they should be")

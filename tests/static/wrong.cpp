@@ -1,0 +1,182 @@
+// Wrong lines.  Each has one error, the sentence that stands above it after "expect:", and nothing
+// follows from it; where "meant:" stands, the compiler asks whether that was meant.  run.cmake
+// compares them in order, so each sentence is the first and only error of its line.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/errors/plane_to_plane.hpp"
+#include "kinecal/errors/point_to_pixel.hpp"
+#include "kinecal/errors/point_to_plane.hpp"
+#include "kinecal/errors/point_to_point.hpp"
+#include "kinecal/solve/calibrate_crate.hpp"
+#include "robots/every_joint.hpp"
+#include "robots/fetch_example.hpp"
+
+namespace kinecal {
+
+using Every = every_joint_v2::Robot;
+using Fetch = fetch::Robot;
+using Arm = Chain3d<"arm", Chain<Fetch, "torso_lift_link", "wrist_roll_link">>;
+using OnHead = Chain<Fetch, "torso_lift_link", "head_camera_rgb_optical_frame">;
+using Head = Camera3d<"camera", OnHead>;
+using Pinhole = Camera2d<"pinhole", OnHead>;
+using Finger = Chain3d<"finger", Chain<Every, "upper", "finger \\right\\">>;
+using HandEye = Block<"hand_eye", PointToPoint, "camera", "arm">;
+using Ground = Block<"ground", PointToPlane, "camera">;
+
+// ---- chains
+
+// expect: the base of this Chain is not a link of the robot; correct its name
+// meant: torso_lift_link
+Chain<Fetch, "torso_lift_lnk", "wrist_roll_link"> base_not_a_link;
+
+// expect: the tip of this Chain is not a link of the robot; correct its name
+// meant: wrist_roll_link
+Chain<Fetch, "torso_lift_link", "wrist_roll_joint"> tip_not_a_link;
+
+// expect: the tip of this Chain is not below its base; start at a link above both or use
+Chain<Fetch, "wrist_roll_link", "head_pan_link"> tip_beside_base;
+
+// expect: the tip of this Chain is not below its base; start at a link above both or use
+Crate<Arm, Camera3d<"camera", Chain<Fetch, "torso_lift_link", "base_link">>, HandEye>
+    tip_above_base;
+
+// expect: a joint of this Chain is floating or planar; chains take fixed, revolute, continuous and
+Chain<Every, "base", "float\?\?/ing"> floating_joint;
+
+// expect: the robot has no joint of a name in the Names of this Chain; correct it
+// meant: head_pan_joint
+Chain<Fetch, "torso_lift_link", "head_pan_link", Names<"haed_pan_joint">> misspelt_frame;
+
+// ---- free parameters
+
+// expect: the robot has no joint of the name in this JointOffset; correct the name
+// meant: elbow_flex_joint
+Crate<Arm, Head, JointOffset<"elbow_flx_joint">, HandEye> misspelt_joint_offset;
+
+// expect: the joint in this JointOffset does not move; write FrameOffset instead
+Crate<Arm, Head, JointOffset<"head_camera_joint">, HandEye> joint_offset_of_fixed;
+
+// expect: the joint in this JointOffset mimics another; free the offset of that one
+Crate<Finger, JointOffset<"finger \\right\\">, Block<"ground", PointToPlane, "finger">>
+    joint_offset_of_mimic;
+
+// expect: the robot has no joint of the name in this FrameOffset; correct the name, or write
+// meant: head_camera_rgb_joint
+Crate<Arm, Head, FrameOffset<"head_camera_rgb_jiont">, HandEye> misspelt_frame_offset;
+
+// expect: the robot has no joint of the name in this FrameOffset; correct the name, or write
+// meant: nothing
+Crate<Arm, Head, FrameOffset<"checkerboard">, HandEye> unknown_frame_offset;
+
+// expect: this VirtualFrame has the name of a joint of the robot; write FrameOffset for the joint
+Crate<Arm, Head, VirtualFrame<"wrist_roll_joint">, HandEye> virtual_frame_named_as_joint;
+
+// expect: this frame offset frees none of its axes; choose some or leave it out
+Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes{}>, HandEye> frame_without_axes;
+
+// expect: a free parameter occurs twice in this Crate; leave one of them out
+Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes::xyz>,
+      FrameOffset<"head_pan_joint", Axes{.z = true, .c = true}>, HandEye>
+    overlapping_axes;
+
+// expect: the crate has no camera of the name in this parameter; add the camera or correct the name
+// meant: camera
+Crate<Arm, Head, DepthIntrinsics<"camrea">, HandEye> misspelt_camera;
+
+// expect: the sensor in this parameter has no such settings; intrinsics are those of a Camera3d or
+Crate<Arm, Pinhole, DepthIntrinsics<"pinhole">, Block<"pixels", PointToPixel, "arm", "pinhole">>
+    depth_of_pinhole_camera;
+
+// expect: the sensor in this parameter has no such settings; intrinsics are those of a Camera3d or
+Crate<Arm, Head, CameraIntrinsics<"arm">, HandEye> intrinsics_of_arm;
+
+// expect: nothing depends on this free parameter; no error block has a sensor that it moves: leave
+Crate<Arm, Head, JointOffset<"torso_lift_joint">, HandEye> above_all_chains;
+
+// expect: nothing depends on this free parameter; no error block has a sensor that it moves: leave
+Crate<Arm, Head, JointOffset<"elbow_flex_joint">, Ground> moves_unused_sensor;
+
+// expect: no joint or frame of the name in this PriorOn is free in the crate; correct the name or
+// meant: head_pan_joint
+Crate<Arm, Head, FrameOffset<"head_pan_joint">, HandEye, PriorOn<"small", "head_pn_joint">>
+    misspelt_prior;
+
+// ---- error blocks
+
+// expect: a sensor of this error block is not in the crate; add it or correct its name
+// meant: camera
+Crate<Arm, Head, Block<"hand_eye", PointToPoint, "camra", "arm">> misspelt_sensor;
+
+// expect: a sensor of this error block is not in the crate; add it or correct its name
+// meant: nothing
+Crate<Arm, HandEye> missing_sensor;
+
+// expect: this error block is not a residual templated on its scalar; write template <class S>
+struct Height {
+  Eigen::Matrix<double, 1, 1> operator()(const Vector3<double>& p) const {
+    return Eigen::Matrix<double, 1, 1>(p.z());
+  }
+};
+Crate<Head, Block<"ground", Height, "camera">> residual_not_templated;
+
+// expect: this error block is given too many or too few sensors; one whose residual takes a point
+Crate<Arm, Head, Block<"ground", PointToPlane, "camera", "arm">> too_many_sensors;
+
+// expect: this error block is given too many or too few sensors; one whose residual takes a point
+Crate<Arm, Head, Block<"hand_eye", PointToPoint, "camera">> too_few_sensors;
+
+// expect: this error block is given a sensor of the wrong kind; a Camera2d stands second in a block
+Crate<Arm, Pinhole, Block<"pixels", PointToPixel, "pinhole", "arm">> pinhole_camera_first;
+
+// expect: this error block is given a sensor of the wrong kind; a Camera2d stands second in a block
+Crate<Arm, Pinhole, Block<"hand_eye", PointToPoint, "arm", "pinhole">> pixels_as_points;
+
+// ---- crates
+
+// expect: this Crate has no sensors; add those of its blocks
+Crate<JointOffset<"elbow_flex_joint">, HandEye> no_sensors;
+
+// expect: this Crate has no Block; add what is to be minimized
+Crate<Arm, Head, JointOffset<"elbow_flex_joint">> no_blocks;
+
+// expect: a part of this Crate is none; parts are sensors, free parameters, Block, PriorOn and
+Crate<Arm, Head, HandEye, PointToPlane> part_that_is_none;
+
+// expect: the chains of this Crate start at different links or are of different robots; features
+Crate<Arm, Camera3d<"camera", Chain<Fetch, "base_link", "head_pan_link">>, HandEye> different_bases;
+
+// expect: the chains of this Crate start at different links or are of different robots; features
+Crate<Arm, Camera3d<"camera", Chain<Every, "torso", "lower">>, HandEye> different_robots;
+
+// expect: two sensors of this Crate have the same name; rename one of them
+Crate<Arm, Head, Chain3d<"camera", OnHead>, HandEye> sensors_of_one_name;
+
+// expect: two blocks of this Crate have the same name; rename one of them
+Crate<Arm, Head, HandEye, Block<"hand_eye", PlaneToPlane, "camera", "arm">> blocks_of_one_name;
+
+// expect: two priors of this Crate have the same name; rename one of them
+Crate<Arm, Head, JointOffset<"elbow_flex_joint">, JointOffset<"head_pan_joint">, HandEye,
+      PriorOn<"small", "elbow_flex_joint">, PriorOn<"small", "head_pan_joint">>
+    priors_of_one_name;
+
+// ---- parts and results by name
+
+// expect: the crate has no part of this name; correct the name
+// meant: hand_eye
+auto& misspelt_block(Crate<Arm, Head, HandEye>& crate) {
+  return crate.block<"hand_ey">();
+}
+
+// expect: this parameter is not free in the crate; add it there or ask for another
+// meant: elbow_flex_joint
+using Elbow = CrateResult<Crate<Arm, Head, JointOffset<"elbow_flex_joint">, HandEye>>;
+auto misspelt_value(const Elbow& result) {
+  return result.value<JointOffset<"elbow_flexjoint">>();
+}
+
+// expect: this parameter is not free in the crate; add it there or ask for another
+using Shift = CrateResult<Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes::xyz>, HandEye>>;
+auto value_half_free(const Shift& result) {
+  return result.value<FrameOffset<"head_pan_joint">>();
+}
+
+}  // namespace kinecal
