@@ -46,6 +46,30 @@ Chain<Every, "base", "float\?\?/ing"> floating_joint;
 // meant: head_pan_joint
 Chain<Fetch, "torso_lift_link", "head_pan_link", Names<"haed_pan_joint">> misspelt_frame;
 
+// ---- before the constructors of crates, in which all further checks stand
+
+// expect: a part of this Crate is none; parts are sensors, free parameters, Block, PriorOn and
+Crate<Arm, Head, HandEye, PointToPlane> part_that_is_none;
+
+// expect: the crate has no part of this name; correct the name
+// meant: hand_eye
+auto& misspelt_block(Crate<Arm, Head, HandEye>& crate) {
+  return crate.block<"hand_ey">();
+}
+
+// expect: this parameter is not free in the crate; add it there or ask for another
+// meant: elbow_flex_joint
+using Elbow = CrateResult<Crate<Arm, Head, JointOffset<"elbow_flex_joint">, HandEye>>;
+auto misspelt_value(const Elbow& result) {
+  return result.value<JointOffset<"elbow_flexjoint">>();
+}
+
+// expect: this parameter is not free in the crate; add it there or ask for another
+using Shift = CrateResult<Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes::xyz>, HandEye>>;
+auto value_half_free(const Shift& result) {
+  return result.value<FrameOffset<"head_pan_joint">>();
+}
+
 // ---- free parameters
 
 // expect: the robot has no joint of the name in this JointOffset; correct the name
@@ -138,9 +162,6 @@ Crate<JointOffset<"elbow_flex_joint">, HandEye> no_sensors;
 // expect: this Crate has no Block; add what is to be minimized
 Crate<Arm, Head, JointOffset<"elbow_flex_joint">> no_blocks;
 
-// expect: a part of this Crate is none; parts are sensors, free parameters, Block, PriorOn and
-Crate<Arm, Head, HandEye, PointToPlane> part_that_is_none;
-
 // expect: the chains of this Crate start at different links or are of different robots; features
 Crate<Arm, Camera3d<"camera", Chain<Fetch, "base_link", "head_pan_link">>, HandEye> different_bases;
 
@@ -157,26 +178,5 @@ Crate<Arm, Head, HandEye, Block<"hand_eye", PlaneToPlane, "camera", "arm">> bloc
 Crate<Arm, Head, JointOffset<"elbow_flex_joint">, JointOffset<"head_pan_joint">, HandEye,
       PriorOn<"small", "elbow_flex_joint">, PriorOn<"small", "head_pan_joint">>
     priors_of_one_name;
-
-// ---- parts and results by name
-
-// expect: the crate has no part of this name; correct the name
-// meant: hand_eye
-auto& misspelt_block(Crate<Arm, Head, HandEye>& crate) {
-  return crate.block<"hand_ey">();
-}
-
-// expect: this parameter is not free in the crate; add it there or ask for another
-// meant: elbow_flex_joint
-using Elbow = CrateResult<Crate<Arm, Head, JointOffset<"elbow_flex_joint">, HandEye>>;
-auto misspelt_value(const Elbow& result) {
-  return result.value<JointOffset<"elbow_flexjoint">>();
-}
-
-// expect: this parameter is not free in the crate; add it there or ask for another
-using Shift = CrateResult<Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes::xyz>, HandEye>>;
-auto value_half_free(const Shift& result) {
-  return result.value<FrameOffset<"head_pan_joint">>();
-}
 
 }  // namespace kinecal

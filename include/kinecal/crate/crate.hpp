@@ -7,9 +7,10 @@
 //                         Block<"hand_eye", PointToPoint, "camera", "arm">>;
 //
 // The order of the parts does not matter but for that of the parameters.  Crates are parts, too:
-// Crate<HandEye, Ground> has the parameters of both, each once, and the blocks of both.  Names are
-// checked against the robot while compiling (crate_checks.hpp).  A crate fills the same Problem as
-// a configuration does, with walks that are compiled for its chains.
+// Crate<HandEye, Ground> has the parameters of both, each once, and the blocks of both; a list of
+// parameters that several crates share is one, too.  Names are checked against the robot while
+// compiling (crate_checks.hpp).  A crate fills the same Problem as a configuration does, with walks
+// that are compiled for its chains.
 // Source: the design of kinecal, idea 7.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -74,6 +75,12 @@ class Crate {
   using Blocks = typename Lists::Blocks;
   using Priors = typename Lists::Priors;
   using Free = typename Parameters::template As<FreeParameters>;
+
+  /// Checked here and not before: a part of another crate needs no sensor or block of its own.
+  Crate() {
+    [[maybe_unused]] constexpr
+        typename detail::CheckCrate<Sensors, Parameters, Blocks, Priors>::type kCheck = {};
+  }
 
   /// The error block of a name, with its options.
   template <FixedString Name>
@@ -223,9 +230,6 @@ class Crate {
 
   typename Blocks::template As<std::tuple> blocks_;
   typename Priors::template As<std::tuple> priors_;
-
-  static constexpr
-      typename detail::CheckCrate<Sensors, Parameters, Blocks, Priors>::type kCheck = {};
 };
 
 }  // namespace kinecal

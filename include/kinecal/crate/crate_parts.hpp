@@ -38,6 +38,7 @@ struct Camera2d : SensorOn<Name, C, SensorType::camera2d> {};
 /// @tparam Sensors  names of the sensors that it compares
 template <FixedString Name, class B, FixedString... Sensors>
 struct Block {
+  using Plain = Block;  ///< also of what is derived from it to set its options
   using Error = B;
   static constexpr std::string_view kName = Name;
   static constexpr std::array<std::string_view, sizeof...(Sensors)> kSensorNames = {Sensors...};
