@@ -90,7 +90,7 @@ std::vector<HeldOut> hold_out(const RobotExample& example, Simulation& simulatio
 
 /// Prints the error blocks; true if the calibrated robot is as good as the true one, nearly.
 bool is_as_good_as_the_truth(const std::vector<HeldOut>& blocks) {
-  constexpr double kNearly = 1.1;
+  constexpr double kNearly = 1.2;  // 27 parameters from 100 points of a tracker cost a tenth
   bool good = true;
   TextTable table(
       {"error block", "features", "unit", "by the URDF", "calibrated", "noise alone", "mm"});
@@ -128,7 +128,9 @@ int calibrate(const RobotExample& example, const Options& options) {
   }
   if (!simulation) return kGood;
   if (is_as_good_as_the_truth(hold_out(example, *simulation, options, result))) return kGood;
-  fmt::print(stderr, "error: samples that were held out show more than noise\n");
+  fmt::print(
+      stderr,
+      "error: samples that were held out show more than noise; calibrate with more of them?\n");
   return kNotGood;
 }
 

@@ -33,6 +33,11 @@ using Pixels =
     Crate<Arm, Eye, CameraIntrinsics<"eye">, Block<"pixels", PointToPixel, "arm", "eye">>;
 using All = Crate<HandEye, Floor, Counterweight, Pixels>;
 
+// What several crates share needs no sensor or block of its own, even where it is completed.
+using Joints = Crate<JointOffset<"pan">, JointOffset<"elbow">>;
+static_assert(!std::is_empty_v<Joints>);
+static_assert(Crate<Joints, HandEye>::Free::kSize == HandEye::Free::kSize);
+
 static_assert(All::Sensors::kSize == 4 && All::Blocks::kSize == 4 && All::Priors::kSize == 1);
 static_assert(All::Free::kSize == 3 + 6 + 3 + 6 + 6 + 1 + 2 + 4 + 1, "each once");
 static_assert(std::is_same_v<Crate<HandEye, HandEye>::Parameters, HandEye::Parameters>);

@@ -1,8 +1,7 @@
 // Fetch: four LEDs in the gripper and the floor, seen by the depth camera in the head.
 //
-// The parameters are those of its paper: seven joints of the arm, the tilt of the head, the frames
-// of head and camera, the camera itself.  The zero of the pan joint is the yaw of its frame.
-// Source: Fetch paper, III
+// Free are seven joints of the arm, the tilt of the head, the frames of head and camera, the camera
+// itself; the zero of the pan joint is the yaw of its frame.  Source: Fetch paper, III
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,21 +24,25 @@ using Camera = Camera3d<"camera", To<"head_camera_rgb_optical_frame">>;
 
 /// The camera measures an LED at 0.8 m to 1 mm; beyond 3 sigma something went wrong.
 struct SameLeds : Block<"hand_eye", PointToPoint, "camera", "arm"> {
-  SameLeds() { options.weight = 1.0 / 0.001, options.loss = {LossType::huber, 3.0}; }
+  SameLeds() {
+    options.weight = 1.0 / 0.001;
+    options.loss = {LossType::huber, 3.0};
+  }
 };
 /// The floor at 1.5 m to 3 mm; samples of the LEDs do not show it.
 struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
   OnFloor() {
-    options.weight = 1.0 / 0.003, options.loss = {LossType::huber, 3.0}, options.alone = true;
+    options.weight = 1.0 / 0.003;
+    options.alone = true;
   }
 };
 /// A turn of the head tilt is one of the camera's frame the other way, and a turn of arm and head
 /// about the vertical shows nowhere: drawing and joint decide.
 struct KeepCamera : PriorOn<"restrict_camera", "head_camera_rgb_joint"> {
-  KeepCamera() { joint_scale = 0.0, position_scale = 0.0, rotation_scale = 5.0; }
+  KeepCamera() { rotation_scale = 5.0; }
 };
 struct KeepShoulder : PriorOn<"restrict_shoulder_pan", "shoulder_pan_joint"> {
-  KeepShoulder() { joint_scale = 5.0, position_scale = 0.0, rotation_scale = 0.0; }
+  KeepShoulder() { joint_scale = 5.0; }
 };
 
 using HandEye =
@@ -51,7 +54,6 @@ using HandEye =
           FrameOffset<"head_camera_rgb_joint">, SameLeds, KeepCamera, KeepShoulder>;
 using Ground = Crate<Camera, DepthIntrinsics<"camera">, OnFloor>;
 using Fetch = Crate<HandEye, Ground>;
-/// The LEDs alone would not show the lift.
-using FetchWithTorso = Crate<Fetch, JointOffset<"torso_lift_joint">>;
+using FetchWithTorso = Crate<Fetch, JointOffset<"torso_lift_joint">>;  // the floor shows it
 
 }  // namespace fetch

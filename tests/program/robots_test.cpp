@@ -1,0 +1,115 @@
+// The programs of examples/robots as their users meet them, against the program that reads a
+// configuration.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const std::string kRobots = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/";
+
+/// One sums in an order of its own, and another instruction set has other lanes.
+constexpr double kRounding = 1e-10;
+
+class RobotProgram : public test::ProgramTest {
+ protected:
+  [[nodiscard]] YAML::Node report(const std::string& folder) const {
+    return YAML::LoadFile((folder_ / folder / "report.json").string());
+  }
+  [[nodiscard]] std::set<std::string> files(const std::string& folder) const {
+    std::set<std::string> names;
+    for (const auto& file : fs::directory_iterator(folder_ / folder)) {
+      names.insert(file.path().filename());
+    }
+    return names;
+  }
+};
+
+/// Texts that differ in the last digits of their numbers at most.
+void expect_same_text(const std::string& a, const std::string& b) {
+  const char *x = a.c_str(), *y = b.c_str();
+  while (*x != 0 && *y != 0) {
+    char *x_end = nullptr, *y_end = nullptr;
+    const double x_number = std::strtod(x, &x_end), y_number = std::strtod(y, &y_end);
+    const bool are_numbers = x_end != x && y_end != y;
+    if (are_numbers) {
+      ASSERT_NEAR(x_number, y_number, 1e-8) << "at \"" << std::string(x).substr(0, 40) << "\"";
+    } else {
+      ASSERT_EQ(*x, *y) << "at \"" << std::string(x).substr(0, 40) << "\"";
+    }
+    x = are_numbers ? x_end : x + 1;
+    y = are_numbers ? y_end : y + 1;
+  }
+  EXPECT_EQ(std::string(x), std::string(y));
+}
+
+std::map<std::string, double> parameters(const YAML::Node& report) {
+  std::map<std::string, double> values;
+  for (const YAML::Node& p : report["parameters"]) {
+    values[p["name"].as<std::string>()] = p["value"].as<double>();
+  }
+  return values;
+}
+
+TEST_F(RobotProgram, FetchsCrateSolvesWhatItsConfigurationSays) {
+  const test::Outcome drawn = run(KINECAL_CALIBRATE_FETCH " --write-samples drawn.yaml --output a");
+  ASSERT_EQ(drawn.code, 0) << drawn.err;
+  const test::Outcome crate = run(KINECAL_CALIBRATE_FETCH " --samples drawn.yaml --output crate");
+  ASSERT_EQ(crate.code, 0) << crate.err;
+  const test::Outcome configured =
+      run(KINECAL_PROGRAM " calibrate --urdf " + kRobots + "fetch/fetch.urdf --config " + kRobots +
+          "fetch/calibrate.yaml --samples drawn.yaml --output configured");
+  ASSERT_EQ(configured.code, 0) << configured.err;
+
+  for (const char* cost : {"initial_cost", "final_cost"}) {
+    const auto expected = report("configured")["steps"][0][cost].as<double>();
+    EXPECT_NEAR(report("crate")["steps"][0][cost].as<double>(), expected, kRounding * expected);
+    EXPECT_EQ(report("crate")["steps"][0][cost].as<double>(),
+              report("a")["steps"][0][cost].as<double>())
+        << "a file changes no sample";
+  }
+  const auto expected = parameters(report("configured")), found = parameters(report("crate"));
+  EXPECT_EQ(expected.size(), 26u);
+  ASSERT_EQ(found.size(), expected.size());
+  for (const auto& [name, value] : expected) {
+    ASSERT_TRUE(found.contains(name)) << name;
+    EXPECT_NEAR(found.at(name), value, 1e-8) << name;
+  }
+  EXPECT_EQ(files("crate"), files("configured"));
+  for (const char* file : {"calibrated.urdf", "depth_camera.yaml", "rgb_camera.yaml"}) {
+    SCOPED_TRACE(file);
+    expect_same_text(read("crate/" + std::string(file)), read("configured/" + std::string(file)));
+  }
+}
+
+TEST_F(RobotProgram, TellsWhatItFoundOnSamplesHeldOut) {
+  const test::Outcome result = run(KINECAL_CALIBRATE_FETCH " --pairs 40 --planes 10 --seed 3");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("On samples held out"));
+  EXPECT_THAT(result.err, HasSubstr("these samples tell 24 of 26 combinations"));
+}
+
+TEST_F(RobotProgram, ExitsWith2WhereHeldOutSamplesShowMoreThanNoise) {
+  const test::Outcome result = run(KINECAL_CALIBRATE_FETCH " --pairs 6 --planes 3");
+  EXPECT_EQ(result.code, 2) << result.out;
+  EXPECT_THAT(result.err, HasSubstr("samples that were held out show more than noise"));
+}
+
+TEST_F(RobotProgram, RefusesSamplesThatAreNotThere) {
+  const test::Outcome result = run(KINECAL_CALIBRATE_FETCH " --samples none.yaml --output out");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("none.yaml"));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace kinecal
