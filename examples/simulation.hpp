@@ -1,4 +1,5 @@
-// What the examples use to pretend that they had a robot: random numbers and a depth camera.
+// What the examples use to pretend that they had a robot: random numbers, a true robot that is not
+// as its drawing says, and a depth camera.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,7 +8,12 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <set>
+#include <string>
+#include <vector>
 
+#include "kinecal/kinematics/pose_walker.hpp"
+#include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
 
 namespace kinecal::examples {
@@ -42,15 +48,47 @@ class SeededRandom {
     return radius * std::cos(2.0 * std::numbers::pi * uniform(0.0, 1.0));
   }
 
-  /// A unit vector, all directions alike.
-  [[nodiscard]] Vector3<double> direction() {
+  /// Three of them, independent.
+  [[nodiscard]] Vector3<double> normal_vector() {
     const double x = normal(), y = normal(), z = normal();
-    return Vector3<double>(x, y, z).normalized();
+    return {x, y, z};
   }
+
+  /// A unit vector, all directions alike.
+  [[nodiscard]] Vector3<double> direction() { return normal_vector().normalized(); }
 
  private:
   std::mt19937_64 engine_;
 };
+
+/// A sample without observations: each joint anywhere within its limits.
+[[nodiscard]] inline Sample random_pose(const Robot& robot, SeededRandom& random) {
+  Sample sample;
+  for (const Joint& joint : robot.joints()) {
+    if (!moves(joint.type) || joint.mimic) continue;
+    sample.joint_names.push_back(joint.name);
+    sample.joint_positions.push_back(joint.limits
+                                         ? random.uniform(joint.limits->lower, joint.limits->upper)
+                                         : random.uniform(-std::numbers::pi, std::numbers::pi));
+  }
+  return sample;
+}
+
+/// Where a link really is while the joints report what the sample says.
+/// @param robot  as it is drawn
+/// @param truth  what is wrong with it, by the names of the parameters
+[[nodiscard]] inline Pose<double> true_pose(const Robot& robot, const ParameterTable& truth,
+                                            const std::string& base, const std::string& tip,
+                                            const Sample& sample) {
+  std::set<std::string> joints;  // any of them may have a frame correction
+  for (const Joint& joint : robot.joints()) joints.insert(joint.name);
+  const RuntimeChain chain = make_chain(robot, base, tip, joints);
+  const Eigen::VectorXd values = truth.values();
+  const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
+  return forward_kinematics(
+      chain, [&](const std::string& joint) { return sample.position(joint).value(); },
+      corrections_for(chain_parameters(chain, truth), all));
+}
 
 /// 640 x 480 pixels, as its driver has it.
 [[nodiscard]] inline CameraInfo example_camera_info() {
@@ -98,6 +136,31 @@ struct CameraNoise {
   return p_camera.z() > 0.0 &&
          std::abs(camera.fx * p_camera.x()) < kUsed * camera.cx * p_camera.z() &&
          std::abs(camera.fy * p_camera.y()) < kUsed * camera.cy * p_camera.z();
+}
+
+/// Points of a link as a depth camera reports them, and as they are known.
+struct Look {
+  Observation seen, known;
+};
+
+/// Those of the points that the camera has in its image, no further away than 2 m.
+/// @param camera  the sensor's name
+/// @param frame   its optical frame
+/// @param points  metres, in the link
+[[nodiscard]] inline Look look_at(const std::vector<Vector3<double>>& points,
+                                  const std::string& link, const std::string& camera,
+                                  const std::string& frame, const Pose<double>& frame_T_link,
+                                  SeededRandom& random) {
+  const CameraInfo info = example_camera_info();
+  const DepthCamera<> driver = DepthCamera<>::from(info);
+  Look look{{camera, {}, info}, {"", {}, {}}};
+  for (const Vector3<double>& point : points) {
+    const Vector3<double> p_camera = frame_T_link * point;
+    if (p_camera.z() > 2.0 || !is_in_image(driver, p_camera)) continue;
+    look.seen.features.push_back({frame, recorded_point(driver, p_camera, {}, {}, random)});
+    look.known.features.push_back({link, point});
+  }
+  return look;
 }
 
 }  // namespace kinecal::examples
