@@ -1,8 +1,8 @@
-// A calibration without files: an arm, a tracker that sees where its tip really is, 25 samples.
+// A calibration whose names come at run time, as from a file: an arm, a tracker, 25 samples.
 //
-// The arm's three zeros are wrong and its upper arm is longer than its drawing says.  A Problem
-// holds the robot, its sensors, the error block that compares them and the samples; solve() finds
-// what makes them agree.
+// What a crate says in types is said here in strings, one after the other: a Problem holds the
+// robot, its sensors, the error block that compares them and the samples; solve() finds what makes
+// them agree.  The arm's three zeros are wrong and its upper arm is longer than its drawing says.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 

@@ -1,0 +1,63 @@
+// A first calibration: an arm, a tracker that sees where its gripper really is, 25 samples.
+//
+// A crate says what observes what and what may be wrong; the compiler checks its names against the
+// robot, which is made from the URDF when this is built (kinecal_add_robot in CMakeLists.txt).
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include "kinecal/errors.hpp"
+#include "kinecal/solve.hpp"
+#include "robots/mobile_manipulator.hpp"
+#include "simulation.hpp"
+
+namespace {
+
+using namespace kinecal;
+using namespace kinecal::examples;
+
+using Arm = Chain3d<"arm", Chain<mobile_manipulator::Robot, "base_link", "gripper_link">>;
+using Tracker = Chain3d<"tracker", Chain<mobile_manipulator::Robot, "base_link", "base_link">>;
+using Shoulder = JointOffset<"shoulder_lift_joint">;
+using Elbow = JointOffset<"elbow_flex_joint">;
+using Gripper = FrameOffset<"gripper_axis", Axes{.x = true}>;  // along the wrist: its length
+using Tracked = Crate<Arm, Tracker, Shoulder, Elbow, Gripper,
+                      Block<"tracking", PointToPoint, "arm", "tracker">>;
+
+/// A real robot would record this: the joints, the gripper's origin, where the tracker sees it.
+Sample measure(const ParameterTable& truth, SeededRandom& random) {
+  static const Robot robot = Tracked::robot();
+  Sample sample = random_pose(robot, random);
+  const Pose<double> gripper = true_pose(robot, truth, "base_link", "gripper_link", sample);
+  const Vector3<double> seen = gripper.translation + 1e-4 * random.normal_vector();  // 0.1 mm
+  sample.observations = {{"arm", {{"gripper_link", Vector3<double>::Zero()}}},
+                         {"tracker", {{"base_link", seen}}}};
+  return sample;
+}
+
+}  // namespace
+
+int main() {
+  ParameterTable truth = Tracked::table({});
+  truth["shoulder_lift_joint"].value = -2.0 * kDegree;
+  truth["elbow_flex_joint"].value = 1.5 * kDegree;
+  truth["gripper_axis_x"].value = 0.004;
+  SeededRandom random(1);
+  std::vector<Sample> samples;
+  for (int n = 0; n < 25; ++n) samples.push_back(measure(truth, random));
+
+  const CrateResult<Tracked> result = calibrate(Tracked(), samples);
+
+  const double shoulder = result.value<Shoulder>(), elbow = result.value<Elbow>();
+  const double length = result.value<Gripper>();
+  const BlockStatistics& tracking = result.blocks.front();
+  std::printf("%s\n\n", result.termination.c_str());
+  std::printf("distance of arm and tracker  %.3f mm before, %.3f mm after\n",
+              1e3 * tracking.before.mean, 1e3 * tracking.after.mean);
+  std::printf("shoulder_lift_joint          %.3f degrees, true -2\n", shoulder / kDegree);
+  std::printf("elbow_flex_joint             %.3f degrees, true 1.5\n", elbow / kDegree);
+  std::printf("gripper_axis_x               %.3f mm, true 4\n", 1e3 * length);
+  // 0.1 mm of noise at 0.3 m and more, averaged over 25 samples.
+  const bool found = std::abs(shoulder + 2.0 * kDegree) < 1e-4 &&
+                     std::abs(elbow - 1.5 * kDegree) < 2e-4 && std::abs(length - 0.004) < 1e-4;
+  return result.converged && found ? 0 : 1;
+}
