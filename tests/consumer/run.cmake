@@ -49,6 +49,14 @@ execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/build ${
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/build/consumer COMMAND_ERROR_IS_FATAL ANY)
 
+# A calibrator of a user's own: six lines of CMake, forty of C++ and a URDF.
+if(MODE STREQUAL install)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK}/consumer/calibrator -B ${WORK}/calibrator
+                          ${options} COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/calibrator COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${WORK}/calibrator/calibrator COMMAND_ERROR_IS_FATAL ANY)
+endif()
+
 set(HERE ${CMAKE_CURRENT_LIST_DIR})
 if(MODE STREQUAL install)
   include(${HERE}/check_core.cmake)
