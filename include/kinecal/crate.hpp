@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/crate/block_checks.hpp"
 #include "kinecal/crate/block_rows.hpp"
 #include "kinecal/crate/block_term.hpp"
 #include "kinecal/crate/camera_parameters.hpp"
@@ -18,6 +19,7 @@
 #include "kinecal/crate/normal_equations.hpp"
 #include "kinecal/crate/packed_sample.hpp"
 #include "kinecal/crate/parallel.hpp"
+#include "kinecal/crate/parameter_checks.hpp"
 #include "kinecal/crate/plane_rows.hpp"
 #include "kinecal/crate/prior_term.hpp"
 #include "kinecal/crate/problem.hpp"

@@ -220,7 +220,7 @@ class Crate {
     using Names = detail::PartNames<detail::TypeList<Ts...>>;
     using Found = LookedUp<kView<Name>, Names>;
     [[maybe_unused]] constexpr detail::Unless<Found::kExists, detail::PartOfName<Name, Found>>
-        kCheck = {};
+        kPartCheck = {};
     if constexpr (Found::kExists) {
       return std::get<Names::index(Name)>(parts);
     } else {
