@@ -11,7 +11,7 @@ if(MODE STREQUAL install)
   execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix}
                   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 elseif(MODE STREQUAL deb)
-  set(prefix ${WORK}/root/usr)
+  set(prefix ${WORK}/unpacked/usr)
   foreach(tool dpkg-deb dpkg-shlibdeps file)
     find_program(${tool}_program ${tool})
     if(NOT ${tool}_program)
@@ -22,7 +22,7 @@ elseif(MODE STREQUAL deb)
   execute_process(COMMAND ${CMAKE_CPACK_COMMAND} -G DEB --config ${BUILD}/CPackConfig.cmake -B ${WORK}
                   COMMAND_ERROR_IS_FATAL ANY)
   file(GLOB package ${WORK}/kinecal_*.deb)
-  execute_process(COMMAND dpkg-deb -x ${package} ${WORK}/root COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND dpkg-deb -x ${package} ${WORK}/unpacked COMMAND_ERROR_IS_FATAL ANY)
 endif()
 
 if(PROGRAM AND NOT MODE STREQUAL source)
