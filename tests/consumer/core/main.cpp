@@ -12,7 +12,7 @@ int main() {
                               "platform",
                               Pose<double>{Matrix3<double>::Identity(), {0, 0, 0.5}},
                               {0, 0, 1}}});
-  const Chain<> chain = make_chain(robot, "base", "platform");
+  const RuntimeChain chain = make_chain(robot, "base", "platform");
   const Pose<double> base_T_platform =
       forward_kinematics(chain, [](const std::string&) { return 0.25; });
   std::printf("platform at %.2f m\n", base_T_platform.translation.z());
