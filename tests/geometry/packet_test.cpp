@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 
 #include "kinecal/geometry/pose.hpp"
 
@@ -60,6 +61,34 @@ TEST(Packet, SelectIsNotSpoiledByWhatIsNotChosen) {
   for (int i = 0; i < kLanes<Packet>; ++i) {
     EXPECT_EQ(lane(root, i), i < 2 ? 7.0 : std::sqrt(i - 1.0));
   }
+}
+
+TEST(Packet, FunctionsTakeEachLaneByItself) {
+  const Packet x = counting(0.25), y = counting(-1.5);
+  for (int i = 0; i < kLanes<Packet>; ++i) {
+    const double a = lane(x, i), b = lane(y, i);
+    EXPECT_EQ(lane(sin(x), i), std::sin(a));
+    EXPECT_EQ(lane(cos(x), i), std::cos(a));
+    EXPECT_EQ(lane(exp(x), i), std::exp(a));
+    EXPECT_EQ(lane(log(x), i), std::log(a));
+    EXPECT_EQ(lane(log1p(x), i), std::log1p(a));
+    EXPECT_EQ(lane(sqrt(x), i), std::sqrt(a));
+    EXPECT_EQ(lane(abs(y), i), std::abs(b));
+    EXPECT_EQ(lane(atan2(y, x), i), std::atan2(b, a));
+  }
+}
+
+TEST(Packet, ComparesAsDoublesDo) {
+  const Packet x = counting(0.0), one(1.0), two(2.0);
+  const Packet nan(std::numeric_limits<double>::quiet_NaN()), minus_zero(-0.0);
+  EXPECT_EQ(lane(select(x < one, one, two), 0), 1.0);
+  EXPECT_EQ(lane(select(x <= one, one, two), 1), 1.0);
+  EXPECT_EQ(lane(select(x > one, one, two), 1), 2.0);
+  EXPECT_EQ(lane(select(x >= one, one, two), 1), 1.0);
+  EXPECT_EQ(lane(select(x == one, one, two), 1), 1.0);
+  EXPECT_EQ(lane(select(x != one, one, two), 1), 2.0);
+  EXPECT_EQ(lane(select(nan == nan, one, two), 0), 2.0);
+  EXPECT_TRUE(std::signbit(lane(minus_zero, 0)));
 }
 
 /// Sums of three products, perhaps fused in one and not in the other.

@@ -3,13 +3,22 @@
 // The templates of geometry/, kinematics/ and crate/ take a packet in place of a double and then
 // evaluate as many samples at once as it has lanes; its width follows the instruction set compiled
 // for.  A double is a packet of one lane: what is written with the functions below works for both.
-// Source: Parallelism TS 2, std::experimental::simd.
+//
+// std::experimental::simd does the same and more; to include it takes longer than all of Eigen.
+// Source: GCC manual, Using Vector Instructions through Built-in Functions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <Eigen/Core>
-#include <experimental/simd>
+#include <cmath>
 #include <string_view>
+#include <type_traits>
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 /// For functions that compose many small ones and run once for each pack of samples: all of them
 /// become one.  Sanitizers make such functions huge, and nobody measures there.
@@ -21,7 +30,101 @@
 
 namespace kinecal {
 
-using Packet = std::experimental::native_simd<double>;
+namespace detail {
+template <class T, int N>
+struct RegisterOf {
+  using Type [[gnu::vector_size(N * sizeof(T))]] = T;
+};
+}  // namespace detail
+
+/// N doubles in one register, with the arithmetic of one.
+template <int N>
+class PacketOf {
+ public:
+  using Register = typename detail::RegisterOf<double, N>::Type;
+  using Mask = decltype(Register{} < Register{});  ///< of each lane: all bits or none
+
+  PacketOf() = default;
+  PacketOf(double x) : x_(x - Register{}) {}  // NOLINT: a number is a packet of it
+  explicit PacketOf(Register x) : x_(x) {}
+
+  [[nodiscard]] static constexpr std::size_t size() { return N; }
+  [[nodiscard]] Register lanes() const { return x_; }
+  [[nodiscard]] double operator[](std::size_t i) const { return x_[i]; }
+  void set(std::size_t i, double x) { x_[i] = x; }
+
+  PacketOf operator-() const { return PacketOf(-x_); }
+  PacketOf& operator+=(PacketOf b) { return *this = *this + b; }
+  PacketOf& operator-=(PacketOf b) { return *this = *this - b; }
+  PacketOf& operator*=(PacketOf b) { return *this = *this * b; }
+  PacketOf& operator/=(PacketOf b) { return *this = *this / b; }
+
+  friend PacketOf operator+(PacketOf a, PacketOf b) { return PacketOf(a.x_ + b.x_); }
+  friend PacketOf operator-(PacketOf a, PacketOf b) { return PacketOf(a.x_ - b.x_); }
+  friend PacketOf operator*(PacketOf a, PacketOf b) { return PacketOf(a.x_ * b.x_); }
+  friend PacketOf operator/(PacketOf a, PacketOf b) { return PacketOf(a.x_ / b.x_); }
+
+  friend Mask operator==(PacketOf a, PacketOf b) { return a.x_ == b.x_; }
+  friend Mask operator!=(PacketOf a, PacketOf b) { return a.x_ != b.x_; }
+  friend Mask operator<(PacketOf a, PacketOf b) { return a.x_ < b.x_; }
+  friend Mask operator>(PacketOf a, PacketOf b) { return a.x_ > b.x_; }
+  friend Mask operator<=(PacketOf a, PacketOf b) { return a.x_ <= b.x_; }
+  friend Mask operator>=(PacketOf a, PacketOf b) { return a.x_ >= b.x_; }
+
+  friend PacketOf abs(PacketOf a) { return PacketOf(a.x_ < 0.0 ? -a.x_ : a.x_); }
+  friend PacketOf sqrt(PacketOf a) {
+#if defined(__AVX512F__)
+    if constexpr (N == 8) return PacketOf(_mm512_sqrt_pd(a.x_));
+#endif
+#if defined(__AVX__)
+    if constexpr (N == 4) return PacketOf(_mm256_sqrt_pd(a.x_));
+#endif
+#if defined(__SSE2__)
+    if constexpr (N == 2) return PacketOf(_mm_sqrt_pd(a.x_));
+#endif
+    return a.each([](double x) { return std::sqrt(x); });
+  }
+
+  // One lane after the other.
+  friend PacketOf sin(PacketOf a) {
+    return a.each([](double x) { return std::sin(x); });
+  }
+  friend PacketOf cos(PacketOf a) {
+    return a.each([](double x) { return std::cos(x); });
+  }
+  friend PacketOf exp(PacketOf a) {
+    return a.each([](double x) { return std::exp(x); });
+  }
+  friend PacketOf log(PacketOf a) {
+    return a.each([](double x) { return std::log(x); });
+  }
+  friend PacketOf log1p(PacketOf a) {
+    return a.each([](double x) { return std::log1p(x); });
+  }
+  friend PacketOf atan2(PacketOf a, PacketOf b) {
+    for (std::size_t i = 0; i < size(); ++i) a.set(i, std::atan2(a[i], b[i]));
+    return a;
+  }
+
+ private:
+  template <class F>
+  [[nodiscard]] PacketOf each(F&& f) const {
+    PacketOf result;
+    for (std::size_t i = 0; i < size(); ++i) result.set(i, f(x_[i]));
+    return result;
+  }
+
+  Register x_;
+};
+
+/// As many as the widest register has.
+#if defined(__AVX512F__)
+using Packet = PacketOf<8>;
+#elif defined(__AVX__)
+using Packet = PacketOf<4>;
+#else
+using Packet = PacketOf<2>;
+#endif
 
 /// The x86-64 level that the including source is compiled for, and so packets: x86-64, x86-64-v3 or
 /// x86-64-v4; "other" on other processors.
@@ -44,9 +147,9 @@ template <class S>
 struct PacketTraits {
   static constexpr int kLanes = 1;
 };
-template <class T, class Abi>
-struct PacketTraits<std::experimental::simd<T, Abi>> {
-  static constexpr int kLanes = static_cast<int>(std::experimental::simd<T, Abi>::size());
+template <int N>
+struct PacketTraits<PacketOf<N>> {
+  static constexpr int kLanes = N;
 };
 }  // namespace detail
 
@@ -69,7 +172,7 @@ void set_lane(S& x, [[maybe_unused]] int i, double value) {
   if constexpr (kLanes<S> == 1) {
     x = S(value);
   } else {
-    x[static_cast<std::size_t>(i)] = value;
+    x.set(static_cast<std::size_t>(i), value);
   }
 }
 
@@ -79,7 +182,9 @@ template <class S>
   if constexpr (kLanes<S> == 1) {
     return static_cast<double>(x);
   } else {
-    return std::experimental::reduce(x);
+    double sum = 0.0;
+    for (int i = 0; i < kLanes<S>; ++i) sum += lane(x, i);
+    return sum;
   }
 }
 
@@ -91,14 +196,7 @@ template <class Mask, class S>
   } else if constexpr (requires { condition(a, b); }) {  // of a scalar of its own kind
     return condition(a, b);
   } else {
-#if defined(__clang__)
-    // clang 14 makes nothing of where() with the masks of AVX-512.
-    return S([&](auto i) { return condition[i] ? a[i] : b[i]; });
-#else
-    S result = b;
-    std::experimental::where(condition, result) = a;
-    return result;
-#endif
+    return S(condition ? a.lanes() : b.lanes());
   }
 }
 
@@ -106,9 +204,9 @@ template <class Mask, class S>
 
 namespace Eigen {
 
-template <class T, class Abi>
-struct NumTraits<std::experimental::simd<T, Abi>> : GenericNumTraits<T> {
-  using Real = std::experimental::simd<T, Abi>;
+template <int N>
+struct NumTraits<kinecal::PacketOf<N>> : GenericNumTraits<double> {
+  using Real = kinecal::PacketOf<N>;
   using NonInteger = Real;
   using Nested = Real;
   using Literal = Real;
@@ -123,13 +221,13 @@ struct NumTraits<std::experimental::simd<T, Abi>> : GenericNumTraits<T> {
   };
 };
 
-template <class T, class Abi, class Op>
-struct ScalarBinaryOpTraits<std::experimental::simd<T, Abi>, T, Op> {
-  using ReturnType = std::experimental::simd<T, Abi>;
+template <int N, class Op>
+struct ScalarBinaryOpTraits<kinecal::PacketOf<N>, double, Op> {
+  using ReturnType = kinecal::PacketOf<N>;
 };
-template <class T, class Abi, class Op>
-struct ScalarBinaryOpTraits<T, std::experimental::simd<T, Abi>, Op> {
-  using ReturnType = std::experimental::simd<T, Abi>;
+template <int N, class Op>
+struct ScalarBinaryOpTraits<double, kinecal::PacketOf<N>, Op> {
+  using ReturnType = kinecal::PacketOf<N>;
 };
 
 }  // namespace Eigen
