@@ -31,6 +31,18 @@ template <class S>
   return k;
 }
 
+/// I + a K + b K^2 with K = [w]x, and so K^2 = w w^T - |w|^2 I.
+template <class S>
+[[nodiscard]] Matrix3<S> cross_polynomial(const Vector3<S>& w, const S& a, const S& b) {
+  const S x = w.x(), y = w.y(), z = w.z();
+  const S xy = b * (x * y), xz = b * (x * z), yz = b * (y * z);
+  Matrix3<S> m;
+  m << S(1) - b * (y * y + z * z), xy - a * z, xz + a * y,  //
+      xy + a * z, S(1) - b * (x * x + z * z), yz - a * x,   //
+      xz - a * y, yz + a * x, S(1) - b * (x * x + y * y);
+  return m;
+}
+
 /// The three coefficients a, b, c above, for the square of the angle.
 template <class S>
 struct RotationCoefficients {
@@ -61,8 +73,7 @@ struct RotationCoefficients {
 template <class S>
 [[nodiscard]] Matrix3<S> exp(const Vector3<S>& w) {
   const auto k = RotationCoefficients<S>::from_squared_angle(w.squaredNorm());
-  const Matrix3<S> cross = cross_matrix(w);
-  return Matrix3<S>::Identity() + cross * k.a + cross * cross * k.b;
+  return cross_polynomial(w, k.a, k.b);
 }
 
 /// Left Jacobian of exp at w: how a change of the rotation vector turns the rotated body.
@@ -70,8 +81,7 @@ template <class S>
 template <class S>
 [[nodiscard]] Matrix3<S> left_jacobian(const Vector3<S>& w) {
   const auto k = RotationCoefficients<S>::from_squared_angle(w.squaredNorm());
-  const Matrix3<S> cross = cross_matrix(w);
-  return Matrix3<S>::Identity() + cross * k.b + cross * cross * k.c;
+  return cross_polynomial(w, k.b, k.c);
 }
 
 namespace detail {
