@@ -23,7 +23,7 @@ std::vector<Vector3<double>> noisy_plane(double noise) {
 
 TEST(PlaneFit, FindsTheNormalAndCentroid) {
   const auto points = noisy_plane(0.0);
-  const PlaneFit fit(points);
+  const PlaneFit<double> fit(points);
   ASSERT_TRUE(fit.determined());
   const Vector3<double> normal = exp(Vector3<double>(0.3, -0.5, 0.2)).col(2);
   EXPECT_NEAR(std::abs(fit.plane().normal.dot(normal)), 1.0, 1e-14);
@@ -35,15 +35,15 @@ TEST(PlaneFit, FindsTheNormalAndCentroid) {
 TEST(PlaneFit, HasTheDerivativesOfCentralDifferences) {
   for (const double noise : {0.0, 0.05}) {
     auto points = noisy_plane(noise);
-    const PlaneFit fit(points);
+    const PlaneFit<double> fit(points);
     for (std::size_t i = 0; i < points.size(); i += 7) {
       for (int k = 0; k < 3; ++k) {
         constexpr double kStep = 1e-6;
         const Vector3<double> saved = points[i];
         points[i](k) = saved(k) + kStep;
-        const Plane<double> up = PlaneFit(points).plane();
+        const Plane<double> up = PlaneFit<double>(points).plane();
         points[i](k) = saved(k) - kStep;
-        const Plane<double> down = PlaneFit(points).plane();
+        const Plane<double> down = PlaneFit<double>(points).plane();
         points[i] = saved;
         const double side = up.normal.dot(fit.plane().normal) < 0 ? -1.0 : 1.0;
         const double other = down.normal.dot(fit.plane().normal) < 0 ? -1.0 : 1.0;
@@ -58,11 +58,11 @@ TEST(PlaneFit, HasTheDerivativesOfCentralDifferences) {
 
 TEST(PlaneFit, KnowsWhenThePointsSpanNoPlane) {
   const std::vector<Vector3<double>> line = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {-3, -3, -3}};
-  EXPECT_FALSE(PlaneFit(line).determined());
-  EXPECT_FALSE(PlaneFit(std::span(line).first(2)).determined());
+  EXPECT_FALSE(PlaneFit<double>(line).determined());
+  EXPECT_FALSE(PlaneFit<double>(std::span(line).first(2)).determined());
   const std::vector<Vector3<double>> cube = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                              {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
-  EXPECT_FALSE(PlaneFit(cube).determined());
+  EXPECT_FALSE(PlaneFit<double>(cube).determined());
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ Plane<S> oracle_plane(const std::vector<Vector3<S>>& points) {
     values.push_back(Vector3<double>(p(0).a, p(1).a, p(2).a));
     plane.centroid += p / S(static_cast<double>(points.size()));
   }
-  const Vector3<double> n = PlaneFit(values).plane().normal;
+  const Vector3<double> n = PlaneFit<double>(values).plane().normal;
   Matrix3<S> scatter = Matrix3<S>::Zero();
   for (const auto& p : points) {
     const Vector3<S> q = p - plane.centroid;

@@ -13,8 +13,10 @@
 
 namespace kinecal {
 
-/// Why there is no plane through what a sensor observed in one sample; empty if there is.
-[[nodiscard]] inline std::string why_no_plane(const PackedObservation<double>& seen) {
+/// Why there is no plane for a block through what a sensor observed in one sample; empty if there
+/// is.
+template <PlanePairBlock B>
+[[nodiscard]] std::string why_no_plane(const PackedObservation<double>& seen) {
   std::vector<Vector3<double>> points;
   for (std::size_t i = 0; i < seen.measured.size(); ++i) {
     if (seen.usable[i] == 0.0) continue;
@@ -28,7 +30,7 @@ namespace kinecal {
     points.push_back(camera.point(seen.measured[i], recorded));
   }
   if (points.size() < 3) return "a plane takes three points or more";
-  return PlaneFit(points).determined() ? "" : "its points span no plane";
+  return PlaneFit<double>(points).determined() ? "" : "its points span no plane";
 }
 
 namespace detail {
@@ -55,7 +57,7 @@ class PlaneLane {
         points_[s].push_back(lane_of(views[s]->points()[i], lane));
       }
       if (points_[s].empty()) return;  // a lane without a sample
-      const PlaneFit& fit = fits_.emplace_back(points_[s]);
+      const PlaneFit<double>& fit = fits_.emplace_back(points_[s]);
       determined_ = fit.determined() && (s == 0 || determined_);
       const int first = 6 * static_cast<int>(s);
       planes[s] = {point_jets<J>(fit.plane().centroid, first),
@@ -109,7 +111,7 @@ class PlaneLane {
   int lane_;
   std::array<std::vector<std::size_t>, 2> features_;
   std::array<std::vector<Vector3<double>>, 2> points_;
-  std::vector<PlaneFit> fits_;
+  std::vector<PlaneFit<double>> fits_;
   Eigen::Matrix<J, kSize, 1> residual_;
   bool empty_ = true, determined_ = false;
 };

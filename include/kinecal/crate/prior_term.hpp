@@ -32,7 +32,8 @@ struct PriorTerm {
     }
   }
 
-  /// Adds its residuals, weighted, to normal equations; it counts once for each sample.
+  /// Adds its residuals, weighted, to normal equations; it counts once for each sample.  Each
+  /// residual depends on one parameter, so J^T J has a diagonal only.
   void add_to(NormalEquations& total, const TermResiduals& residuals, int samples,
               Losses losses) const {
     const double w2 = options.weight * options.weight;
@@ -40,8 +41,13 @@ struct PriorTerm {
     total.cost += 0.5 * samples * loss.rho;
     if (residuals.jacobian.cols() == 0) return;
     const double factor = samples * w2 * loss.derivative;
-    total.gradient.noalias() += factor * residuals.jacobian.transpose() * residuals.residual;
-    total.hessian.noalias() += factor * residuals.jacobian.transpose() * residuals.jacobian;
+    for (Eigen::Index row = 0; row < residuals.jacobian.rows(); ++row) {
+      for (Eigen::Index column = 0; column < residuals.jacobian.cols(); ++column) {
+        const double derivative = residuals.jacobian(row, column);
+        total.gradient(column) += factor * derivative * residuals.residual(row);
+        total.hessian(column, column) += factor * derivative * derivative;
+      }
+    }
   }
 };
 

@@ -26,6 +26,7 @@
 
 #include <array>
 #include <concepts>
+#include <type_traits>
 
 #include "kinecal/geometry/jet.hpp"
 #include "kinecal/geometry/rotation.hpp"
@@ -83,23 +84,26 @@ template <ErrorBlock B>
 inline constexpr int kSensors = PointBlock<B> ? 1 : 2;
 
 namespace detail {
-template <class B>
-auto probe(const B& block) {
+/// From the signature alone: a block is not compiled for a scalar in which nobody calls it.
+template <class B, class... Given>
+inline constexpr int kRows = std::invoke_result_t<const B&, const Given&...>::RowsAtCompileTime;
+
+template <ErrorBlock B>
+[[nodiscard]] consteval int residuals() {
   if constexpr (PointBlock<B>) {
-    return block(Vector3<Probe>());
+    return kRows<B, Vector3<Probe>>;
   } else if constexpr (PointPairBlock<B>) {
-    return block(Vector3<Probe>(), Vector3<Probe>());
+    return kRows<B, Vector3<Probe>, Vector3<Probe>>;
   } else if constexpr (SightBlock<B>) {
-    return block(Sight<Probe>());
+    return kRows<B, Sight<Probe>>;
   } else {
-    return block(Plane<Probe>(), Plane<Probe>());
+    return kRows<B, Plane<Probe>, Plane<Probe>>;
   }
 }
 }  // namespace detail
 
 /// Number of residuals for one feature (for one pair of planes).
 template <ErrorBlock B>
-inline constexpr int kResiduals =
-    decltype(detail::probe(std::declval<const B&>()))::RowsAtCompileTime;
+inline constexpr int kResiduals = detail::residuals<B>();
 
 }  // namespace kinecal

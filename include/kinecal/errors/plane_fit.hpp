@@ -16,16 +16,18 @@
 
 namespace kinecal {
 
+/// A template so that only those who fit planes compile Eigen's solver.
+template <class S>
 class PlaneFit {
  public:
   /// @param points  at least three, not on one line, metres
-  explicit PlaneFit(std::span<const Vector3<double>> points) : count_(points.size()) {
-    Vector3<double> sum = Vector3<double>::Zero();
+  explicit PlaneFit(std::span<const Vector3<S>> points) : count_(points.size()) {
+    Vector3<S> sum = Vector3<S>::Zero();
     for (const auto& p : points) sum += p;
-    centroid_ = sum / static_cast<double>(count_);
-    Matrix3<double> scatter = Matrix3<double>::Zero();
+    centroid_ = sum / static_cast<S>(count_);
+    Matrix3<S> scatter = Matrix3<S>::Zero();
     for (const auto& p : points) scatter += (p - centroid_) * (p - centroid_).transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix3<double>> solver(scatter);
+    const Eigen::SelfAdjointEigenSolver<Matrix3<S>> solver(scatter);
     eigenvalues_ = solver.eigenvalues();
     eigenvectors_ = solver.eigenvectors();
   }
@@ -37,30 +39,30 @@ class PlaneFit {
     return count_ >= 3 && eigenvalues_(1) - eigenvalues_(0) > kLeastRatio * eigenvalues_(2);
   }
 
-  [[nodiscard]] Plane<double> plane() const { return {centroid_, eigenvectors_.col(0)}; }
+  [[nodiscard]] Plane<S> plane() const { return {centroid_, eigenvectors_.col(0)}; }
 
   /// (3 x 3) derivative of the centroid with respect to one point.
-  [[nodiscard]] Matrix3<double> centroid_by_point() const {
-    return Matrix3<double>::Identity() / static_cast<double>(count_);
+  [[nodiscard]] Matrix3<S> centroid_by_point() const {
+    return Matrix3<S>::Identity() / static_cast<S>(count_);
   }
 
   /// (3 x 3) derivative of the normal with respect to the point p.
-  [[nodiscard]] Matrix3<double> normal_by_point(const Vector3<double>& p) const {
-    const Vector3<double> q = p - centroid_, n = eigenvectors_.col(0);
-    Matrix3<double> derivative = Matrix3<double>::Zero();
+  [[nodiscard]] Matrix3<S> normal_by_point(const Vector3<S>& p) const {
+    const Vector3<S> q = p - centroid_, n = eigenvectors_.col(0);
+    Matrix3<S> derivative = Matrix3<S>::Zero();
     for (int k = 1; k < 3; ++k) {
-      const Vector3<double> u = eigenvectors_.col(k);
-      derivative +=
-          u * (q.dot(n) * u + q.dot(u) * n).transpose() / (eigenvalues_(0) - eigenvalues_(k));
+      const Vector3<S> u = eigenvectors_.col(k);
+      const Vector3<S> v = (q.dot(n) * u + q.dot(u) * n) / (eigenvalues_(0) - eigenvalues_(k));
+      derivative += u * v.transpose();
     }
     return derivative;
   }
 
  private:
   std::size_t count_;
-  Vector3<double> centroid_;
-  Vector3<double> eigenvalues_;
-  Matrix3<double> eigenvectors_;
+  Vector3<S> centroid_;
+  Vector3<S> eigenvalues_;
+  Matrix3<S> eigenvectors_;
 };
 
 }  // namespace kinecal
