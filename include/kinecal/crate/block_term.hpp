@@ -38,7 +38,7 @@ class BlockTerm final : public Term<S> {
   [[nodiscard]] std::string why_not(Observations seen) const override {
     if constexpr (PlanePairBlock<B>) {
       for (const auto* observation : seen) {
-        if (std::string why = why_no_plane<B>(*observation); !why.empty()) return why;
+        if (std::string why = why_no_plane(*observation); !why.empty()) return why;
       }
     }
     return {};

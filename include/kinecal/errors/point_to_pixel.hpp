@@ -21,6 +21,4 @@ struct PointToPixel {
   }
 };
 
-static_assert(SightBlock<PointToPixel> && kResiduals<PointToPixel> == 2);
-
 }  // namespace kinecal

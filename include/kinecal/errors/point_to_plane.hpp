@@ -39,6 +39,4 @@ class PointToPlane {
   double d_;
 };
 
-static_assert(PointBlock<PointToPlane> && kResiduals<PointToPlane> == 1);
-
 }  // namespace kinecal

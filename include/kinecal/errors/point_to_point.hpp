@@ -18,6 +18,4 @@ struct PointToPoint {
   }
 };
 
-static_assert(PointPairBlock<PointToPoint> && kResiduals<PointToPoint> == 3);
-
 }  // namespace kinecal

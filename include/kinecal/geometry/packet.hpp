@@ -13,6 +13,7 @@
 #include <cmath>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -166,6 +167,10 @@ template <class S>
     return x[static_cast<std::size_t>(i)];
   }
 }
+
+/// What a lane holds: double, and for templates a name that depends on S.
+template <class S>
+using LaneOf = decltype(lane(std::declval<const S&>(), 0));
 
 template <class S>
 void set_lane(S& x, [[maybe_unused]] int i, double value) {

@@ -25,14 +25,20 @@ struct Pose {
   Vector3<S> translation = Vector3<S>::Zero();
 
   [[nodiscard]] Pose inverse() const {
-    const Matrix3<S> transposed = rotation.transpose();
-    return {transposed, -rotated(transposed, translation)};
+    Pose other;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) other.rotation(r, c) = rotation(c, r);
+    }
+    other.translation = rotated(other.rotation, translation);
+    for (int r = 0; r < 3; ++r) other.translation(r) = -other.translation(r);
+    return other;
   }
 
   template <class U>
   [[nodiscard]] auto operator*(const Vector3<U>& p) const {
-    using R = decltype(rotation(0, 0) * p(0));
-    return Vector3<R>(rotated(rotation, p) + translation);
+    auto moved = rotated(rotation, p);
+    for (int r = 0; r < 3; ++r) moved(r) = moved(r) + translation(r);
+    return moved;
   }
 
   template <class U>
@@ -40,7 +46,9 @@ struct Pose {
     using R = decltype(rotation(0, 0) * other.rotation(0, 0));
     Pose<R> product;
     for (int c = 0; c < 3; ++c) {
-      product.rotation.col(c) = rotated(rotation, Vector3<U>(other.rotation.col(c)));
+      const Vector3<U> column(other.rotation(0, c), other.rotation(1, c), other.rotation(2, c));
+      const Vector3<R> turned = rotated(rotation, column);
+      for (int r = 0; r < 3; ++r) product.rotation(r, c) = turned(r);
     }
     product.translation = *this * other.translation;
     return product;

@@ -23,6 +23,13 @@ using Vector3 = Eigen::Matrix<S, 3, 1>;
 template <class S>
 using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
+/// a x b.  Eigen's takes a module that is longer to include than all of geometry/.
+template <class S>
+[[nodiscard]] Vector3<S> cross(const Vector3<S>& a, const Vector3<S>& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
+          a.x() * b.y() - a.y() * b.x()};
+}
+
 /// The matrix [w]x with [w]x p = w x p.
 template <class S>
 [[nodiscard]] Matrix3<S> cross_matrix(const Vector3<S>& w) {

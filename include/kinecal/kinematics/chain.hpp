@@ -16,6 +16,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -30,13 +31,18 @@ struct ConstantPose : Pose<double> {
 
   ConstantPose() = default;
   ConstantPose(const Pose<double>& pose)  // NOLINT: any pose may be constant
-      : Pose(pose), turns(pose.rotation != Matrix3<double>::Identity()) {}
+      : Pose(pose) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) turns = turns || pose.rotation(i, j) != (i == j ? 1.0 : 0.0);
+    }
+  }
 };
 
 /// The axis of a frame with which a unit vector is parallel: 0, 1, 2 for x, y, z; -1 for none.
 [[nodiscard]] inline int principal_axis(const Vector3<double>& axis) {
   for (int i = 0; i < 3; ++i) {
-    if (axis.cwiseAbs() == Vector3<double>::Unit(i)) return i;
+    const bool others_are_zero = axis((i + 1) % 3) == 0.0 && axis((i + 2) % 3) == 0.0;
+    if (others_are_zero && std::abs(axis(i)) == 1.0) return i;
   }
   return -1;
 }
@@ -46,7 +52,7 @@ struct ChainJoint {
   std::string name;
   JointType type = JointType::fixed;
   ConstantPose fixed;  ///< constant transform from the previous joint (or the base) to this one
-  Vector3<double> axis = Vector3<double>::UnitX();
+  Vector3<double> axis{1.0, 0.0, 0.0};
   bool corrected = false;  ///< has a frame correction
   bool reversed = false;   ///< passed from child to parent
   Mimic drive;             ///< whose measured position moves it; itself, unless it mimics
@@ -121,7 +127,7 @@ struct RuntimeChain {
 /// The same chain with a virtual frame beyond its tip: a corrected, fixed joint of that name with
 /// an origin of identity.  Such frames (a checkerboard, a marker, a tracker) are in no URDF.
 [[nodiscard]] inline RuntimeChain with_virtual_frame(RuntimeChain chain, const std::string& frame) {
-  chain.joints.push_back({frame, JointType::fixed, chain.tail, Vector3<double>::UnitX(), true,
+  chain.joints.push_back({frame, JointType::fixed, chain.tail, Vector3<double>(1.0, 0.0, 0.0), true,
                           false, Mimic{frame, 1.0, 0.0}});
   chain.tail = {};
   chain.tip = frame;

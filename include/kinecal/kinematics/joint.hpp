@@ -45,7 +45,7 @@ struct Joint {
   JointType type = JointType::fixed;
   std::string parent, child;                        ///< links
   Pose<double> origin;                              ///< of the joint in the parent link, metres
-  Vector3<double> axis = Vector3<double>::UnitX();  ///< unit vector, in the joint's frame
+  Vector3<double> axis{1.0, 0.0, 0.0};            ///< unit vector, in the joint's frame
   std::optional<Mimic> mimic = {};
   std::optional<JointLimits> limits = {};
 };

@@ -52,8 +52,6 @@ struct PoseWalker {
   }
 };
 
-static_assert(Walker<PoseWalker<double>, double>);
-
 /// Forward kinematics: the pose of the chain's tip in its base.
 /// @param chain        a RuntimeChain or a Chain
 /// @param position_of  callable: name of a joint -> its measured position, radians or metres

@@ -86,7 +86,7 @@ class Robot {
     }
     parent_joint = static_cast<int>(i);
     if (!moves(joint.type)) return;
-    const double length = joint.axis.norm();
+    const double length = std::hypot(joint.axis.x(), joint.axis.y(), joint.axis.z());
     if (!(length > 0.0)) throw RobotError("joint '" + joint.name + "' has an axis of length zero");
     if (std::abs(length - 1.0) > kUnitLength) joint.axis /= length;
   }

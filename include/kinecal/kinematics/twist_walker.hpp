@@ -19,7 +19,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Geometry>
 #include <array>
 #include <span>
 #include <utility>
@@ -177,7 +176,7 @@ struct TwistWalker {
  private:
   /// The twist of a turn about an axis through a point.
   void add_turn(const Vector3<S>& point, const Vector3<S>& axis) {
-    turn->linear = point.cross(axis);
+    turn->linear = cross(point, axis);
     turn->angular = axis;
     ++turn;
   }
