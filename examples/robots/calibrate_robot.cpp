@@ -11,6 +11,7 @@
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/solve/calibrate_crate.hpp"
 #include "simulate.hpp"
 
 namespace kinecal::examples {
@@ -55,6 +56,12 @@ void write(const std::string& path, const std::vector<Sample>& samples) {
   if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
 }
 
+Calibration calibration_of(const RobotExample& example, const std::vector<Sample>& samples) {
+  Problem problem = example.problem(samples);
+  const FreeSet free = example.free_set(problem.table());
+  return make_calibration(std::move(problem), free, samples);
+}
+
 /// An error block on samples that the calibration has not seen.
 struct HeldOut {
   std::string name, unit;
@@ -66,7 +73,7 @@ struct HeldOut {
 std::vector<HeldOut> hold_out(const RobotExample& example, Simulation& simulation,
                               const Options& options, const CalibrationResult& result) {
   const std::vector<Sample> samples = simulation.samples(options.pairs, options.planes);
-  const Calibration calibration = example.calibration(samples);
+  const Calibration calibration = calibration_of(example, samples);
   const Problem& problem = calibration.steps.front().problem;
   const auto statistics = [&](const ParameterTable& known) {
     Eigen::VectorXd all = problem.table().values();
@@ -114,7 +121,7 @@ int calibrate(const RobotExample& example, const Options& options) {
   std::optional<OutputFolder> folder;
   if (!options.output.empty()) folder.emplace(options.output);
 
-  const Calibration calibration = example.calibration(samples);
+  const Calibration calibration = calibration_of(example, samples);
   const CalibrationResult result = kinecal::calibrate(calibration);
   const std::vector<Observability> observability = cli::observe(calibration, result);
   cli::print_result(example.robot.name(), samples.size(), result);

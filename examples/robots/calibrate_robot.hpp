@@ -7,7 +7,7 @@
 #pragma once
 
 #include "instances.hpp"
-#include "kinecal/solve/calibrate_crate.hpp"
+#include "kinecal/crate/crate.hpp"
 #include "robot_example.hpp"
 
 namespace kinecal::examples {
@@ -58,9 +58,10 @@ template <class C>
     if (kIsVirtual) example.virtual_frame = P::kOwner;
     if (kIsVirtual || P::kKind == ParameterKind::frame_offset) example.frames.emplace(P::kOwner);
   });
-  example.calibration = [crate](std::span<const Sample> samples) {
-    return make_calibration(crate, samples);
+  example.problem = [crate](std::span<const Sample> samples) {
+    return crate.problem(C::table(samples));
   };
+  example.free_set = &C::free;
   return example;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/solve/calibrate.hpp"
+#include "kinecal/crate/problem.hpp"
 #include "simulated.hpp"
 
 namespace kinecal::examples {
@@ -46,7 +46,9 @@ struct RobotExample {
   std::vector<ExampleParameter> free = {};
   std::set<std::string> frames = {};  ///< those that are free
   std::string virtual_frame = {};     ///< in which chains carry their targets; empty: at their tips
-  std::function<Calibration(std::span<const Sample>)> calibration = {};
+  /// The crate's problem, without samples; what its cameras start from is taken from these.
+  std::function<Problem(std::span<const Sample>)> problem = {};
+  std::function<FreeSet(const ParameterTable&)> free_set = {};
 };
 
 /// Calibrates a robot on simulated samples, or on those of a file, and prints what came of it.

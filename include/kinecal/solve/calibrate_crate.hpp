@@ -32,29 +32,37 @@ struct CrateResult : CalibrationResult {
   }
 };
 
-/// The calibration of one step that a crate stands for; with it, reports and result files are made
-/// as those of the program.  Free parameters on which no residual of these samples depends keep
-/// their initial values.
+/// The calibration of one step that solves a problem with these samples.  Free parameters on which
+/// no residual of them depends keep their initial values.
+/// @param problem  without samples
 /// @throws SampleError  naming the sample and what is missing or wrong in it
 /// @throws std::invalid_argument  if there are no samples that a block could take
-template <class C>
-[[nodiscard]] Calibration make_calibration(const C& crate, std::span<const Sample> samples,
-                                           const std::string& step = "calibration") {
-  Calibration calibration;
-  calibration.table = C::table(samples);
-  Problem problem = crate.problem(calibration.table);
+[[nodiscard]] inline Calibration make_calibration(Problem problem, const FreeSet& free,
+                                                  std::span<const Sample> samples,
+                                                  const std::string& step = "calibration") {
   for (const Sample& sample : samples) problem.add_sample(sample);
   const std::vector<int> touched = problem.touched_parameters();
   if (touched.empty()) {
     throw std::invalid_argument("no sample has usable features of all sensors of an error block");
   }
-  std::vector<int> free = C::free(calibration.table).parameters();
-  std::erase_if(free,
+  std::vector<int> told = free.parameters();
+  std::erase_if(told,
                 [&](int p) { return !std::binary_search(touched.begin(), touched.end(), p); });
-  FreeSet columns(std::move(free), calibration.table.size());
+  Calibration calibration{problem.table(), {}};
+  FreeSet columns(std::move(told), calibration.table.size());
   calibration.steps.push_back(
       {step, SolveOptions{}.max_num_iterations, std::move(problem), std::move(columns), {}});
   return calibration;
+}
+
+/// The calibration that a crate stands for; with it, reports and result files are made as those of
+/// the program.
+/// @throws  as above
+template <class C>
+[[nodiscard]] Calibration make_calibration(const C& crate, std::span<const Sample> samples,
+                                           const std::string& step = "calibration") {
+  const ParameterTable table = C::table(samples);
+  return make_calibration(crate.problem(table), C::free(table), samples, step);
 }
 
 /// Makes the calibration of a crate and solves it.
