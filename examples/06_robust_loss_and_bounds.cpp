@@ -44,13 +44,9 @@ ParameterTable calibrate_with(const Loss& loss, double bound, const std::vector<
   ParameterTable table = Tracked::table(samples);
   table["gripper_axis_x"].lower = -bound;
   table["gripper_axis_x"].upper = bound;
-  Problem problem = crate.problem(table);
-  for (const Sample& sample : samples) problem.add_sample(sample);
-  Eigen::VectorXd values = table.values();
-  const StepResult result = solve(problem, Tracked::free(table), values);
+  const CrateResult<Tracked> result = calibrate(crate, table, samples);
   if (!result.converged) throw std::runtime_error(result.termination);
-  for (int i = 0; i < table.size(); ++i) table[i].value = values(i);
-  return table;
+  return result.table;
 }
 
 }  // namespace

@@ -86,6 +86,23 @@ TEST(CalibrateCrate, TakesTheOptionsOfItsBlocksAndOfSolving) {
               1e-12 * weighted.steps[0].initial_cost);
 }
 
+TEST(CalibrateCrate, StartsFromTheValuesOfATableAndStaysWithinItsBounds) {
+  const std::vector<double> truth = {0.02, -0.03, 0.004, -0.005, 0.006};
+  const std::vector<Sample> samples = exact_samples(truth, 12);
+  ParameterTable table = Tracked::table(samples);
+  table["pan"].value = truth[0];
+  table["elbow"].value = truth[1];
+  const auto near = calibrate(Tracked(), table, samples), far = calibrate(Tracked(), samples);
+  EXPECT_LT(near.steps[0].initial_cost, 0.5 * far.steps[0].initial_cost);
+  EXPECT_NEAR(near.value<Elbow>(), truth[1], 1e-10);
+
+  table["elbow"].lower = -0.01;
+  table["elbow"].value = 0.0;
+  const auto bounded = calibrate(Tracked(), table, samples);
+  EXPECT_NEAR(bounded.value<Elbow>(), -0.01, 1e-12);
+  EXPECT_GT(bounded.steps[0].final_cost, far.steps[0].final_cost);
+}
+
 TEST(CalibrateCrate, HoldsWhatTheSamplesSayNothingOf) {
   const std::vector<Sample> samples = exact_samples({0.02, -0.03, 0.004, -0.005, 0.006}, 12);
   const auto result = calibrate(WithCamera(), samples);

@@ -52,11 +52,12 @@ struct Plane {
 
 namespace detail {
 using Probe = Jet<double, 1>;
+template <class R>
+inline constexpr bool kIsFixedColumn = (R::RowsAtCompileTime > 0) && (R::ColsAtCompileTime == 1);
 /// A vector of fixed size in the scalar of the points: a block that is not templated returns
 /// another.
 template <class R>
-concept ResidualVector = std::same_as<typename R::Scalar, Probe> && R::RowsAtCompileTime >
-0 && R::ColsAtCompileTime == 1;
+concept ResidualVector = std::same_as<typename R::Scalar, Probe> && kIsFixedColumn<R>;
 }  // namespace detail
 
 template <class B>

@@ -2,6 +2,10 @@
 //
 //   const CrateResult<HandEye> result = calibrate(HandEye(), samples);
 //   const double elbow = result.value<JointOffset<"elbow_flex_joint">>();
+//
+//   ParameterTable table = HandEye::table(samples);     // initial values and bounds, where zero
+//   table["elbow_flex_joint"].upper = 0.05;             // and none do not do
+//   const CrateResult<HandEye> bounded = calibrate(HandEye(), table, samples);
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -57,23 +61,39 @@ struct CrateResult : CalibrationResult {
 
 /// The calibration that a crate stands for; with it, reports and result files are made as those of
 /// the program.
+/// @param table  C::table(samples), perhaps with other initial values or bounds
 /// @throws  as above
-template <class C>
-[[nodiscard]] Calibration make_calibration(const C& crate, std::span<const Sample> samples,
+template <class... Parts>
+[[nodiscard]] Calibration make_calibration(const Crate<Parts...>& crate,
+                                           const ParameterTable& table,
+                                           std::span<const Sample> samples,
                                            const std::string& step = "calibration") {
-  const ParameterTable table = C::table(samples);
-  return make_calibration(crate.problem(table), C::free(table), samples, step);
+  return make_calibration(crate.problem(table), Crate<Parts...>::free(table), samples, step);
+}
+template <class... Parts>
+[[nodiscard]] Calibration make_calibration(const Crate<Parts...>& crate,
+                                           std::span<const Sample> samples,
+                                           const std::string& step = "calibration") {
+  return make_calibration(crate, Crate<Parts...>::table(samples), samples, step);
 }
 
 /// Makes the calibration of a crate and solves it.
+/// @param table  as above
 /// @throws  as make_calibration()
+template <class... Parts>
+[[nodiscard]] CrateResult<Crate<Parts...>> calibrate(const Crate<Parts...>& crate,
+                                                     const ParameterTable& table,
+                                                     std::span<const Sample> samples,
+                                                     const SolveOptions& options = {}) {
+  Calibration calibration = make_calibration(crate, table, samples);
+  calibration.steps.front().max_num_iterations = options.max_num_iterations;
+  return {calibrate(calibration, {}, options)};
+}
 template <class... Parts>
 [[nodiscard]] CrateResult<Crate<Parts...>> calibrate(const Crate<Parts...>& crate,
                                                      std::span<const Sample> samples,
                                                      const SolveOptions& options = {}) {
-  Calibration calibration = make_calibration(crate, samples);
-  calibration.steps.front().max_num_iterations = options.max_num_iterations;
-  return {calibrate(calibration, {}, options)};
+  return calibrate(crate, Crate<Parts...>::table(samples), samples, options);
 }
 
 }  // namespace kinecal
