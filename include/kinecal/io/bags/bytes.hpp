@@ -1,0 +1,77 @@
+// Bytes that nobody trusts: numbers and texts are read from them within bounds, or not at all.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace kinecal {
+
+using Bytes = std::span<const std::byte>;
+
+/// Bytes that are not what they should be: "byte 1234: what is wrong".
+struct BytesError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads from the front of bytes.  Never beyond their end: it throws instead.
+class ByteReader {
+ public:
+  /// @param start  what messages call the first byte: where it stands in its file
+  explicit ByteReader(Bytes bytes, std::endian order = std::endian::little, std::uint64_t start = 0)
+      : bytes_(bytes), order_(order), start_(start) {}
+
+  [[nodiscard]] std::size_t read() const { return read_; }  ///< bytes so far
+  [[nodiscard]] std::size_t left() const { return bytes_.size() - read_; }
+  [[nodiscard]] bool at_end() const { return left() == 0; }
+  [[nodiscard]] std::uint64_t place() const { return start_ + read_; }
+
+  template <class T>
+  requires std::integral<T> || std::floating_point<T>
+  [[nodiscard]] T number() {
+    std::array<std::byte, sizeof(T)> raw;
+    std::memcpy(raw.data(), take(sizeof(T)).data(), sizeof(T));
+    if (order_ != std::endian::native) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<T>(raw);
+  }
+
+  /// The next `count` bytes.
+  /// @throws BytesError  if there are fewer
+  [[nodiscard]] Bytes take(std::uint64_t count) {
+    if (count > left()) {
+      fail(std::to_string(count) + " bytes are needed and " + std::to_string(left()) +
+           " are left; is it cut off?");
+    }
+    const Bytes taken = bytes_.subspan(read_, static_cast<std::size_t>(count));
+    read_ += taken.size();
+    return taken;
+  }
+
+  void skip(std::uint64_t count) { (void)take(count); }
+
+  [[nodiscard]] std::string_view text(std::uint64_t count) {
+    const Bytes taken = take(count);
+    return {reinterpret_cast<const char*>(taken.data()), taken.size()};
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw BytesError("byte " + std::to_string(place()) + ": " + what);
+  }
+
+ private:
+  Bytes bytes_;
+  std::endian order_;
+  std::uint64_t start_;
+  std::size_t read_ = 0;
+};
+
+}  // namespace kinecal
