@@ -1,0 +1,150 @@
+// Messages from the bytes in which ROS 1 and ROS 2 write them.
+//
+//   ROS 1   little endian, unaligned; texts and lists after a uint32 length
+//   CDR     a header of 4 bytes, the second of which tells the order of bytes; a number of N bytes
+//           stands at a multiple of N from there; the length of a text counts its final NUL
+//
+// Lengths are checked against the bytes that are left before memory is taken for them.
+// Source: ROS 1 wiki, Connection header and msg; OMG CORBA 3.0, 15.3; DDSI-RTPS 2.2, 10.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/messages/definition.hpp"
+#include "kinecal/io/messages/value.hpp"
+
+namespace kinecal {
+namespace detail {
+
+/// Numbers and texts as ROS 1 writes them.
+class Ros1Wire {
+ public:
+  explicit Ros1Wire(Bytes data) : reader_(data) {}
+
+  [[nodiscard]] ByteReader& reader() { return reader_; }
+
+  template <class T>
+  [[nodiscard]] T number() {
+    return reader_.number<T>();
+  }
+  [[nodiscard]] std::string_view text() { return reader_.text(number<std::uint32_t>()); }
+  void empty_message() {}
+
+ private:
+  ByteReader reader_;
+};
+
+/// Numbers and texts in CDR.
+class CdrWire {
+ public:
+  /// @throws BytesError  if it is no plain CDR
+  explicit CdrWire(Bytes data) : reader_(data) {
+    const auto header = reader_.take(kHeader);
+    const int kind = std::to_integer<int>(header[0]) * 256 + std::to_integer<int>(header[1]);
+    if (kind > 1) reader_.fail("the message is not plain CDR");
+    const auto order = kind == 1 ? std::endian::little : std::endian::big;
+    reader_ = ByteReader(data.subspan(kHeader), order, kHeader);
+  }
+
+  [[nodiscard]] ByteReader& reader() { return reader_; }
+
+  template <class T>
+  [[nodiscard]] T number() {
+    reader_.skip((sizeof(T) - reader_.read() % sizeof(T)) % sizeof(T));
+    return reader_.number<T>();
+  }
+  [[nodiscard]] std::string_view text() {
+    const std::string_view text = reader_.text(number<std::uint32_t>());
+    return text.ends_with('\0') ? text.substr(0, text.size() - 1) : text;
+  }
+  /// A message without fields has one byte.
+  void empty_message() { reader_.skip(1); }
+
+ private:
+  static constexpr std::size_t kHeader = 4;
+
+  ByteReader reader_;
+};
+
+template <class Wire>
+class Decoder {
+ public:
+  Decoder(const MessageDefinition& definition, Bytes data) : definition_(definition), wire_(data) {}
+
+  [[nodiscard]] MessageFields message(std::size_t type = 0) {
+    MessageFields result;
+    const MessageType& message = definition_[type];
+    if (message.fields.empty()) wire_.empty_message();
+    result.fields.reserve(message.fields.size());
+    for (const MessageField& f : message.fields) result.fields.emplace_back(f.name, field(f));
+    return result;
+  }
+
+ private:
+  [[nodiscard]] MessageValue field(const MessageField& f) {
+    if (f.count == MessageField::Count::one) return one(f);
+    const std::uint32_t count =
+        f.count == MessageField::Count::fixed ? f.size : wire_.template number<std::uint32_t>();
+    // Not exact for messages in lists, but each has a byte at least, or it would have no field.
+    if (count > wire_.reader().left()) {
+      wire_.reader().fail("'" + f.name + "' has " + std::to_string(count) +
+                          " items, more than bytes are left; is it cut off?");
+    }
+    if (f.type == FieldType::uint8 || f.type == FieldType::int8) return wire_.reader().take(count);
+    MessageValue::List list;
+    for (std::uint32_t i = 0; i < count; ++i) list.push_back(one(f));
+    return list;
+  }
+
+  [[nodiscard]] MessageValue one(const MessageField& f) {
+    switch (f.type) {
+      case FieldType::boolean:
+      case FieldType::uint8:
+        return std::uint64_t{wire_.template number<std::uint8_t>()};
+      case FieldType::int8:
+        return std::int64_t{wire_.template number<std::int8_t>()};
+      case FieldType::int16:
+        return std::int64_t{wire_.template number<std::int16_t>()};
+      case FieldType::uint16:
+        return std::uint64_t{wire_.template number<std::uint16_t>()};
+      case FieldType::int32:
+        return std::int64_t{wire_.template number<std::int32_t>()};
+      case FieldType::uint32:
+        return std::uint64_t{wire_.template number<std::uint32_t>()};
+      case FieldType::int64:
+        return wire_.template number<std::int64_t>();
+      case FieldType::uint64:
+        return wire_.template number<std::uint64_t>();
+      case FieldType::float32:
+        return static_cast<double>(wire_.template number<float>());
+      case FieldType::float64:
+        return wire_.template number<double>();
+      case FieldType::text:
+        return wire_.text();
+      case FieldType::message:
+        break;
+    }
+    return message(f.message);
+  }
+
+  const MessageDefinition& definition_;
+  Wire wire_;
+};
+
+}  // namespace detail
+
+/// @param definition  must outlive the result
+/// @param data        must outlive the result
+/// @throws BytesError  if the bytes are not such a message, with the place in it
+[[nodiscard]] inline MessageFields decode(const MessageDefinition& definition, Encoding encoding,
+                                          Bytes data) {
+  if (encoding == Encoding::ros1) {
+    return detail::Decoder<detail::Ros1Wire>(definition, data).message();
+  }
+  return detail::Decoder<detail::CdrWire>(definition, data).message();
+}
+
+}  // namespace kinecal

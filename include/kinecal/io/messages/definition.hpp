@@ -1,0 +1,249 @@
+// What a message consists of, read from the .msg text that a bag carries.
+//
+//   # comment                        geometry_msgs/PointStamped[] features
+//   uint8 FLOAT32 = 7                float64[9] K
+//   ================================================================================
+//   MSG: geometry_msgs/PointStamped
+//   ...
+//
+// A type without a package is of the package that uses it; of ROS 1, Header is std_msgs/Header and
+// time and duration are two numbers.  ROS 2 adds bounds (string<=10, int32[<=4]) and default
+// values. Source: ROS 1 wiki, msg; ROS 2 documentation, Interfaces. SPDX-License-Identifier:
+// Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace kinecal {
+
+/// A definition that cannot be read: what is wrong, with the line of the text.
+struct DefinitionError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+enum class FieldType : std::uint8_t {
+  boolean,
+  int8,
+  uint8,
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64,
+  text,
+  message
+};
+
+struct MessageField {
+  enum class Count : std::uint8_t { one, fixed, any };
+
+  std::string name;
+  FieldType type = FieldType::message;
+  std::size_t message = 0;  ///< of type message: which one of the definition
+  Count count = Count::one;
+  std::uint32_t size = 1;  ///< of a list of fixed size
+};
+
+struct MessageType {
+  std::string name;  ///< "package/Type"
+  std::vector<MessageField> fields;
+};
+
+/// A message and all that it consists of; the message is the first.
+using MessageDefinition = std::vector<MessageType>;
+
+/// "sensor_msgs/msg/JointState" of ROS 2 is "sensor_msgs/JointState" of ROS 1.
+[[nodiscard]] inline std::string plain_type(std::string_view type) {
+  const std::size_t at = type.find("/msg/");
+  if (at == std::string_view::npos) return std::string(type);
+  return std::string(type.substr(0, at)) + std::string(type.substr(at + 4));
+}
+
+namespace detail {
+
+/// The lines of one type.
+struct DefinitionPart {
+  std::string name;
+  std::vector<std::pair<int, std::string_view>> lines;  ///< with their numbers, from 1
+};
+
+[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+[[nodiscard]] inline std::vector<DefinitionPart> definition_parts(const std::string& type,
+                                                                  std::string_view text) {
+  std::vector<DefinitionPart> parts = {{plain_type(type), {}}};
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    constexpr std::string_view kBegins = "MSG:";
+    if (line.starts_with("===")) continue;
+    if (line.starts_with(kBegins)) {
+      parts.push_back({plain_type(trimmed(line.substr(kBegins.size()))), {}});
+    } else if (!line.empty() && line.front() != '#') {
+      parts.back().lines.emplace_back(number, line);
+    }
+  }
+  return parts;
+}
+
+class DefinitionParser {
+ public:
+  explicit DefinitionParser(std::vector<DefinitionPart> parts) : parts_(std::move(parts)) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) by_name_.try_emplace(parts_[i].name, i);
+  }
+
+  [[nodiscard]] MessageDefinition parse() {
+    (void)add(parts_.front().name, 0);
+    return std::move(types_);
+  }
+
+ private:
+  static constexpr int kMaxDepth = 32;
+
+  /// @return  where the type stands in the definition
+  std::size_t add(const std::string& name, int depth) {
+    for (std::size_t i = 0; i < types_.size(); ++i) {
+      if (types_[i].name == name) return i;
+    }
+    // A type is added before its fields: one within itself would never end when it is read.
+    if (depth > kMaxDepth) throw DefinitionError(fmt::format("'{}' is nested too deeply", name));
+    const std::size_t here = types_.size();
+    types_.push_back({name, {}});
+    if (name == kTime || name == kDuration) {
+      const FieldType seconds = name == kTime ? FieldType::uint32 : FieldType::int32;
+      types_[here].fields = {{"secs", seconds}, {"nsecs", seconds}};
+      return here;
+    }
+    const auto part = by_name_.find(name);
+    if (part == by_name_.end()) {
+      throw DefinitionError(fmt::format("type '{}' is used and not defined", name));
+    }
+    for (const auto& [line, text] : parts_[part->second].lines) {
+      if (auto field = parse_field(name, line, text, depth)) {
+        types_[here].fields.push_back(std::move(*field));
+      }
+    }
+    return here;
+  }
+
+  /// @return  nothing for a constant
+  [[nodiscard]] std::optional<MessageField> parse_field(const std::string& owner, int line,
+                                                        std::string_view text, int depth) {
+    const std::size_t type_end = text.find_first_of(" \t");
+    if (type_end == std::string_view::npos) {
+      throw DefinitionError(fmt::format("line {}: '{}' has no name", line, text));
+    }
+    std::string_view rest = trimmed(text.substr(type_end));
+    const std::size_t name_end = std::min(rest.find_first_of(" \t=#"), rest.size());
+    MessageField field;
+    field.name = rest.substr(0, name_end);
+    if (trimmed(rest.substr(name_end)).starts_with('=')) return std::nullopt;
+    std::string_view type = text.substr(0, type_end);
+    if (const std::size_t bracket = type.find('['); bracket != std::string_view::npos) {
+      set_count(field, type.substr(bracket), line);
+      type = type.substr(0, bracket);
+    }
+    set_type(field, type.substr(0, type.find("<=")), owner, line, depth);
+    return field;
+  }
+
+  static void set_count(MessageField& field, std::string_view brackets, int line) {
+    if (!brackets.ends_with(']')) {
+      throw DefinitionError(fmt::format("line {}: '{}' is no size", line, brackets));
+    }
+    const std::string_view size = brackets.substr(1, brackets.size() - 2);
+    field.count = MessageField::Count::any;
+    if (size.empty() || size.starts_with("<=")) return;
+    field.count = MessageField::Count::fixed;
+    const auto [end, error] = std::from_chars(size.data(), size.data() + size.size(), field.size);
+    if (error != std::errc() || end != size.data() + size.size()) {
+      throw DefinitionError(fmt::format("line {}: '{}' is no size", line, brackets));
+    }
+  }
+
+  void set_type(MessageField& field, std::string_view type, const std::string& owner, int line,
+                int depth) {
+    constexpr std::array<std::pair<std::string_view, FieldType>, 14> kPrimitives = {{
+        {"bool", FieldType::boolean},
+        {"int8", FieldType::int8},
+        {"byte", FieldType::uint8},
+        {"char", FieldType::uint8},
+        {"uint8", FieldType::uint8},
+        {"int16", FieldType::int16},
+        {"uint16", FieldType::uint16},
+        {"int32", FieldType::int32},
+        {"uint32", FieldType::uint32},
+        {"int64", FieldType::int64},
+        {"uint64", FieldType::uint64},
+        {"float32", FieldType::float32},
+        {"float64", FieldType::float64},
+        {"string", FieldType::text},
+    }};
+    for (const auto& [name, primitive] : kPrimitives) {
+      if (type == name) {
+        field.type = primitive;
+        return;
+      }
+    }
+    if (type == "wstring") {
+      throw DefinitionError(fmt::format("line {}: wide strings are not supported", line));
+    }
+    field.message = add(full_name(type, owner), depth + 1);
+    if (contains(field.message, owner, 0)) {
+      throw DefinitionError(fmt::format("line {}: '{}' contains itself", line, owner));
+    }
+  }
+
+  [[nodiscard]] bool contains(std::size_t type, const std::string& name, int depth) const {
+    if (types_[type].name == name || depth > kMaxDepth) return true;
+    for (const MessageField& field : types_[type].fields) {
+      if (field.type == FieldType::message && contains(field.message, name, depth + 1)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::string full_name(std::string_view type, const std::string& owner) const {
+    if (type == kTime || type == kDuration) return std::string(type);
+    if (type == "Header") return "std_msgs/Header";
+    if (type.find('/') != std::string_view::npos) return plain_type(type);
+    return owner.substr(0, owner.find('/') + 1) + std::string(type);
+  }
+
+  static constexpr std::string_view kTime = "time", kDuration = "duration";
+
+  std::vector<DefinitionPart> parts_;
+  std::map<std::string, std::size_t> by_name_;
+  MessageDefinition types_;
+};
+
+}  // namespace detail
+
+/// @param type  "package/Type" of the message, of ROS 1 or 2
+/// @param text  its .msg text and those of all types that it uses
+/// @throws DefinitionError  naming the line of the text or the type that is missing
+[[nodiscard]] inline MessageDefinition parse_definition(const std::string& type,
+                                                        std::string_view text) {
+  return detail::DefinitionParser(detail::definition_parts(type, text)).parse();
+}
+
+}  // namespace kinecal
