@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/samples/sample_schema.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
@@ -38,6 +39,18 @@ struct SampleErrors {
   }
   void warn(int line, std::string text) { warnings.push_back({line, std::move(text)}); }
 };
+
+inline void tell(const SampleErrors& all, const std::string& file, Diagnostics& diagnostics) {
+  for (const auto& [line, text] : all.warnings) diagnostics.warning({file, line}, text);
+  for (std::size_t i = 0; i < all.errors.size(); ++i) {
+    const auto& [line, text] = all.errors[i];
+    const bool last = i == SampleErrors::kMost;
+    diagnostics.error({file, line}, last ? fmt::format("more than {} mistakes; this one and those "
+                                                       "that follow are not told",
+                                                       SampleErrors::kMost)
+                                         : text);
+  }
+}
 
 /// A text of the file as a message shows it: short, and without control characters.
 [[nodiscard]] inline std::string shown(std::string_view text) {

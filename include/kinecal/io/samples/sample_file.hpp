@@ -95,7 +95,7 @@ class SampleFile {
       if (piece.stops() || all.too_many()) break;
     }
     if (all.errors.empty()) check_end(samples, sample_line, all);
-    tell(all, diagnostics);
+    tell(all, file_, diagnostics);
     return samples;
   }
 
@@ -147,19 +147,6 @@ class SampleFile {
                 "the file ends within a line of this sample, the last one; if it is not cut off, "
                 "add a line '---'");
       }
-    }
-  }
-
-  void tell(const SampleErrors& all, Diagnostics& diagnostics) const {
-    for (const auto& [line, text] : all.warnings) diagnostics.warning({file_, line}, text);
-    for (std::size_t i = 0; i < all.errors.size(); ++i) {
-      const auto& [line, text] = all.errors[i];
-      const bool last = i == SampleErrors::kMost;
-      diagnostics.error({file_, line},
-                        last ? fmt::format("more than {} mistakes; this one and those "
-                                           "that follow are not told",
-                                           SampleErrors::kMost)
-                             : text);
     }
   }
 

@@ -27,6 +27,8 @@ class SampleHandler {
 
   [[nodiscard]] std::vector<Sample> take() { return std::move(samples_); }
   [[nodiscard]] SampleBuilder& builder() { return builder_; }
+  /// In something that is not known: what stands in it need not be told.
+  [[nodiscard]] bool skips() const { return skipped_ > 0; }
   [[nodiscard]] bool last_document_is_empty() const { return last_document_is_empty_; }
 
   void document_starts() {

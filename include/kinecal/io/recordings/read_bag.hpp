@@ -1,0 +1,61 @@
+// Bags of any format, told apart by what is in them and not by their names.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/db3.hpp"
+#include "kinecal/io/bags/mcap.hpp"
+#include "kinecal/io/bags/ros1_bag.hpp"
+#include "kinecal/io/bags/ros2_bag.hpp"
+#include "kinecal/io/diagnostics.hpp"
+
+namespace kinecal {
+
+enum class RecordingFormat { yaml, ros1_bag, mcap, sqlite, ros2_bag };
+
+/// The name of a format as messages say it.
+[[nodiscard]] inline std::string_view to_string(RecordingFormat format) {
+  constexpr std::array<std::string_view, 5> kNames = {"YAML", "ROS 1 bag", "MCAP",
+                                                      "ROS 2 bag (SQLite)", "ROS 2 bag"};
+  return kNames[static_cast<std::size_t>(format)];
+}
+
+/// The format of a file by its first bytes; folders are bags of ROS 2.  YAML is what is nothing
+/// else, also where nothing can be read: whoever reads it then says so.
+[[nodiscard]] inline RecordingFormat recording_format(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return RecordingFormat::ros2_bag;
+  std::array<char, 16> first{};
+  std::ifstream(path, std::ios::binary).read(first.data(), first.size());
+  const std::string_view text(first.data(), first.size());
+  if (text.starts_with("#ROSBAG V")) return RecordingFormat::ros1_bag;
+  if (text.starts_with("\x89MCAP")) return RecordingFormat::mcap;
+  if (text.starts_with("SQLite format 3")) return RecordingFormat::sqlite;
+  return RecordingFormat::yaml;
+}
+
+/// Reads a bag of any format but YAML.
+/// @param diagnostics  receives what is wrong with the bag; nothing is thrown for that
+inline void read_bag(const std::string& path, const BagReader& reader, Diagnostics& diagnostics) {
+  switch (recording_format(path)) {
+    case RecordingFormat::ros1_bag:
+      return read_ros1_bag(path, reader, diagnostics);
+    case RecordingFormat::mcap:
+      return read_mcap(path, reader, diagnostics);
+    case RecordingFormat::sqlite:
+      return read_db3(path, reader, diagnostics);
+    case RecordingFormat::ros2_bag:
+      return read_ros2_bag(path, reader, diagnostics);
+    case RecordingFormat::yaml:
+      diagnostics.error({path, 0}, "is no bag");
+  }
+}
+
+}  // namespace kinecal
