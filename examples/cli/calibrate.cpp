@@ -95,7 +95,7 @@ int calibrate(const CalibrateOptions& options) {
   }
   if (folder) {
     const std::vector<OutputFile> files =
-        output_files(input.robot, {options.urdf, input.urdf_text}, input.calibration, result,
+        output_files(input.robot, {input.urdf, input.urdf_text}, input.calibration, result,
                      observability, input.samples, file_options(options));
     check_targets(options, folder->path(), files);
     write(*folder, files);

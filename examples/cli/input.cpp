@@ -8,7 +8,6 @@
 
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 
 namespace kinecal::cli {
@@ -27,14 +26,14 @@ auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(re
 
 }  // namespace
 
-std::vector<Sample> read_all_samples(const std::vector<std::string>& files,
-                                     Diagnostics& diagnostics) {
-  std::vector<Sample> all;
+Recording read_recordings(const std::vector<std::string>& files, Diagnostics& diagnostics) {
+  Recording all;
   for (const std::string& file : files) {
-    auto samples = attempt([&] { return read_samples(file, diagnostics); }, diagnostics);
-    if (!samples) continue;
-    all.insert(all.end(), std::make_move_iterator(samples->begin()),
-               std::make_move_iterator(samples->end()));
+    auto read = attempt([&] { return read_recording(file, diagnostics); }, diagnostics);
+    if (!read) continue;
+    all.samples.insert(all.samples.end(), std::make_move_iterator(read->samples.begin()),
+                       std::make_move_iterator(read->samples.end()));
+    if (all.urdf.empty()) all.urdf = std::move(read->urdf);
   }
   return all;
 }
@@ -43,18 +42,32 @@ Input read_input(const std::string& urdf, const std::string& config,
                  const std::vector<std::string>& samples) {
   Input input;
   Diagnostics& diagnostics = input.diagnostics;
-  const auto robot = attempt(
-      [&] {
-        input.urdf_text = read_urdf_text(urdf);
-        return parse_urdf(input.urdf_text, urdf);
-      },
-      diagnostics);
-  if (robot) input.robot = *robot;
+  const auto read_robot = [&](auto&& text) {
+    return attempt(
+        [&] {
+          input.urdf_text = text();
+          return parse_urdf(input.urdf_text, input.urdf);
+        },
+        diagnostics);
+  };
+  input.urdf = urdf;
+  std::optional<Robot> robot;
+  if (!urdf.empty()) robot = read_robot([&] { return read_urdf_text(urdf); });
   const std::size_t before = diagnostics.errors.size();
   auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
   const bool configuration_is_good = diagnostics.errors.size() == before;
-  input.samples = read_all_samples(samples, diagnostics);
+  Recording recording = read_recordings(samples, diagnostics);
+  input.samples = std::move(recording.samples);
+  if (urdf.empty() && recording.urdf.empty()) {
+    diagnostics.error({"--urdf", 0}, samples.empty()
+                                         ? "is required without samples"
+                                         : "is required: no /robot_description in the samples");
+  } else if (urdf.empty()) {
+    input.urdf = "/robot_description";
+    robot = read_robot([&] { return std::move(recording.urdf); });
+  }
   if (!robot || !configuration) return input;
+  input.robot = *robot;
   if (diagnostics.errors.size() == before) {
     input.calibration = assemble(*configuration, *robot, input.samples, diagnostics);
     return input;

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/io/recordings/bag_topics.hpp"
 #include "kinecal/report/text.hpp"
 
 namespace kinecal::cli {
@@ -106,13 +107,48 @@ void print_gaps(const std::vector<Sample>& samples) {
   fmt::print("Gaps\n{}", gaps.empty() ? "  none\n" : gaps);
 }
 
+void print_topics(const std::string& file, const std::vector<TopicContent>& topics) {
+  fmt::print("{}: {}\n", file, to_string(recording_format(file)));
+  TextTable table({"topic", "type", "used as", "messages", "kB"}, 3);
+  for (const TopicContent& topic : topics) {
+    table.add({topic.name, topic.type, std::string(to_string(topic.use)),
+               fmt::format("{}", topic.messages),
+               fmt::format("{:.1f}", 1e-3 * double(topic.bytes))});
+  }
+  fmt::print("{}\n", table.str());
+}
+
+/// Prints what bags hold.
+/// @return  the files with samples
+std::vector<std::string> with_samples(const std::vector<std::string>& files,
+                                      Diagnostics& diagnostics) {
+  std::vector<std::string> found;
+  for (const std::string& file : files) {
+    if (recording_format(file) == RecordingFormat::yaml) {
+      found.push_back(file);
+      continue;
+    }
+    const std::vector<TopicContent> topics = bag_topics(file, diagnostics);
+    if (!topics.empty()) print_topics(file, topics);
+    if (std::any_of(topics.begin(), topics.end(), [](const TopicContent& topic) {
+          return topic.use == TopicUse::samples && topic.messages > 0;
+        })) {
+      found.push_back(file);
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 int inspect(const std::vector<std::string>& files) {
-  Diagnostics diagnostics;
-  const std::vector<Sample> samples = read_all_samples(files, diagnostics);
-  print(diagnostics);
-  if (!diagnostics.errors.empty()) return kBadInput;
+  Diagnostics of_bags, of_samples;
+  const std::vector<std::string> used = with_samples(files, of_bags);
+  const std::vector<Sample> samples = read_recordings(used, of_samples).samples;
+  print(of_bags);
+  if (of_bags.errors.empty()) print(of_samples);  // else once is enough
+  if (!of_bags.errors.empty() || !of_samples.errors.empty()) return kBadInput;
+  if (used.empty()) return kDone;
   fmt::print("{} samples\n\n", samples.size());
   print_joints(samples);
   print_sensors(samples);

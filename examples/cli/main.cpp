@@ -11,7 +11,10 @@ namespace {
 using namespace kinecal::cli;
 
 void add_input(CLI::App& command, std::string& urdf, std::string& config) {
-  command.add_option("--urdf", urdf, "the robot's URDF")->required()->type_name("FILE");
+  command
+      .add_option("--urdf", urdf,
+                  "the robot's URDF; without it the bag's /robot_description is taken")
+      ->type_name("FILE");
   command
       .add_option("--config", config, "what is calibrated: robot_calibration's YAML, of ROS 1 or 2")
       ->required()
@@ -29,7 +32,8 @@ int run(int argc, char** argv) {
       "calibrate", "calibrate the robot and write its corrected URDF and camera files");
   add_input(*calibrate_command, calibrating.urdf, calibrating.config);
   calibrate_command
-      ->add_option("--samples", calibrating.samples, "recorded samples, CalibrationData YAML")
+      ->add_option("--samples", calibrating.samples,
+                   "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
       ->required()
       ->type_name("FILE");
   CLI::Option* output =
