@@ -1,0 +1,103 @@
+// A bag that is written: ROS 1, or MCAP for ROS 2.
+//
+// It appears under its name when it is complete, not before.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "kinecal/io/bags/write_mcap.hpp"
+#include "kinecal/io/bags/write_ros1_bag.hpp"
+#include "kinecal/io/messages/encode.hpp"
+#include "kinecal/io/messages/known_definitions.hpp"
+#include "kinecal/io/results/file_set.hpp"
+
+namespace kinecal {
+
+class BagOutput {
+ public:
+  /// @param encoding  ros1 for a ROS 1 bag, cdr for MCAP
+  /// @throws OutputError  if nothing can be written there
+  BagOutput(std::filesystem::path path, Encoding encoding)
+      : path_(std::move(path)),
+        encoding_(encoding),
+        staging_(path_.has_parent_path() ? path_.parent_path() : "."),
+        file_(staging_.path() / path_.filename(), std::ios::binary) {
+    if (encoding_ == Encoding::ros1) {
+      writer_.emplace<Ros1BagWriter>(file_);
+    } else {
+      writer_.emplace<McapWriter>(file_, McapOptions{best_mcap_compression()});
+    }
+  }
+
+  [[nodiscard]] Encoding encoding() const { return encoding_; }
+
+  /// Writes a message as it is: its topic must have this bag's encoding and a definition.
+  void copy(const BagTopic& topic, std::int64_t time, Bytes data) {
+    write(number_of(topic), time, data);
+  }
+
+  /// Writes a message of a known type, in this bag's encoding.
+  /// @param topic  name and type of the message
+  void write(const BagTopic& topic, std::int64_t time, const MessageFields& message) {
+    const BagTopic written{topic.name, topic.type, known_definition(topic.type, encoding_),
+                           encoding_, known_md5(topic.type)};
+    auto definition = definitions_.find(topic.type);
+    if (definition == definitions_.end()) {
+      const auto parsed = parse_definition(topic.type, written.definition);
+      definition = definitions_.emplace(topic.type, parsed).first;
+    }
+    write(number_of(written), time, encode(message, definition->second, encoding_));
+  }
+
+  /// Gives the bag its name.
+  /// @throws OutputError  if it could not be written to its end, as on a full disk
+  void finish() {
+    std::visit(
+        [](auto& writer) {
+          if constexpr (requires { writer.close(); }) writer.close();
+        },
+        writer_);
+    file_.close();
+    if (!file_) throw OutputError(path_.string() + ": cannot be written to its end");
+    detail::rename_file(staging_.path() / path_.filename(), path_);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t number_of(const BagTopic& topic) {
+    const auto key = std::pair(topic.name, topic.type);
+    if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
+    std::uint32_t number = 0;
+    if (auto* bag = std::get_if<Ros1BagWriter>(&writer_)) {
+      number = bag->add_topic(topic, topic.name.ends_with("robot_description"));
+    } else {
+      number = std::get<McapWriter>(writer_).add_topic(topic);
+    }
+    return numbers_.emplace(key, number).first->second;
+  }
+
+  void write(std::uint32_t number, std::int64_t time, Bytes data) {
+    if (auto* bag = std::get_if<Ros1BagWriter>(&writer_)) {
+      bag->write(number, time, data);
+    } else {
+      std::get<McapWriter>(writer_).write(static_cast<std::uint16_t>(number), time, data);
+    }
+  }
+
+  std::filesystem::path path_;
+  Encoding encoding_;
+  detail::StagingFolder staging_;
+  std::ofstream file_;
+  std::variant<std::monostate, Ros1BagWriter, McapWriter> writer_;
+  std::map<std::pair<std::string, std::string>, std::uint32_t> numbers_;
+  std::map<std::string, MessageDefinition> definitions_;  ///< of known types, in this encoding
+};
+
+}  // namespace kinecal

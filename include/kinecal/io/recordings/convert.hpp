@@ -1,0 +1,97 @@
+// From one format of recordings to another.
+//
+// Between bags of one encoding messages are copied as they are.  From ROS 1 to ROS 2 and back those
+// of known types are decoded and encoded; others are left out, which is told.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/recordings/bag_output.hpp"
+#include "kinecal/io/recordings/known_topics.hpp"
+#include "kinecal/io/recordings/read_bag.hpp"
+#include "kinecal/io/recordings/sample_message.hpp"
+
+namespace kinecal {
+namespace detail {
+
+/// The same message without images and point clouds, which calibration does not use.
+[[nodiscard]] inline MessageFields without_clouds(const MessageFields& message) {
+  MessageFields kept = message;
+  for (auto& [name, value] : kept.fields) {
+    auto* seen = std::get_if<MessageValue::List>(static_cast<MessageValue::variant*>(&value));
+    if (name != "observations" || seen == nullptr) continue;
+    for (MessageValue& one : *seen) {
+      if (auto* fields = std::get_if<MessageFields>(static_cast<MessageValue::variant*>(&one))) {
+        std::erase_if(fields->fields, [](const auto& field) {
+          return field.first == "cloud" || field.first == "image";
+        });
+      }
+    }
+  }
+  return kept;
+}
+
+}  // namespace detail
+
+struct ConvertOptions {
+  bool drop_clouds = false;  ///< of the observations
+};
+
+/// Writes what is in a bag into another one.
+/// @param diagnostics  receives what is wrong with the bag, and as warnings what is left out
+/// @return             messages written
+inline std::size_t convert_bag(const std::string& from, BagOutput& to,
+                               const ConvertOptions& options, Diagnostics& diagnostics) {
+  MessageDecoder decoder(from, diagnostics);
+  std::map<std::string, std::size_t> left_out;
+  std::size_t written = 0;
+  int number = 0;
+  const auto wants = [&](const BagTopic& topic) {
+    const bool known = !known_definition(topic.type, to.encoding()).empty();
+    const bool copied = topic.encoding == to.encoding() && !topic.definition.empty();
+    if (!known && !copied) left_out.emplace(topic.name, 0);
+    return known || copied;
+  };
+  const auto handle = [&](const BagMessage& message) {
+    const BagTopic& topic = message.topic;
+    const bool drops = options.drop_clouds && use_of(topic) == TopicUse::samples;
+    ++number;
+    if (topic.encoding == to.encoding() && !drops && !topic.definition.empty()) {
+      to.copy(topic, message.time, message.data);
+    } else if (const auto content = decoder.decode(message, number)) {
+      to.write(topic, message.time, drops ? detail::without_clouds(*content) : *content);
+    } else {
+      return;
+    }
+    ++written;
+  };
+  read_bag(from, {wants, handle}, diagnostics);
+  for (const auto& [name, count] : left_out) {
+    diagnostics.warning({from, 0}, fmt::format("topic '{}' is left out: its type is not known in "
+                                               "the other ROS",
+                                               name));
+  }
+  return written;
+}
+
+/// Writes samples as messages on /calibration_data, one a second.
+inline void write_samples(BagOutput& to, const std::vector<Sample>& samples) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const BagTopic topic{"calibration_data", "robot_calibration_msgs/CalibrationData", {}, {}, {}};
+  std::int64_t time = 0;
+  for (const Sample& sample : samples) to.write(topic, time += kSecond, sample_message(sample));
+}
+
+/// Writes a URDF as message on /robot_description.
+inline void write_urdf(BagOutput& to, const std::string& urdf) {
+  to.write({"robot_description", "std_msgs/String", {}, {}, {}}, 1,
+           detail::fields("data", std::string_view(urdf)));
+}
+
+}  // namespace kinecal
