@@ -1,7 +1,8 @@
 # The libraries, all header-only, one for each set of dependencies:
 #   kinecal::core   geometry ... crate           Eigen, threads
 #   kinecal::solve  solve, trust                 + Ceres
-#   kinecal::io     io, report                   + urdfdom, yaml-cpp, libyaml, pugixml, fmt
+#   kinecal::io     io, report                   + urdfdom, yaml-cpp, libyaml, pugixml, fmt;
+#                                                  what bags need, where it is here: KinecalBags.cmake
 #   kinecal::kinecal  all of them
 include(GNUInstallDirs)
 
@@ -46,6 +47,7 @@ kinecal_add_library(io
   FOLDERS io report
   LINK kinecal_solve urdfdom::urdfdom_model yaml-cpp PkgConfig::libyaml
        pugixml::pugixml fmt::fmt)
+include(KinecalBags)
 kinecal_add_library(kinecal
   FOLDERS kinecal
   LINK kinecal_io)

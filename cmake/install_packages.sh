@@ -4,7 +4,7 @@
 set -eu
 
 packages="g++ cmake ninja-build libeigen3-dev libceres-dev liburdfdom-dev libyaml-cpp-dev libyaml-dev pkg-config \
-libpugixml-dev libfmt-dev libcli11-dev"
+libpugixml-dev libfmt-dev libcli11-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev"
 if [ "${1:-}" = test ]; then
   packages="$packages clang-14 libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev \
 dpkg-dev file"

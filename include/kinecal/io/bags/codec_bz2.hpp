@@ -1,0 +1,76 @@
+// bz2, as Fetch records its bags.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/io/bags/unpack.hpp"
+
+#ifdef KINECAL_HAVE_BZ2
+#include <bzlib.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace kinecal::detail {
+
+class UnpackBz2 {
+ public:
+  UnpackBz2() = default;
+  UnpackBz2(const UnpackBz2&) = delete;
+  UnpackBz2& operator=(const UnpackBz2&) = delete;
+  ~UnpackBz2() { end(); }
+
+  [[nodiscard]] UnpackStep step(Bytes in, std::span<std::byte> out) {
+    if (!begun_) begin();
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    in = in.first(std::min(in.size(), kMost));
+    out = out.first(std::min(out.size(), kMost));
+    // bzlib writes nothing here, it only forgot to say so.
+    stream_.next_in = const_cast<char*>(reinterpret_cast<const char*>(in.data()));
+    stream_.avail_in = static_cast<unsigned>(in.size());
+    stream_.next_out = reinterpret_cast<char*>(out.data());
+    stream_.avail_out = static_cast<unsigned>(out.size());
+    const int status = BZ2_bzDecompress(&stream_);
+    if (status != BZ_OK && status != BZ_STREAM_END) {
+      throw BytesError("is not bz2, or damaged (bzlib error " + std::to_string(status) + ")");
+    }
+    if (status == BZ_STREAM_END) end();
+    return {in.size() - stream_.avail_in, out.size() - stream_.avail_out, status == BZ_STREAM_END};
+  }
+
+ private:
+  void begin() {
+    stream_ = {};
+    if (BZ2_bzDecompressInit(&stream_, 0, 0) != BZ_OK) throw std::bad_alloc();
+    begun_ = true;
+  }
+  void end() {
+    if (begun_) BZ2_bzDecompressEnd(&stream_);
+    begun_ = false;
+  }
+
+  bz_stream stream_{};
+  bool begun_ = false;
+};
+static_assert(Unpacker<UnpackBz2>);
+
+[[nodiscard]] inline std::vector<std::byte> pack_bz2(Bytes bytes) {
+  std::vector<std::byte> packed(bytes.size() + bytes.size() / 100 + 600);  // bzlib's bound
+  auto size = static_cast<unsigned>(packed.size());
+  // bzlib writes nothing to its source, it only forgot to say so.
+  char* source = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
+  const int status = BZ2_bzBuffToBuffCompress(reinterpret_cast<char*>(packed.data()), &size, source,
+                                              static_cast<unsigned>(bytes.size()), 9, 0, 0);
+  if (status != BZ_OK) throw std::runtime_error("bzlib error " + std::to_string(status));
+  packed.resize(size);
+  return packed;
+}
+
+}  // namespace kinecal::detail
+#endif

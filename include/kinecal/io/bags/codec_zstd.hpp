@@ -1,0 +1,60 @@
+// zstd, as MCAP and ROS 2 have it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/io/bags/unpack.hpp"
+
+#ifdef KINECAL_HAVE_ZSTD
+#include <zstd.h>
+
+namespace kinecal::detail {
+
+class UnpackZstd {
+ public:
+  /// @param packed  bytes in all; a window, the memory of zstd, is no larger than what they may
+  /// hold
+  explicit UnpackZstd(std::size_t packed) : context_(ZSTD_createDCtx()) {
+    if (!context_) throw std::bad_alloc();
+    const int log = static_cast<int>(std::bit_width(most_unpacked(packed) - 1));
+    ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, log);
+  }
+
+  [[nodiscard]] UnpackStep step(Bytes in, std::span<std::byte> out) {
+    ZSTD_inBuffer source{in.data(), in.size(), 0};
+    ZSTD_outBuffer target{out.data(), out.size(), 0};
+    const std::size_t status = ZSTD_decompressStream(context_.get(), &target, &source);
+    if (ZSTD_isError(status) != 0) {
+      throw BytesError(std::string("is not zstd, or damaged (") + ZSTD_getErrorName(status) + ")");
+    }
+    return {source.pos, target.pos, status == 0};
+  }
+
+ private:
+  struct Free {
+    void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+  };
+  std::unique_ptr<ZSTD_DCtx, Free> context_;
+};
+static_assert(Unpacker<UnpackZstd>);
+
+[[nodiscard]] inline std::vector<std::byte> pack_zstd(Bytes bytes) {
+  std::vector<std::byte> packed(ZSTD_compressBound(bytes.size()));
+  const std::size_t size =
+      ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), ZSTD_CLEVEL_DEFAULT);
+  if (ZSTD_isError(size) != 0) throw std::runtime_error(ZSTD_getErrorName(size));
+  packed.resize(size);
+  return packed;
+}
+
+}  // namespace kinecal::detail
+#endif

@@ -1,0 +1,251 @@
+// Reads a ROS 1 bag, version 2.0, as `rosbag record` writes it.
+//
+// The bag is walked from record to record.  Where its index is whole, chunks that hold nothing that
+// is wanted are not read; otherwise all are: a recording that was interrupted has no index, and
+// gives all that it holds up to there.  In memory is one chunk.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <istream>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/io/bags/compression.hpp"
+#include "kinecal/io/bags/ros1_file.hpp"
+#include "kinecal/io/bags/ros1_index.hpp"
+#include "kinecal/io/bags/ros1_messages.hpp"
+#include "kinecal/io/bags/ros1_record.hpp"
+#include "kinecal/io/diagnostics.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+class Ros1BagReading {
+ public:
+  Ros1BagReading(std::istream& in, std::string name, const BagReader& reader,
+                 Diagnostics& diagnostics)
+      : file_(in), messages_(std::move(name), reader, diagnostics) {}
+
+  void read() {
+    try {
+      check_magic();
+      header_ = read_ros1_bag_header(file_);
+    } catch (const CutOffError& e) {
+      return messages_.error(std::string(e.what()) +
+                             "; the bag is cut off in front of its first message");
+    } catch (const BytesError& e) {
+      return messages_.error(e.what());
+    }
+    const std::uint64_t first = file_.place();
+    const std::string not_whole = read_ros1_index(file_, header_, messages_.topics(), chunks_);
+    has_index_ = not_whole.empty();
+    end_ = has_index_ ? header_.index_place : file_.size();
+    file_.go_to(first);
+    walk();
+    if (!has_index_) tell_no_index(not_whole);
+  }
+
+ private:
+  void check_magic() {
+    if (!file_.known()) throw BytesError("cannot be sought in; is it a pipe? read it from a file");
+    if (file_.size() == 0) throw BytesError("is empty");
+    file_.read(std::min<std::uint64_t>(file_.size(), kRos1Magic.size()), packed_);
+    const std::string_view text(reinterpret_cast<const char*>(packed_.data()), packed_.size());
+    if (text == kRos1Magic) return;
+    if (kRos1Magic.starts_with(text)) throw BytesError("is cut off within its first line");
+    if (text.starts_with("#ROSBAG V1.") || text.starts_with("#ROSRECORD V1.")) {
+      throw BytesError("is a bag of version 1; 'rosbag fix' makes one of version 2.0 of it");
+    }
+    throw BytesError("is not a ROS 1 bag: its first line is not '#ROSBAG V2.0'");
+  }
+
+  void walk() {
+    while (file_.place() < end_ && !messages_.too_many_errors()) {
+      const std::uint64_t place = file_.place();
+      const auto next_chunk = chunks_.upper_bound(place);
+      const std::uint64_t next =
+          next_chunk != chunks_.end() ? std::min(next_chunk->first, end_) : end_;
+      try {
+        record();
+        if (file_.place() > next) throw BytesError(at(place) + "the record is too long");
+        read_to_ = file_.place();
+      } catch (const CutOffError& e) {
+        if (!has_index_) return;  // told with the index
+        go_on(next, e.what());
+      } catch (const BytesError& e) {
+        if (!has_index_ && (is_in_open_chunk_ || is_in_index(place))) return;  // as well
+        go_on(next, e.what());
+      }
+    }
+  }
+
+  /// What begins at `place` is not a record; the index knows where the next chunk is.
+  void go_on(std::uint64_t next, const std::string& why) {
+    messages_.error(why + "; what follows, up to byte " + std::to_string(next) + ", is lost");
+    file_.go_to(next);
+  }
+
+  /// In the index that was found not to be whole.
+  [[nodiscard]] bool is_in_index(std::uint64_t place) const {
+    return header_.index_place > 0 && place >= header_.index_place;
+  }
+
+  /// @throws BytesError  if none begins here, or it does not end in the file
+  void record() {
+    const Ros1File::Head head = file_.head();
+    const Ros1Op op = head.fields.op();
+    try {
+      handle(op, head);
+    } catch (const CutOffError&) {
+      throw;
+    } catch (const BytesError& e) {  // where the next one begins is known nevertheless
+      messages_.error(std::string(e.what()) + "; the record is left out");
+      file_.skip_data(head);
+    }
+  }
+
+  void handle(Ros1Op op, const Ros1File::Head& head) {
+    switch (op) {
+      case Ros1Op::chunk:
+        return chunk(head);
+      case Ros1Op::message:
+        return message(head);
+      case Ros1Op::connection:
+        file_.read_data(head, packed_);
+        return messages_.connection({head.fields, packed_, head.data_place}, "");
+      case Ros1Op::bag:
+      case Ros1Op::index:
+      case Ros1Op::chunk_info:
+        return file_.skip_data(head);
+    }
+    throw BytesError(at(head.place) + "a record of unknown kind");
+  }
+
+  void chunk(const Ros1File::Head& head) {
+    if (is_unwanted(head.place)) return file_.skip_data(head);
+    const auto compression = compression_named(head.fields.text("compression"));
+    const auto size = head.fields.number<std::uint32_t>("size");
+    if (head.data_size == 0 && size == 0) {  // its records follow; sizes are written when it closes
+      is_in_open_chunk_ = compression != Compression::none;
+      return;
+    }
+    if (compression == Compression::none && head.data_size > file_.left()) {
+      file_.read(file_.left(), packed_);
+      messages_.records({packed_, head.data_place, "", false});
+      throw CutOffError(at(head.place) + "the chunk is cut off");
+    }
+    file_.read_data(head, packed_);
+    try {
+      if (!compression) throw BytesError("is compressed in a way that is not of ROS 1");
+      if (compression != Compression::none) {
+        unpack(packed_, *compression, size, unpacked_);
+      } else if (size != packed_.size()) {
+        throw BytesError("has " + std::to_string(packed_.size()) + " bytes, not the " +
+                         std::to_string(size) + " that it claims");
+      }
+    } catch (const BytesError& e) {
+      const bool again =
+          compression && !is_available(*compression) && !told_.insert(*compression).second;
+      if (!again) messages_.error(at(head.place) + "the chunk " + e.what());
+      return;
+    }
+    if (compression == Compression::none) {
+      messages_.records({packed_, head.data_place, ""});
+    } else {
+      messages_.records({unpacked_, 0, at(head.place) + "in what the chunk unpacks to, "});
+    }
+  }
+
+  [[nodiscard]] bool is_unwanted(std::uint64_t chunk) const {
+    const auto info = chunks_.find(chunk);
+    return info != chunks_.end() &&
+           std::ranges::none_of(info->second, [this](std::uint32_t connection) {
+             return messages_.topics().may_be_wanted(connection);
+           });
+  }
+
+  /// A message that is in no chunk.
+  void message(const Ros1File::Head& head) {
+    const BagTopic* topic = messages_.wanted(head.fields, at(head.place));
+    if (topic == nullptr) return file_.skip_data(head);
+    const std::int64_t time = ros1_time(head.fields, "time");
+    file_.read_data(head, packed_);
+    messages_.handle(*topic, time, packed_);
+  }
+
+  void tell_no_index(const std::string& why) {
+    std::string text = header_.index_place == 0
+                           ? "the recording was interrupted: it has no index"
+                           : "the recording was interrupted, or the file cut off or damaged: its "
+                             "index is not whole (" +
+                                 why + ")";
+    text += "; " + std::to_string(messages_.count()) + " messages were read, up to byte " +
+            std::to_string(read_to_) + " of " + std::to_string(file_.size());
+    messages_.warning(text);
+  }
+
+  [[nodiscard]] static std::string at(std::uint64_t place) {
+    return "byte " + std::to_string(place) + ": ";
+  }
+
+  Ros1File file_;
+  Ros1Messages messages_;
+  Ros1BagHeader header_;
+  Ros1ChunkInfos chunks_;
+  bool has_index_ = false;
+  bool is_in_open_chunk_ = false;  ///< compressed, so that its records cannot be read
+  std::uint64_t end_ = 0;          ///< of what is walked
+  std::uint64_t read_to_ = 0;
+  std::set<Compression> told_;  ///< not to be available
+  std::vector<std::byte> packed_, unpacked_;
+};
+
+}  // namespace detail
+
+/// @param in           can be sought in
+/// @param name         of it, as messages begin
+/// @param diagnostics  receives every mistake with its byte; what the reader's functions throw
+///                     passes through, and nothing else is thrown
+inline void read_ros1_bag(std::istream& in, const std::string& name, const BagReader& reader,
+                          Diagnostics& diagnostics) {
+  try {
+    detail::Ros1BagReading(in, name, reader, diagnostics).read();
+  } catch (const detail::PassedOn& passed_on) {
+    std::rethrow_exception(passed_on.thrown);
+  }
+}
+
+/// Messages in the order of the file, which is that of recording but for moments.
+/// @param diagnostics  receives every mistake with its byte, also that the file cannot be read;
+///                     what the reader's functions throw passes through, and nothing else is thrown
+inline void read_ros1_bag(const std::string& path, const BagReader& reader,
+                          Diagnostics& diagnostics) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return diagnostics.error({path, 0}, "is a folder, not a ROS 1 bag");
+  }
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) {
+    return diagnostics.error({path, 0}, std::string("cannot be opened: ") + std::strerror(errno));
+  }
+  read_ros1_bag(in, path, reader, diagnostics);
+}
+
+}  // namespace kinecal

@@ -1,0 +1,97 @@
+// The index of a ROS 1 bag: which chunks hold messages of which connections.
+//
+// It stands at the end of the file and is written last: a recording that was interrupted has none.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/io/bags/ros1_file.hpp"
+#include "kinecal/io/bags/ros1_record.hpp"
+#include "kinecal/io/bags/ros1_topics.hpp"
+
+namespace kinecal::detail {
+
+/// What the bag header, the first record, says of the index.
+struct Ros1BagHeader {
+  std::uint64_t index_place = 0;  ///< 0: it has not been written
+  std::uint32_t connections = 0, chunks = 0;
+};
+
+/// @throws BytesError  if it is not one, or says that the bag is encrypted
+[[nodiscard]] inline Ros1BagHeader read_ros1_bag_header(Ros1File& file) {
+  const Ros1File::Head head = file.head();
+  if (head.fields.op() != Ros1Op::bag) {
+    throw BytesError("byte " + std::to_string(head.place) + ": the bag header is missing");
+  }
+  const auto encryptor = head.fields.find("encryptor");
+  if (encryptor && !encryptor->empty()) {
+    throw BytesError("the bag is encrypted; record it without encryption");
+  }
+  Ros1BagHeader header;
+  header.index_place = head.fields.number<std::uint64_t>("index_pos");
+  header.connections = head.fields.number<std::uint32_t>("conn_count");
+  header.chunks = head.fields.number<std::uint32_t>("chunk_count");
+  file.skip_data(head);
+  return header;
+}
+
+/// The connections of each chunk, by its place in the file.
+using Ros1ChunkInfos = std::map<std::uint64_t, std::vector<std::uint32_t>>;
+
+/// @throws BytesError  if it is not one
+inline void add_ros1_chunk_info(const Ros1Fields& header, Bytes data, std::uint64_t data_place,
+                                Ros1ChunkInfos& chunks) {
+  ByteReader reader(data, std::endian::little, data_place);
+  if (header.number<std::uint32_t>("ver") != 1) reader.fail("a chunk info of unknown version");
+  std::vector<std::uint32_t>& connections = chunks[header.number<std::uint64_t>("chunk_pos")];
+  const auto count = header.number<std::uint32_t>("count");
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto connection = reader.number<std::uint32_t>();
+    if (reader.number<std::uint32_t>() > 0) connections.push_back(connection);
+  }
+}
+
+/// Reads all of the index.
+/// @return  empty if it is whole, otherwise what is wrong with it; then `chunks` is empty
+[[nodiscard]] inline std::string read_ros1_index(Ros1File& file, const Ros1BagHeader& header,
+                                                 Ros1Topics& topics, Ros1ChunkInfos& chunks) {
+  std::uint64_t connections = 0, infos = 0;
+  std::vector<std::byte> data;
+  try {
+    if (header.index_place < file.place() || header.index_place > file.size()) {
+      throw BytesError("byte " + std::to_string(header.index_place) +
+                       " is where it should be and is not in the file");
+    }
+    file.go_to(header.index_place);
+    while (file.left() > 0) {
+      const Ros1File::Head head = file.head();
+      file.read_data(head, data);
+      if (head.fields.op() == Ros1Op::connection) {
+        topics.add(head.fields, data, head.data_place);
+        ++connections;
+      } else if (head.fields.op() == Ros1Op::chunk_info) {
+        add_ros1_chunk_info(head.fields, data, head.data_place, chunks);
+        ++infos;
+      } else {
+        throw BytesError("byte " + std::to_string(head.place) + ": another record is there");
+      }
+    }
+    if (connections != header.connections || infos != header.chunks) {
+      throw BytesError("it has " + std::to_string(connections) + " of " +
+                       std::to_string(header.connections) + " connections and " +
+                       std::to_string(infos) + " of " + std::to_string(header.chunks) + " chunks");
+    }
+  } catch (const BytesError& e) {
+    chunks.clear();
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,116 @@
+// The connections of a ROS 1 bag: which topic a message is of, and who wants it.
+//
+// Several publishers of a topic are several connections; those that say the same are one topic.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/io/bags/ros1_record.hpp"
+
+namespace kinecal::detail {
+
+/// What a user's function threw, on its way through those who catch the mistakes of a bag.
+struct PassedOn {
+  std::exception_ptr thrown;
+};
+
+template <class F>
+auto pass_on(const F& users) {
+  try {
+    return users();
+  } catch (...) {
+    throw PassedOn{std::current_exception()};
+  }
+}
+
+class Ros1Topics {
+ public:
+  /// @param wants  asked once for each topic
+  explicit Ros1Topics(const std::function<bool(const BagTopic&)>& wants) : wants_(wants) {}
+
+  /// A connection record.  The same one stands in its chunk and in the index; the first one counts.
+  /// @throws BytesError  if it is not one, or another has its number
+  /// @throws PassedOn    if the user's function throws
+  void add(const Ros1Fields& header, Bytes data, std::uint64_t data_place) {
+    const auto number = header.number<std::uint32_t>("conn");
+    const Ros1Fields told(data, data_place);
+    BagTopic topic;
+    topic.name = header.text("topic");
+    topic.name.erase(0, std::min(topic.name.find_first_not_of('/'), topic.name.size()));
+    topic.type = told.text("type");
+    topic.definition = optional_text(told, "message_definition");
+    topic.md5 = optional_text(told, "md5sum");
+    const std::string key = key_of(topic);
+    const Asked*& known = connections_[number];
+    if (known == nullptr) {
+      known = find_or_ask(key, std::move(topic));
+    } else if (const auto found = topics_.find(key);
+               found == topics_.end() || &found->second != known) {
+      ByteReader(data, std::endian::little, data_place)
+          .fail("connection " + std::to_string(number) + " is told twice, and differently");
+    }
+  }
+
+  /// @return  the topic of a message, nullptr if nobody wants it
+  /// @throws BytesError  if there is no such connection; told once for each number
+  [[nodiscard]] const BagTopic* wanted(const Ros1Fields& message) {
+    const auto number = message.number<std::uint32_t>("conn");
+    const auto [known, is_new] = connections_.try_emplace(number, nullptr);
+    if (is_new) {
+      throw BytesError("a message is of connection " + std::to_string(number) +
+                       ", of which the bag does not tell the topic; its messages are left out");
+    }
+    return known->second != nullptr && known->second->wanted ? &known->second->topic : nullptr;
+  }
+
+  /// Whether messages of a connection are to be read; also if it is not known: they are a mistake.
+  [[nodiscard]] bool may_be_wanted(std::uint32_t number) const {
+    const auto known = connections_.find(number);
+    return known == connections_.end() || (known->second != nullptr && known->second->wanted);
+  }
+
+ private:
+  struct Asked {
+    BagTopic topic;
+    bool wanted = false;
+  };
+
+  [[nodiscard]] static std::string optional_text(const Ros1Fields& fields, std::string_view name) {
+    return fields.find(name) ? std::string(fields.text(name)) : "";
+  }
+
+  /// The same for topics that are the same, and for no others.
+  [[nodiscard]] static std::string key_of(const BagTopic& topic) {
+    std::string key;
+    for (const std::string* part : {&topic.name, &topic.type, &topic.md5}) {
+      key += std::to_string(part->size()) + ' ' + *part;
+    }
+    return key + topic.definition;
+  }
+
+  [[nodiscard]] const Asked* find_or_ask(const std::string& key, BagTopic topic) {
+    const auto [at, is_new] = topics_.try_emplace(key);
+    if (is_new) {
+      at->second.topic = std::move(topic);
+      at->second.wanted = pass_on([&] { return wants_(at->second.topic); });
+    }
+    return &at->second;
+  }
+
+  const std::function<bool(const BagTopic&)>& wants_;
+  std::unordered_map<std::string, Asked> topics_;  ///< stay where they are while others are added
+  std::unordered_map<std::uint32_t, const Asked*> connections_;  ///< nullptr: unknown, and told
+};
+
+}  // namespace kinecal::detail
