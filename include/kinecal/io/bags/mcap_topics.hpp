@@ -1,0 +1,112 @@
+// What an MCAP file says of its topics, and which of them are wanted.
+//
+// A topic is a channel, which says how its messages are written, and a schema, which says what they
+// are.  Both may stand in the file more than once, always the same; the reader is asked when both
+// are known and there are messages.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/mcap_records.hpp"
+#include "kinecal/io/bags/ros2_formats.hpp"
+
+namespace kinecal::detail {
+
+class McapTopics {
+ public:
+  struct Topic {
+    std::uint16_t schema = 0;
+    std::string channel_name, encoding;  ///< as the file has them
+    BagTopic topic;
+    bool asked = false, wanted = false;
+    std::uint64_t handled = 0;  ///< messages
+  };
+
+  /// @param in  the record's content
+  /// @throws BytesError  if there was another of its number that says something else
+  void add_schema(const ByteReader& in) {
+    const McapSchema record(in);
+    Schema schema{std::string(record.name), std::string(record.encoding), std::string(record.text)};
+    const auto [it, is_new] = schemas_.try_emplace(record.id, std::move(schema));
+    if (!is_new && (it->second.name != record.name || it->second.text != record.text)) {
+      in.fail(fmt::format("schema {} is '{}' and was '{}', or has another text; it is damaged",
+                          record.id, record.name, it->second.name));
+    }
+  }
+
+  void add_channel(const ByteReader& in) {
+    const McapChannel record(in);
+    const auto [it, is_new] = topics_.try_emplace(record.id);
+    Topic& topic = it->second;
+    if (is_new) {
+      topic.schema = record.schema;
+      topic.channel_name = record.topic;
+      topic.encoding = record.encoding;
+    } else if (topic.schema != record.schema || topic.channel_name != record.topic) {
+      in.fail(fmt::format("channel {} is '{}' and was '{}', or has another schema; it is damaged",
+                          record.id, record.topic, topic.channel_name));
+    }
+  }
+
+  [[nodiscard]] std::size_t count() const { return topics_.size(); }
+
+  /// Null if it has not been there yet.
+  [[nodiscard]] Topic* find(std::uint16_t channel) {
+    const auto it = topics_.find(channel);
+    return it == topics_.end() ? nullptr : &it->second;
+  }
+
+  /// Whether the messages of a topic are wanted; asks the reader once.
+  /// @param in  where this must be known, for messages
+  bool wants(Topic& topic, const BagReader& reader, const ByteReader& in) {
+    if (topic.asked) return topic.wanted;
+    topic.asked = true;
+    if (topic.encoding != "cdr" && topic.encoding != "ros1") {
+      if (foreign_++ == 0) {
+        first_foreign_ = fmt::format("'{}' as '{}'", topic.channel_name, topic.encoding);
+      }
+      return false;
+    }
+    topic.topic.name = bag_topic_name(topic.channel_name);
+    topic.topic.encoding = topic.encoding == "cdr" ? Encoding::cdr : Encoding::ros1;
+    if (topic.schema != 0) {
+      const auto it = schemas_.find(topic.schema);
+      if (it == schemas_.end()) {
+        in.fail(fmt::format("topic '{}' is of schema {}, which does not stand before its messages",
+                            topic.channel_name, topic.schema));
+      }
+      const Schema& schema = it->second;
+      topic.topic.type = bag_topic_type(schema.name);
+      if (schema.encoding == "ros2msg" || schema.encoding == "ros1msg") {
+        topic.topic.definition = schema.text;
+      }
+    }
+    return topic.wanted = reader.wants(topic.topic);
+  }
+
+  /// What to tell of topics that are not ROS's; empty if there are none.
+  [[nodiscard]] std::string foreign() const {
+    if (foreign_ == 0) return "";
+    return fmt::format("{} topic{} not written as ROS does and left out: {}{}", foreign_,
+                       foreign_ == 1 ? " is" : "s are", first_foreign_,
+                       foreign_ == 1 ? "" : " and others");
+  }
+
+ private:
+  struct Schema {
+    std::string name, encoding, text;
+  };
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, Topic> topics_;  ///< they stay where they are
+  std::size_t foreign_ = 0;
+  std::string first_foreign_;
+};
+
+}  // namespace kinecal::detail

@@ -1,0 +1,228 @@
+// Writes MCAP files as ROS 2 does: profile ros2, schemas ros2msg, messages in CDR.
+//
+// The same calls write the same bytes.  The index and the summary at the end tell what the chunks
+// hold, so that readers go straight to what they want.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/compression.hpp"
+#include "kinecal/io/bags/crc32.hpp"
+#include "kinecal/io/bags/mcap_content.hpp"
+#include "kinecal/io/bags/ros2_formats.hpp"
+
+namespace kinecal {
+
+struct McapOptions {
+  Compression compression = Compression::none;
+  std::size_t chunk_bytes = std::size_t{1} << 20;  ///< after which a chunk ends; 0: no chunks
+  bool index = true;                               ///< of messages and chunks, and the summary
+};
+
+/// zstd where this kinecal was built with it, or else none.
+[[nodiscard]] constexpr Compression best_mcap_compression() {
+  return is_available(Compression::zstd) ? Compression::zstd : Compression::none;
+}
+
+/// One file.  close() ends it; whether the stream took everything is for the caller to ask it.
+class McapWriter {
+ public:
+  /// @param out  at its beginning
+  explicit McapWriter(std::ostream& out, McapOptions options = {}) : out_(out), options_(options) {
+    put(kMcapMagic);
+    put(detail::McapContent().text("ros2").text("kinecal").record(detail::McapOp::header));
+  }
+
+  /// @return  the number by which write() knows the topic
+  /// @throws std::invalid_argument  if its messages are not in CDR, or if there are 65535 already
+  [[nodiscard]] std::uint16_t add_topic(const BagTopic& topic) {
+    if (topic.encoding != Encoding::cdr) {
+      throw std::invalid_argument(fmt::format(
+          "topic '{}' is written as ROS 1 does; a bag of ROS 2 cannot have it", topic.name));
+    }
+    if (counts_.size() == std::numeric_limits<std::uint16_t>::max()) {
+      throw std::invalid_argument(
+          fmt::format("topic '{}' is one too many; an MCAP file has 65535 at most", topic.name));
+    }
+    const std::uint16_t schema = schema_of(topic);
+    counts_.push_back(0);
+    const auto id = static_cast<std::uint16_t>(counts_.size());
+    detail::McapContent channel;
+    channel.number(id).number(schema).text("/" + topic.name).text("cdr").text("");
+    channels_ += add(channel.record(detail::McapOp::channel));
+    return id;
+  }
+
+  /// @param topic  of add_topic()
+  /// @param time   of recording, nanoseconds, not negative
+  /// @param data   CDR with the four bytes that stand before it
+  /// @throws std::out_of_range  if there is no such topic
+  void write(std::uint16_t topic, std::int64_t time, Bytes data) {
+    const auto stamp = static_cast<std::uint64_t>(time);
+    const auto sequence = static_cast<std::uint32_t>(++counts_.at(topic - std::size_t{1}));
+    times_.add(stamp);
+    chunk_.times.add(stamp);
+    chunk_.index[topic].number(stamp).number(std::uint64_t{chunk_.records.size()});
+    detail::McapContent message;
+    message.number(topic).number(sequence).number(stamp).number(stamp);
+    message.raw({reinterpret_cast<const char*>(data.data()), data.size()});
+    add(message.record(detail::McapOp::message));
+    if (options_.chunk_bytes > 0 && chunk_.records.size() >= options_.chunk_bytes) end_chunk();
+  }
+
+  /// Ends the file: nothing may be written after it.
+  void close() {
+    end_chunk();
+    put(detail::McapContent().number(std::uint32_t{0}).record(detail::McapOp::data_end));
+    const std::uint64_t start = options_.index ? place_ : 0;
+    const auto [summary, offsets] =
+        options_.index ? summarize() : std::pair<std::string, std::string>{};
+    const std::uint64_t offsets_start = options_.index ? place_ + summary.size() : 0;
+    detail::McapContent end;  // of the summary, up to where its sum stands
+    end.raw(summary).raw(offsets).number(static_cast<std::uint8_t>(detail::McapOp::footer));
+    end.number(detail::kMcapFooterBytes).number(start).number(offsets_start);
+    const std::uint32_t sum = options_.index ? crc32(detail::as_bytes(end.str())) : 0;
+    put(end.number(sum).raw(kMcapMagic).str());
+  }
+
+ private:
+  struct Times {
+    std::uint64_t first = 0, last = 0;  ///< nanoseconds
+    bool any = false;
+
+    void add(std::uint64_t time) {
+      first = any ? std::min(first, time) : time;
+      last = any ? std::max(last, time) : time;
+      any = true;
+    }
+  };
+
+  struct Chunk {
+    std::string records;
+    Times times;
+    std::map<std::uint16_t, detail::McapContent> index;  ///< of each topic: times and places
+  };
+
+  /// The number of a topic's schema, which is written once for all topics of its type.
+  [[nodiscard]] std::uint16_t schema_of(const BagTopic& topic) {
+    const auto [schema, is_new] =
+        schema_numbers_.try_emplace({topic.type, topic.definition}, schema_numbers_.size() + 1);
+    const auto id = static_cast<std::uint16_t>(schema->second);
+    if (is_new) {
+      detail::McapContent content;
+      content.number(id).text(detail::ros2_type(topic.type)).text("ros2msg");
+      schemas_ += add(content.text(topic.definition).record(detail::McapOp::schema));
+    }
+    return id;
+  }
+
+  void put(std::string_view bytes) {
+    out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    place_ += bytes.size();
+  }
+
+  /// Adds a record to the chunk, or to the file if there are no chunks.
+  const std::string& add(const std::string& record) {
+    if (options_.chunk_bytes > 0) {
+      chunk_.records += record;
+    } else {
+      put(record);
+    }
+    return record;
+  }
+
+  void end_chunk() {
+    const Chunk chunk = std::exchange(chunk_, {});
+    if (chunk.records.empty()) return;
+    const auto [compression, packed] = pack(chunk.records);
+    const std::uint64_t size = chunk.records.size();
+    detail::McapContent content;
+    content.number(chunk.times.first).number(chunk.times.last).number(size);
+    content.number(crc32(detail::as_bytes(chunk.records))).text(compression);
+    content.number(std::uint64_t{packed.size()}).raw(packed);
+    const std::uint64_t start = place_;
+    put(content.record(detail::McapOp::chunk));
+    const std::uint64_t length = place_ - start;
+    if (!options_.index) return;
+
+    const std::uint64_t index_start = place_;
+    detail::McapContent places, about;
+    for (const auto& [topic, index] : chunk.index) {
+      places.number(topic).number(place_);
+      put(detail::McapContent()
+              .number(topic)
+              .text(index.str())
+              .record(detail::McapOp::message_index));
+    }
+    about.number(chunk.times.first).number(chunk.times.last).number(start).number(length);
+    about.text(places.str()).number(place_ - index_start).text(compression);
+    about.number(std::uint64_t{packed.size()}).number(size);
+    chunks_ += about.record(detail::McapOp::chunk_index);
+    ++chunk_count_;
+  }
+
+  /// What the file calls the compression, and the bytes packed with it.
+  [[nodiscard]] std::pair<std::string_view, std::string> pack(const std::string& records) const {
+    if (options_.compression == Compression::none) return {"", records};
+    const std::vector<std::byte> packed =
+        kinecal::pack(detail::as_bytes(records), options_.compression);
+    return {name_of(options_.compression),
+            std::string(reinterpret_cast<const char*>(packed.data()), packed.size())};
+  }
+
+  /// The summary, and where in the file the groups of its records stand.
+  [[nodiscard]] std::pair<std::string, std::string> summarize() const {
+    detail::McapContent summary, offsets;
+    const auto add_group = [&](detail::McapOp op, const std::string& records) {
+      if (records.empty()) return;
+      detail::McapContent offset;
+      offset.number(static_cast<std::uint8_t>(op)).number(place_ + summary.str().size());
+      offset.number(std::uint64_t{records.size()});
+      offsets.raw(offset.record(detail::McapOp::summary_offset));
+      summary.raw(records);
+    };
+    add_group(detail::McapOp::schema, schemas_);
+    add_group(detail::McapOp::channel, channels_);
+    add_group(detail::McapOp::statistics, statistics());
+    add_group(detail::McapOp::chunk_index, chunks_);
+    return {summary.str(), offsets.str()};
+  }
+
+  [[nodiscard]] std::string statistics() const {
+    detail::McapContent counts, content;
+    std::uint64_t messages = 0;
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+      counts.number(static_cast<std::uint16_t>(i + 1)).number(counts_[i]);
+      messages += counts_[i];
+    }
+    content.number(messages).number(static_cast<std::uint16_t>(schema_numbers_.size()));
+    content.number(static_cast<std::uint32_t>(counts_.size()));
+    content.number(std::uint32_t{0}).number(std::uint32_t{0});  // no attachments, no metadata
+    content.number(chunk_count_).number(times_.first).number(times_.last).text(counts.str());
+    return content.record(detail::McapOp::statistics);
+  }
+
+  std::ostream& out_;
+  McapOptions options_;
+  std::uint64_t place_ = 0;
+  Chunk chunk_;
+  std::map<std::pair<std::string, std::string>, std::size_t> schema_numbers_;  ///< type, text
+  std::vector<std::uint64_t> counts_;        ///< messages of each topic
+  std::string schemas_, channels_, chunks_;  ///< records of the summary
+  std::uint32_t chunk_count_ = 0;
+  Times times_;
+};
+
+}  // namespace kinecal
