@@ -81,7 +81,7 @@ inline void read_mcap_summary(Bytes summary, std::uint64_t place, McapIndex& ind
   index.complete = in.text(kMcapMagic.size()) == kMcapMagic;
   if (!index.complete || footer.summary == 0) return index;
   try {
-    if (footer.summary > footer_place || footer_place - footer.summary > kMaxBlockBytes) {
+    if (footer.summary > footer_place || footer_place - footer.summary > kMostOfABlock) {
       throw BytesError(fmt::format("byte {}: the index is told to begin at byte {}", footer_place,
                                    footer.summary));
     }

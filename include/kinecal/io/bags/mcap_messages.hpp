@@ -80,7 +80,7 @@ class McapMessages {
   }
 
   [[nodiscard]] Bytes content(std::uint64_t length) {
-    if (length <= kMaxBlockBytes) return file_.read(length, buffer_);
+    if (length <= kMostOfABlock) return file_.read(length, buffer_);
     throw BytesError(
         fmt::format("byte {}: a record of {} bytes, more than the 1 GiB that one may "
                     "have",
