@@ -1,0 +1,181 @@
+#include "kinecal/io/recordings/read_recording.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "kinecal/io/recordings/bag_topics.hpp"
+#include "kinecal/io/recordings/convert.hpp"
+#include "support/data.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class RecordingTest : public testing::Test {
+ protected:
+  RecordingTest() {
+    char folder[] = "/tmp/kinecal_recording_XXXXXX";
+    folder_ = mkdtemp(folder);
+  }
+  ~RecordingTest() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
+
+  [[nodiscard]] Recording read(const std::string& file) {
+    return read_recording(file, diagnostics_);
+  }
+
+  void convert(const std::string& from, const std::string& to, Encoding encoding,
+               ConvertOptions options = {}) {
+    BagOutput bag(to, encoding);
+    (void)convert_bag(from, bag, options, diagnostics_);
+    bag.finish();
+  }
+
+  std::filesystem::path folder_;
+  Diagnostics diagnostics_;
+};
+
+void expect_same(const std::vector<Sample>& a, const std::vector<Sample>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    EXPECT_EQ(a[n].joint_names, b[n].joint_names);
+    EXPECT_EQ(a[n].joint_positions, b[n].joint_positions);
+    ASSERT_EQ(a[n].observations.size(), b[n].observations.size());
+    for (std::size_t s = 0; s < a[n].observations.size(); ++s) {
+      const Observation &x = a[n].observations[s], &y = b[n].observations[s];
+      EXPECT_EQ(x.sensor, y.sensor);
+      ASSERT_EQ(x.features.size(), y.features.size());
+      for (std::size_t i = 0; i < x.features.size(); ++i) {
+        EXPECT_EQ(x.features[i].frame, y.features[i].frame);
+        EXPECT_EQ(x.features[i].point, y.features[i].point);
+      }
+      ASSERT_EQ(x.camera.has_value(), y.camera.has_value());
+      if (!x.camera) continue;
+      EXPECT_EQ(x.camera->p, y.camera->p);
+      EXPECT_EQ(x.camera->d, y.camera->d);
+      EXPECT_EQ(x.camera->z_offset, y.camera->z_offset);
+      EXPECT_EQ(x.camera->z_scaling, y.camera->z_scaling);
+    }
+  }
+}
+
+std::string content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<Sample> made_samples() {
+  std::vector<Sample> samples(3);
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    samples[n].joint_names = {"pan", "tilt"};
+    samples[n].joint_positions = {0.1 * static_cast<double>(n), -1.0};
+    samples[n].observations = {{"arm", {{"tip", {0.1, 0.2, 1.0 / 3.0}}}, {}}};
+  }
+  return samples;
+}
+
+TEST_F(RecordingTest, OfRos1HoldsTheSamplesOfTheYamlAndTheUrdf) {
+  KINECAL_NEEDS_DATA("fetch/synth");
+  const auto synth = test::data_folder() / "fetch/synth";
+  const Recording bag = read(synth / "calibration_data.bag");
+  const Recording yaml = read(synth / "samples.yaml");
+  EXPECT_THAT(diagnostics_.errors, ElementsAre());
+  EXPECT_EQ(bag.samples.size(), 100u);
+  expect_same(bag.samples, yaml.samples);
+  EXPECT_EQ(bag.urdf, content(synth / "fetch_arm_head.urdf"));
+  EXPECT_THAT(bag.samples[41].source, HasSubstr("calibration_data.bag:42"));
+}
+
+TEST_F(RecordingTest, ConvertedToMcapAndBackIsTheSame) {
+  KINECAL_NEEDS_DATA("fetch/synth");
+  const auto synth = test::data_folder() / "fetch/synth";
+  const std::string bag = synth / "calibration_data.bag";
+  convert(bag, path("a.mcap"), Encoding::cdr, {.drop_clouds = true});
+  convert(path("a.mcap"), path("b"), Encoding::ros1);
+  convert(path("b"), path("c"), Encoding::ros1);
+  EXPECT_THAT(diagnostics_.errors, ElementsAre());
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre());
+  const Recording original = read(bag);
+  for (const char* file : {"a.mcap", "b", "c"}) {
+    SCOPED_TRACE(file);
+    const Recording converted = read(path(file));
+    expect_same(converted.samples, original.samples);
+    EXPECT_EQ(converted.urdf, original.urdf);
+  }
+  EXPECT_EQ(content(path("b")), content(path("c"))) << "a copy is a copy";
+}
+
+TEST_F(RecordingTest, OfSamplesAndAUrdfIsReadAgain) {
+  const std::vector<Sample> samples = made_samples();
+  for (const Encoding encoding : {Encoding::ros1, Encoding::cdr}) {
+    const std::string file = path(encoding == Encoding::ros1 ? "a" : "b");
+    BagOutput bag(file, encoding);
+    write_samples(bag, samples);
+    write_urdf(bag, "<robot/>");
+    EXPECT_FALSE(std::filesystem::exists(file)) << "half a bag has no name";
+    bag.finish();
+    const Recording recording = read(file);
+    expect_same(recording.samples, samples);
+    EXPECT_EQ(recording.urdf, "<robot/>");
+    const auto topics = bag_topics(file, diagnostics_);
+    ASSERT_EQ(topics.size(), 2u);
+    EXPECT_EQ(topics[0].name, "calibration_data");
+    EXPECT_EQ(topics[0].messages, 3);
+    EXPECT_EQ(topics[0].use, TopicUse::samples);
+    EXPECT_EQ(topics[1].use, TopicUse::urdf);
+  }
+  EXPECT_EQ(recording_format(path("a")), RecordingFormat::ros1_bag);
+  EXPECT_EQ(recording_format(path("b")), RecordingFormat::mcap);
+  EXPECT_THAT(diagnostics_.errors, ElementsAre());
+}
+
+TEST_F(RecordingTest, WithoutSamplesSaysSo) {
+  BagOutput bag(path("a"), Encoding::cdr);
+  write_urdf(bag, "<robot/>");
+  bag.finish();
+  EXPECT_TRUE(read(path("a")).samples.empty());
+  ASSERT_EQ(diagnostics_.errors.size(), 1u);
+  EXPECT_THAT(diagnostics_.errors[0], HasSubstr("no messages of robot_calibration_msgs"));
+}
+
+TEST_F(RecordingTest, TellsMessagesThatAreNotWhatTheyClaim) {
+  BagOutput bag(path("a"), Encoding::cdr);
+  const BagTopic topic{"calibration_data", "robot_calibration_msgs/CalibrationData",
+                       known_definition("robot_calibration_msgs/CalibrationData", Encoding::cdr),
+                       Encoding::cdr};
+  const std::vector<std::byte> few(6);
+  bag.copy(topic, 1, few);
+  write_samples(bag, made_samples());
+  bag.finish();
+  EXPECT_EQ(read(path("a")).samples.size(), 3u);
+  ASSERT_EQ(diagnostics_.errors.size(), 1u);
+  EXPECT_THAT(diagnostics_.errors[0], HasSubstr("message 1 of topic 'calibration_data'"));
+}
+
+TEST_F(RecordingTest, LeavesOutWhatTheOtherRosDoesNotKnow) {
+  {
+    BagOutput bag(path("a"), Encoding::ros1);
+    const BagTopic temperature{"temperature", "sensor_msgs/Temperature", "float64 t\n",
+                               Encoding::ros1, "0123456789abcdef0123456789abcdef"};
+    bag.copy(temperature, 1, std::vector<std::byte>(8));
+    write_samples(bag, made_samples());
+    bag.finish();
+  }
+  convert(path("a"), path("same"), Encoding::ros1);
+  EXPECT_EQ(bag_topics(path("same"), diagnostics_).size(), 2u);
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre());
+  convert(path("a"), path("other"), Encoding::cdr);
+  EXPECT_EQ(bag_topics(path("other"), diagnostics_).size(), 1u);
+  ASSERT_EQ(diagnostics_.warnings.size(), 1u);
+  EXPECT_THAT(diagnostics_.warnings[0], HasSubstr("topic 'temperature' is left out"));
+}
+
+}  // namespace
+}  // namespace kinecal
