@@ -63,8 +63,10 @@ static_assert(Unpacker<UnpackBz2>);
 [[nodiscard]] inline std::vector<std::byte> pack_bz2(Bytes bytes) {
   std::vector<std::byte> packed(bytes.size() + bytes.size() / 100 + 600);  // bzlib's bound
   auto size = static_cast<unsigned>(packed.size());
-  // bzlib writes nothing to its source, it only forgot to say so.
-  char* source = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
+  // bzlib writes nothing to its source, it only forgot to say so; and takes none for a mistake.
+  char nothing = 0;
+  char* source =
+      bytes.empty() ? &nothing : const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
   const int status = BZ2_bzBuffToBuffCompress(reinterpret_cast<char*>(packed.data()), &size, source,
                                               static_cast<unsigned>(bytes.size()), 9, 0, 0);
   if (status != BZ_OK) throw std::runtime_error("bzlib error " + std::to_string(status));

@@ -56,7 +56,9 @@ class Ros1BagWriter {
   /// @param topic     with type, md5 and definition; the name as ROS has it, with its leading slash
   /// @param latching  that the last message is sent to those who come later
   /// @return          its number, for write()
+  /// @throws std::invalid_argument  if the bag is closed
   [[nodiscard]] std::uint32_t add_topic(const BagTopic& topic, bool latching = false) {
+    if (closed_) throw std::invalid_argument("the bag is closed");
     const auto number = static_cast<std::uint32_t>(topics_.size());
     detail::Ros1Text header, data;
     header.number("conn", number).op(detail::Ros1Op::connection).field("topic", topic.name);
