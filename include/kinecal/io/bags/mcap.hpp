@@ -25,31 +25,22 @@ namespace kinecal {
 ///                     that are whole are then read.  Only what the reader throws is thrown.
 inline void read_mcap(std::istream& in, const std::string& name, const BagReader& reader,
                       Diagnostics& diagnostics) {
-  const auto told = [&](auto&& read) {
-    try {
-      read();
-      return false;
-    } catch (const BytesError& e) {
-      diagnostics.error({name, 0}, e.what());
-      return true;
-    }
-  };
   std::optional<ByteFile> file;
   std::optional<detail::McapMessages> messages;
-  const bool is_bad = told([&] {
-    file.emplace(in);
-    messages.emplace(*file, reader, Place{name, 0}, diagnostics);
-  });
-  if (is_bad) return;
-  for (;;) {
-    std::optional<BagMessage> message;
-    if (told([&] {
-          if (auto next = messages->next()) message.emplace(*next);
-        }))
-      return;
-    if (!message) return;
-    reader.handle(*message);  // what it throws is no mistake of the file
-  }
+  const auto advance = [&]() -> std::optional<BagMessage> {
+    try {
+      if (!messages) {
+        file.emplace(in);
+        messages.emplace(*file, reader, Place{name, 0}, diagnostics);
+      }
+      return messages->next();
+    } catch (const BytesError& e) {
+      diagnostics.error({name, 0}, e.what());
+      return std::nullopt;
+    }
+  };
+  // What the reader throws is no mistake of the file.
+  while (const std::optional<BagMessage> message = advance()) reader.handle(*message);
 }
 
 /// @param path  of an .mcap file

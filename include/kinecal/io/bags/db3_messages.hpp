@@ -1,0 +1,150 @@
+// The wanted messages of a .db3 file, one after the other.
+//
+//   topics(id, name, type, serialization_format, ...)
+//   messages(id, topic_id, timestamp, data, ...)
+//   message_definitions(topic_type, encoding, encoded_message_definition, ...)   since ROS 2 Iron
+//
+// Only with KINECAL_HAVE_SQLITE.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#ifdef KINECAL_HAVE_SQLITE
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/ros2_formats.hpp"
+#include "kinecal/io/bags/sqlite.hpp"
+#include "kinecal/io/diagnostics.hpp"
+
+namespace kinecal::detail {
+
+class Db3Messages {
+ public:
+  /// @param place        what warnings name
+  /// @param diagnostics  receives warnings; errors are thrown
+  /// @throws BytesError  if it is no bag, or damaged
+  Db3Messages(const SqliteDatabase& database, const BagReader& reader, Place place,
+              Diagnostics& diagnostics)
+      : database_(database) {
+    demand("topics", {"id", "name", "type", "serialization_format"});
+    demand("messages", {"topic_id", "timestamp", "data"});
+    std::size_t foreign = 0;
+    std::string first_foreign;
+    for (auto& [id, topic, format] : read_topics()) {
+      if (format != "cdr") {
+        if (foreign++ == 0) first_foreign = fmt::format("'{}' as '{}'", topic.name, format);
+      } else if (reader.wants(topic)) {
+        wanted_.emplace(id, std::move(topic));
+      }
+    }
+    if (foreign > 0) {
+      diagnostics.warning(place, fmt::format("topics not in CDR are left out: {}{}", first_foreign,
+                                             foreign == 1 ? "" : " and others"));
+    }
+    if (wanted_.empty()) return;
+    // Rows are sorted without their data, which need not fit into memory.
+    order_.emplace(database_, "SELECT rowid FROM messages WHERE topic_id IN (" + wanted_ids() +
+                                  ") ORDER BY timestamp, rowid");
+    row_.emplace(database_, "SELECT topic_id, timestamp, data FROM messages WHERE rowid = ?");
+  }
+
+  /// The next one in the order of time, valid until the one after it; none at the end.
+  /// @throws BytesError  where the database is damaged
+  [[nodiscard]] std::optional<BagMessage> next() {
+    if (!order_ || !order_->next()) return std::nullopt;
+    const std::int64_t id = order_->number(0);
+    row_->bind(id);
+    if (row_->next()) {
+      const auto topic = wanted_.find(row_->number(0));
+      if (topic != wanted_.end()) return BagMessage{topic->second, row_->number(1), row_->bytes(2)};
+    }
+    throw BytesError(
+        fmt::format("the database is damaged: an index and table 'messages' differ at "
+                    "row {}; \"REINDEX\" in sqlite3 may repair it",
+                    id));
+  }
+
+ private:
+  struct Row {
+    std::int64_t id;
+    BagTopic topic;
+    std::string format;
+  };
+
+  [[nodiscard]] std::set<std::string> columns_of(const char* table) const {
+    std::set<std::string> columns;
+    SqliteRows rows(database_, fmt::format("SELECT name FROM pragma_table_info('{}')", table));
+    while (rows.next()) columns.insert(rows.text(0));
+    return columns;
+  }
+
+  void demand(const char* table, std::initializer_list<const char*> columns) const {
+    const std::set<std::string> has = columns_of(table);
+    if (has.empty()) {
+      throw BytesError(
+          fmt::format("has no table '{}'; it is no bag of ROS 2, or nothing was "
+                      "recorded",
+                      table));
+    }
+    for (const char* column : columns) {
+      if (has.contains(column)) continue;
+      throw BytesError(
+          fmt::format("its table '{}' has no column '{}'; it is no bag of ROS 2", table, column));
+    }
+  }
+
+  [[nodiscard]] std::vector<Row> read_topics() const {
+    const std::map<std::string, std::string> definitions = read_definitions();
+    std::vector<Row> topics;
+    SqliteRows rows(database_, "SELECT id, name, type, serialization_format FROM topics");
+    while (rows.next()) {
+      const std::string type = rows.text(2);
+      const auto definition = definitions.find(type);
+      topics.push_back({rows.number(0),
+                        {bag_topic_name(rows.text(1)), bag_topic_type(type),
+                         definition == definitions.end() ? "" : definition->second, Encoding::cdr},
+                        rows.text(3)});
+    }
+    return topics;
+  }
+
+  /// Texts of the types that have one, by the names that ROS 2 gives them.
+  [[nodiscard]] std::map<std::string, std::string> read_definitions() const {
+    std::map<std::string, std::string> definitions;
+    const std::set<std::string> has = columns_of("message_definitions");
+    for (const char* column : {"topic_type", "encoding", "encoded_message_definition"}) {
+      if (!has.contains(column)) return definitions;
+    }
+    SqliteRows rows(database_,
+                    "SELECT topic_type, encoded_message_definition FROM message_definitions "
+                    "WHERE encoding = 'ros2msg'");
+    while (rows.next()) definitions.emplace(rows.text(0), rows.text(1));
+    return definitions;
+  }
+
+  [[nodiscard]] std::string wanted_ids() const {
+    std::string ids;
+    for (const auto& [id, topic] : wanted_) {
+      ids += (ids.empty() ? "" : ", ") + std::to_string(id);
+    }
+    return ids;
+  }
+
+  const SqliteDatabase& database_;
+  std::map<std::int64_t, BagTopic> wanted_;
+  std::optional<SqliteRows> order_, row_;
+};
+
+}  // namespace kinecal::detail
+
+#endif

@@ -1,0 +1,146 @@
+// Reads a ROS 2 bag: a folder with metadata.yaml and the files that it lists, .db3 or .mcap.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/byte_file.hpp"
+#include "kinecal/io/bags/db3.hpp"
+#include "kinecal/io/bags/mcap.hpp"
+#include "kinecal/io/bags/ros2_formats.hpp"
+#include "kinecal/io/bags/ros2_metadata.hpp"
+#include "kinecal/io/diagnostics.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+inline constexpr const char* kZstdEnding = ".zstd";
+
+[[nodiscard]] inline bool is_ros2_bag_file(const std::filesystem::path& path) {
+  const auto ending = path.extension();
+  return ending == ".mcap" || ending == ".db3";
+}
+
+/// Reads one file of a bag by how it begins, whatever it is called.
+inline void read_ros2_bag_file(const std::string& path, const BagReader& reader,
+                               Diagnostics& diagnostics) {
+  std::vector<std::byte> first(16);
+  try {
+    std::ifstream in = open_bytes(path);
+    in.read(reinterpret_cast<char*>(first.data()), static_cast<std::streamsize>(first.size()));
+    first.resize(static_cast<std::size_t>(in.gcount()));
+  } catch (const BytesError& e) {
+    return diagnostics.error({path, 0}, e.what());
+  }
+  if (is_mcap(first)) return read_mcap(path, reader, diagnostics);
+  if (is_sqlite(first)) return read_db3(path, reader, diagnostics);
+  if (begins_with(first, kZstdMagic)) {
+    return diagnostics.error({path, 0},
+                             "is compressed as a whole with zstd; decompress it beside the "
+                             "compressed file: zstd -d " +
+                                 path);
+  }
+  diagnostics.error({path, 0}, first.empty() ? "is empty"
+                                             : "is neither an MCAP file nor an SQLite database: "
+                                               "it begins like neither");
+}
+
+/// Where a listed file is: in the folder, or as old versions of ROS 2 list it, from the folder
+/// above; and decompressed, if that has been done.
+/// @return  empty if it is not there
+[[nodiscard]] inline std::string find_ros2_bag_file(const std::filesystem::path& folder,
+                                                    const std::string& listed) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> names{listed};
+  if (listed.ends_with(kZstdEnding)) {
+    names.insert(names.begin(), listed.substr(0, listed.size() - std::strlen(kZstdEnding)));
+  }
+  const fs::path above = fs::absolute(folder / "").parent_path().parent_path();
+  for (const std::string& name : names) {
+    for (const fs::path& path : {folder / name, above / name, folder / fs::path(name).filename()}) {
+      std::error_code ignored;
+      if (fs::is_regular_file(path, ignored)) return path.string();
+    }
+  }
+  return "";
+}
+
+/// The files of a folder without metadata.yaml, as people count them.
+[[nodiscard]] inline std::vector<std::string> list_ros2_bag_files(
+    const std::filesystem::path& folder) {
+  std::vector<std::string> files;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    std::filesystem::path path = entry.path();
+    if (path.extension() == kZstdEnding) path = path.stem();
+    if (is_ros2_bag_file(path)) files.push_back(entry.path().filename().string());
+  }
+  std::sort(files.begin(), files.end(), naturally_before);
+  return files;
+}
+
+/// The files of a bag as metadata.yaml lists them, or else as they are in the folder.
+/// @throws InputError  if metadata.yaml is there and cannot be used
+[[nodiscard]] inline std::vector<std::string> ros2_bag_files(const std::string& folder,
+                                                             Diagnostics& diagnostics) {
+  const std::string metadata_path = (std::filesystem::path(folder) / "metadata.yaml").string();
+  std::error_code ignored;
+  if (std::filesystem::exists(metadata_path, ignored)) {
+    const Ros2Metadata metadata = read_ros2_metadata(metadata_path);
+    std::string mode = metadata.compression_mode;
+    std::transform(mode.begin(), mode.end(), mode.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    if (mode == "MESSAGE") {
+      throw InputError(metadata_path +
+                       ": compression_mode MESSAGE: every message is compressed on its own, which "
+                       "is not read; write the bag again without: ros2 bag convert");
+    }
+    if (metadata.files.empty()) throw InputError(metadata_path + ": lists no files");
+    return metadata.files;
+  }
+  std::vector<std::string> files = list_ros2_bag_files(folder);
+  if (files.empty()) {
+    throw InputError(folder + ": is no bag of ROS 2: there is no metadata.yaml, no .mcap, no .db3");
+  }
+  diagnostics.warning({folder, 0},
+                      "there is no metadata.yaml, as when a recording is interrupted; all bag "
+                      "files of the folder are read, in the order of their names");
+  return files;
+}
+
+}  // namespace detail
+
+/// All wanted messages of a bag, file after file.  The reader is asked for the topics of each file.
+/// @param folder       with metadata.yaml
+/// @param diagnostics  receives what is wrong with it, also that a listed file is missing: then
+///                     nothing is read.  Only what the reader throws is thrown.
+inline void read_ros2_bag(const std::string& folder, const BagReader& reader,
+                          Diagnostics& diagnostics) {
+  std::vector<std::string> paths;
+  try {
+    for (const std::string& listed : detail::ros2_bag_files(folder, diagnostics)) {
+      paths.push_back(detail::find_ros2_bag_file(folder, listed));
+      if (!paths.back().empty()) continue;
+      diagnostics.error({folder, 0}, "file '" + listed +
+                                         "' is missing, which metadata.yaml lists; copy all files "
+                                         "of the bag");
+    }
+  } catch (const InputError& e) {
+    diagnostics.errors.push_back(e.what());
+    return;
+  }
+  if (std::count(paths.begin(), paths.end(), "") > 0) return;
+  for (const std::string& path : paths) detail::read_ros2_bag_file(path, reader, diagnostics);
+}
+
+}  // namespace kinecal

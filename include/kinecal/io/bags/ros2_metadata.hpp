@@ -1,0 +1,81 @@
+// metadata.yaml of a ROS 2 bag: which files it consists of.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinecal/io/bags/byte_file.hpp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/yaml/yaml_documents.hpp"
+
+namespace kinecal::detail {
+
+struct Ros2Metadata {
+  std::string storage;             ///< "sqlite3", "mcap"
+  std::vector<std::string> files;  ///< in the order of recording, as they are listed
+  std::string compression_mode;    ///< "FILE", "MESSAGE", or nothing
+};
+
+[[nodiscard]] inline std::string scalar_or_nothing(const YAML::Node& node) {
+  return node && node.IsScalar() ? node.Scalar() : "";
+}
+
+/// @throws InputError  "file:line: ..." if it cannot be read or is none
+[[nodiscard]] inline Ros2Metadata read_ros2_metadata(const std::string& path) {
+  constexpr const char* kTop = "rosbag2_bagfile_information";
+  try {
+    std::ifstream in = open_bytes(path);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::vector<YAML::Node> documents = load_yaml_documents(text);
+    const bool is_map = !documents.empty() && documents.front().IsMap();
+    const YAML::Node bag = is_map ? documents.front()[kTop] : YAML::Node();
+    if (!bag || !bag.IsMap()) throw BytesError(std::string("has no map '") + kTop + "'");
+    const YAML::Node paths = bag["relative_file_paths"];
+    if (!paths || !paths.IsSequence()) throw BytesError("has no list 'relative_file_paths'");
+    Ros2Metadata metadata;
+    metadata.storage = scalar_or_nothing(bag["storage_identifier"]);
+    metadata.compression_mode = scalar_or_nothing(bag["compression_mode"]);
+    for (const YAML::Node& file : paths) metadata.files.push_back(file.as<std::string>());
+    return metadata;
+  } catch (const YAML::Exception& e) {
+    throw InputError(Place{path, e.mark.line + 1}.str() + ": " + e.msg);
+  } catch (const BytesError& e) {
+    throw InputError(path + ": " + e.what());
+  }
+}
+
+/// Whether one name stands before the other as people count: "bag_2" before "bag_10".
+[[nodiscard]] inline bool naturally_before(std::string_view a, std::string_view b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto cut_number = [&](std::string_view& text) {
+    const auto end = std::find_if_not(text.begin(), text.end(), is_digit) - text.begin();
+    std::string_view digits = text.substr(0, static_cast<std::size_t>(end));
+    text.remove_prefix(digits.size());
+    digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
+    return digits;
+  };
+  std::string_view left = a, right = b;
+  while (!left.empty() && !right.empty()) {
+    if (is_digit(left[0]) && is_digit(right[0])) {
+      const std::string_view x = cut_number(left), y = cut_number(right);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+    } else if (left[0] != right[0]) {
+      return left[0] < right[0];
+    } else {
+      left.remove_prefix(1);
+      right.remove_prefix(1);
+    }
+  }
+  return left.size() != right.size() ? left.size() < right.size() : a < b;
+}
+
+}  // namespace kinecal::detail

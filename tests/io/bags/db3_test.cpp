@@ -1,0 +1,240 @@
+#include "kinecal/io/bags/db3.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "support/bags.hpp"
+
+namespace kinecal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+namespace fs = std::filesystem;
+
+class Db3 : public testing::Test {
+ protected:
+  Db3() {
+    char folder[] = "/tmp/kinecal_db3_XXXXXX";
+    folder_ = mkdtemp(folder);
+    path_ = folder_ / "bag_0.db3";
+  }
+  ~Db3() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] BagReading read(std::vector<std::string> wanted = {}) const {
+    return read_bag(wanted, [&](const BagReader& reader, Diagnostics& diagnostics) {
+      read_db3(path_.string(), reader, diagnostics);
+    });
+  }
+
+  void write(const std::string& bytes) const {
+    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
+  }
+  [[nodiscard]] std::string bytes() const {
+    std::ifstream in(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  /// "path: message"
+  [[nodiscard]] std::string told(const std::string& message) const {
+    return path_.string() + ": " + message;
+  }
+
+  fs::path folder_, path_;
+};
+
+TEST_F(Db3, AFileThatIsNoneIsAnError) {
+  EXPECT_THAT(read().errors, ElementsAre(told("cannot be opened: No such file or directory")));
+  write("");
+  EXPECT_THAT(read().errors, ElementsAre(told("is empty")));
+  write("SQLite for");
+  EXPECT_THAT(read().errors, ElementsAre(told("is no SQLite database: it does not begin as one")));
+  path_ = folder_;
+  EXPECT_THAT(read().errors, ElementsAre(told("is a folder, not a file")));
+}
+
+#ifndef KINECAL_HAVE_SQLITE
+
+TEST_F(Db3, SaysWhatToInstall) {
+  write(std::string(kSqliteMagic));
+  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("install libsqlite3-dev and build again")));
+}
+
+#else
+
+/// As ROS 2 Foxy records.
+const std::string kOldTables =
+    "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
+    "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
+    "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER "
+    "NOT NULL, data BLOB NOT NULL);"
+    "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
+/// As ROS 2 Jazzy records; only that the hash is not demanded of these tests.
+const std::string kNewTables =
+    "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);"
+    "CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata "
+    "TEXT NOT NULL);"
+    "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
+    "serialization_format TEXT NOT NULL, type_description_hash TEXT DEFAULT '', "
+    "offered_qos_profiles TEXT NOT NULL);"
+    "CREATE TABLE message_definitions(id INTEGER PRIMARY KEY, topic_type TEXT NOT NULL, encoding "
+    "TEXT NOT NULL, encoded_message_definition TEXT NOT NULL, type_description_hash TEXT NOT NULL);"
+    "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER "
+    "NOT NULL, data BLOB NOT NULL);"
+    "INSERT INTO message_definitions VALUES(1, 'sensor_msgs/msg/JointState', 'ros2msg', "
+    "'string[] name', 'h'), (2, 'sensor_msgs/msg/Image', 'ros2idl', 'module', 'h');";
+const std::string kTopics =
+    "INSERT INTO topics(id, name, type, serialization_format, offered_qos_profiles) VALUES"
+    "(1, '/joint_states', 'sensor_msgs/msg/JointState', 'cdr', ''),"
+    "(2, '/camera/image', 'sensor_msgs/msg/Image', 'cdr', '');";
+/// Not in the order of time; two at the same one.
+const std::string kMessages =
+    "INSERT INTO messages(topic_id, timestamp, data) VALUES"
+    "(1, 30, CAST('third' AS BLOB)), (2, 20, CAST('image' AS BLOB)), (1, 10, CAST('first' AS "
+    "BLOB)), (1, 10, CAST('second' AS BLOB)), (2, 40, x'');";
+
+void run(const fs::path& path, const std::string& statements) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  char* error = nullptr;
+  EXPECT_EQ(sqlite3_exec(database, statements.c_str(), nullptr, nullptr, &error), SQLITE_OK)
+      << error;
+  sqlite3_free(error);
+  sqlite3_close(database);
+}
+
+TEST_F(Db3, MessagesAreReadInTheOrderOfTimeThenOfRecording) {
+  run(path_, kOldTables + kTopics + kMessages);
+  const BagReading reading = read();
+  EXPECT_THAT(reading.errors, IsEmpty());
+  EXPECT_THAT(reading.warnings, IsEmpty());
+  EXPECT_THAT(reading.topics, ElementsAre("joint_states sensor_msgs/JointState cdr ",
+                                          "camera/image sensor_msgs/Image cdr "));
+  EXPECT_THAT(reading.messages,
+              ElementsAre("joint_states 10 first", "joint_states 10 second",
+                          "camera/image 20 image", "joint_states 30 third", "camera/image 40 "));
+}
+
+TEST_F(Db3, NewerVersionsTellDefinitions) {
+  run(path_, kNewTables + kTopics + kMessages);
+  const BagReading reading = read();
+  EXPECT_THAT(reading.errors, IsEmpty());
+  EXPECT_THAT(reading.topics, ElementsAre("joint_states sensor_msgs/JointState cdr string[] name",
+                                          "camera/image sensor_msgs/Image cdr "));
+  EXPECT_THAT(reading.messages, SizeIs(5));
+}
+
+TEST_F(Db3, OnlyWhatIsWantedIsHandled) {
+  run(path_, kOldTables + kTopics + kMessages);
+  EXPECT_THAT(read({"camera/image"}).messages,
+              ElementsAre("camera/image 20 image", "camera/image 40 "));
+  EXPECT_THAT(read({"nothing"}).messages, IsEmpty());
+}
+
+TEST_F(Db3, NothingIsChangedOrLeftBesideIt) {
+  run(path_, kOldTables + kTopics + kMessages);
+  fs::permissions(path_, fs::perms::owner_read);
+  const std::string before = bytes();
+  EXPECT_THAT(read().errors, IsEmpty());
+  EXPECT_EQ(bytes(), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Db3, PathsMayHaveAnyCharacter) {
+  path_ = folder_ / "50% of #1? yes & no=.db3";
+  run(path_, kOldTables + kTopics + kMessages);
+  EXPECT_THAT(read().errors, IsEmpty());
+  EXPECT_THAT(read().messages, SizeIs(5));
+}
+
+TEST_F(Db3, MessagesOfTheWriteAheadLogAreReadToo) {
+  sqlite3* recorder = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &recorder), SQLITE_OK);
+  const std::string all = "PRAGMA journal_mode=WAL;" + kOldTables + kTopics + kMessages;
+  ASSERT_EQ(sqlite3_exec(recorder, all.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+  const BagReading reading = read();  // while it is being recorded
+  EXPECT_THAT(reading.errors, IsEmpty());
+  EXPECT_THAT(reading.warnings, ElementsAre(HasSubstr("the recording was interrupted")));
+  EXPECT_THAT(reading.messages, SizeIs(5));
+  sqlite3_close(recorder);
+}
+
+TEST_F(Db3, ADatabaseThatIsNoBagIsAnError) {
+  run(path_, "CREATE TABLE robots(id INTEGER);");
+  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("has no table 'topics'")));
+  run(path_, "CREATE TABLE topics(id INTEGER, name, type);");
+  EXPECT_THAT(read().errors,
+              ElementsAre(HasSubstr("table 'topics' has no column 'serialization_format'")));
+  run(path_, "DROP TABLE topics;" + kOldTables + "DROP TABLE messages;");
+  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("has no table 'messages'")));
+  run(path_, kTopics +
+                 "CREATE VIEW messages AS SELECT 1 AS id, 1 AS topic_id, 1 AS timestamp, x'' AS "
+                 "data;");
+  EXPECT_THAT(read().errors, SizeIs(1));
+}
+
+TEST_F(Db3, TopicsThatAreNotInCdrAreLeftOut) {
+  run(path_, kOldTables + kTopics + kMessages +
+                 "UPDATE topics SET serialization_format = 'protobuf' WHERE id = 2;");
+  const BagReading reading = read();
+  EXPECT_THAT(reading.messages, SizeIs(3));
+  EXPECT_THAT(reading.warnings, ElementsAre(told("topics not in CDR are left out: 'camera/image' "
+                                                 "as 'protobuf'")));
+}
+
+TEST_F(Db3, WhateverItIsCutOffAtAnErrorIsTold) {
+  const std::string many =
+      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 400) INSERT INTO "
+      "messages(topic_id, timestamp, data) SELECT 1 + i % 2, 1000 + i, CAST('message ' || i AS "
+      "BLOB) FROM n;";
+  run(path_, "PRAGMA page_size=512;" + kOldTables + kTopics + many);
+  const std::string whole = bytes();
+  ASSERT_THAT(read().messages, SizeIs(400));
+  for (std::size_t size = 0; size < whole.size(); size += size < 2048 ? 13 : 257) {
+    write(whole.substr(0, size));
+    EXPECT_THAT(read().errors, SizeIs(1)) << size << " bytes of " << whole.size();
+  }
+}
+
+TEST_F(Db3, WhateverByteIsWrongNothingCrashes) {
+  run(path_, "PRAGMA page_size=512;" + kNewTables + kTopics + kMessages);
+  const std::string whole = bytes();
+  for (std::size_t at = 0; at < whole.size(); at += 3) {
+    std::string wrong = whole;
+    wrong[at] = static_cast<char>(~wrong[at]);
+    write(wrong);
+    EXPECT_LE(read().messages.size(), 100u) << at;
+  }
+}
+
+TEST_F(Db3, AColumnThatIsComputedIsNone) {
+  run(path_,
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data AS "
+      "(zeroblob(900000000)));"
+      "INSERT INTO topics VALUES(1, '/a', 'b/msg/C', 'cdr');"
+      "INSERT INTO messages(topic_id, timestamp) VALUES(1, 1);");
+  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("table 'messages' has no column 'data'")));
+}
+
+TEST_F(Db3, WhatTheReaderThrowsIsNotCaught) {
+  run(path_, kOldTables + kTopics + kMessages);
+  BagReader reader;
+  reader.wants = [](const BagTopic&) { return true; };
+  reader.handle = [](const BagMessage&) { throw BytesError("mine"); };
+  Diagnostics diagnostics;
+  EXPECT_THROW(read_db3(path_.string(), reader, diagnostics), BytesError);
+}
+
+#endif
+
+}  // namespace
+}  // namespace kinecal

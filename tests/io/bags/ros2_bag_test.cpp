@@ -1,0 +1,193 @@
+#include "kinecal/io/bags/ros2_bag.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/bags/write_mcap.hpp"
+#include "support/bags.hpp"
+
+namespace kinecal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+namespace fs = std::filesystem;
+
+class Ros2Bag : public testing::Test {
+ protected:
+  Ros2Bag() {
+    char folder[] = "/tmp/kinecal_bag_XXXXXX";
+    above_ = mkdtemp(folder);
+    folder_ = above_ / "bag";
+    fs::create_directory(folder_);
+  }
+  ~Ros2Bag() override { fs::remove_all(above_); }
+
+  [[nodiscard]] BagReading read(const std::string& folder = "") const {
+    return read_bag({}, [&](const BagReader& reader, Diagnostics& diagnostics) {
+      read_ros2_bag(folder.empty() ? folder_.string() : folder, reader, diagnostics);
+    });
+  }
+
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+  }
+
+  /// With one message.
+  void write_mcap(const std::string& name, const std::string& data) const {
+    std::ofstream out(folder_ / name, std::ios::binary);
+    McapWriter writer(out);
+    const auto topic = writer.add_topic({"said", "std_msgs/String", "", Encoding::cdr});
+    writer.write(topic, 1, detail::as_bytes(data));
+    writer.close();
+  }
+
+  void write_metadata(const std::vector<std::string>& files, const std::string& more = "") const {
+    std::string text =
+        "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n"
+        "  duration:\n    nanoseconds: 1\n  relative_file_paths:\n";
+    for (const std::string& file : files) text += "    - " + file + "\n";
+    write("metadata.yaml", text + more);
+  }
+
+  fs::path above_, folder_;
+};
+
+TEST_F(Ros2Bag, FilesAreReadInTheOrderOfTheMetadata) {
+  write_mcap("b.mcap", "1");
+  write_mcap("a.mcap", "2");
+  write_mcap("not_listed.mcap", "3");
+  write_metadata({"b.mcap", "a.mcap"}, "  compression_format: \"\"\n  compression_mode: \"\"\n");
+  const BagReading reading = read();
+  EXPECT_THAT(reading.errors, IsEmpty());
+  EXPECT_THAT(reading.warnings, IsEmpty());
+  EXPECT_THAT(reading.messages, ElementsAre("said 1 1", "said 1 2"));
+  EXPECT_THAT(read(folder_.string() + "/").messages, SizeIs(2));
+}
+
+TEST_F(Ros2Bag, WithoutMetadataFilesAreReadAsPeopleCount) {
+  for (const std::string number : {"0", "1", "2", "10", "11"}) {
+    write_mcap("bag_" + number + ".mcap", number);
+  }
+  write("notes.txt", "");
+  const BagReading reading = read();
+  EXPECT_THAT(reading.errors, IsEmpty());
+  EXPECT_THAT(reading.warnings, ElementsAre(HasSubstr("there is no metadata.yaml")));
+  EXPECT_THAT(reading.messages,
+              ElementsAre("said 1 0", "said 1 1", "said 1 2", "said 1 10", "said 1 11"));
+}
+
+TEST_F(Ros2Bag, OldVersionsListFilesFromTheFolderAbove) {
+  write_mcap("bag_0.mcap", "1");
+  write_metadata({"bag/bag_0.mcap"});
+  EXPECT_THAT(read().messages, SizeIs(1));
+  fs::rename(folder_, above_ / "renamed");
+  EXPECT_THAT(read((above_ / "renamed").string()).messages, SizeIs(1));
+}
+
+TEST_F(Ros2Bag, AMissingFileIsAnErrorAndNothingIsRead) {
+  write_mcap("bag_0.mcap", "1");
+  write_metadata({"bag_0.mcap", "bag_1.mcap"});
+  const BagReading reading = read();
+  EXPECT_THAT(reading.errors, ElementsAre(HasSubstr("file 'bag_1.mcap' is missing")));
+  EXPECT_THAT(reading.messages, IsEmpty());
+}
+
+TEST_F(Ros2Bag, CompressedFilesMustBeDecompressedFirst) {
+  write("bag_0.db3.zstd", "\x28\xB5\x2F\xFD and so on");
+  const auto says_so = ElementsAre(
+      AllOf(HasSubstr("bag_0.db3.zstd: is compressed as a whole"), HasSubstr("zstd -d ")));
+  EXPECT_THAT(read().errors, says_so);
+  write_metadata({"bag_0.db3.zstd"}, "  compression_format: zstd\n  compression_mode: FILE\n");
+  EXPECT_THAT(read().errors, says_so);
+  write_mcap("bag_0.db3", "1");
+  EXPECT_THAT(read().errors, IsEmpty());
+  EXPECT_THAT(read().messages, SizeIs(1));
+  write_metadata({"bag_0.db3"}, "  compression_format: zstd\n  compression_mode: MESSAGE\n");
+  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("ros2 bag convert")));
+}
+
+TEST_F(Ros2Bag, MetadataThatIsNoneIsAnErrorWithItsPlace) {
+  write_mcap("bag_0.mcap", "1");
+  const auto errors_of = [&](const std::string& metadata) {
+    write("metadata.yaml", metadata);
+    return read().errors;
+  };
+  EXPECT_THAT(errors_of(""), ElementsAre(HasSubstr("has no map 'rosbag2_bagfile_information'")));
+  EXPECT_THAT(errors_of("[1, 2"), ElementsAre(HasSubstr("metadata.yaml:")));
+  EXPECT_THAT(errors_of("rosbag2_bagfile_information: [1]"), SizeIs(1));
+  EXPECT_THAT(errors_of("rosbag2_bagfile_information: {version: 1}"),
+              ElementsAre(HasSubstr("has no list 'relative_file_paths'")));
+  EXPECT_THAT(errors_of("rosbag2_bagfile_information: {relative_file_paths: []}"),
+              ElementsAre(HasSubstr("lists no files")));
+  EXPECT_THAT(errors_of("rosbag2_bagfile_information:\n  relative_file_paths:\n  - [a]\n"),
+              ElementsAre(HasSubstr("metadata.yaml:3: ")));
+}
+
+TEST_F(Ros2Bag, AFolderThatIsNoneIsAnError) {
+  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("is no bag of ROS 2")));
+  EXPECT_THAT(read("/no/such/folder").errors, ElementsAre(HasSubstr("is no bag of ROS 2")));
+  write("bag_0.mcap", "no MCAP");
+  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("it begins like neither")));
+}
+
+#ifdef KINECAL_HAVE_SQLITE
+
+TEST_F(Ros2Bag, FilesMayBeOfTwoKinds) {
+  write_mcap("bag_0.mcap", "1");
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((folder_ / "bag_1.db3").c_str(), &database), SQLITE_OK);
+  const char* statements =
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data);"
+      "INSERT INTO topics VALUES(1, '/said', 'std_msgs/msg/String', 'cdr');"
+      "INSERT INTO messages VALUES(1, 1, 2, CAST('2' AS BLOB));";
+  EXPECT_EQ(sqlite3_exec(database, statements, nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+  write_metadata({"bag_0.mcap", "bag_1.db3"});
+  EXPECT_THAT(read().messages, ElementsAre("said 1 1", "said 2 2"));
+}
+
+#endif
+
+TEST(Ros2Formats, AreKnownByTheirFirstBytes) {
+  EXPECT_TRUE(is_mcap(detail::as_bytes(kMcapMagic)));
+  EXPECT_FALSE(is_mcap(detail::as_bytes(kMcapMagic.substr(0, 7))));
+  EXPECT_TRUE(is_sqlite(detail::as_bytes(kSqliteMagic)));
+  EXPECT_FALSE(is_sqlite(detail::as_bytes("SQLite format 2")));
+  EXPECT_FALSE(is_sqlite({}));
+}
+
+TEST(Ros2Formats, TypesAreCalledAsInRos1) {
+  EXPECT_EQ(detail::bag_topic_type("sensor_msgs/msg/JointState"), "sensor_msgs/JointState");
+  EXPECT_EQ(detail::bag_topic_type("sensor_msgs/JointState"), "sensor_msgs/JointState");
+  EXPECT_EQ(detail::ros2_type("sensor_msgs/JointState"), "sensor_msgs/msg/JointState");
+  EXPECT_EQ(detail::ros2_type("sensor_msgs/msg/JointState"), "sensor_msgs/msg/JointState");
+  EXPECT_EQ(detail::ros2_type("plain"), "plain");
+}
+
+TEST(NaturallyBefore, CountsAsPeopleDo) {
+  using detail::naturally_before;
+  const std::vector<std::string> sorted{"", "a", "a2", "a02", "a10", "a10b", "a10c", "b1"};
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    for (std::size_t k = 0; k < sorted.size(); ++k) {
+      const bool both_two = (i == 2 || i == 3) && (k == 2 || k == 3);
+      if (!both_two) {
+        EXPECT_EQ(naturally_before(sorted[i], sorted[k]), i < k);
+      }
+    }
+  }
+  EXPECT_NE(naturally_before("a2", "a02"), naturally_before("a02", "a2"));
+}
+
+}  // namespace
+}  // namespace kinecal
