@@ -47,7 +47,7 @@ class SqliteDatabase {
     // What is not in the file is computed: only somebody who means harm does that.
     constexpr std::uint64_t kLeast = 1 << 20;
     sqlite3_limit(made, SQLITE_LIMIT_LENGTH,
-                  static_cast<int>(std::min(kMaxBlockBytes, size + kLeast)));
+                  static_cast<int>(std::min(kMostOfABlock, size + kLeast)));
     // A tree that branches into itself has rows without end.
     constexpr int kSteps = 10'000;
     steps_ = std::make_unique<std::uint64_t>((10 * kLeast + 64 * size) / kSteps);
