@@ -25,6 +25,7 @@
 #include "kinecal/io/init/plan_targets.hpp"
 #include "kinecal/io/init/robot_parts.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
+#include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/results/result_files.hpp"
 #include "kinecal/io/sample_warnings.hpp"
