@@ -34,6 +34,25 @@ struct CheckOptions {
 /// Says what is in the samples.
 [[gnu::visibility("default")]] int inspect(const std::vector<std::string>& samples);
 
+struct InitOptions {
+  std::string urdf, output = "calibrate.yaml";
+  std::string base, arm, camera, camera_type, camera_name;  ///< empty: asked, or proposed
+  std::vector<std::string> targets;
+  bool force = false;  ///< replace a file
+};
+
+/// Writes a first configuration from a URDF and a few answers.
+[[gnu::visibility("default")]] int init(const InitOptions& options);
+
+struct ConvertOptions {
+  std::string input, output;
+  std::string columns;  ///< what the columns of a table mean
+  bool force = false;   ///< replace a file
+};
+
+/// Writes samples of another format as YAML.
+[[gnu::visibility("default")]] int convert(const ConvertOptions& options);
+
 /// Name, version and the instruction set that the evaluation was compiled for.
 [[gnu::visibility("default")]] std::string version();
 

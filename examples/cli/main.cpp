@@ -21,6 +21,39 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
       ->type_name("FILE");
 }
 
+void add_init(CLI::App& command, InitOptions& options) {
+  command.add_option("--urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+  command.add_option("--output", options.output, "the configuration to write")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command
+      .add_option("--target", options.targets,
+                  "what the robot is measured against: leds, checkerboard (in the gripper), "
+                  "world_checkerboard, tracker or ground; ground may come with another")
+      ->delimiter(',');
+  command.add_option("--arm", options.arm, "link at the end of the arm")->type_name("LINK");
+  command.add_option("--camera", options.camera, "the camera's optical frame")->type_name("LINK");
+  command.add_option("--camera-type", options.camera_type,
+                     "camera3d (points in metres, default) or camera2d (pixels)");
+  command.add_option("--robot-camera-name", options.camera_name,
+                     "sensor_name of the camera in the samples, by default 'camera'");
+  command
+      .add_option("--base", options.base,
+                  "link in which everything is compared, by default the highest one")
+      ->type_name("LINK");
+  command.add_flag("--force", options.force, "replace the file that is there");
+}
+
+void add_convert(CLI::App& command, ConvertOptions& options) {
+  command.add_option("input", options.input, "a table (.csv)")->required()->type_name("FILE");
+  command.add_option("output", options.output, "samples to write, CalibrationData YAML")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--columns", options.columns, "what the columns of the table mean, YAML")
+      ->type_name("FILE");
+  command.add_flag("--force", options.force, "replace the file that is there");
+}
+
 int run(int argc, char** argv) {
   CLI::App app(
       "Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.");
@@ -66,6 +99,16 @@ int run(int argc, char** argv) {
   add_input(*check_command, checking.urdf, checking.config);
   check_command->add_option("--samples", checking.samples, "recorded samples")->type_name("FILE");
 
+  InitOptions starting;
+  CLI::App* init_command =
+      app.add_subcommand("init", "write a first configuration from a URDF: asks what is not given");
+  add_init(*init_command, starting);
+
+  ConvertOptions converting;
+  CLI::App* convert_command =
+      app.add_subcommand("convert", "write samples of another format as YAML");
+  add_convert(*convert_command, converting);
+
   std::vector<std::string> inspected;
   CLI::App* inspect_command = app.add_subcommand(
       "inspect", "show what is in the samples: sensors, features, joint ranges, gaps");
@@ -85,6 +128,8 @@ int run(int argc, char** argv) {
   int code = kDone;
   if (*calibrate_command) code = calibrate(calibrating);
   if (*check_command) code = check(checking);
+  if (*init_command) code = init(starting);
+  if (*convert_command) code = convert(converting);
   if (*inspect_command) code = inspect(inspected);
   if (std::fflush(stdout) == 0) return code;
   std::fprintf(stderr, "error: the output cannot be printed\n");

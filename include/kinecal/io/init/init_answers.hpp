@@ -1,0 +1,64 @@
+// What somebody must know of a robot and its surroundings to write a first configuration: the
+// answers to the questions of `kinecal init`.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kinecal {
+
+/// What the robot is measured against.
+enum class InitTarget { leds, checkerboard, world_checkerboard, tracker, ground };
+
+/// A target, the word for it on the command line, and a line that explains it.
+struct InitTargetWord {
+  InitTarget target;
+  std::string_view word, says;
+};
+
+inline constexpr std::array<InitTargetWord, 5> kInitTargets = {{
+    {InitTarget::leds, "leds",
+     "LEDs (or other points at known places) on the gripper, seen by a camera"},
+    {InitTarget::checkerboard, "checkerboard", "a checkerboard in the gripper, seen by a camera"},
+    {InitTarget::world_checkerboard, "world_checkerboard",
+     "a checkerboard that stands in the world, seen by a camera that moves"},
+    {InitTarget::tracker, "tracker", "a reflector on the arm, followed by a laser tracker"},
+    {InitTarget::ground, "ground", "the floor, seen by a depth camera"},
+}};
+
+[[nodiscard]] inline std::string_view to_string(InitTarget target) {
+  return kInitTargets[static_cast<std::size_t>(target)].word;
+}
+
+/// The target of a word of the command line; nothing if it is none.
+[[nodiscard]] inline std::optional<InitTarget> init_target(std::string_view word) {
+  for (const InitTargetWord& known : kInitTargets) {
+    if (known.word == word) return known.target;
+  }
+  return std::nullopt;
+}
+
+/// Whether an arm (a camera) has a part in it.
+[[nodiscard]] constexpr bool needs_arm(InitTarget target) {
+  return target == InitTarget::leds || target == InitTarget::checkerboard ||
+         target == InitTarget::tracker;
+}
+[[nodiscard]] constexpr bool needs_camera(InitTarget target) {
+  return target != InitTarget::tracker;
+}
+
+/// Links are those of the URDF; what a target does not need stays empty.
+struct InitAnswers {
+  InitTarget target = InitTarget::leds;
+  bool with_ground = false;              ///< the camera also sees the floor, in samples of its own
+  std::string base;                      ///< link in which everything is compared
+  std::string arm;                       ///< link at the end of the arm
+  std::string camera;                    ///< link of the camera, z ahead: its optical frame
+  std::string camera_type = "camera3d";  ///< camera3d (points in metres) or camera2d (pixels)
+  std::string camera_name = "camera";    ///< sensor_name of the samples, prefix of its parameters
+};
+
+}  // namespace kinecal

@@ -1,0 +1,209 @@
+// Samples from tables: every column where it belongs, every mistake with its place and name.
+#include "kinecal/io/csv/read_csv_samples.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <clocale>
+
+namespace kinecal {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+namespace fs = std::filesystem;
+
+const char* const kMapping = R"(joints:
+  unit: degrees
+  columns: {pan: q1, tilt: q2}
+sliding:
+  unit: millimetres
+  columns: {lift: [l, dl]}
+observations:
+ - sensor: arm
+   frame: smr
+   constant: [0, 0.5, 0]
+ - sensor: tracker
+   frame: tracker_frame
+   unit: millimetres
+   points: [[x, y, z], [[x, dx], [y, dy], [z, dz]]]
+ - sensor: camera
+   frame: optical
+   pixels: [[u, v]]
+)";
+
+const char* const kTable =
+    "q1,q2,l,dl,x,y,z,dx,dy,dz,u,v\n"
+    "90,-45,100,0.5,1000.1,2,3,0.1,0.2,0.3,320.5,240\n";
+
+class ReadCsvSamples : public testing::Test {
+ protected:
+  ReadCsvSamples() {
+    char folder[] = "/tmp/kinecal_csv_XXXXXX";
+    folder_ = mkdtemp(folder);
+  }
+  ~ReadCsvSamples() override { fs::remove_all(folder_); }
+
+  std::vector<Sample> read(const std::string& table = kTable,
+                           const std::string& mapping = kMapping) {
+    std::ofstream(folder_ / "t.csv") << table;
+    std::ofstream(folder_ / "m.yaml") << mapping;
+    diagnostics_ = {};
+    return read_csv_samples((folder_ / "t.csv").string(), (folder_ / "m.yaml").string(),
+                            diagnostics_);
+  }
+  /// The table or mapping with one piece of text replaced.
+  static std::string with(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+
+  fs::path folder_;
+  Diagnostics diagnostics_;
+};
+
+TEST_F(ReadCsvSamples, PutsEveryColumnWhereItBelongs) {
+  const auto samples = read();
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  const Sample& sample = samples.front();
+  EXPECT_THAT(sample.joint_names, ElementsAre("pan", "tilt", "lift"));
+  EXPECT_DOUBLE_EQ(sample.joint_positions[0], std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(sample.joint_positions[1], -std::numbers::pi / 4);
+  EXPECT_EQ(sample.joint_positions[2], 0.1005);
+  EXPECT_EQ(sample.source, (folder_ / "t.csv").string() + ":2");
+  ASSERT_EQ(sample.observations.size(), 3u);
+  EXPECT_EQ(sample.observations[0].sensor, "arm");
+  EXPECT_EQ(sample.observations[0].features[0].frame, "smr");
+  EXPECT_EQ(sample.observations[0].features[0].point, Vector3<double>(0.0, 0.5, 0.0));
+  const auto& tracked = sample.observations[1].features;
+  ASSERT_EQ(tracked.size(), 2u);
+  EXPECT_EQ(tracked[0].point, Vector3<double>(1.0001, 0.002, 0.003)) << "as the text stands";
+  EXPECT_LE((tracked[1].point - Vector3<double>(1.0002, 0.0022, 0.0033)).norm(), 1e-15);
+  EXPECT_EQ(sample.observations[2].features[0].point, Vector3<double>(320.5, 240.0, 0.0));
+}
+
+TEST_F(ReadCsvSamples, TakesColumnsByNumberWhereThereIsNoHeader) {
+  const std::string mapping =
+      "separator: semicolon\nheader: false\njoints: {columns: {pan: 1}}\n"
+      "observations: [{sensor: arm, frame: hand, points: [[2, 3, 4]]}]\n";
+  const auto samples = read("0.5;1;2;3\r\n\r\n0.25;4;5;6\r\n;;;\r\n", mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_EQ(samples[1].joint_positions[0], 0.25);
+  EXPECT_EQ(samples[1].observations[0].features[0].point, Vector3<double>(4.0, 5.0, 6.0));
+}
+
+TEST_F(ReadCsvSamples, MakesAMissingValueAFeatureWithoutWeight) {
+  for (const char* missing : {"", "nan", "NaN", "NA", "-"}) {
+    const auto samples = read(with(kTable, "1000.1", missing));
+    ASSERT_THAT(diagnostics_.errors, IsEmpty()) << missing;
+    EXPECT_FALSE(samples[0].observations[1].features[0].point.allFinite());
+    EXPECT_FALSE(samples[0].observations[1].features[1].point.allFinite());
+    EXPECT_TRUE(samples[0].observations[2].features[0].point.allFinite());
+  }
+}
+
+TEST_F(ReadCsvSamples, LeavesOutARowWithoutAJointAndSaysSo) {
+  EXPECT_THAT(read(with(kTable, "-45", "")), IsEmpty());
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("t.csv:2: joint 'tilt' has no")));
+}
+
+TEST_F(ReadCsvSamples, DoesNotDependOnTheLocale) {
+  const char* const german = std::setlocale(LC_ALL, "de_DE.UTF-8");
+  const auto samples = read();
+  std::setlocale(LC_ALL, "C");
+  if (german == nullptr) GTEST_SKIP() << "no locale with a decimal comma is installed";
+  EXPECT_EQ(samples[0].observations[2].features[0].point.x(), 320.5);
+}
+
+TEST_F(ReadCsvSamples, TellsAColumnThatIsNotThereAndTheNearest) {
+  (void)read(kTable, with(kMapping, "dx]", "dxx]"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(AllOf(HasSubstr("m.yaml:14: column 'dxx'"), HasSubstr("is not in"))));
+  (void)read(with(kTable, "q1", "joint_1"), with(kMapping, "q1", "jiont_1"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(AllOf(HasSubstr("m.yaml:3: column 'jiont_1'"),
+                                                     HasSubstr("did you mean 'joint_1'?"))));
+  (void)read(kTable, with(kMapping, "q1", "13"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("has 12 columns, counted from 1")));
+  (void)read(kTable, std::string("header: false\n") + kMapping);
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("the table has no header")));
+  (void)read(with(kTable, "q2", "q1"), with(kMapping, "q2", "2"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("column 'q1' occurs twice")));
+}
+
+TEST_F(ReadCsvSamples, SuspectsTheSeparatorWhereThereIsOneColumn) {
+  (void)read(kTable, std::string("separator: semicolon\n") + kMapping);
+  EXPECT_THAT(diagnostics_.errors, testing::Each(HasSubstr("is the separator right?")));
+}
+
+TEST_F(ReadCsvSamples, TellsCellsThatAreNoNumbers) {
+  (void)read(with(kTable, "1000.1", "1000.1mm"));
+  EXPECT_THAT(diagnostics_.errors,
+              testing::Each(HasSubstr("t.csv:2: column 'x' is '1000.1mm', which is not a number")));
+  (void)read(with(kTable, "320.5", "\"320,5\""));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a decimal point, not a comma")));
+  (void)read(with(kTable, "320.5", "inf"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("not a finite number")));
+  (void)read(with(kTable, ",320.5,240", ""));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("the row has 10 cells")));
+}
+
+TEST_F(ReadCsvSamples, CountsMistakesThatRepeatThemselves) {
+  std::string table = kTable;
+  for (int i = 0; i < 50; ++i) table += "a,0,0,0,0,0,0,0,0,0,0,0\n";
+  (void)read(table);
+  EXPECT_EQ(diagnostics_.errors.size(), 21u);
+  EXPECT_THAT(diagnostics_.errors.back(), HasSubstr("t.csv: 30 more cells"));
+}
+
+TEST_F(ReadCsvSamples, TellsMistakesOfTheMappingWithTheirLines) {
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"separator: colon\njoints:", "m.yaml:1: separator 'colon' is not one of"},
+      {"jionts:", "m.yaml:1: unknown key 'jionts'; did you mean 'joints'?"},
+      {"joints: {unit: degree}\nignored:", "m.yaml:1: joints: unit 'degree' is not one of"},
+      {"header: maybe\njoints:", "m.yaml:1: header is 'maybe', not true or false"}};
+  for (const auto& [text, message] : wrong) {
+    (void)read(kTable, with(kMapping, "joints:", text));
+    EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr(message))) << text;
+  }
+  (void)read(kTable, with(kMapping, "[[u, v]]", "[[u]]"));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(AllOf(HasSubstr("m.yaml:17: sensor 'camera'"),
+                                                           HasSubstr("two columns"))));
+  (void)read(kTable, with(kMapping, "constant: [0, 0.5, 0]", "constant: [0, 0.5]"));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("m.yaml:10: sensor 'arm'")));
+  (void)read(kTable, with(kMapping, "   constant: [0, 0.5, 0]\n", ""));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("has none of points, pixels")));
+  (void)read(kTable, with(kMapping, "sensor: camera", "sensor: arm"));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("sensor 'arm': occurs twice")));
+  (void)read(kTable, "[1, 2]");
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the file is a list, not a map")));
+}
+
+TEST_F(ReadCsvSamples, TellsFilesThatAreEmptyOrNotThere) {
+  (void)read("");
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the table has no rows")));
+  EXPECT_THROW((void)read_csv_samples("nowhere.csv", (folder_ / "m.yaml").string(), diagnostics_),
+               InputError);
+  EXPECT_THROW((void)read_csv_samples((folder_ / "t.csv").string(), "nowhere.yaml", diagnostics_),
+               InputError);
+}
+
+TEST(CsvExample, IsReadAsItsReadmeSays) {
+  const std::string folder = KINECAL_SOURCE_DIR "/examples/csv/";
+  Diagnostics diagnostics;
+  const auto samples =
+      read_csv_samples(folder + "tracker.csv", folder + "columns.yaml", diagnostics);
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.warnings, IsEmpty());
+  ASSERT_EQ(samples.size(), 60u);
+  EXPECT_FALSE(samples[17].observation("tracker")->features[0].point.allFinite());
+  EXPECT_EQ(samples[17].source, folder + "tracker.csv:19");
+}
+
+}  // namespace
+}  // namespace kinecal

@@ -1,0 +1,248 @@
+// What init writes is a configuration without mistakes, frees nothing that its target cannot tell,
+// and keeps what stays open by a prior: for each robot, target and kind of camera.
+#include "kinecal/io/init/initial_config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+#include "every_robot.hpp"
+#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/trust/observability.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+
+struct Case {
+  std::string name;
+  std::filesystem::path urdf;
+  InitAnswers answers;
+};
+
+/// Robots that hold their camera in the hand see nothing in it.
+bool makes_sense(const Robot& robot, const InitAnswers& answers) {
+  if (needs_camera(answers.target) && answers.camera.empty()) return false;
+  if (!needs_arm(answers.target) || !needs_camera(answers.target)) return true;
+  const auto above = joints_to_root(robot, answers.camera);
+  const auto arm = joints_to_root(robot, answers.arm);
+  const auto turning = std::find_if(arm.begin(), arm.end(), [](auto* j) { return moves(j->type); });
+  return std::find(above.begin(), above.end(), *turning) == above.end();
+}
+
+std::vector<Case> every_case() {
+  std::vector<Case> all;
+  for (const test::NamedUrdf& urdf : test::every_robot()) {
+    const Robot robot = read_urdf(urdf.file.string());
+    const auto arms = propose_arms(robot), cameras = propose_cameras(robot);
+    if (arms.empty()) continue;  // told by the test of proposals
+    for (const InitTargetWord& word : kInitTargets) {
+      for (const char* type : {"camera3d", "camera2d"}) {
+        for (const bool ground : {false, true}) {
+          InitAnswers answers{word.target, ground, "", arms.front(), "", type, "camera"};
+          if (!cameras.empty()) answers.camera = cameras.front();
+          answers.base = propose_base(robot, answers.arm);
+          const bool pixels = answers.camera_type == "camera2d";
+          if (word.target == InitTarget::tracker && (ground || pixels)) continue;
+          if (word.target == InitTarget::ground && (ground || pixels)) continue;
+          if (pixels && ground) continue;
+          if (!makes_sense(robot, answers)) continue;
+          all.push_back({urdf.name + "_" + std::string(word.word) + (pixels ? "_pixels" : "") +
+                             (ground ? "_and_ground" : ""),
+                         urdf.file, answers});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+class InitialConfig : public testing::TestWithParam<Case> {
+ protected:
+  /// The configuration that is written, read again; as a file, for messages have its lines.
+  Config read_again(const std::string& text, Diagnostics& diagnostics) {
+    const auto path =
+        std::filesystem::path(testing::TempDir()) / ("kinecal_init_" + GetParam().name + ".yaml");
+    std::ofstream(path) << text;
+    Config config = read_config(path.string(), diagnostics);
+    std::filesystem::remove(path);
+    return config;
+  }
+};
+
+/// Samples as the nominal robot would give them in random poses, where the camera sees the target.
+std::vector<Sample> simulated(const Robot& robot, const InitAnswers& answers, const Config& config,
+                              bool floor) {
+  std::mt19937 random(7);  // fixed, for the same test in each run
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const StepConfig& step = config.steps.front();
+  const auto frame_of = [&](const ModelConfig& model) {  // a virtual frame of it, or its link
+    for (const FrameInitialValueConfig& frame : step.frame_initial_values) {
+      const bool on_base = frame.name == "tracker_frame" || frame.name == "laser_frame";
+      if (model.type == "chain3d" && on_base == (model.name == "tracker")) return frame.name;
+    }
+    return model.frame;
+  };
+  const ModelConfig &first = step.models.front(), &second = step.models.back();
+  const RuntimeChain to_first = make_chain(robot, answers.base, first.frame);
+  const RuntimeChain to_second = make_chain(robot, answers.base, second.frame);
+  const bool is_camera = second.type != "chain3d";
+  std::vector<Sample> samples;
+  for (int tries = 0; samples.size() < 60 && tries < 20000; ++tries) {
+    Sample sample;
+    for (const Joint& joint : robot.joints()) {
+      if (!moves(joint.type) || joint.mimic) continue;
+      sample.joint_names.push_back(joint.name);
+      sample.joint_positions.push_back((turns(joint.type) ? 1.5 : 0.2) * unit(random));
+    }
+    const auto at = [&](const std::string& joint) { return *sample.position(joint); };
+    const Pose<double> base_T_first = forward_kinematics(to_first, at);
+    const Pose<double> base_T_second = forward_kinematics(to_second, at);
+    Observation told{first.name, {}}, seen{second.name, {}};
+    bool visible = true;
+    for (int i = 0; i < 5; ++i) {
+      Vector3<double> p(0.1 * unit(random), 0.1 * unit(random), 0.1 * unit(random));
+      if (answers.target == InitTarget::tracker) p.setZero();
+      told.features.push_back({frame_of(first), p});
+      p = base_T_second.inverse() * (base_T_first * p);
+      if (floor) {  // where a ray of the camera meets z = 0
+        const Vector3<double> ray(unit(random), unit(random), 1.0);
+        p = -base_T_second.translation.z() / (base_T_second.rotation * ray).z() * ray;
+      }
+      visible = visible && (!is_camera || (p.z() > 0.1 && p.head<2>().norm() < 2.0 * p.z()));
+      if (second.type == "camera2d") p = {500 * p.x() / p.z() + 320, 500 * p.y() / p.z() + 240, 0};
+      seen.features.push_back({frame_of(second), p});
+    }
+    if (!visible) continue;
+    if (is_camera) {
+      seen.camera.emplace();
+      seen.camera->p = {500, 0, 320, 0, 0, 500, 240, 0, 0, 0, 1, 0};
+      seen.camera->k = {500, 0, 320, 0, 500, 240, 0, 0, 1};
+    }
+    if (!floor) sample.observations.push_back(told);
+    sample.observations.push_back(seen);
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+TEST_P(InitialConfig, IsReadAndFitsTheRobotWithoutAWord) {
+  const Robot robot = read_urdf(GetParam().urdf.string());
+  const std::string text = initial_config(robot, GetParam().answers);
+  Diagnostics diagnostics;
+  const Config config = read_again(text, diagnostics);
+  (void)assemble(config, robot, {}, diagnostics);
+  EXPECT_THAT(diagnostics.errors, testing::IsEmpty()) << text;
+  EXPECT_THAT(diagnostics.warnings, testing::IsEmpty()) << text;
+}
+
+TEST_P(InitialConfig, FreesOnlyWhatSamplesTellOrAPriorKeeps) {
+  const Robot robot = read_urdf(GetParam().urdf.string());
+  const std::string text = initial_config(robot, GetParam().answers);
+  Diagnostics diagnostics;
+  const Config config = read_again(text, diagnostics);
+  const bool floor_only = GetParam().answers.target == InitTarget::ground;
+  const auto samples = simulated(robot, GetParam().answers, config, floor_only);
+  ASSERT_GE(samples.size(), 10u) << "the camera never sees the target";
+  const Calibration calibration = assemble(config, robot, samples, diagnostics);
+  ASSERT_THAT(diagnostics.errors, testing::IsEmpty()) << text;
+  const CalibrationStep& step = calibration.steps.front();
+  const Eigen::VectorXd values = calibration.table.values();
+  const Observability told = observability(step.problem, step.free,
+                                           std::span(values.data(), values.data() + values.size()));
+  for (const Combination& open : told.unobservable) {
+    std::string names;
+    bool kept = false;
+    for (const auto& [index, factor] : open) {
+      const std::string& name = calibration.table[index].name;
+      names += " " + name;
+      for (const BlockConfig& block : config.steps.front().error_blocks) {
+        kept = kept || (!block.param.empty() && name.starts_with(block.param));
+      }
+    }
+    EXPECT_TRUE(kept) << "open:" << names << "\n" << text;
+  }
+}
+
+TEST_P(InitialConfig, FitsIntoLinesAndExplainsEachList) {
+  const Robot robot = read_urdf(GetParam().urdf.string());
+  std::istringstream text(initial_config(robot, GetParam().answers));
+  std::string before;
+  for (std::string line; std::getline(text, line); before = line) {
+    EXPECT_TRUE(line.size() <= 100 || !line.starts_with("#")) << line;
+    const bool is_list = !line.empty() && line.ends_with(":") && line[0] != ' ' && line[0] != '#';
+    EXPECT_TRUE(!is_list || before.starts_with("#")) << line;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryRobot, InitialConfig, testing::ValuesIn(every_case()),
+                         [](const auto& param) { return param.param.name; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(InitialConfig);
+
+class InitialConfigMistakes : public testing::Test {
+ protected:
+  std::string message(InitAnswers answers) const {
+    try {
+      (void)initial_config(robot_, answers);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  Robot robot_ = read_urdf(KINECAL_SOURCE_DIR "/examples/robots/panda/panda.urdf");
+  InitAnswers good_{InitTarget::world_checkerboard, false,      "panda_link0", "panda_hand",
+                    "camera_color_optical_frame",   "camera3d", "camera"};
+};
+
+TEST_F(InitialConfigMistakes, AreToldAllAtOnceWithTheOptionAndTheNearestName) {
+  EXPECT_EQ(message(good_), "");
+  good_.base = "panda_lnk0";
+  good_.camera = "camera_color_optcal_frame";
+  good_.camera_type = "camera4d";
+  EXPECT_THAT(message(good_),
+              testing::AllOf(HasSubstr("--base: no link 'panda_lnk0'"),
+                             HasSubstr("did you mean 'panda_link0'?"), HasSubstr("--camera: no"),
+                             HasSubstr("--camera-type: 'camera4d' is neither")));
+}
+
+TEST_F(InitialConfigMistakes, ACameraInTheHandDoesNotSeeWhatTheHandHolds) {
+  good_.target = InitTarget::checkerboard;
+  EXPECT_THAT(message(good_), HasSubstr("--target world_checkerboard"));
+}
+
+TEST_F(InitialConfigMistakes, ACameraThatDoesNotMoveIsNoUseForABoardInTheWorld) {
+  good_.base = "panda_link7";
+  EXPECT_THAT(message(good_), HasSubstr("--camera: camera 'camera_color_optical_frame' does not"));
+}
+
+TEST_F(InitialConfigMistakes, PixelsDoNotShowTheFloor) {
+  good_.with_ground = true;
+  good_.camera_type = "camera2d";
+  EXPECT_THAT(message(good_), HasSubstr("--camera-type: the floor"));
+  good_.target = InitTarget::tracker;
+  EXPECT_THAT(message(good_), HasSubstr("--target: tracker and ground"));
+}
+
+TEST_F(InitialConfigMistakes, TheCameraHasANameOfItsOwn) {
+  good_.camera_name = "board";
+  EXPECT_THAT(message(good_), HasSubstr("--robot-camera-name: 'board'"));
+}
+
+TEST(InitialConfigNames, AreQuotedWhereYamlWouldMistakeThem) {
+  Joint joint{"no", JointType::revolute, "base: link", "#tip", {}, {0.0, 0.0, 1.0}};
+  Joint second{"a, b", JointType::revolute, "#tip", "hand\nmade", {}, {1.0, 0.0, 0.0}};
+  Joint third{"{c}", JointType::revolute, "hand\nmade", "off", {}, {0.0, 0.0, 1.0}};
+  const Robot robot("odd", {joint, second, third});
+  InitAnswers answers{InitTarget::tracker, false, "base: link", "off", "", "camera3d", "camera"};
+  const YAML::Node yaml = YAML::Load(initial_config(robot, answers));
+  EXPECT_EQ(yaml["base_link"].as<std::string>(), "base: link");
+  EXPECT_EQ(yaml["free_params"][0].as<std::string>(), "a, b");
+  EXPECT_EQ(yaml["models"][0]["frame"].as<std::string>(), "off");
+}
+
+}  // namespace
+}  // namespace kinecal

@@ -1,0 +1,57 @@
+// What is proposed of each robot: the end that its makers would choose stands first.
+#include "kinecal/io/init/robot_parts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "every_robot.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Not;
+
+Robot example(const std::string& name) {
+  return read_urdf(KINECAL_SOURCE_DIR "/examples/" + name + ".urdf");
+}
+
+TEST(ProposeArms, FindsTheHandsOfEveryRobot) {
+  for (const test::NamedUrdf& urdf : test::every_robot()) {
+    EXPECT_THAT(propose_arms(read_urdf(urdf.file.string())), Not(IsEmpty())) << urdf.file;
+  }
+}
+
+TEST(ProposeArms, NamesNeitherHeadsNorFingersNorCameras) {
+  EXPECT_THAT(propose_arms(example("robots/fetch/fetch")),
+              ElementsAre("gripper_link", "gripper_led_frame"));
+  EXPECT_THAT(propose_arms(example("robots/tiago/tiago")), ElementsAre("arm_chessboard_link"));
+  EXPECT_THAT(propose_arms(example("robots/panda/panda")), ElementsAre("panda_hand"));
+  EXPECT_THAT(propose_arms(example("mobile_manipulator/mobile_manipulator")),
+              ElementsAre("gripper_link"));
+  EXPECT_THAT(propose_arms(example("robots/pr2/pr2")),
+              ElementsAre("l_gripper_led_frame", "l_gripper_tool_frame", "r_gripper_led_frame",
+                          "r_gripper_tool_frame"));
+}
+
+TEST(ProposeCameras, NamesTheOpticalFrameOfColourFirst) {
+  const auto fetch = propose_cameras(example("robots/fetch/fetch"));
+  ASSERT_FALSE(fetch.empty());
+  EXPECT_EQ(fetch.front(), "head_camera_rgb_optical_frame");
+  EXPECT_EQ(propose_cameras(example("robots/panda/panda")).front(), "camera_color_optical_frame");
+  EXPECT_THAT(propose_cameras(example("robots/ur5e/ur5e")), IsEmpty());
+}
+
+TEST(ProposeBase, IsTheRootOrTheLinkBelowAFloatingJoint) {
+  EXPECT_EQ(propose_base(example("robots/pr2/pr2"), "l_gripper_led_frame"), "base_footprint");
+  Joint floating{"world_joint", JointType::floating, "world", "base", {}};
+  Joint turning{"turn", JointType::revolute, "base", "tip", {}};
+  EXPECT_EQ(propose_base(Robot("r", {floating, turning}), "tip"), "base");
+  EXPECT_THROW((void)propose_base(Robot("r", {turning}), "tpi"), RobotError);
+}
+
+}  // namespace
+}  // namespace kinecal

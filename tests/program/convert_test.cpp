@@ -1,0 +1,66 @@
+// kinecal convert as its users meet it: a laboratory's table becomes samples that calibrate.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class Convert : public test::ProgramTest {
+ protected:
+  Convert() {
+    const fs::path examples = fs::path(KINECAL_SOURCE_DIR) / "examples";
+    fs::copy(examples / "csv/tracker.csv", folder_);
+    fs::copy(examples / "csv/columns.yaml", folder_);
+    fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
+  }
+  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
+    return run(std::string(KINECAL_PROGRAM) + " " + arguments + " < /dev/null");
+  }
+};
+
+TEST_F(Convert, TheExampleCalibratesAsTheReadmeSays) {
+  const Outcome made = kinecal("convert tracker.csv samples.yaml --columns columns.yaml");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("wrote samples.yaml: 60 samples"));
+  EXPECT_EQ(kinecal("init --urdf ur5e.urdf --target tracker --arm tool0").code, 0);
+  const Outcome done = kinecal(
+      "calibrate --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --output out");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("1 feature is not a number"));
+}
+
+TEST_F(Convert, TellsWhatIsWrongAndWritesNothing) {
+  std::string table = read("tracker.csv");
+  write("tracker.csv", table.replace(table.find("dif_x"), 5, "dif_xx"));
+  const Outcome made = kinecal("convert tracker.csv samples.yaml --columns columns.yaml");
+  EXPECT_EQ(made.code, 1);
+  EXPECT_THAT(made.err,
+              AllOf(HasSubstr("columns.yaml:28: column 'dif_x'"), HasSubstr("'dif_xx'?")));
+  EXPECT_FALSE(fs::exists(folder_ / "samples.yaml"));
+}
+
+TEST_F(Convert, AsksForTheColumnsOfATable) {
+  const Outcome made = kinecal("convert tracker.csv samples.yaml");
+  EXPECT_EQ(made.code, 1);
+  EXPECT_THAT(made.err, HasSubstr("--columns FILE"));
+}
+
+TEST_F(Convert, ReplacesNothingUnlessForcedAndNeverItsInput) {
+  write("samples.yaml", "mine");
+  EXPECT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 1);
+  EXPECT_EQ(read("samples.yaml"), "mine");
+  EXPECT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml --force").code, 0);
+  const Outcome itself = kinecal("convert tracker.csv tracker.csv --columns columns.yaml --force");
+  EXPECT_EQ(itself.code, 1);
+  EXPECT_THAT(itself.err, HasSubstr("would replace an input"));
+}
+
+}  // namespace
+}  // namespace kinecal

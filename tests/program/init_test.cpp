@@ -1,0 +1,148 @@
+// kinecal init as its users meet it: by options, and by questions on a terminal.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <pty.h>
+#include <unistd.h>
+
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Init : public test::ProgramTest {
+ protected:
+  static std::string urdf(const std::string& robot) {
+    return std::string(KINECAL_SOURCE_DIR) + "/examples/robots/" + robot + "/" + robot + ".urdf";
+  }
+  /// Nobody can be asked.
+  [[nodiscard]] Outcome init(const std::string& robot, const std::string& options) const {
+    return run(std::string(KINECAL_PROGRAM) + " init --urdf " + urdf(robot) + " " + options +
+               " < /dev/null");
+  }
+  [[nodiscard]] Outcome check(const std::string& robot) const {
+    return run(std::string(KINECAL_PROGRAM) + " check --urdf " + urdf(robot) +
+               " --config calibrate.yaml");
+  }
+
+  /// On a terminal, where these keys are typed.
+  [[nodiscard]] Outcome type(const std::string& robot, const std::string& options,
+                             const std::string& keys) const {
+    int terminal = -1;
+    const std::string call = "cd " + folder_.string() + " && exec " + KINECAL_PROGRAM +
+                             " init --urdf " + urdf(robot) + " " + options;
+    const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+    if (child == 0) {
+      execl("/bin/sh", "sh", "-c", call.c_str(), nullptr);
+      _exit(127);
+    }
+    Outcome outcome;
+    EXPECT_EQ(::write(terminal, keys.data(), keys.size()), std::ssize(keys));
+    constexpr int kPatience = 60000;  // milliseconds; a program that asks on would wait for ever
+    pollfd readable{terminal, POLLIN, 0};
+    char buffer[4096];
+    ssize_t size = 0;
+    while (poll(&readable, 1, kPatience) > 0 &&
+           (size = ::read(terminal, buffer, sizeof buffer)) > 0) {
+      outcome.out.append(buffer, static_cast<std::size_t>(size));
+    }
+    close(terminal);
+    int status = 0;
+    waitpid(child, &status, 0);
+    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return outcome;
+  }
+};
+
+TEST_F(Init, WritesByOptionsWhatCheckAccepts) {
+  const Outcome made = init("fetch",
+                            "--target leds,ground --arm gripper_led_frame --camera "
+                            "head_camera_rgb_optical_frame --base base_link");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.out, AllOf(HasSubstr("wrote calibrate.yaml"), HasSubstr("next: kinecal check")));
+  EXPECT_THAT(read("calibrate.yaml"), AllOf(HasSubstr("frame: gripper_led_frame"), HasSubstr("# "),
+                                            HasSubstr("ground_plane")));
+  const Outcome checked = check("fetch");
+  EXPECT_EQ(checked.code, 0) << checked.err;
+  EXPECT_EQ(checked.err, "");
+}
+
+TEST_F(Init, TakesWhatCannotBeOtherwiseAndSaysSo) {
+  const Outcome made = init("ur5e", "--target tracker");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("--arm reflector (the only one)"));
+  EXPECT_EQ(check("ur5e").code, 0);
+}
+
+TEST_F(Init, NamesTheOptionWhereNobodyCanBeAsked) {
+  const Outcome target = init("fetch", "");
+  EXPECT_EQ(target.code, 1);
+  EXPECT_THAT(target.err, AllOf(HasSubstr("--target is required"), HasSubstr("leds, checker")));
+  const Outcome arm = init("fetch", "--target leds");
+  EXPECT_EQ(arm.code, 1);
+  EXPECT_THAT(arm.err, AllOf(HasSubstr("--arm is required"), HasSubstr("gripper_led_frame")));
+  EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
+}
+
+TEST_F(Init, TellsAnAnswerThatIsWrongAndTheNearest) {
+  const Outcome link = init("fetch", "--target tracker --arm griper_link");
+  EXPECT_EQ(link.code, 1);
+  EXPECT_THAT(link.err,
+              AllOf(HasSubstr("--arm: no link 'griper_link'"), HasSubstr("'gripper_link'?")));
+  const Outcome target = init("fetch", "--target trackr");
+  EXPECT_EQ(target.code, 1);
+  EXPECT_THAT(target.err,
+              AllOf(HasSubstr("--target: 'trackr'"), HasSubstr("did you mean 'tracker'?")));
+  EXPECT_EQ(init("fetch", "--target leds,tracker").code, 1);
+  EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
+}
+
+TEST_F(Init, KeepsAFileThatIsThereUnlessForced) {
+  write("calibrate.yaml", "mine");
+  const Outcome refused = init("ur5e", "--target tracker");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("calibrate.yaml: exists"), HasSubstr("--force")));
+  EXPECT_EQ(read("calibrate.yaml"), "mine");
+  EXPECT_EQ(init("ur5e", "--target tracker --force").code, 0);
+  EXPECT_THAT(read("calibrate.yaml"), HasSubstr("models:"));
+  EXPECT_EQ(init("ur5e", "--target tracker --output deep/er/c.yaml").code, 0);
+  EXPECT_THAT(read("deep/er/c.yaml"), HasSubstr("models:"));
+}
+
+TEST_F(Init, AsksOnATerminal) {
+  // Target 2, the floor: no; arm 9 is none, 1; camera: misspelt, then Enter; type: Enter.
+  const Outcome asked = type("fetch", "", "2\n\n9\n1\nhead_camera_rgb_optcal_frame\n\n\n");
+  EXPECT_EQ(asked.code, 0) << asked.out;
+  EXPECT_THAT(asked.out, AllOf(HasSubstr("2  checkerboard: "), HasSubstr("no such number"),
+                               HasSubstr("did you mean 'head_camera_rgb_optical_frame'?"),
+                               HasSubstr("camera2d: pixels"), HasSubstr("wrote calibrate.yaml")));
+  EXPECT_THAT(read("calibrate.yaml"),
+              AllOf(HasSubstr("{name: checkerboard, x: true"), HasSubstr("camera_z_offset"),
+                    HasSubstr("frame: gripper_link"), Not(HasSubstr("ground_plane"))));
+  EXPECT_EQ(check("fetch").code, 0);
+}
+
+TEST_F(Init, DoesNotAskWhatOptionsSay) {
+  const Outcome asked = type(
+      "panda", "--target world_checkerboard --camera-type camera2d --robot-camera-name eye", "\n");
+  EXPECT_EQ(asked.code, 0) << asked.out;
+  EXPECT_THAT(asked.out, AllOf(Not(HasSubstr("measured against")), HasSubstr("optical frame")));
+  EXPECT_THAT(read("calibrate.yaml"), AllOf(HasSubstr("model_2d: eye"), HasSubstr(" - eye_fx")));
+  EXPECT_EQ(check("panda").code, 0);
+}
+
+TEST_F(Init, WritesNothingWhereTheAnswersEnd) {
+  const Outcome left = type("fetch", "", "1\n\n\x04");
+  EXPECT_EQ(left.code, 1) << left.out;
+  EXPECT_THAT(left.out, HasSubstr("not answered; nothing is written"));
+  EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
+}
+
+}  // namespace
+}  // namespace kinecal
