@@ -34,6 +34,17 @@ struct CheckOptions {
 /// Says what is in the samples.
 [[gnu::visibility("default")]] int inspect(const std::vector<std::string>& samples);
 
+struct InstallOptions {
+  std::string result;  ///< folder that calibrate wrote
+  std::string folder;  ///< with the launch file
+  std::string launch = "robot.launch";
+  std::vector<std::string> names;  ///< KEY=NAME
+  bool force = false, restore = false, date = false;
+};
+
+/// Puts a result onto the robot, takes the last one back, or prints the date of the one installed.
+[[gnu::visibility("default")]] int install(const InstallOptions& options);
+
 /// Name, version and the instruction set that the evaluation was compiled for.
 [[gnu::visibility("default")]] std::string version();
 

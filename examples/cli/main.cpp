@@ -18,6 +18,30 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
       ->type_name("FILE");
 }
 
+void add_install(CLI::App& command, InstallOptions& installing) {
+  CLI::Option* result =
+      command.add_option("result", installing.result, "what calibrate wrote")->type_name("DIR");
+  command.add_option("--to", installing.folder, "folder of the robot's launch file")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--launch", installing.launch, "name of the launch file")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command
+      .add_option("--name", installing.names,
+                  "how the launch file calls what is set, where that is not as on Fetch: "
+                  "z_offset_mm=camera/z_offset_mm; KEY= sets nothing")
+      ->type_name("KEY=NAME")
+      ->allow_extra_args(false);
+  command.add_flag("--force", installing.force, "install what did not converge")->needs(result);
+  CLI::Option* restore =
+      command.add_flag("--restore", installing.restore, "take the last installation back")
+          ->excludes(result);
+  command.add_flag("--date", installing.date, "print the date of what is installed")
+      ->excludes(result)
+      ->excludes(restore);
+}
+
 int run(int argc, char** argv) {
   CLI::App app(
       "Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.");
@@ -69,6 +93,11 @@ int run(int argc, char** argv) {
       ->required()
       ->type_name("FILE");
 
+  InstallOptions installing;
+  CLI::App* install_command =
+      app.add_subcommand("install", "put a result onto the robot: its files and its launch file");
+  add_install(*install_command, installing);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -78,10 +107,15 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "error: --output is required (or --dry-run)\n");
     return kBadInput;
   }
+  if (*install_command && installing.result.empty() && !installing.restore && !installing.date) {
+    std::fprintf(stderr, "error: a result is required (or --restore, or --date)\n");
+    return kBadInput;
+  }
   int code = kDone;
   if (*calibrate_command) code = calibrate(calibrating);
   if (*check_command) code = check(checking);
   if (*inspect_command) code = inspect(inspected);
+  if (*install_command) code = install(installing);
   if (std::fflush(stdout) == 0) return code;
   std::fprintf(stderr, "error: the output cannot be printed\n");
   return kBadInput;
