@@ -45,6 +45,14 @@ struct InstallOptions {
 /// Puts a result onto the robot, takes the last one back, or prints the date of the one installed.
 [[gnu::visibility("default")]] int install(const InstallOptions& options);
 
+struct RpyOptions {
+  std::vector<std::string> numbers;  ///< three, radians
+  bool to_vector = false;            ///< they are roll, pitch, yaw
+};
+
+/// Prints a rotation as a rotation vector and as roll, pitch, yaw.
+[[gnu::visibility("default")]] int rpy(const RpyOptions& options);
+
 /// Name, version and the instruction set that the evaluation was compiled for.
 [[gnu::visibility("default")]] std::string version();
 

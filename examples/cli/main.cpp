@@ -3,6 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 
@@ -16,6 +19,17 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
       .add_option("--config", config, "what is calibrated: robot_calibration's YAML, of ROS 1 or 2")
       ->required()
       ->type_name("FILE");
+}
+
+/// The arguments in the order that the parser takes, the last one first.  It takes -.5 for an
+/// option, and -0.5 for a number.
+std::vector<std::string> arguments_of(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  for (int i = argc - 1; i > 0; --i) {
+    const std::string text = argv[i];
+    arguments.push_back(text.starts_with("-.") ? "-0" + text.substr(1) : text);
+  }
+  return arguments;
 }
 
 void add_install(CLI::App& command, InstallOptions& installing) {
@@ -98,8 +112,17 @@ int run(int argc, char** argv) {
       app.add_subcommand("install", "put a result onto the robot: its files and its launch file");
   add_install(*install_command, installing);
 
+  RpyOptions turning;
+  CLI::App* rpy_command = app.add_subcommand(
+      "rpy", "a rotation vector (a b c of a free frame) as roll, pitch, yaw (a URDF's), and back");
+  rpy_command->add_option("numbers", turning.numbers, "A B C, or R P Y; radians")
+      ->required()
+      ->expected(3);
+  rpy_command->add_flag("--to-vector", turning.to_vector, "the numbers are roll, pitch, yaw");
+
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> arguments = arguments_of(argc, argv);
+    app.parse(std::move(arguments));
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kDone : kBadInput;
   }
@@ -116,6 +139,7 @@ int run(int argc, char** argv) {
   if (*check_command) code = check(checking);
   if (*inspect_command) code = inspect(inspected);
   if (*install_command) code = install(installing);
+  if (*rpy_command) code = rpy(turning);
   if (std::fflush(stdout) == 0) return code;
   std::fprintf(stderr, "error: the output cannot be printed\n");
   return kBadInput;

@@ -89,6 +89,7 @@ inline Installation install(const ResultFolder& result, const std::filesystem::p
                             const std::string& launch, const LaunchNames& names,
                             Diagnostics& diagnostics) {
   LaunchFolder target(folder, launch);
+  target.remove_leftovers();
   detail::check_path(target.path());
   const LaunchText old(read_text_file(target.launch()), target.launch().string());
   const InstalledFiles files = detail::files_for(result, target.path());

@@ -39,6 +39,12 @@ class LaunchFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] std::filesystem::path launch() const { return folder_ / launch_; }
 
+  /// Removes what a run that was stopped has left.
+  void remove_leftovers() const {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_ / kStaging, ignored);
+  }
+
   /// Adds files and replaces the launch file, which is kept.
   /// @param files  new ones; none of them is there
   /// @return       the name that the old launch file has now
@@ -95,9 +101,11 @@ class LaunchFolder {
   }
 
  private:
-  /// A temporary folder of a name of its own: what a run that was stopped has left is removed.
+  static constexpr const char* kStaging = ".kinecal-install";
+
+  /// A temporary folder; its name is always the same, so that nothing heaps up.
   struct Staging {
-    explicit Staging(const std::filesystem::path& folder) : path(folder / ".kinecal-install") {
+    explicit Staging(const std::filesystem::path& folder) : path(folder / kStaging) {
       std::error_code error;
       std::filesystem::remove_all(path, error);
       if (::mkdir(path.c_str(), 0700) != 0) {
