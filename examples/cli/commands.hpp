@@ -46,12 +46,32 @@ struct InitOptions {
 
 struct ConvertOptions {
   std::string input, output;
-  std::string columns;  ///< what the columns of a table mean
-  bool force = false;   ///< replace a file
+  std::string columns;       ///< what the columns of a table mean
+  bool drop_clouds = false;  ///< leave out images and point clouds
+  bool force = false;        ///< replace a file
 };
 
-/// Writes samples of another format as YAML.
+/// Writes samples or poses in another format.
 [[gnu::visibility("default")]] int convert(const ConvertOptions& options);
+
+struct InstallOptions {
+  std::string result;  ///< folder that calibrate wrote
+  std::string folder;  ///< with the launch file
+  std::string launch = "robot.launch";
+  std::vector<std::string> names;  ///< KEY=NAME
+  bool force = false, restore = false, date = false;
+};
+
+/// Puts a result onto the robot, takes the last one back, or prints the date of the one installed.
+[[gnu::visibility("default")]] int install(const InstallOptions& options);
+
+struct RpyOptions {
+  std::vector<std::string> numbers;  ///< three, radians
+  bool to_vector = false;            ///< they are roll, pitch, yaw
+};
+
+/// Prints a rotation as a rotation vector and as roll, pitch, yaw.
+[[gnu::visibility("default")]] int rpy(const RpyOptions& options);
 
 /// Name, version and the instruction set that the evaluation was compiled for.
 [[gnu::visibility("default")]] std::string version();

@@ -3,6 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 
@@ -19,6 +22,36 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
       .add_option("--config", config, "what is calibrated: robot_calibration's YAML, of ROS 1 or 2")
       ->required()
       ->type_name("FILE");
+}
+
+void add_calibrate(CLI::App& command, CalibrateOptions& options) {
+  add_input(command, options.urdf, options.config);
+  command
+      .add_option("--samples", options.samples,
+                  "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
+  command
+      .add_option("--offsets", options.offsets,
+                  "where joint offsets are written: added to <calibration rising>, or folded into "
+                  "<origin> for drivers that ignore it")
+      ->check(CLI::IsMember({"rising", "origin"}))
+      ->capture_default_str();
+  command.add_flag("--upstream-names", options.upstream_names,
+                   "name the files as robot_calibration does, with the date");
+  command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
+  command
+      .add_option("--threads", options.threads,
+                  "how many threads share the work, one for each core by default; the result does "
+                  "not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--cost", options.cost,
+                  "how Ceres is given the samples: summed, or each feature by itself (slower, for "
+                  "comparison)")
+      ->check(CLI::IsMember({"compressed", "stacked"}))
+      ->capture_default_str();
 }
 
 void add_init(CLI::App& command, InitOptions& options) {
@@ -45,13 +78,58 @@ void add_init(CLI::App& command, InitOptions& options) {
 }
 
 void add_convert(CLI::App& command, ConvertOptions& options) {
-  command.add_option("input", options.input, "a table (.csv)")->required()->type_name("FILE");
-  command.add_option("output", options.output, "samples to write, CalibrationData YAML")
+  command
+      .add_option("input", options.input,
+                  "samples or poses in YAML, a ROS 1 bag, MCAP, a ROS 2 bag, or a table")
       ->required()
       ->type_name("FILE");
-  command.add_option("--columns", options.columns, "what the columns of the table mean, YAML")
+  command
+      .add_option("output", options.output,
+                  "the file to write; its name tells the format: .yaml, .bag (ROS 1) or .mcap")
+      ->required()
       ->type_name("FILE");
+  command
+      .add_option("--columns", options.columns,
+                  "the input is a table; YAML that tells what its columns mean")
+      ->type_name("FILE");
+  command.add_flag("--drop-clouds", options.drop_clouds,
+                   "leave out the point clouds and images of observations");
   command.add_flag("--force", options.force, "replace the file that is there");
+}
+
+/// The arguments in the order that the parser takes, the last one first.  It takes -.5 for an
+/// option, and -0.5 for a number.
+std::vector<std::string> arguments_of(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  for (int i = argc - 1; i > 0; --i) {
+    const std::string text = argv[i];
+    arguments.push_back(text.starts_with("-.") ? "-0" + text.substr(1) : text);
+  }
+  return arguments;
+}
+
+void add_install(CLI::App& command, InstallOptions& installing) {
+  CLI::Option* result =
+      command.add_option("result", installing.result, "what calibrate wrote")->type_name("DIR");
+  command.add_option("--to", installing.folder, "folder of the robot's launch file")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--launch", installing.launch, "name of the launch file")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command
+      .add_option("--name", installing.names,
+                  "how the launch file calls what is set, where that is not as on Fetch: "
+                  "z_offset_mm=camera/z_offset_mm; KEY= sets nothing")
+      ->type_name("KEY=NAME")
+      ->allow_extra_args(false);
+  command.add_flag("--force", installing.force, "install what did not converge")->needs(result);
+  CLI::Option* restore =
+      command.add_flag("--restore", installing.restore, "take the last installation back")
+          ->excludes(result);
+  command.add_flag("--date", installing.date, "print the date of what is installed")
+      ->excludes(result)
+      ->excludes(restore);
 }
 
 int run(int argc, char** argv) {
@@ -63,35 +141,7 @@ int run(int argc, char** argv) {
   CalibrateOptions calibrating;
   CLI::App* calibrate_command = app.add_subcommand(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files");
-  add_input(*calibrate_command, calibrating.urdf, calibrating.config);
-  calibrate_command
-      ->add_option("--samples", calibrating.samples,
-                   "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
-      ->required()
-      ->type_name("FILE");
-  CLI::Option* output =
-      calibrate_command->add_option("--output", calibrating.output, "folder for the results")
-          ->type_name("DIR");
-  calibrate_command
-      ->add_option("--offsets", calibrating.offsets,
-                   "where joint offsets are written: added to <calibration rising>, or folded into "
-                   "<origin> for drivers that ignore it")
-      ->check(CLI::IsMember({"rising", "origin"}))
-      ->capture_default_str();
-  calibrate_command->add_flag("--upstream-names", calibrating.upstream_names,
-                              "name the files as robot_calibration does, with the date");
-  calibrate_command->add_flag("--dry-run", calibrating.dry_run, "calibrate, but write nothing");
-  calibrate_command
-      ->add_option("--threads", calibrating.threads,
-                   "how many threads share the work, one for each core by default; the result does "
-                   "not depend on it")
-      ->check(CLI::Range(1, 1024));
-  calibrate_command
-      ->add_option("--cost", calibrating.cost,
-                   "how Ceres is given the samples: summed, or each feature by itself (slower, for "
-                   "comparison)")
-      ->check(CLI::IsMember({"compressed", "stacked"}))
-      ->capture_default_str();
+  add_calibrate(*calibrate_command, calibrating);
 
   CheckOptions checking;
   CLI::App* check_command =
@@ -106,7 +156,7 @@ int run(int argc, char** argv) {
 
   ConvertOptions converting;
   CLI::App* convert_command =
-      app.add_subcommand("convert", "write samples of another format as YAML");
+      app.add_subcommand("convert", "write samples or poses in another format");
   add_convert(*convert_command, converting);
 
   std::vector<std::string> inspected;
@@ -116,13 +166,31 @@ int run(int argc, char** argv) {
       ->required()
       ->type_name("FILE");
 
+  InstallOptions installing;
+  CLI::App* install_command =
+      app.add_subcommand("install", "put a result onto the robot: its files and its launch file");
+  add_install(*install_command, installing);
+
+  RpyOptions turning;
+  CLI::App* rpy_command = app.add_subcommand(
+      "rpy", "a rotation vector (a b c of a free frame) as roll, pitch, yaw (a URDF's), and back");
+  rpy_command->add_option("numbers", turning.numbers, "A B C, or R P Y; radians")
+      ->required()
+      ->expected(3);
+  rpy_command->add_flag("--to-vector", turning.to_vector, "the numbers are roll, pitch, yaw");
+
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> arguments = arguments_of(argc, argv);
+    app.parse(std::move(arguments));
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kDone : kBadInput;
   }
-  if (*calibrate_command && output->empty() && !calibrating.dry_run) {
+  if (*calibrate_command && calibrating.output.empty() && !calibrating.dry_run) {
     std::fprintf(stderr, "error: --output is required (or --dry-run)\n");
+    return kBadInput;
+  }
+  if (*install_command && installing.result.empty() && !installing.restore && !installing.date) {
+    std::fprintf(stderr, "error: a result is required (or --restore, or --date)\n");
     return kBadInput;
   }
   int code = kDone;
@@ -131,6 +199,8 @@ int run(int argc, char** argv) {
   if (*init_command) code = init(starting);
   if (*convert_command) code = convert(converting);
   if (*inspect_command) code = inspect(inspected);
+  if (*install_command) code = install(installing);
+  if (*rpy_command) code = rpy(turning);
   if (std::fflush(stdout) == 0) return code;
   std::fprintf(stderr, "error: the output cannot be printed\n");
   return kBadInput;

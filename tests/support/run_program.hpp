@@ -18,6 +18,17 @@ struct Outcome {
   std::string out, err;
 };
 
+/// A program and its arguments, by way of the shell, in a folder.
+inline Outcome run_in(const std::filesystem::path& folder, const std::string& call) {
+  const auto read = [&](const char* name) {
+    std::ifstream file(folder / name, std::ios::binary);
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+  };
+  const std::string command = "cd " + folder.string() + " && " + call + " > out.txt 2> err.txt";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out.txt"), read("err.txt")};
+}
+
 class ProgramTest : public testing::Test {
  protected:
   ProgramTest() {
@@ -35,11 +46,7 @@ class ProgramTest : public testing::Test {
   }
 
   /// A program and its arguments, by way of the shell.
-  [[nodiscard]] Outcome run(const std::string& call) const {
-    const std::string command = "cd " + folder_.string() + " && " + call + " > out.txt 2> err.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out.txt"), read("err.txt")};
-  }
+  [[nodiscard]] Outcome run(const std::string& call) const { return run_in(folder_, call); }
 
   std::filesystem::path folder_;
 };

@@ -32,9 +32,9 @@ class RecordingTest : public testing::Test {
   }
 
   void convert(const std::string& from, const std::string& to, Encoding encoding,
-               ConvertOptions options = {}) {
+               Clouds clouds = Clouds::keep) {
     BagOutput bag(to, encoding);
-    (void)convert_bag(from, bag, options, diagnostics_);
+    (void)convert_bag(from, bag, clouds, diagnostics_);
     bag.finish();
   }
 
@@ -97,7 +97,7 @@ TEST_F(RecordingTest, ConvertedToMcapAndBackIsTheSame) {
   KINECAL_NEEDS_DATA("fetch/synth");
   const auto synth = test::data_folder() / "fetch/synth";
   const std::string bag = synth / "calibration_data.bag";
-  convert(bag, path("a.mcap"), Encoding::cdr, {.drop_clouds = true});
+  convert(bag, path("a.mcap"), Encoding::cdr, Clouds::drop);
   convert(path("a.mcap"), path("b"), Encoding::ros1);
   convert(path("b"), path("c"), Encoding::ros1);
   EXPECT_THAT(diagnostics_.errors, ElementsAre());

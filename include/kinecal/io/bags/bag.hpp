@@ -23,7 +23,7 @@ struct BagTopic {
   std::string name;  ///< without a leading slash
   std::string
       type;  ///< "sensor_msgs/JointState", also where ROS 2 says "sensor_msgs/msg/JointState"
-  std::string definition;  ///< the .msg text with those that it needs, of ROS; empty if not told
+  std::string definition = {};  ///< the .msg text with those that it needs, of ROS; empty if not told
   Encoding encoding = Encoding::ros1;
   std::string md5 = {};  ///< of the definition, of ROS 1; empty if not told
 };

@@ -39,15 +39,14 @@ namespace detail {
 
 }  // namespace detail
 
-struct ConvertOptions {
-  bool drop_clouds = false;  ///< of the observations
-};
+/// What becomes of the images and point clouds of observations.
+enum class Clouds { keep, drop };
 
 /// Writes what is in a bag into another one.
 /// @param diagnostics  receives what is wrong with the bag, and as warnings what is left out
 /// @return             messages written
-inline std::size_t convert_bag(const std::string& from, BagOutput& to,
-                               const ConvertOptions& options, Diagnostics& diagnostics) {
+inline std::size_t convert_bag(const std::string& from, BagOutput& to, Clouds clouds,
+                               Diagnostics& diagnostics) {
   MessageDecoder decoder(from, diagnostics);
   std::map<std::string, std::size_t> left_out;
   std::size_t written = 0;
@@ -60,7 +59,7 @@ inline std::size_t convert_bag(const std::string& from, BagOutput& to,
   };
   const auto handle = [&](const BagMessage& message) {
     const BagTopic& topic = message.topic;
-    const bool drops = options.drop_clouds && use_of(topic) == TopicUse::samples;
+    const bool drops = clouds == Clouds::drop && use_of(topic) == TopicUse::samples;
     ++number;
     if (topic.encoding == to.encoding() && !drops && !topic.definition.empty()) {
       to.copy(topic, message.time, message.data);

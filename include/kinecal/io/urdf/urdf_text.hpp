@@ -1,9 +1,4 @@
-// The text of a URDF and its XML tree, so that a mistake is told with its line and an element is
-// found again in the text.
-//
-// The tree is read as UTF-8, byte for byte: what it says of an element's place is a place in the
-// text.  White space in attributes counts as in the XML specification: a tab or a line break is a
-// space, several are one.
+// The text of a URDF: its joints, their numbers and the places of both.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,6 +15,7 @@
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/urdf/xml_edit.hpp"
+#include "kinecal/io/urdf/xml_text.hpp"
 
 namespace kinecal {
 
@@ -47,48 +43,19 @@ struct NumberToken {
   return tokens;
 }
 
-class UrdfText {
+class UrdfText : public XmlText {
  public:
   /// @param file  name of the file for messages
   /// @throws InputError  if the text is empty, not XML, not UTF-8 or its root is not <robot>
-  UrdfText(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
-    if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
-      throw InputError(file_ + ": the text is UTF-16; save it as UTF-8");
-    }
-    if (text_.find_first_not_of(kXmlSpace) == std::string::npos) {
-      throw InputError(file_ + ": the file is empty; a URDF has a <robot> element");
-    }
-    const pugi::xml_parse_result result = document_.load_buffer(
-        text_.data(), text_.size(), pugi::parse_default | pugi::parse_wnorm_attribute,
-        pugi::encoding_utf8);
-    if (!result) {
-      const Place place{file_, line(static_cast<std::size_t>(result.offset))};
-      throw InputError(place.str() + ": malformed XML: " + result.description());
-    }
-    if (robot().name() != std::string_view("robot")) {
-      throw InputError(place(robot()).str() + ": the root element is <" + robot().name() +
-                       ">; a URDF begins with <robot>");
-    }
-  }
+  UrdfText(std::string text, std::string file)
+      : XmlText(std::move(text), std::move(file), {"a URDF", "robot"}) {}
 
-  [[nodiscard]] const std::string& text() const { return text_; }
-  [[nodiscard]] const std::string& file() const { return file_; }
-  [[nodiscard]] pugi::xml_node robot() const { return document_.document_element(); }
+  [[nodiscard]] pugi::xml_node robot() const { return root(); }
 
   /// The joint of that name among the robot's own, not those in <transmission> or <gazebo>; a null
   /// node where there is none.
   [[nodiscard]] pugi::xml_node joint(const std::string& name) const {
     return robot().find_child_by_attribute("joint", "name", name.c_str());
-  }
-
-  /// Where in the text the '<' of an element stands.
-  [[nodiscard]] std::size_t offset(pugi::xml_node element) const {
-    return static_cast<std::size_t>(element.offset_debug()) - 1;
-  }
-
-  /// File and line of an element; the file as a whole for a null node.
-  [[nodiscard]] Place place(pugi::xml_node element) const {
-    return {file_, element ? line(offset(element)) : 0};
   }
 
   /// Place of the first joint, or else link, whose name a message gives in '' or [].
@@ -103,7 +70,7 @@ class UrdfText {
         if (found) return place(found);
       }
     }
-    return {file_, 0};
+    return {file(), 0};
   }
 
   /// The numbers of an attribute; zeros, and an error, where it has not as many as it should.
@@ -138,22 +105,13 @@ class UrdfText {
   /// @throws InputError  if there are errors
   void throw_if_errors(const Diagnostics& diagnostics) const {
     const bool xacro =
-        text_.find("<xacro:") != std::string::npos || text_.find("${") != std::string::npos;
+        text().find("<xacro:") != std::string::npos || text().find("${") != std::string::npos;
     if (xacro && !diagnostics.errors.empty()) {
       throw InputError(diagnostics.errors.front() +
                        "; the file is xacro, not URDF: run xacro on it first");
     }
     diagnostics.throw_if_errors();
   }
-
- private:
-  [[nodiscard]] int line(std::size_t offset) const {
-    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text_.size()));
-    return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
-  }
-
-  std::string text_, file_;
-  pugi::xml_document document_;
 };
 
 }  // namespace kinecal

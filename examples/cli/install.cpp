@@ -1,0 +1,62 @@
+// kinecal install: a result onto the robot, and back.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/io/install/install.hpp"
+
+#include <fmt/core.h>
+
+#include "commands.hpp"
+#include "input.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// Prints why a result is not fit to be installed; an empty text if it is.
+std::string why_unfit(const ResultFolder& result, const std::string& folder) {
+  if (!result.converged) {
+    return folder + ": has no report.json that says whether the result converged";
+  }
+  return *result.converged ? "" : folder + "/report.json: the result did not converge";
+}
+
+int install_result(const InstallOptions& options) {
+  const LaunchNames names = launch_names(options.names);
+  const ResultFolder result = read_result_folder(options.result);
+  if (const std::string unfit = why_unfit(result, options.result); !unfit.empty()) {
+    if (!options.force) {
+      fmt::print(stderr, "error: {}; nothing installed, --force installs it all the same\n", unfit);
+      return kNotConverged;
+    }
+    fmt::print(stderr, "warning: {}\n", unfit);
+  }
+  Diagnostics diagnostics;
+  const Installation done =
+      kinecal::install(result, options.folder, options.launch, names, diagnostics);
+  print(diagnostics);
+  for (const std::string& name : done.added) fmt::print("wrote {}/{}\n", options.folder, name);
+  if (done.backup.empty()) {
+    fmt::print("{}/{} is as it was: this calibration is installed\n", options.folder,
+               options.launch);
+  } else {
+    fmt::print("changed {}/{}; the one before is {}, --restore puts it back\n", options.folder,
+               options.launch, done.backup);
+  }
+  return kDone;
+}
+
+int restore(const InstallOptions& options) {
+  const std::string undone = restore_installed(options.folder, options.launch);
+  fmt::print("restored {}/{}; the one that it replaced is {}\n", options.folder, options.launch,
+             undone);
+  return kDone;
+}
+
+}  // namespace
+
+int install(const InstallOptions& options) {
+  if (options.restore) return restore(options);
+  if (!options.date) return install_result(options);
+  fmt::print("{}\n", installed_date(options.folder, options.launch, launch_names(options.names)));
+  return kDone;
+}
+
+}  // namespace kinecal::cli

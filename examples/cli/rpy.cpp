@@ -1,0 +1,51 @@
+// kinecal rpy: rotation vectors as roll, pitch, yaw, and back.
+//
+// Free frames are calibrated as rotation vectors, URDFs are written in roll, pitch, yaw; the three
+// numbers look alike and are not.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/geometry/rpy.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "commands.hpp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/yaml/yaml_text.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+Vector3<double> three_numbers(const std::vector<std::string>& texts) {
+  if (texts.size() != 3) throw InputError(fmt::format("{} numbers, not 3", texts.size()));
+  Vector3<double> numbers = Vector3<double>::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const std::string& text = texts[static_cast<std::size_t>(i)];
+    const auto number = number_from_yaml(text);
+    if (!number || !std::isfinite(*number)) {
+      throw InputError("'" + text + "' is not a finite number");
+    }
+    numbers(i) = *number;
+  }
+  return numbers;
+}
+
+/// One line for programs: every digit; and one for people.
+void print(const char* what, const Vector3<double>& v) {
+  const Vector3<double> d = v * (180.0 / std::numbers::pi);
+  fmt::print("{}, rad  {:.17g} {:.17g} {:.17g}\n", what, v.x(), v.y(), v.z());
+  fmt::print("{}, deg  {:.6f} {:.6f} {:.6f}\n", what, d.x(), d.y(), d.z());
+}
+
+}  // namespace
+
+int rpy(const RpyOptions& options) {
+  const Vector3<double> given = three_numbers(options.numbers);
+  const Matrix3<double> rotation = options.to_vector ? rotation_from_rpy(given) : exp(given);
+  print("rotation vector", options.to_vector ? Vector3<double>(log(rotation)) : given);
+  print("roll, pitch, yaw", options.to_vector ? given : rpy_from_rotation(rotation));
+  return kDone;
+}
+
+}  // namespace kinecal::cli

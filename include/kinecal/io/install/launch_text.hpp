@@ -1,0 +1,192 @@
+// The text of a launch file: the values of its <param>s and <arg>s, read and replaced in place.
+//
+// A <param> is known by its full name: the namespaces of the groups and the node it stands in
+// count.  An <arg> is known where it is declared; where no such one is, one that is passed to an
+// <include> is taken.  Of the text nothing but the value changes; a <param> that was computed
+// (command="...") and is now a file (textfile="...") changes this one attribute.
+// Source: ROS wiki, roslaunch/XML.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kinecal/io/urdf/xml_edit.hpp"
+#include "kinecal/io/urdf/xml_text.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+
+namespace kinecal {
+
+enum class LaunchElement { param, arg };
+
+[[nodiscard]] constexpr std::string_view to_string(LaunchElement element) {
+  return element == LaunchElement::param ? "param" : "arg";
+}
+
+/// A value for a <param> or an <arg>.
+struct LaunchSetting {
+  std::string key;  ///< as users know it: launch_names.hpp
+  LaunchElement element = LaunchElement::param;
+  std::string name;       ///< in the launch file
+  std::string attribute;  ///< that holds the value: value, textfile or default
+  std::string value;      ///< without escapes
+};
+
+/// A text (UTF-8) as it stands in an attribute.
+[[nodiscard]] inline std::string xml_attribute_text(std::string_view text, char quote) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&') {
+      escaped += "&amp;";
+    } else if (c == '<') {
+      escaped += "&lt;";
+    } else if (c == quote) {
+      escaped += c == '"' ? "&quot;" : "&apos;";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+class LaunchText : public XmlText {
+ public:
+  /// @param file  name of the file for messages
+  /// @throws InputError  if the text is empty, not XML, not UTF-8 or its root is not <launch>
+  LaunchText(std::string text, std::string file)
+      : XmlText(std::move(text), std::move(file), {"a launch file", "launch"}) {}
+
+  /// The element that a setting is about; nothing, and an error, where it is not there or there
+  /// are several.
+  [[nodiscard]] pugi::xml_node find(const LaunchSetting& setting, Diagnostics& diagnostics) const {
+    const std::vector<Named> all = elements(setting.element);
+    const std::string what = std::string(to_string(setting.element)) + " '" + setting.name + "'";
+    const std::string way_out = "--name " + setting.key + "=NAME names another one, --name " +
+                                setting.key + "= leaves it out";
+    std::vector<pugi::xml_node> found;
+    for (const bool passed : {false, true}) {
+      for (const Named& named : all) {
+        if (named.passed != passed || named.name != without_slash(setting.name)) continue;
+        found.push_back(named.node);
+      }
+      if (!found.empty()) break;
+    }
+    if (found.size() > 1) {
+      diagnostics.error(place(found[1]), what + " occurs twice, first in line " +
+                                             std::to_string(place(found[0]).line) + "; " + way_out);
+    }
+    if (found.empty()) {
+      std::vector<std::string> names;
+      for (const Named& named : all) names.push_back(named.name);
+      const std::string meant = did_you_mean(setting.name, names);
+      diagnostics.error({file(), 0}, "no " + what + (meant.empty() ? "; " : meant + " ") + way_out);
+    }
+    return found.size() == 1 ? found[0] : pugi::xml_node();
+  }
+
+  /// What an element is set to, whichever attribute says so; empty where none does.
+  [[nodiscard]] static std::string value_of(pugi::xml_node element) {
+    for (const char* name : kValueAttributes) {
+      if (const pugi::xml_attribute value = element.attribute(name)) return value.value();
+    }
+    return {};
+  }
+
+  /// The edit that sets an element, added to others; none where it is set already.
+  void set(pugi::xml_node element, const LaunchSetting& setting, std::vector<TextEdit>& edits,
+           Diagnostics& diagnostics) const {
+    const StartTag tag = scan_start_tag(text(), offset(element));
+    for (const char* name : kValueAttributes) {
+      const AttributeText* old = tag.find(name);
+      if (old == nullptr) continue;
+      // What is passed to an <include>, or fixed, is a value and stays one.
+      const bool is_arg = setting.element == LaunchElement::arg;
+      const std::string attribute = is_arg ? name : setting.attribute;
+      if (attribute == name && element.attribute(name).value() == setting.value) return;
+      const char quote = text()[old->begin - 1];
+      if (attribute != name) {
+        const auto at = static_cast<std::size_t>(old->name.data() - text().data());
+        edits.push_back({at, old->name.size(), attribute});
+      }
+      edits.push_back(
+          {old->begin, old->end - old->begin, xml_attribute_text(setting.value, quote)});
+      return;
+    }
+    diagnostics.error(place(element), std::string(to_string(setting.element)) + " '" +
+                                          setting.name + "' has no " + setting.attribute +
+                                          "=\"...\" to be replaced");
+  }
+
+  /// The text with all settings made, every other byte as it was.
+  /// @throws InputError  with every setting that the text has no single place for
+  [[nodiscard]] std::string with(const std::vector<LaunchSetting>& settings) const {
+    std::vector<TextEdit> edits;
+    Diagnostics diagnostics;
+    std::map<std::size_t, std::string> keys;  // by the element that they set
+    for (const LaunchSetting& setting : settings) {
+      const pugi::xml_node element = find(setting, diagnostics);
+      if (!element) continue;
+      const auto [other, is_first] = keys.emplace(offset(element), setting.key);
+      if (is_first) {
+        set(element, setting, edits, diagnostics);
+      } else {
+        diagnostics.error(place(element), setting.key + " and " + other->second + " both set " +
+                                              std::string(to_string(setting.element)) + " '" +
+                                              setting.name + "'; name another one");
+      }
+    }
+    diagnostics.throw_if_errors();
+    return apply_edits(text(), std::move(edits));
+  }
+
+ private:
+  /// What says a value; of these an element has one.
+  static constexpr std::array kValueAttributes = {"value", "default", "textfile", "command",
+                                                  "binfile"};
+
+  struct Named {
+    pugi::xml_node node;
+    std::string name;     ///< full, without a slash in front
+    bool passed = false;  ///< to an <include>: an <arg> that is no declaration
+  };
+
+  [[nodiscard]] static std::string without_slash(const std::string& name) {
+    return name.starts_with('/') ? name.substr(1) : name;
+  }
+
+  /// A name with the namespaces that it stands in.
+  [[nodiscard]] static std::string full_name(pugi::xml_node param) {
+    std::string name = param.attribute("name").value();
+    const auto put_before = [&](const char* space) {
+      if (*space != '\0' && !name.starts_with('/')) name = std::string(space) + "/" + name;
+    };
+    for (pugi::xml_node at = param.parent(); at; at = at.parent()) {
+      if (at.name() == std::string_view("node")) put_before(at.attribute("name").value());
+      put_before(at.attribute("ns").value());
+    }
+    return without_slash(name);
+  }
+
+  [[nodiscard]] std::vector<Named> elements(LaunchElement element) const {
+    struct Walker : pugi::xml_tree_walker {
+      explicit Walker(LaunchElement wanted) : element(wanted) {}
+      bool for_each(pugi::xml_node& node) override {
+        if (node.name() != to_string(element)) return true;
+        const bool is_arg = element == LaunchElement::arg;
+        found.push_back({node, is_arg ? node.attribute("name").value() : full_name(node),
+                         is_arg && node.parent().name() == std::string_view("include")});
+        return true;
+      }
+      LaunchElement element;
+      std::vector<Named> found;
+    } walker(element);
+    pugi::xml_node(root()).traverse(walker);
+    return walker.found;
+  }
+};
+
+}  // namespace kinecal

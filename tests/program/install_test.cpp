@@ -1,0 +1,99 @@
+// Installing a result as users do: what the program says, its exit codes, the robot's folder.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/launch_scene.hpp"
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class InstallProgram : public test::InstallScene {
+ protected:
+  [[nodiscard]] test::Outcome run(const std::string& arguments) const {
+    return test::run_in(folder_, KINECAL_PROGRAM " install " + arguments);
+  }
+  void expect_refused(const std::string& arguments, const testing::Matcher<std::string>& message,
+                      int code = 1) const {
+    const auto before = robot();
+    const test::Outcome result = run(arguments);
+    EXPECT_EQ(result.code, code) << result.out;
+    EXPECT_THAT(result.err, message);
+    EXPECT_EQ(robot(), before);
+  }
+};
+
+TEST_F(InstallProgram, InstallsRestoresAndTellsTheDate) {
+  EXPECT_EQ(run("--to robot --date").out, "uncalibrated\n");
+  const test::Outcome installed = run("out --to robot");
+  EXPECT_EQ(installed.code, 0) << installed.err;
+  EXPECT_THAT(installed.out, AllOf(HasSubstr("wrote robot/calibrated_2026_01_02_03_04_05.urdf\n"),
+                                   HasSubstr("changed robot/robot.launch; the one before is "
+                                             "robot.launch.backup_1, --restore puts it back\n")));
+  EXPECT_THAT(launch(), HasSubstr("textfile=\"" + folder_.string() + "/robot/calibrated_2026"));
+  EXPECT_EQ(run("--date --to robot").out, "2026-01-02 03:04:05\n");
+  const test::Outcome again = run("out --to robot/");
+  EXPECT_EQ(again.code, 0);
+  EXPECT_THAT(again.out, HasSubstr("is as it was: this calibration is installed"));
+  const test::Outcome restored = run("--restore --to robot");
+  EXPECT_EQ(restored.code, 0) << restored.err;
+  EXPECT_THAT(restored.out, StartsWith("restored robot/robot.launch; "));
+  EXPECT_EQ(launch(), test::kLaunch);
+  expect_refused("--restore --to robot", HasSubstr("nothing to restore"));
+}
+
+TEST_F(InstallProgram, TheLaunchFileAndItsNamesMayBeOthers) {
+  fs::rename(folder_ / "robot/robot.launch", folder_ / "robot/arm.launch");
+  spoil("robot/arm.launch", "calibration_date\" value='un", "calibrated_on\" value='un");
+  expect_refused("out --to robot", AllOf(HasSubstr("error: robot/robot.launch: is not there")));
+  expect_refused("out --to robot --launch arm.launch",
+                 AllOf(HasSubstr("robot/arm.launch: no param 'calibration_date'"),
+                       HasSubstr("--name calibration_date=NAME names another one")));
+  expect_refused("out --to robot --launch arm.launch --name calibration_dat=x",
+                 HasSubstr("did you mean 'calibration_date'?"));
+  const std::string names =
+      " --launch arm.launch --name calibration_date=calibrated_on --name z_scaling= ";
+  EXPECT_EQ(run("out --to robot" + names).code, 0);
+  EXPECT_THAT(read("robot/arm.launch"), HasSubstr("z_scaling\" value=\"1.0\""));
+  EXPECT_EQ(run("--date --to robot" + names).out, "2026-01-02 03:04:05\n");
+}
+
+TEST_F(InstallProgram, RefusesWhatDidNotConvergeUnlessForced) {
+  write("out/report.json", "{\"converged\": false}");
+  expect_refused("out --to robot", HasSubstr("did not converge; nothing installed"), 2);
+  fs::remove(folder_ / "out/report.json");
+  expect_refused("out --to robot", HasSubstr("has no report.json"), 2);
+  const test::Outcome forced = run("out --to robot --force");
+  EXPECT_EQ(forced.code, 0) << forced.err;
+  EXPECT_THAT(forced.err, StartsWith("warning: out: has no report.json"));
+  EXPECT_EQ(run("--date --to robot").out, "2026-01-02 03:04:05\n");
+}
+
+TEST_F(InstallProgram, RefusesWrongArguments) {
+  expect_refused("out", HasSubstr("--to"));
+  expect_refused("--to robot", HasSubstr("a result is required"));
+  expect_refused("out --restore --to robot", HasSubstr("excludes"));
+  expect_refused("--date --restore --to robot", HasSubstr("excludes"));
+  expect_refused("--restore --force --to robot", HasSubstr("requires"));
+  expect_refused("uot --to robot", HasSubstr("error: uot: cannot be read"));
+  expect_refused("out --to rboot", HasSubstr("error: rboot: is not a folder"));
+  expect_refused("out --to robot --launch robot/robot.launch", HasSubstr("is not the name of a"));
+}
+
+TEST_F(InstallProgram, AFileSystemThatTakesNoMoreLeavesTheRobotAsItWas) {
+  // The greatest file that may be written, in blocks of 512 or 1024 bytes: none.
+  const auto before = robot();
+  const test::Outcome result =
+      test::run_in(folder_, "bash -c \"trap '' XFSZ; ulimit -f 0; " KINECAL_PROGRAM
+                            " install out --to robot > /dev/null 2>&1\"");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(robot(), before);
+}
+
+}  // namespace
+}  // namespace kinecal
