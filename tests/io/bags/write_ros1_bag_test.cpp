@@ -123,7 +123,26 @@ for topic, (kind, data, md5, _, _), time in bag.read_messages(raw=True):
 print(sorted(c.header.get('latching', b'0') for c in bag._get_connections()))
 )";
 
-class Rosbag : public test::ProgramTest {};
+/// Writes what it reads, compressed as it is told.
+const std::string kPythonCopy = R"(
+import sys
+try:
+    import rosbag
+except ImportError as e:
+    sys.exit('skipped: ' + str(e))
+with rosbag.Bag('copy.bag', 'w', compression=sys.argv[2], chunk_threshold=300) as copy:
+    for topic, message, time in rosbag.Bag(sys.argv[1]).read_messages(raw=True):
+        copy.write(topic, message, time, raw=True)
+)";
+
+class Rosbag : public test::ProgramTest {
+ protected:
+  /// @return  why it cannot be asked
+  [[nodiscard]] static std::string absent(const test::Outcome& outcome) {
+    const bool skipped = outcome.err.find("skipped: ") != std::string::npos || outcome.code == 127;
+    return skipped ? "rosbag cannot be asked: " + outcome.err : "";
+  }
+};
 
 TEST_F(Rosbag, ReadsWhatIsWritten) {
   write("read.py", kPython);
@@ -139,11 +158,24 @@ TEST_F(Rosbag, ReadsWhatIsWritten) {
   for (const Compression c : compressions_of_ros1()) {
     write("a.bag", bag_of(messages, c));
     const test::Outcome read = run("/usr/bin/python3 read.py a.bag");
-    if (read.err.find("skipped: ") != std::string::npos || read.code == 127) {
-      GTEST_SKIP() << "rosbag cannot be asked: " << read.err;
-    }
+    if (const std::string why = absent(read); !why.empty()) GTEST_SKIP() << why;
     EXPECT_EQ(read.code, 0) << read.err;
     EXPECT_EQ(read.out, expected) << name_of(c);
+  }
+}
+
+TEST_F(Rosbag, WritesWhatIsRead) {
+  write("write.py", kPythonCopy);
+  const std::vector<Recorded> messages = some_messages(50);
+  write("a.bag", bag_of(messages));
+  for (const Compression c : compressions_of_ros1()) {
+    const test::Outcome copy = run("/usr/bin/python3 write.py a.bag " + std::string(name_of(c)));
+    if (const std::string why = absent(copy); !why.empty()) GTEST_SKIP() << why;
+    ASSERT_EQ(copy.code, 0) << copy.err;
+    const test::BagContents all = read_bag(read("copy.bag"));
+    EXPECT_THAT(all.errors, IsEmpty()) << name_of(c);
+    EXPECT_THAT(all.warnings, IsEmpty()) << name_of(c);
+    EXPECT_EQ(all.messages, messages) << name_of(c);
   }
 }
 

@@ -67,8 +67,10 @@ static_assert(Unpacker<UnpackBz2>);
   char nothing = 0;
   char* source =
       bytes.empty() ? &nothing : const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
+  // Who unpacks them takes memory for whole blocks, however little is in them.
+  const int block = static_cast<int>(std::clamp<std::size_t>(bytes.size() / 100'000 + 1, 1, 9));
   const int status = BZ2_bzBuffToBuffCompress(reinterpret_cast<char*>(packed.data()), &size, source,
-                                              static_cast<unsigned>(bytes.size()), 9, 0, 0);
+                                              static_cast<unsigned>(bytes.size()), block, 0, 0);
   if (status != BZ_OK) throw std::runtime_error("bzlib error " + std::to_string(status));
   packed.resize(size);
   return packed;

@@ -145,7 +145,7 @@ class Ros1BagReading {
       is_in_open_chunk_ = compression != Compression::none;
       return;
     }
-    if (compression == Compression::none && head.data_size > file_.left()) {
+    if (!has_index_ && compression == Compression::none && head.data_size > file_.left()) {
       file_.read(file_.left(), packed_);
       messages_.records({packed_, head.data_place, "", false});
       throw CutOffError(at(head.place) + "the chunk is cut off");

@@ -102,8 +102,9 @@ class Ros1Topics {
   [[nodiscard]] const Asked* find_or_ask(const std::string& key, BagTopic topic) {
     const auto [at, is_new] = topics_.try_emplace(key);
     if (is_new) {
-      at->second.topic = std::move(topic);
-      at->second.wanted = pass_on([&] { return wants_(at->second.topic); });
+      Asked& asked = at->second;
+      asked.topic = std::move(topic);
+      asked.wanted = pass_on([&] { return wants_(asked.topic); });
     }
     return &at->second;
   }
