@@ -1,0 +1,55 @@
+// Feeds decode() with bytes that are no messages, and parse_definition() with texts that are none.
+//
+// The first byte chooses: messages of ROS 1, CDR, or a definition and a message of it, with a NUL
+// between.  What can be decoded is encoded and must then be decoded to the same bytes.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "kinecal/io/messages/decode.hpp"
+#include "kinecal/io/messages/encode.hpp"
+#include "kinecal/io/messages/known_definitions.hpp"
+#include "kinecal/io/recordings/message_samples.hpp"
+
+namespace {
+
+using namespace kinecal;
+
+void decode_all(const MessageDefinition& definition, Encoding encoding, Bytes bytes, bool samples) {
+  try {
+    const MessageFields message = decode(definition, encoding, bytes);
+    const std::vector<std::byte> once = encode(message, definition, encoding);
+    const std::vector<std::byte> twice =
+        encode(decode(definition, encoding, once), definition, encoding);
+    if (once != twice) std::abort();
+    if (!samples) return;
+    detail::MessageSamples read("fuzz.bag");
+    read.add(message, 1);
+    Diagnostics diagnostics;
+    if (read.take(diagnostics).empty() && diagnostics.errors.empty()) std::abort();
+  } catch (const BytesError&) {  // what is expected of most
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string type = "robot_calibration_msgs/CalibrationData";
+  const Bytes bytes = std::as_bytes(std::span(data + 1, size - 1));
+  const int kind = data[0] % 3;
+  if (kind < 2) {
+    const Encoding encoding = kind == 0 ? Encoding::ros1 : Encoding::cdr;
+    decode_all(parse_definition(type, known_definition(type, encoding)), encoding, bytes, true);
+    return 0;
+  }
+  const std::string all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t end = std::min(all.find('\0'), all.size());
+  try {
+    const MessageDefinition definition = parse_definition("a/Type", all.substr(0, end));
+    decode_all(definition, Encoding::cdr, bytes.subspan(std::min(end + 1, bytes.size())), false);
+  } catch (const DefinitionError&) {  // what is expected of most
+  }
+  return 0;
+}

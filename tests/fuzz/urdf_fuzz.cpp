@@ -1,0 +1,44 @@
+// Feeds parse_urdf() and patch_urdf() with what is no URDF.  A patched URDF must be one again, and
+// have the joints that it had.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/urdf/patch_urdf.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+
+namespace {
+
+using namespace kinecal;
+
+std::vector<JointPatch> patches_for(const Robot& robot) {
+  std::vector<JointPatch> patches;
+  for (const Joint& joint : robot.joints()) {
+    JointPatch patch;
+    patch.joint = joint.name;
+    patch.correction.translation.x() = 0.001;
+    if (moves(joint.type) && !joint.mimic) patch.offset = 0.01;
+    patches.push_back(patch);
+  }
+  return patches;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  for (const OffsetStyle style : {OffsetStyle::rising, OffsetStyle::origin}) {
+    std::string patched;
+    Robot robot;
+    try {
+      robot = parse_urdf(text, "fuzz.urdf");
+      patched = patch_urdf(text, "fuzz.urdf", robot, patches_for(robot), style);
+    } catch (const InputError&) {  // what is expected of most
+      return 0;
+    }
+    if (parse_urdf(patched, "fuzz.urdf").joint_names() != robot.joint_names()) std::abort();
+  }
+  return 0;
+}
