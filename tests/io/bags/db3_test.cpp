@@ -18,6 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
 
 namespace fs = std::filesystem;
 
@@ -165,6 +166,8 @@ TEST_F(Db3, MessagesOfTheWriteAheadLogAreReadToo) {
   EXPECT_THAT(reading.warnings, ElementsAre(HasSubstr("the recording was interrupted")));
   EXPECT_THAT(reading.messages, SizeIs(5));
   sqlite3_close(recorder);
+  EXPECT_THAT(read().warnings, IsEmpty());
+  EXPECT_THAT(read().messages, SizeIs(5));
 }
 
 TEST_F(Db3, ADatabaseThatIsNoBagIsAnError) {
@@ -223,6 +226,15 @@ TEST_F(Db3, AColumnThatIsComputedIsNone) {
       "INSERT INTO topics VALUES(1, '/a', 'b/msg/C', 'cdr');"
       "INSERT INTO messages(topic_id, timestamp) VALUES(1, 1);");
   EXPECT_THAT(read().errors, ElementsAre(HasSubstr("table 'messages' has no column 'data'")));
+}
+
+TEST_F(Db3, WhatHasNoEndIsInterrupted) {
+  const detail::SqliteDatabase database("file::memory:", 0);
+  detail::SqliteRows rows(database,
+                          "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT "
+                          "count(*) FROM n");
+  EXPECT_THAT([&] { (void)rows.next(); },
+              ThrowsMessage<BytesError>(HasSubstr("more rows than its size allows")));
 }
 
 TEST_F(Db3, WhatTheReaderThrowsIsNotCaught) {

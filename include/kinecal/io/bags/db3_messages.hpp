@@ -33,7 +33,7 @@ class Db3Messages {
   /// @param place        what warnings name
   /// @param diagnostics  receives warnings; errors are thrown
   /// @throws BytesError  if it is no bag, or damaged
-  Db3Messages(const SqliteDatabase& database, const BagReader& reader, Place place,
+  Db3Messages(const SqliteDatabase& database, const BagReader& reader, const Place& place,
               Diagnostics& diagnostics)
       : database_(database) {
     demand("topics", {"id", "name", "type", "serialization_format"});

@@ -38,11 +38,12 @@ class McapContent {
 
   [[nodiscard]] const std::string& str() const { return content_; }
 
-  /// The whole record.
-  [[nodiscard]] std::string record(McapOp op) const {
+  /// A record that begins with this content.
+  /// @param more  bytes that follow it
+  [[nodiscard]] std::string record(McapOp op, std::uint64_t more = 0) const {
     return McapContent()
         .number(static_cast<std::uint8_t>(op))
-        .number(std::uint64_t{content_.size()})
+        .number(std::uint64_t{content_.size()} + more)
         .raw(content_)
         .str();
   }

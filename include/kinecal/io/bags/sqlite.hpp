@@ -1,9 +1,9 @@
-// SQLite databases that nobody trusts, for reading.
+// SQLite databases that nobody trusts, for reading; only with KINECAL_HAVE_SQLITE.
 //
-// Only with KINECAL_HAVE_SQLITE.  The file is opened read-only and as one that nobody changes, so
-// that nothing is locked or created beside it; except when a write-ahead log lies beside it, as of
-// a recording that was interrupted: there the newest messages are. SPDX-License-Identifier:
-// Apache-2.0
+// The file is opened read-only and as one that nobody changes, so that nothing is locked or created
+// beside it; except where a write-ahead log lies beside it, as of a recording that was interrupted:
+// the newest messages are in it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #ifdef KINECAL_HAVE_SQLITE

@@ -14,6 +14,7 @@
 #include <ostream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -146,14 +147,15 @@ class McapWriter {
   void end_chunk() {
     const Chunk chunk = std::exchange(chunk_, {});
     if (chunk.records.empty()) return;
-    const auto [compression, packed] = pack(chunk.records);
-    const std::uint64_t size = chunk.records.size();
+    const std::string packed = pack(chunk.records);
+    const std::string_view bytes = packed.empty() ? chunk.records : packed;
+    const std::uint64_t size = chunk.records.size(), packed_size = bytes.size();
     detail::McapContent content;
     content.number(chunk.times.first).number(chunk.times.last).number(size);
-    content.number(crc32(detail::as_bytes(chunk.records))).text(compression);
-    content.number(std::uint64_t{packed.size()}).raw(packed);
+    content.number(crc32(detail::as_bytes(chunk.records))).text(compression_name());
     const std::uint64_t start = place_;
-    put(content.record(detail::McapOp::chunk));
+    put(content.number(packed_size).record(detail::McapOp::chunk, packed_size));
+    put(bytes);
     const std::uint64_t length = place_ - start;
     if (!options_.index) return;
 
@@ -167,12 +169,13 @@ class McapWriter {
               .record(detail::McapOp::message_index));
     }
     about.number(chunk.times.first).number(chunk.times.last).number(start).number(length);
-    about.text(places.str()).number(place_ - index_start).text(compression);
-    about.number(std::uint64_t{packed.size()}).number(size);
+    about.text(places.str()).number(place_ - index_start).text(compression_name());
+    about.number(packed_size).number(size);
     chunks_ += about.record(detail::McapOp::chunk_index);
     ++chunk_count_;
   }
 
+<<<<<<< HEAD
   /// What the file calls the compression, and the bytes packed with it.
   [[nodiscard]] std::pair<std::string_view, std::string> pack(const std::string& records) const {
     if (options_.compression == Compression::none) return {"", records};
@@ -180,6 +183,29 @@ class McapWriter {
         kinecal::pack(detail::as_bytes(records), options_.compression);
     return {name_of(options_.compression),
             std::string(reinterpret_cast<const char*>(packed.data()), packed.size())};
+=======
+  [[nodiscard]] std::string_view compression_name() const {
+    switch (options_.compression) {
+      case McapCompression::lz4:
+        return "lz4";
+      case McapCompression::zstd:
+        return "zstd";
+      case McapCompression::none:
+        break;
+    }
+    return "";
+  }
+
+  /// The records compressed; empty if they are written as they are.
+  [[nodiscard]] std::string pack(const std::string& records) const {
+    std::vector<std::byte> packed;
+    if (options_.compression == McapCompression::lz4) {
+      packed = compress_lz4(detail::as_bytes(records));
+    } else if (options_.compression == McapCompression::zstd) {
+      packed = compress_zstd(detail::as_bytes(records));
+    }
+    return {reinterpret_cast<const char*>(packed.data()), packed.size()};
+>>>>>>> a683a4cb38b55f6c5056bb74f1ce770208183b1b
   }
 
   /// The summary, and where in the file the groups of its records stand.
