@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "kinecal/io/assemble.hpp"
+#include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
@@ -40,7 +41,7 @@ std::vector<Sample> read_all_samples(const std::vector<std::string>& files,
 }
 
 Input read_input(const std::string& urdf, const std::string& config,
-                 const std::vector<std::string>& samples) {
+                 const std::vector<std::string>& samples, const std::vector<std::string>& cameras) {
   Input input;
   Diagnostics& diagnostics = input.diagnostics;
   const auto robot = attempt(
@@ -54,6 +55,9 @@ Input read_input(const std::string& urdf, const std::string& config,
   auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
   const bool configuration_is_good = diagnostics.errors.size() == before;
   input.samples = read_all_samples(samples, diagnostics);
+  for (const std::string& camera : cameras) {
+    attempt([&] { return set_camera(input.samples, camera, diagnostics), true; }, diagnostics);
+  }
   if (!robot || !configuration) return input;
   if (diagnostics.errors.size() == before) {
     input.calibration = assemble(*configuration, *robot, input.samples, diagnostics);

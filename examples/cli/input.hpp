@@ -19,8 +19,10 @@ struct Input {
 };
 
 /// Reads and assembles everything; mistakes end up in the diagnostics.
+/// @param cameras  NAME=FILE, for samples without camera_info
 [[nodiscard]] Input read_input(const std::string& urdf, const std::string& config,
-                               const std::vector<std::string>& samples);
+                               const std::vector<std::string>& samples,
+                               const std::vector<std::string>& cameras = {});
 
 /// Reads samples from several files; mistakes end up in the diagnostics.
 [[nodiscard]] std::vector<Sample> read_all_samples(const std::vector<std::string>& files,

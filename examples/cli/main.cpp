@@ -21,6 +21,31 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
       ->type_name("FILE");
 }
 
+void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
+  command
+      .add_option("--camera", cameras,
+                  "intrinsics of a sensor whose samples have none: camera_info, Kalibr or OpenCV "
+                  "YAML; FILE:cam1 of several")
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
+}
+
+void add_camera(CLI::App& command, CameraOptions& options) {
+  command.add_option("file", options.file, "camera_info, Kalibr or OpenCV YAML; FILE:cam1")
+      ->required()
+      ->type_name("FILE");
+  CLI::Option* output =
+      command.add_option("--output", options.output, "where it is written as camera_info")
+          ->type_name("FILE");
+  command.add_option("--keys", options.keys, "those of drivers' files, or of the ROS 2 message")
+      ->check(CLI::IsMember({"file", "message"}))
+      ->needs(output)
+      ->capture_default_str();
+  command.add_option("--name", options.name, "camera_name in the file")
+      ->needs(output)
+      ->capture_default_str();
+}
+
 /// The arguments in the order that the parser takes, the last one first.  It takes -.5 for an
 /// option, and -0.5 for a number.
 std::vector<std::string> arguments_of(int argc, char** argv) {
@@ -70,6 +95,7 @@ int run(int argc, char** argv) {
       ->add_option("--samples", calibrating.samples, "recorded samples, CalibrationData YAML")
       ->required()
       ->type_name("FILE");
+  add_cameras(*calibrate_command, calibrating.cameras);
   CLI::Option* output =
       calibrate_command->add_option("--output", calibrating.output, "folder for the results")
           ->type_name("DIR");
@@ -100,12 +126,19 @@ int run(int argc, char** argv) {
   add_input(*check_command, checking.urdf, checking.config);
   check_command->add_option("--samples", checking.samples, "recorded samples")->type_name("FILE");
 
+  add_cameras(*check_command, checking.cameras);
+
   std::vector<std::string> inspected;
   CLI::App* inspect_command = app.add_subcommand(
       "inspect", "show what is in the samples: sensors, features, joint ranges, gaps");
   inspect_command->add_option("samples", inspected, "recorded samples")
       ->required()
       ->type_name("FILE");
+
+  CameraOptions showing;
+  CLI::App* camera_command =
+      app.add_subcommand("camera", "show a camera file, and write it as camera_info");
+  add_camera(*camera_command, showing);
 
   InstallOptions installing;
   CLI::App* install_command =
@@ -138,6 +171,7 @@ int run(int argc, char** argv) {
   if (*calibrate_command) code = calibrate(calibrating);
   if (*check_command) code = check(checking);
   if (*inspect_command) code = inspect(inspected);
+  if (*camera_command) code = camera(showing);
   if (*install_command) code = install(installing);
   if (*rpy_command) code = rpy(turning);
   if (std::fflush(stdout) == 0) return code;

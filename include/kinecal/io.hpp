@@ -4,6 +4,12 @@
 
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/cameras/camera_fields.hpp"
+#include "kinecal/io/cameras/camera_info_file.hpp"
+#include "kinecal/io/cameras/kalibr_file.hpp"
+#include "kinecal/io/cameras/opencv_file.hpp"
+#include "kinecal/io/cameras/read_camera_file.hpp"
+#include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/config/config_blocks.hpp"
 #include "kinecal/io/config/config_free.hpp"
