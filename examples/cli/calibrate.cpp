@@ -49,6 +49,10 @@ void check_targets(const CalibrateOptions& options, const std::filesystem::path&
                    const std::vector<OutputFile>& files) {
   std::vector<std::string> inputs = options.samples;
   inputs.insert(inputs.end(), {options.urdf, options.config});
+  for (const std::string& camera : options.cameras) {
+    const std::string file = camera.substr(camera.find('=') + 1);
+    inputs.insert(inputs.end(), {file, file.substr(0, file.rfind(':'))});
+  }
   for (const OutputFile& file : files) {
     for (const std::string& input : inputs) {
       std::error_code missing;
@@ -70,7 +74,7 @@ SolveOptions solve_options(const CalibrateOptions& options) {
 
 int calibrate(const CalibrateOptions& options) {
   const Clock::time_point start = Clock::now();
-  const Input input = read_input(options.urdf, options.config, options.samples);
+  const Input input = read_input(options.urdf, options.config, options.samples, options.cameras);
   print(input.diagnostics);
   if (!input.diagnostics.errors.empty()) return kBadInput;
 

@@ -8,7 +8,7 @@
 namespace kinecal::cli {
 
 int check(const CheckOptions& options) {
-  const Input input = read_input(options.urdf, options.config, options.samples);
+  const Input input = read_input(options.urdf, options.config, options.samples, options.cameras);
   print(input.diagnostics);
   const std::size_t errors = input.diagnostics.errors.size();
   if (errors > 0) {

@@ -13,6 +13,7 @@ enum ExitCode { kDone = 0, kBadInput = 1, kNotConverged = 2 };
 struct CalibrateOptions {
   std::string urdf, config, output;
   std::vector<std::string> samples;
+  std::vector<std::string> cameras;  ///< NAME=FILE
   std::string offsets = "rising";
   bool upstream_names = false;
   bool dry_run = false;
@@ -26,6 +27,7 @@ struct CalibrateOptions {
 struct CheckOptions {
   std::string urdf, config;
   std::vector<std::string> samples;
+  std::vector<std::string> cameras;  ///< NAME=FILE
 };
 
 /// Finds every mistake in the input without solving.
@@ -34,6 +36,7 @@ struct CheckOptions {
 /// Says what is in the samples.
 [[gnu::visibility("default")]] int inspect(const std::vector<std::string>& samples);
 
+<<<<<<< HEAD
 struct InitOptions {
   std::string urdf, output = "calibrate.yaml";
   std::string base, arm, camera, camera_type, camera_name;  ///< empty: asked, or proposed
@@ -53,6 +56,16 @@ struct ConvertOptions {
 
 /// Writes samples or poses in another format.
 [[gnu::visibility("default")]] int convert(const ConvertOptions& options);
+=======
+struct CameraOptions {
+  std::string file;    ///< or file:cam1
+  std::string output;  ///< empty: none
+  std::string keys = "file", name = "camera";
+};
+
+/// Says what a camera file says, and writes it as camera_info.
+[[gnu::visibility("default")]] int camera(const CameraOptions& options);
+>>>>>>> 8d81bb40a404da5dc1f6fb1627979afd9b08a7b5
 
 struct InstallOptions {
   std::string result;  ///< folder that calibrate wrote

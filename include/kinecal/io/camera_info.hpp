@@ -87,4 +87,12 @@ template <class Numbers>
   return text + detail::matrix_to_yaml("projection_matrix", 3, camera.p);
 }
 
+/// The same as ROS 2 prints the message: sensor_msgs/CameraInfo without its header.
+[[nodiscard]] inline std::string to_camera_message_yaml(const CameraInfo& camera) {
+  return fmt::format("height: {}\nwidth: {}\ndistortion_model: {}\nd: {}\nk: {}\nr: {}\np: {}\n",
+                     camera.height, camera.width, name_to_yaml(camera.distortion_model),
+                     detail::numbers_to_yaml(camera.d), detail::numbers_to_yaml(camera.k),
+                     detail::numbers_to_yaml(camera.r), detail::numbers_to_yaml(camera.p));
+}
+
 }  // namespace kinecal

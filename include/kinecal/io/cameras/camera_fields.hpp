@@ -1,0 +1,124 @@
+// Pieces that camera files of every dialect have: matrices, sizes, what follows from what.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/config/config_map.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal::detail {
+
+/// Keys that mean the same; the first is the one that messages name.
+using CameraKeys = std::vector<std::string>;
+
+/// The entry of one of several keys, or nullptr; two of them are a mistake.
+[[nodiscard]] inline const ConfigEntry* find_camera_key(ConfigMap& map, const CameraKeys& keys) {
+  const ConfigEntry* found = nullptr;
+  for (const std::string& key : keys) {
+    const ConfigEntry* entry = map.find(key);
+    if (entry == nullptr) continue;
+    if (found != nullptr) {
+      map.error(entry->place, "'" + key + "' says the same as '" + found->key + "' in line " +
+                                  std::to_string(found->place.line) + "; keep one of them");
+    }
+    found = entry;
+  }
+  return found;
+}
+
+/// Finite numbers: a list, or the `data` of a matrix {rows, cols, data}; nothing, and an error, if
+/// an entry is none of these.
+[[nodiscard]] inline std::optional<std::vector<double>> camera_numbers(const ConfigMap& map,
+                                                                       const ConfigEntry& entry) {
+  const YAML::Node list = entry.value.IsMap() ? entry.value["data"] : YAML::Node(entry.value);
+  if (!list || !list.IsSequence()) {
+    map.error(entry.place, entry.key + " is no list of numbers and no matrix with data");
+    return std::nullopt;
+  }
+  std::vector<double> numbers;
+  for (const auto& item : list) {
+    const std::optional<double> number = config_number(item);
+    if (!number || !std::isfinite(*number)) {
+      map.error({entry.place.file, item.Mark().line + 1},
+                entry.key + ": " + describe_config(item) + " is not a finite number");
+      return std::nullopt;
+    }
+    numbers.push_back(*number);
+  }
+  if (!entry.value.IsMap()) return numbers;
+  const YAML::Node rows = entry.value["rows"], cols = entry.value["cols"];
+  const auto r = rows ? config_number(rows) : std::nullopt;
+  const auto c = cols ? config_number(cols) : std::nullopt;
+  if (r && c && *r * *c != static_cast<double>(numbers.size())) {
+    map.error(entry.place,
+              fmt::format("{} has {} numbers, not {} x {}", entry.key, numbers.size(), *r, *c));
+    return std::nullopt;
+  }
+  return numbers;
+}
+
+/// A matrix of so many numbers.  @return  whether it is there; an error if it has another size
+template <std::size_t N>
+bool read_camera_matrix(ConfigMap& map, const CameraKeys& keys, std::array<double, N>& matrix) {
+  const ConfigEntry* entry = find_camera_key(map, keys);
+  if (entry == nullptr) return false;
+  const auto numbers = camera_numbers(map, *entry);
+  if (!numbers) return true;
+  if (numbers->size() == N) {
+    std::copy(numbers->begin(), numbers->end(), matrix.begin());
+  } else {
+    map.error(entry->place,
+              fmt::format("{} has {} numbers, not {}", entry->key, numbers->size(), N));
+  }
+  return true;
+}
+
+/// A number of pixels; zero where there is none.
+[[nodiscard]] inline int read_camera_size(ConfigMap& map, const CameraKeys& keys) {
+  const ConfigEntry* entry = find_camera_key(map, keys);
+  return entry == nullptr ? 0 : map.count(entry->key, 0);
+}
+
+/// R = 1 and P = [K 0], for files that say no more: pixels of an image from which the distortion
+/// was taken with the camera's own matrix.
+inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const Place& place,
+                            Diagnostics& diagnostics) {
+  const auto& k = camera.k;
+  if (!has_r) camera.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  if (has_p) return;
+  camera.p = {k[0], k[1], k[2], 0, k[3], k[4], k[5], 0, k[6], k[7], k[8], 0};
+  const bool bends = std::any_of(camera.d.begin(), camera.d.end(), [](double v) { return v != 0; });
+  if (!bends) return;
+  diagnostics.warning(place,
+                      "there is no projection_matrix, and camera_matrix takes its place: pixels "
+                      "must be of images without distortion");
+}
+
+/// What no pinhole camera has.
+inline void check_camera(const CameraInfo& camera, const Place& place, Diagnostics& diagnostics) {
+  const auto& k = camera.k;
+  if (!(k[0] > 0.0) || !(k[4] > 0.0)) {
+    diagnostics.error(place,
+                      fmt::format("focal lengths {} and {} are not greater than zero", k[0], k[4]));
+  } else if (k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
+    diagnostics.error(place, fmt::format("the last row of the camera matrix is {} {} {}, not 0 0 1",
+                                         k[6], k[7], k[8]));
+  }
+  if (!(camera.p[0] > 0.0) || !(camera.p[5] > 0.0)) {
+    diagnostics.error(place,
+                      fmt::format("focal lengths {} and {} of the projection are not greater "
+                                  "than zero",
+                                  camera.p[0], camera.p[5]));
+  }
+}
+
+}  // namespace kinecal::detail
