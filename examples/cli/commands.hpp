@@ -36,7 +36,6 @@ struct CheckOptions {
 /// Says what is in the samples.
 [[gnu::visibility("default")]] int inspect(const std::vector<std::string>& samples);
 
-<<<<<<< HEAD
 struct InitOptions {
   std::string urdf, output = "calibrate.yaml";
   std::string base, arm, camera, camera_type, camera_name;  ///< empty: asked, or proposed
@@ -56,7 +55,7 @@ struct ConvertOptions {
 
 /// Writes samples or poses in another format.
 [[gnu::visibility("default")]] int convert(const ConvertOptions& options);
-=======
+
 struct CameraOptions {
   std::string file;    ///< or file:cam1
   std::string output;  ///< empty: none
@@ -65,7 +64,6 @@ struct CameraOptions {
 
 /// Says what a camera file says, and writes it as camera_info.
 [[gnu::visibility("default")]] int camera(const CameraOptions& options);
->>>>>>> 8d81bb40a404da5dc1f6fb1627979afd9b08a7b5
 
 struct InstallOptions {
   std::string result;  ///< folder that calibrate wrote

@@ -57,7 +57,6 @@ Input read_input(const std::string& urdf, const std::string& config,
   const std::size_t before = diagnostics.errors.size();
   auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
   const bool configuration_is_good = diagnostics.errors.size() == before;
-<<<<<<< HEAD
   Recording recording = read_recordings(samples, diagnostics);
   input.samples = std::move(recording.samples);
   if (urdf.empty() && recording.urdf.empty()) {
@@ -67,11 +66,9 @@ Input read_input(const std::string& urdf, const std::string& config,
   } else if (urdf.empty()) {
     input.urdf = "/robot_description";
     robot = read_robot([&] { return std::move(recording.urdf); });
-=======
-  input.samples = read_all_samples(samples, diagnostics);
+  }
   for (const std::string& camera : cameras) {
     attempt([&] { return set_camera(input.samples, camera, diagnostics), true; }, diagnostics);
->>>>>>> 8d81bb40a404da5dc1f6fb1627979afd9b08a7b5
   }
   if (!robot || !configuration) return input;
   input.robot = *robot;

@@ -20,11 +20,8 @@ struct Input {
 };
 
 /// Reads and assembles everything; mistakes end up in the diagnostics.
-<<<<<<< HEAD
-/// @param urdf  empty: the /robot_description of the samples' bag
-=======
+/// @param urdf     empty: the /robot_description of the samples' bag
 /// @param cameras  NAME=FILE, for samples without camera_info
->>>>>>> 8d81bb40a404da5dc1f6fb1627979afd9b08a7b5
 [[nodiscard]] Input read_input(const std::string& urdf, const std::string& config,
                                const std::vector<std::string>& samples,
                                const std::vector<std::string>& cameras = {});

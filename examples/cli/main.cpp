@@ -24,7 +24,15 @@ void add_input(CLI::App& command, std::string& urdf, std::string& config) {
       ->type_name("FILE");
 }
 
-<<<<<<< HEAD
+void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
+  command
+      .add_option("--camera", cameras,
+                  "intrinsics of a sensor whose samples have none: camera_info, Kalibr or OpenCV "
+                  "YAML; FILE:cam1 of several")
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
+}
+
 void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   add_input(command, options.urdf, options.config);
   command
@@ -32,6 +40,7 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                   "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
       ->required()
       ->type_name("FILE");
+  add_cameras(command, options.cameras);
   command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
   command
       .add_option("--offsets", options.offsets,
@@ -98,16 +107,6 @@ void add_convert(CLI::App& command, ConvertOptions& options) {
   command.add_flag("--force", options.force, "replace the file that is there");
 }
 
-=======
-void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
-  command
-      .add_option("--camera", cameras,
-                  "intrinsics of a sensor whose samples have none: camera_info, Kalibr or OpenCV "
-                  "YAML; FILE:cam1 of several")
-      ->type_name("NAME=FILE")
-      ->allow_extra_args(false);
-}
-
 void add_camera(CLI::App& command, CameraOptions& options) {
   command.add_option("file", options.file, "camera_info, Kalibr or OpenCV YAML; FILE:cam1")
       ->required()
@@ -124,7 +123,6 @@ void add_camera(CLI::App& command, CameraOptions& options) {
       ->capture_default_str();
 }
 
->>>>>>> 8d81bb40a404da5dc1f6fb1627979afd9b08a7b5
 /// The arguments in the order that the parser takes, the last one first.  It takes -.5 for an
 /// option, and -0.5 for a number.
 std::vector<std::string> arguments_of(int argc, char** argv) {
@@ -169,39 +167,7 @@ int run(int argc, char** argv) {
   CalibrateOptions calibrating;
   CLI::App* calibrate_command = app.add_subcommand(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files");
-<<<<<<< HEAD
   add_calibrate(*calibrate_command, calibrating);
-=======
-  add_input(*calibrate_command, calibrating.urdf, calibrating.config);
-  calibrate_command
-      ->add_option("--samples", calibrating.samples, "recorded samples, CalibrationData YAML")
-      ->required()
-      ->type_name("FILE");
-  add_cameras(*calibrate_command, calibrating.cameras);
-  CLI::Option* output =
-      calibrate_command->add_option("--output", calibrating.output, "folder for the results")
-          ->type_name("DIR");
-  calibrate_command
-      ->add_option("--offsets", calibrating.offsets,
-                   "where joint offsets are written: added to <calibration rising>, or folded into "
-                   "<origin> for drivers that ignore it")
-      ->check(CLI::IsMember({"rising", "origin"}))
-      ->capture_default_str();
-  calibrate_command->add_flag("--upstream-names", calibrating.upstream_names,
-                              "name the files as robot_calibration does, with the date");
-  calibrate_command->add_flag("--dry-run", calibrating.dry_run, "calibrate, but write nothing");
-  calibrate_command
-      ->add_option("--threads", calibrating.threads,
-                   "how many threads share the work, one for each core by default; the result does "
-                   "not depend on it")
-      ->check(CLI::Range(1, 1024));
-  calibrate_command
-      ->add_option("--cost", calibrating.cost,
-                   "how Ceres is given the samples: summed, or each feature by itself (slower, for "
-                   "comparison)")
-      ->check(CLI::IsMember({"compressed", "stacked"}))
-      ->capture_default_str();
->>>>>>> 8d81bb40a404da5dc1f6fb1627979afd9b08a7b5
 
   CheckOptions checking;
   CLI::App* check_command =
@@ -209,7 +175,8 @@ int run(int argc, char** argv) {
   add_input(*check_command, checking.urdf, checking.config);
   check_command->add_option("--samples", checking.samples, "recorded samples")->type_name("FILE");
 
-<<<<<<< HEAD
+  add_cameras(*check_command, checking.cameras);
+
   InitOptions starting;
   CLI::App* init_command =
       app.add_subcommand("init", "write a first configuration from a URDF: asks what is not given");
@@ -219,9 +186,6 @@ int run(int argc, char** argv) {
   CLI::App* convert_command =
       app.add_subcommand("convert", "write samples or poses in another format");
   add_convert(*convert_command, converting);
-=======
-  add_cameras(*check_command, checking.cameras);
->>>>>>> 8d81bb40a404da5dc1f6fb1627979afd9b08a7b5
 
   std::vector<std::string> inspected;
   CLI::App* inspect_command = app.add_subcommand(

@@ -175,37 +175,17 @@ class McapWriter {
     ++chunk_count_;
   }
 
-<<<<<<< HEAD
-  /// What the file calls the compression, and the bytes packed with it.
-  [[nodiscard]] std::pair<std::string_view, std::string> pack(const std::string& records) const {
-    if (options_.compression == Compression::none) return {"", records};
-    const std::vector<std::byte> packed =
-        kinecal::pack(detail::as_bytes(records), options_.compression);
-    return {name_of(options_.compression),
-            std::string(reinterpret_cast<const char*>(packed.data()), packed.size())};
-=======
+  /// As the file calls it.
   [[nodiscard]] std::string_view compression_name() const {
-    switch (options_.compression) {
-      case McapCompression::lz4:
-        return "lz4";
-      case McapCompression::zstd:
-        return "zstd";
-      case McapCompression::none:
-        break;
-    }
-    return "";
+    return options_.compression == Compression::none ? "" : name_of(options_.compression);
   }
 
   /// The records compressed; empty if they are written as they are.
   [[nodiscard]] std::string pack(const std::string& records) const {
-    std::vector<std::byte> packed;
-    if (options_.compression == McapCompression::lz4) {
-      packed = compress_lz4(detail::as_bytes(records));
-    } else if (options_.compression == McapCompression::zstd) {
-      packed = compress_zstd(detail::as_bytes(records));
-    }
+    if (options_.compression == Compression::none) return {};
+    const std::vector<std::byte> packed =
+        kinecal::pack(detail::as_bytes(records), options_.compression);
     return {reinterpret_cast<const char*>(packed.data()), packed.size()};
->>>>>>> a683a4cb38b55f6c5056bb74f1ce770208183b1b
   }
 
   /// The summary, and where in the file the groups of its records stand.
