@@ -167,21 +167,5 @@ TEST(Compression, AMissingLibraryIsNamed) {
   }
 }
 
-#ifndef KINECAL_HAVE_LZ4
-TEST(Compression, WithoutLz4SaysWhatToInstall) {
-  EXPECT_THAT([] { (void)decompress_lz4({}, 1); },
-              ThrowsMessage<BytesError>(
-                  HasSubstr("compressed with lz4, and this kinecal was built without liblz4; "
-                            "install liblz4-dev and build again")));
-}
-#endif
-
-#ifndef KINECAL_HAVE_ZSTD
-TEST(Compression, WithoutZstdSaysWhatToInstall) {
-  EXPECT_THAT([] { (void)decompress_zstd({}, 1); },
-              ThrowsMessage<BytesError>(HasSubstr("install libzstd-dev and build again")));
-}
-#endif
-
 }  // namespace
 }  // namespace kinecal
