@@ -7,7 +7,7 @@ packages="g++ cmake ninja-build libeigen3-dev libceres-dev liburdfdom-dev libyam
 libpugixml-dev libfmt-dev libcli11-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev"
 if [ "${1:-}" = test ]; then
   packages="$packages clang-14 libgtest-dev libgmock-dev libbenchmark-dev liborocos-kdl-dev \
-dpkg-dev file"
+libfastcdr-dev dpkg-dev file"
 fi
 
 missing=""
