@@ -312,6 +312,78 @@ TEST_F(Program, InspectShowsSensorsJointsAndGaps) {
                                 HasSubstr("sensor 'arm' is missing in 1 of 20 samples")));
 }
 
+TEST_F(Program, IntrinsicsMayComeFromAFile) {
+  ASSERT_EQ(calibrate().code, 0);
+  const std::string urdf = read("out/calibrated.urdf"), camera = read("out/depth_camera.yaml");
+  auto all = samples();
+  write("camera.yaml", to_camera_info_yaml(*all[0].observations[0].camera, "camera"));
+  for (Sample& sample : all) sample.observations[0].camera.reset();
+  write_all(all);
+  fs::remove_all(folder_ / "out");
+  expect_refused(HasSubstr("camera"));
+  const Outcome result = calibrate("--camera camera=camera.yaml");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(read("out/calibrated.urdf"), urdf);
+  EXPECT_EQ(read("out/depth_camera.yaml"), camera);
+  const std::string check = "check --urdf tiny.urdf --config c.yaml --samples s.yaml --camera ";
+  EXPECT_EQ(run(check + "camera=camera.yaml").code, 0);
+  EXPECT_THAT(run(check + "camra=camera.yaml").err, HasSubstr("did you mean 'camera'?"));
+  EXPECT_THAT(run(check + "camera=none.yaml").err, HasSubstr("error: none.yaml: cannot be read"));
+  write("depth_camera.yaml", read("camera.yaml"));
+  const Outcome own =
+      run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output . "
+          "--camera camera=depth_camera.yaml");
+  EXPECT_EQ(own.code, 1);
+  EXPECT_THAT(own.err, HasSubstr("would replace an input"));
+}
+
+TEST_F(Program, ShowsACameraFileAndWritesItAsCameraInfo) {
+  write("chain.yaml",
+        "cam0:\n  camera_model: pinhole\n  intrinsics: [500, 501, 320, 240]\n"
+        "  distortion_model: radtan\n  distortion_coeffs: [0.1, 0, 0, 0]\n"
+        "  resolution: [640, 480]\n");
+  const Outcome shown = run("camera chain.yaml --output x/info.yaml --name head");
+  EXPECT_EQ(shown.code, 0) << shown.err;
+  EXPECT_THAT(shown.out, AllOf(HasSubstr("640 x 480"), HasSubstr("plumb_bob"),
+                               HasSubstr("P              500 0 320 0 0 501 240 0 0 0 1 0")));
+  EXPECT_THAT(shown.err, HasSubstr("warning: chain.yaml:1: "));
+  EXPECT_THAT(read("x/info.yaml"), HasSubstr("camera_name: head\n"));
+  EXPECT_EQ(run("camera x/info.yaml --output y.yaml --keys message").code, 0);
+  EXPECT_THAT(read("y.yaml"), HasSubstr("d: [0.1, 0.0, 0.0, 0.0, 0.0]\n"));
+  EXPECT_THAT(run("camera y.yaml --output y.yaml").err, HasSubstr("would replace the input"));
+  EXPECT_THAT(run("camera y.yaml --keys message").err, HasSubstr("--output"));
+  spoil("chain.yaml", "radtan", "fov");
+  EXPECT_THAT(run("camera chain.yaml").err,
+              HasSubstr("error: chain.yaml:4: cam0: distortion_model "));
+}
+
+TEST_F(Program, AResultGoesOntoTheRobotWithEitherNames) {
+  fs::create_directory(folder_ / "robot");
+  const std::string launch =
+      "<launch>\n  <param name=\"calibration_date\" value=\"\"/>\n"
+      "  <param name=\"robot_description\" textfile=\"a.urdf\"/>\n"
+      "  <param name=\"head_camera/driver/z_offset_mm\" value=\"0\"/>\n"
+      "  <param name=\"head_camera/driver/z_scaling\" value=\"1\"/>\n"
+      "  <arg name=\"rgb_camera_info_url\" default=\"\"/>\n"
+      "  <arg name=\"depth_camera_info_url\" default=\"\"/>\n</launch>\n";
+  for (const char* names : {"", "--upstream-names"}) {
+    write("robot/robot.launch", launch);
+    fs::remove_all(folder_ / "out");
+    ASSERT_EQ(calibrate(names).code, 0);
+    const Outcome installed = run("install out --to robot");
+    EXPECT_EQ(installed.code, 0) << installed.err;
+    pugi::xml_document xml;
+    ASSERT_TRUE(xml.load_file((folder_ / "robot/robot.launch").c_str()));
+    const pugi::xml_node description =
+        xml.child("launch").find_child_by_attribute("name", "robot_description");
+    EXPECT_NO_THROW((void)read_urdf(description.attribute("textfile").value()));
+    const std::string date = run("install --date --to robot").out;
+    EXPECT_THAT(date, ContainsRegex("^20[0-9-]+ [0-9:]+\n$"));
+    EXPECT_EQ(run("install --restore --to robot").code, 0);
+    EXPECT_EQ(read("robot/robot.launch"), launch);
+  }
+}
+
 TEST_F(Program, CheckTellsEveryMistakeInOneGo) {
   spoil("c.yaml", " - elbow", " - elbwo\n - sholder");
   spoil("c.yaml", "frame: hand", "frame: hnad");

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/io/cameras/read_camera_file.hpp"
 #include "kinecal/io/config/config_scalar.hpp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/results/file_set.hpp"
@@ -113,7 +114,7 @@ namespace detail {
   return {path.filename().string(), read_text_file(path)};
 }
 
-/// Left_depth_info: a camera file with the prefix "left_"; nothing for any other key.
+/// left_depth_info: a camera file with the prefix "left_"; nothing for any other key.
 [[nodiscard]] inline std::optional<ResultCamera> camera_key(const std::string& key) {
   for (const std::string kind : {"depth_info", "rgb_info"}) {
     if (!key.ends_with(kind)) continue;
@@ -122,6 +123,17 @@ namespace detail {
     return ResultCamera{prefix, kind == "depth_info", "", {}};
   }
   return std::nullopt;
+}
+
+/// What a camera file calls its camera; empty if it does not.
+/// @throws InputError  if a driver could not load the file
+[[nodiscard]] inline std::string camera_name(const std::string& text,
+                                             const std::filesystem::path& path) {
+  Diagnostics diagnostics;
+  (void)read_camera_file(path.string(), diagnostics);
+  diagnostics.throw_if_errors();
+  const YAML::Node name = yaml_map(text, path.string())["camera_name"];
+  return name && name.IsScalar() ? name.Scalar() : std::string();
 }
 
 [[nodiscard]] inline std::optional<bool> read_converged(const std::filesystem::path& report) {
@@ -143,6 +155,7 @@ namespace detail {
   result.values = {path.filename().string(), read_text_file(path)};
   result.date = detail::date_in_name(path.stem().string());
   if (result.date.empty()) result.date = detail::date_of_file(path);
+  std::filesystem::path urdf_path;
   for (const auto& pair : detail::yaml_map(result.values.content, path.string())) {
     if (!pair.first.IsScalar() || !config_text(pair.second)) continue;
     const std::string key = pair.first.Scalar();
@@ -150,16 +163,15 @@ namespace detail {
       result.parameters[key] = *value;
     } else if (key == "urdf") {
       result.urdf = detail::named_file(folder, path.string(), pair.second);
+      urdf_path = folder / pair.second.Scalar();
     } else if (auto camera = detail::camera_key(key)) {
       camera->file = detail::named_file(folder, path.string(), pair.second);
-      const std::string file = (folder / camera->file.name).string();
-      const YAML::Node name = detail::yaml_map(camera->file.content, file)["camera_name"];
-      if (name && name.IsScalar()) camera->name = name.Scalar();
+      camera->name = detail::camera_name(camera->file.content, folder / pair.second.Scalar());
       result.cameras.push_back(*camera);
     }
   }
   if (result.urdf.name.empty()) throw InputError(path.string() + ": names no urdf");
-  (void)parse_urdf(result.urdf.content, (folder / result.urdf.name).string());
+  (void)parse_urdf(result.urdf.content, urdf_path.string());
   result.converged = detail::read_converged(folder / "report.json");
   return result;
 }
