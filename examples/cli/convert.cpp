@@ -96,7 +96,8 @@ std::optional<std::string> write_bag(const ConvertOptions& options, Encoding enc
   Content content;
   if (!from_bag) content = read_content(options, diagnostics);
   if (!diagnostics.errors.empty()) return std::nullopt;
-  BagOutput bag(options.output, encoding);
+  BagOutput bag(options.output, encoding,
+                encoding == Encoding::cdr ? best_mcap_compression() : Compression::none);
   std::string words = counted(content);
   if (from_bag) {
     const Clouds clouds = options.drop_clouds ? Clouds::drop : Clouds::keep;

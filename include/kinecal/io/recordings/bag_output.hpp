@@ -23,17 +23,19 @@ namespace kinecal {
 
 class BagOutput {
  public:
-  /// @param encoding  ros1 for a ROS 1 bag, cdr for MCAP
+  /// @param encoding     ros1 for a ROS 1 bag, cdr for MCAP
+  /// @param compression  of its chunks
   /// @throws OutputError  if nothing can be written there
-  BagOutput(std::filesystem::path path, Encoding encoding)
+  BagOutput(std::filesystem::path path, Encoding encoding,
+            Compression compression = Compression::none)
       : path_(std::move(path)),
         encoding_(encoding),
         staging_(path_.has_parent_path() ? path_.parent_path() : "."),
         file_(staging_.path() / path_.filename(), std::ios::binary) {
     if (encoding_ == Encoding::ros1) {
-      writer_.emplace<Ros1BagWriter>(file_);
+      writer_.emplace<Ros1BagWriter>(file_, compression);
     } else {
-      writer_.emplace<McapWriter>(file_, McapOptions{best_mcap_compression()});
+      writer_.emplace<McapWriter>(file_, McapOptions{compression});
     }
   }
 
