@@ -19,6 +19,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 const BagTopic kJoints{"joint_states", "sensor_msgs/JointState", "string[] name\n", Encoding::cdr};
@@ -309,6 +310,18 @@ TEST(Mcap, WhatTheReaderThrowsIsNotCaught) {
   Diagnostics diagnostics;
   EXPECT_THROW(read_mcap(in, "b.mcap", reader, diagnostics), BytesError);
   EXPECT_THAT(diagnostics.errors, IsEmpty());
+}
+
+TEST(McapWriter, NamesAndTypesAreThoseOfRos2) {
+  std::ostringstream out;
+  McapWriter writer(out);
+  (void)writer.add_topic({"plain", "std_msgs/String", "", Encoding::cdr});
+  (void)writer.add_topic({"/slash", "std_msgs/msg/Bool", "", Encoding::cdr});
+  writer.close();
+  for (const std::string text : {"/plain", "/slash", "std_msgs/msg/String", "std_msgs/msg/Bool"}) {
+    EXPECT_THAT(out.str(), HasSubstr(text));
+  }
+  EXPECT_THAT(out.str(), Not(HasSubstr("//slash")));
 }
 
 TEST(McapWriter, RefusesWhatIsNotOfRos2) {

@@ -79,8 +79,8 @@ void read_db3_database(const Open& open, const std::string& name, const BagReade
 /// All wanted messages of a file, in the order of time.
 /// @param path         of a .db3 file
 /// @param diagnostics  receives what is wrong with it, at most one error, after which nothing is
-///                     read; also that this kinecal was built without SQLite.  Only what the reader
-///                     throws is thrown.
+///                     read; also that this kinecal was built without SQLite.  Only what the
+///                     handler throws is thrown.
 inline void read_db3(const std::string& path, [[maybe_unused]] const BagReader& reader,
                      Diagnostics& diagnostics) {
   try {

@@ -22,7 +22,7 @@ namespace kinecal {
 /// @param name         as messages name the file
 /// @param diagnostics  receives what is wrong with the file, at most one error, after which nothing
 ///                     is read; and as a warning that the recording was interrupted: all chunks
-///                     that are whole are then read.  Only what the reader throws is thrown.
+///                     that are whole are then read.  Only what the handler throws is thrown.
 inline void read_mcap(std::istream& in, const std::string& name, const BagReader& reader,
                       Diagnostics& diagnostics) {
   std::optional<ByteFile> file;

@@ -123,7 +123,7 @@ inline void read_ros2_bag_file(const std::string& path, const BagReader& reader,
 /// All wanted messages of a bag, file after file.  The reader is asked for the topics of each file.
 /// @param folder       with metadata.yaml
 /// @param diagnostics  receives what is wrong with it, also that a listed file is missing: then
-///                     nothing is read.  Only what the reader throws is thrown.
+///                     nothing is read.  Only what the handler throws is thrown.
 inline void read_ros2_bag(const std::string& folder, const BagReader& reader,
                           Diagnostics& diagnostics) {
   std::vector<std::string> paths;

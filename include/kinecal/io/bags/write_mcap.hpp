@@ -61,7 +61,8 @@ class McapWriter {
     counts_.push_back(0);
     const auto id = static_cast<std::uint16_t>(counts_.size());
     detail::McapContent channel;
-    channel.number(id).number(schema).text("/" + topic.name).text("cdr").text("");
+    channel.number(id).number(schema).text("/" + detail::bag_topic_name(topic.name));
+    channel.text("cdr").text("");  // no metadata
     channels_ += add(channel.record(detail::McapOp::channel));
     return id;
   }
