@@ -4,6 +4,9 @@
 
 #include <fmt/core.h>
 
+#include <filesystem>
+#include <string>
+
 #include "commands.hpp"
 #include "input.hpp"
 
@@ -16,6 +19,10 @@ std::string why_unfit(const ResultFolder& result, const std::string& folder) {
     return folder + ": has no report.json that says whether the result converged";
   }
   return *result.converged ? "" : folder + "/report.json: the result did not converge";
+}
+
+std::string in_folder(const InstallOptions& options, const std::string& name) {
+  return (std::filesystem::path(options.folder) / name).string();
 }
 
 int install_result(const InstallOptions& options) {
@@ -32,20 +39,19 @@ int install_result(const InstallOptions& options) {
   const Installation done =
       kinecal::install(result, options.folder, options.launch, names, diagnostics);
   print(diagnostics);
-  for (const std::string& name : done.added) fmt::print("wrote {}/{}\n", options.folder, name);
+  for (const std::string& name : done.added) fmt::print("wrote {}\n", in_folder(options, name));
+  const std::string launch = in_folder(options, options.launch);
   if (done.backup.empty()) {
-    fmt::print("{}/{} is as it was: this calibration is installed\n", options.folder,
-               options.launch);
+    fmt::print("{} is as it was: this calibration is installed\n", launch);
   } else {
-    fmt::print("changed {}/{}; the one before is {}, --restore puts it back\n", options.folder,
-               options.launch, done.backup);
+    fmt::print("changed {}; the one before is {}, --restore puts it back\n", launch, done.backup);
   }
   return kDone;
 }
 
 int restore(const InstallOptions& options) {
   const std::string undone = restore_installed(options.folder, options.launch);
-  fmt::print("restored {}/{}; the one that it replaced is {}\n", options.folder, options.launch,
+  fmt::print("restored {}; the one that it replaced is {}\n", in_folder(options, options.launch),
              undone);
   return kDone;
 }

@@ -126,10 +126,12 @@ void add_camera(CLI::App& command, CameraOptions& options) {
 /// The arguments in the order that the parser takes, the last one first.  It takes -.5 for an
 /// option, and -0.5 for a number.
 std::vector<std::string> arguments_of(int argc, char** argv) {
+  const bool are_numbers = argc > 1 && std::string("rpy") == argv[1];
   std::vector<std::string> arguments;
   for (int i = argc - 1; i > 0; --i) {
     const std::string text = argv[i];
-    arguments.push_back(text.starts_with("-.") ? "-0" + text.substr(1) : text);
+    const bool cut = are_numbers && text.starts_with("-.");
+    arguments.push_back(cut ? "-0" + text.substr(1) : text);
   }
   return arguments;
 }
@@ -159,8 +161,8 @@ void add_install(CLI::App& command, InstallOptions& installing) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app(
-      "Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.");
+  CLI::App app("Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.",
+               "kinecal");
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
 

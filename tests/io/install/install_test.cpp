@@ -133,8 +133,26 @@ TEST_F(Install, RestoresBackToTheOldest) {
   EXPECT_EQ(read("robot/robot.launch.undone_1"), first);
   install();  // and forth again
   EXPECT_EQ(launch(), second);
-  EXPECT_EQ(restore(), "robot.launch.undone_1");
+  EXPECT_EQ(restore(), "robot.launch.undone_2");
   EXPECT_EQ(launch(), test::kLaunch);
+}
+
+TEST_F(Install, RestoringLosesNothingThatWasWrittenByHand) {
+  install();
+  spoil("robot/robot.launch", "<!-- end -->", "<!-- mine -->");
+  const std::string edited = launch();
+  EXPECT_EQ(restore(), "robot.launch.undone_1");
+  install();
+  EXPECT_EQ(restore(), "robot.launch.undone_2");
+  EXPECT_EQ(read("robot/robot.launch.undone_1"), edited);
+}
+
+TEST_F(Install, TheFolderMayBeThatOfTheResult) {
+  write("out/robot.launch", test::kLaunch);
+  (void)kinecal::install(read_result_folder(folder_ / "out"), folder_ / "out", "robot.launch",
+                         fetch_launch_names(), diagnostics_);
+  EXPECT_EQ(read("out/calibrated_2026_01_02_03_04_05.urdf"), urdf("1"));
+  EXPECT_EQ(read("out/calibrated.urdf"), urdf("1"));
 }
 
 TEST_F(Install, RestoringNeedsABackup) {

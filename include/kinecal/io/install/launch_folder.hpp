@@ -77,7 +77,8 @@ class LaunchFolder {
     placed.names.clear();
   }
 
-  /// Puts the newest backup in place of the launch file, which is kept as robot.launch.undone_<n>.
+  /// Puts the newest backup in place of the launch file, which is kept as robot.launch.undone_<n>,
+  /// n that of the backup or the next one that is free.
   /// @return  the name that the replaced launch file has now
   /// @throws InputError   if there is no backup
   /// @throws OutputError  naming the file; the folder is then as it was
@@ -91,7 +92,10 @@ class LaunchFolder {
       throw InputError(launch().string() + ": there is nothing to restore: no " + backup_name(1) +
                        " or later stands beside it");
     }
-    const std::string undone = launch_ + ".undone_" + std::to_string(n);
+    std::string undone;
+    for (int k = n; undone.empty() || is_other(undone, text); ++k) {
+      undone = launch_ + ".undone_" + std::to_string(k);
+    }
     const Staging staging(folder_);
     keep(staging, undone);
     sync_folder();
@@ -149,6 +153,11 @@ class LaunchFolder {
       others.push_back(entry.path().filename().string());
     }
     throw InputError((folder / launch).string() + ": is not there" + did_you_mean(launch, others));
+  }
+
+  /// True for a file that is there with another content.
+  [[nodiscard]] bool is_other(const std::string& name, const std::string& content) const {
+    return std::filesystem::exists(folder_ / name) && read_text_file(folder_ / name) != content;
   }
 
   [[nodiscard]] std::string backup_name(int n) const {
