@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <utility>
 
 #include "commands.hpp"
 #include "kinecal/io/init/initial_config.hpp"
@@ -176,7 +177,19 @@ void answer_camera(const Robot& robot, const InitOptions& options, InitAnswers& 
   if (!options.camera_name.empty()) answers.camera_name = options.camera_name;
 }
 
+/// Before any question: what was given must not be found wrong at the end.
+void check_given_links(const Robot& robot, const InitOptions& options) {
+  Diagnostics diagnostics;
+  for (const auto& [option, link] :
+       {std::pair("--base", options.base), std::pair("--arm", options.arm),
+        std::pair("--camera", options.camera)}) {
+    if (!link.empty()) check_init_link(robot, option, link, diagnostics);
+  }
+  diagnostics.throw_if_errors();
+}
+
 InitAnswers answer(const Robot& robot, const InitOptions& options) {
+  check_given_links(robot, options);
   InitAnswers answers;
   answers.base = options.base;
   answers.arm = options.arm;

@@ -99,7 +99,7 @@ template <class Iterator>
 inline void free_offset(InitPlan& plan, const ChainJoint& joint) {
   if (joint.drive.joint != joint.name) {
     plan.left_out.push_back(
-        {joint.name, "it mimics joint " + name_to_yaml(joint.drive.joint) + " and has none"});
+        {joint.name, "It mimics joint " + name_to_yaml(joint.drive.joint) + " and has none"});
     return;
   }
   plan.free_params.push_back({"", joint.name, {}});
@@ -118,9 +118,9 @@ inline void free_offsets(InitPlan& plan, const std::vector<ChainJoint>& way,
     if (i >= first && i < last) {
       free_offset(plan, way[i]);
     } else if (const std::string& frame = i < first ? before : after; name == frame) {
-      plan.left_out.push_back({name, "its frame is free, and moves all that its offset moves"});
+      plan.left_out.push_back({name, "Its frame is free, and moves all that its offset moves"});
     } else {
-      plan.left_out.push_back({name, "frame " + name_to_yaml(frame) +
+      plan.left_out.push_back({name, "Frame " + name_to_yaml(frame) +
                                          " is free; its turn (or shift) and this joint's offset "
                                          "look the same in every sample"});
     }

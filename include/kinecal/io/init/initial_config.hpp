@@ -16,6 +16,17 @@
 
 namespace kinecal {
 
+/// Reports a link that the robot does not have; an answer that is missing, too.
+inline void check_init_link(const Robot& robot, const std::string& option, const std::string& link,
+                            Diagnostics& diagnostics) {
+  if (link.empty()) {
+    diagnostics.error({option, 0}, "no link is given");
+  } else if (!robot.has_link(link)) {
+    diagnostics.error({option, 0}, fmt::format("no link '{}' in robot '{}'{}", link, robot.name(),
+                                               did_you_mean(link, robot.link_names())));
+  }
+}
+
 namespace detail {
 
 /// Words of a text as lines of comments, at most 100 columns wide.
@@ -64,7 +75,7 @@ namespace detail {
 [[nodiscard]] inline std::string left_out_comments(const InitPlan& plan) {
   std::string text;
   for (const InitLeftOut& left_out : plan.left_out) {
-    text += comment_lines("Left out: " + name_to_yaml(left_out.joint) + "; " + left_out.why + ".",
+    text += comment_lines("Left out: " + name_to_yaml(left_out.joint) + ": " + left_out.why + ".",
                           plan.free_params.empty() ? "" : " ");
   }
   return text.empty() || !plan.free_params.empty() ? text : "\n" + text;
@@ -90,8 +101,10 @@ namespace detail {
                        "sensor_name of its observations.",
                        plan.models, false);
   text += list_to_yaml("free_params",
-                       "What may be wrong: offsets that are added to what joints report, and the "
-                       "camera's own figures.",
+                       needs_camera(answers.target)
+                           ? "What may be wrong: offsets that are added to what joints report, and "
+                             "the camera's own figures."
+                           : "What may be wrong: offsets that are added to what joints report.",
                        plan.free_params, false);
   text += left_out_comments(plan);
   text += list_to_yaml("free_frames",
@@ -108,25 +121,14 @@ namespace detail {
   return text;
 }
 
-/// Reports a link that the robot does not have; an answer that is missing, too.
-inline void check_link(const Robot& robot, const std::string& option, const std::string& link,
-                       Diagnostics& diagnostics) {
-  if (link.empty()) {
-    diagnostics.error({option, 0}, "no link is given");
-  } else if (!robot.has_link(link)) {
-    diagnostics.error({option, 0}, fmt::format("no link '{}' in robot '{}'{}", link, robot.name(),
-                                               did_you_mean(link, robot.link_names())));
-  }
-}
-
 /// @throws InputError  with all that is wrong with the answers by themselves
 inline void check_answers(const Robot& robot, const InitAnswers& answers) {
   Diagnostics diagnostics;
   const InitTarget target = answers.target;
-  check_link(robot, "--base", answers.base, diagnostics);
-  if (needs_arm(target)) check_link(robot, "--arm", answers.arm, diagnostics);
+  check_init_link(robot, "--base", answers.base, diagnostics);
+  if (needs_arm(target)) check_init_link(robot, "--arm", answers.arm, diagnostics);
   if (needs_camera(target)) {
-    check_link(robot, "--camera", answers.camera, diagnostics);
+    check_init_link(robot, "--camera", answers.camera, diagnostics);
     const std::array<std::string, 2> types = {"camera3d", "camera2d"};
     if (std::find(types.begin(), types.end(), answers.camera_type) == types.end()) {
       diagnostics.error({"--camera-type", 0},

@@ -123,8 +123,9 @@ inline void keep_near_drawing(InitPlan& plan, const std::string& frame, const st
   add_initial_value(plan, name,
                     "Measure by hand where the board's first corner is in link " +
                         name_to_yaml(link) +
-                        " and how the board is turned (x along its rows, y along its columns): "
-                        "0.1 m and 20 degrees are good enough, all zeros rarely are.");
+                        " and how the board is turned (x along its rows, y along its columns).  "
+                        "0.1 m and 30 degrees off are near enough; a board that is upside down "
+                        "may not be found.");
   return name;
 }
 

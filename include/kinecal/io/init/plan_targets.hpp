@@ -22,7 +22,7 @@ namespace kinecal::detail {
   std::vector<ChainJoint> arm = movers(robot, answers.base, answers.arm);
   std::vector<ChainJoint> head = movers(robot, answers.base, answers.camera);
   for (const std::string& joint : leave_out_common(arm, head)) {
-    plan.left_out.push_back({joint, "it moves arm and camera alike"});
+    plan.left_out.push_back({joint, "It moves arm and camera alike"});
   }
   if (arm.empty()) {
     throw InputError(fmt::format(
@@ -97,7 +97,7 @@ namespace kinecal::detail {
         fmt::format("--arm: link '{}' does not move in link '{}'", answers.arm, answers.base));
   }
   const std::string tracker = virtual_frame_name(robot, {"tracker_frame", "laser_frame"});
-  const std::string reflector = virtual_frame_name(robot, {"reflector", "smr"});
+  const std::string reflector = virtual_frame_name(robot, {"smr", "reflector"});
   add_chain_model(plan, "Knows where the reflector is: point (0, 0, 0) of frame " + reflector + ".",
                   "arm", answers.arm);
   add_chain_model(plan,
@@ -108,12 +108,12 @@ namespace kinecal::detail {
              "Where the tracker stands, seen from link " + name_to_yaml(answers.base) +
                  ".  The frame is in no URDF: it is the frame_id of the measured points.");
   free_frame(plan, reflector,
-             "Where the reflector is in link " + name_to_yaml(answers.arm) +
+             "Where the reflector (SMR) is in link " + name_to_yaml(answers.arm) +
                  "; a point has no rotation.  In no URDF either.",
              true);
   add_initial_value(plan, tracker,
-                    "Measure by hand, to 0.5 m and 30 degrees, where the tracker stands and how it "
-                    "is turned.");
+                    "Measure by hand where the tracker stands and how it is turned: 0.5 m and 60 "
+                    "degrees off are near enough.");
   add_initial_value(plan, reflector, "");
   plan.error_blocks.push_back(
       {"Both tell of the same point.  sigma is how well the tracker measures and the robot "
@@ -141,7 +141,7 @@ namespace kinecal::detail {
   const std::string mount = require_mount(robot, answers, {answers.base}).name;
   for (const ChainJoint& joint : movers(robot, answers.base, answers.camera)) {
     plan.left_out.push_back({joint.name,
-                             "the floor tells the camera's height and tilt, not which "
+                             "The floor tells the camera's height and tilt, not which "
                              "joint or frame is wrong; the camera's frame stands for "
                              "all"});
   }
