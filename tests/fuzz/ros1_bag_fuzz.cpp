@@ -38,6 +38,7 @@ std::size_t read(const std::string& bag, int every) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bag(reinterpret_cast<const char*>(data), size);
   const std::size_t all = read(bag, 1);

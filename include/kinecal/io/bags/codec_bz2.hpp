@@ -19,6 +19,8 @@
 
 namespace kinecal::detail {
 
+inline constexpr bool kHaveBz2 = true;
+
 class UnpackBz2 {
  public:
   UnpackBz2() = default;
@@ -77,4 +79,11 @@ static_assert(Unpacker<UnpackBz2>);
 }
 
 }  // namespace kinecal::detail
+
+#else
+
+namespace kinecal::detail {
+inline constexpr bool kHaveBz2 = false;
+}
+
 #endif

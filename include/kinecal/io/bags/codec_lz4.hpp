@@ -17,6 +17,8 @@
 
 namespace kinecal::detail {
 
+inline constexpr bool kHaveLz4 = true;
+
 class UnpackLz4 {
  public:
   UnpackLz4() {
@@ -57,4 +59,11 @@ static_assert(Unpacker<UnpackLz4>);
 }
 
 }  // namespace kinecal::detail
+
+#else
+
+namespace kinecal::detail {
+inline constexpr bool kHaveLz4 = false;
+}
+
 #endif

@@ -19,6 +19,8 @@
 
 namespace kinecal::detail {
 
+inline constexpr bool kHaveZstd = true;
+
 class UnpackZstd {
  public:
   /// @param packed  bytes in all; a window, the memory of zstd, is no larger than what they may
@@ -57,4 +59,11 @@ static_assert(Unpacker<UnpackZstd>);
 }
 
 }  // namespace kinecal::detail
+
+#else
+
+namespace kinecal::detail {
+inline constexpr bool kHaveZstd = false;
+}
+
 #endif

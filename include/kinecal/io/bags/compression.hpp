@@ -48,29 +48,10 @@ enum class Compression { none, bz2, lz4, zstd };
 
 /// Whether this kinecal was built with what it needs.
 [[nodiscard]] constexpr bool is_available(Compression compression) {
-  switch (compression) {
-    case Compression::none:
-      return true;
-    case Compression::bz2:
-#ifdef KINECAL_HAVE_BZ2
-      return true;
-#else
-      return false;
-#endif
-    case Compression::lz4:
-#ifdef KINECAL_HAVE_LZ4
-      return true;
-#else
-      return false;
-#endif
-    case Compression::zstd:
-#ifdef KINECAL_HAVE_ZSTD
-      return true;
-#else
-      return false;
-#endif
-  }
-  return false;
+  return compression == Compression::none ||
+         (compression == Compression::bz2 && detail::kHaveBz2) ||
+         (compression == Compression::lz4 && detail::kHaveLz4) ||
+         (compression == Compression::zstd && detail::kHaveZstd);
 }
 
 namespace detail {

@@ -195,7 +195,7 @@ class Ros1BagReading {
                            : "the recording was interrupted, or the file cut off or damaged: its "
                              "index is not whole (" +
                                  why + ")";
-    text += "; " + std::to_string(messages_.count()) + " messages were read, up to byte " +
+    text += "; wanted messages read: " + std::to_string(messages_.count()) + ", up to byte " +
             std::to_string(read_to_) + " of " + std::to_string(file_.size());
     messages_.warning(text);
   }

@@ -31,7 +31,7 @@ namespace kinecal {
 
 class Ros1BagWriter {
  public:
-  static constexpr std::size_t kChunkBytes = 768 * 1024;  ///< as rosbag has it
+  static constexpr std::size_t kChunkBytes = std::size_t{768} << 10;  ///< as rosbag has it
 
   /// @param out          opened as binary, can be sought in; what stands in it stays in front
   /// @param compression  none, bz2 or lz4: what rosbag reads
