@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "../cli/output.hpp"
-#include "kinecal/io/samples/read_samples.hpp"
+#include "kinecal/io/recordings/read_recording.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/report/text.hpp"
@@ -42,7 +42,7 @@ void add_options(CLI::App& app, Options& options) {
 
 std::vector<Sample> read(const std::string& file) {
   Diagnostics diagnostics;
-  std::vector<Sample> samples = read_samples(file, diagnostics);
+  std::vector<Sample> samples = read_recording(file, diagnostics).samples;
   diagnostics.throw_if_errors();
   for (const std::string& warning : diagnostics.warnings) {
     fmt::print(stderr, "warning: {}\n", warning);
