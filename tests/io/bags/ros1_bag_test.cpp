@@ -210,6 +210,17 @@ TEST(Ros1Bag, MistakesOfMessagesAreToldWithTheirPlace) {
   EXPECT_EQ(inside.messages.size(), 1u);
 }
 
+TEST(Ros1Bag, ARecordOfUnknownKindIsLeftOutAndNoOther) {
+  std::string unknown = message(0, 1, "x");
+  unknown[unknown.find("op=") + 3] = '\x55';
+  const std::string records = connection(0, "a", "T/A") + unknown + message(0, 1, "y");
+  for (const std::string& all : {records, chunk("none", std::uint32_t(records.size()), records)}) {
+    const BagContents read = read_bag(open_bag(all));
+    EXPECT_THAT(read.errors, ElementsAre(HasSubstr("a record of unknown kind")));
+    EXPECT_THAT(read.messages, ElementsAre(Recorded{"a", 1'000'000'000, "y"}));
+  }
+}
+
 TEST(Ros1Bag, WhatIsNoBagIsSaidToBeNone) {
   const auto error = [](const std::string& text) { return read_bag(text).errors.at(0); };
   EXPECT_EQ(error(""), "a.bag: is empty");

@@ -47,7 +47,8 @@ class Ros1Messages {
             handle(*topic, ros1_time(record.fields, "time"), record.data);
           }
         } else {
-          reader.fail("a record that ends here is neither a message nor a connection");
+          error(all.where + "byte " + std::to_string(record.data_place) +
+                ": the data of a record of unknown kind; it is left out");
         }
       }
     } catch (const BytesError& e) {
