@@ -125,6 +125,11 @@ TEST(LaunchText, RefusesAnElementWithoutAValue) {
               StartsWith("robot.launch:1: arg 'u' has no default="));
 }
 
+TEST(LaunchText, RefusesAnElementWithTwoValues) {
+  EXPECT_EQ(refusal("<launch><param name='a' textfile='f' value='1'/></launch>", {param("a", "2")}),
+            "robot.launch:1: param 'a' has both textfile and value; keep one of them");
+}
+
 TEST(LaunchText, RefusesWhatIsNoLaunchFile) {
   EXPECT_THAT(refusal("<robot/>", {}),
               StartsWith("robot.launch:1: the root element is <robot>; a launch file begins with"));

@@ -8,6 +8,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
@@ -64,7 +65,7 @@ class LaunchText : public XmlText {
   /// are several.
   [[nodiscard]] pugi::xml_node find(const LaunchSetting& setting, Diagnostics& diagnostics) const {
     const std::vector<Named> all = elements(setting.element);
-    const std::string what = std::string(to_string(setting.element)) + " '" + setting.name + "'";
+    const std::string what = subject(setting);
     const std::string way_out = "--name " + setting.key + "=NAME names another one, --name " +
                                 setting.key + "= leaves it out";
     std::vector<pugi::xml_node> found;
@@ -90,8 +91,8 @@ class LaunchText : public XmlText {
 
   /// What an element is set to, whichever attribute says so; empty where none does.
   [[nodiscard]] static std::string value_of(pugi::xml_node element) {
-    for (const char* name : kValueAttributes) {
-      if (const pugi::xml_attribute value = element.attribute(name)) return value.value();
+    for (const std::string_view name : kValueAttributes) {
+      if (const auto value = element.attribute(name.data())) return value.value();
     }
     return {};
   }
@@ -100,25 +101,31 @@ class LaunchText : public XmlText {
   void set(pugi::xml_node element, const LaunchSetting& setting, std::vector<TextEdit>& edits,
            Diagnostics& diagnostics) const {
     const StartTag tag = scan_start_tag(text(), offset(element));
-    for (const char* name : kValueAttributes) {
-      const AttributeText* old = tag.find(name);
-      if (old == nullptr) continue;
-      // What is passed to an <include>, or fixed, is a value and stays one.
-      const bool is_arg = setting.element == LaunchElement::arg;
-      const std::string attribute = is_arg ? name : setting.attribute;
-      if (attribute == name && element.attribute(name).value() == setting.value) return;
-      const char quote = text()[old->begin - 1];
-      if (attribute != name) {
-        const auto at = static_cast<std::size_t>(old->name.data() - text().data());
-        edits.push_back({at, old->name.size(), attribute});
+    const AttributeText* old = nullptr;
+    for (const AttributeText& attribute : tag.attributes) {
+      const auto& all = kValueAttributes;
+      if (std::find(all.begin(), all.end(), attribute.name) == all.end()) continue;
+      if (old != nullptr) {
+        return diagnostics.error(
+            place(element), subject(setting) + " has both " + std::string(old->name) + " and " +
+                                std::string(attribute.name) + "; keep one of them");
       }
-      edits.push_back(
-          {old->begin, old->end - old->begin, xml_attribute_text(setting.value, quote)});
-      return;
+      old = &attribute;
     }
-    diagnostics.error(place(element), std::string(to_string(setting.element)) + " '" +
-                                          setting.name + "' has no " + setting.attribute +
-                                          "=\"...\" to be replaced");
+    if (old == nullptr) {
+      return diagnostics.error(place(element), subject(setting) + " has no " + setting.attribute +
+                                                   "=\"...\" to be replaced");
+    }
+    // What is passed to an <include>, or fixed, is a value and stays one.
+    const bool is_arg = setting.element == LaunchElement::arg;
+    const std::string attribute = is_arg ? std::string(old->name) : setting.attribute;
+    if (attribute == old->name && value_of(element) == setting.value) return;
+    if (attribute != old->name) {
+      const auto at = static_cast<std::size_t>(old->name.data() - text().data());
+      edits.push_back({at, old->name.size(), attribute});
+    }
+    edits.push_back({old->begin, old->end - old->begin,
+                     xml_attribute_text(setting.value, text()[old->begin - 1])});
   }
 
   /// The text with all settings made, every other byte as it was.
@@ -135,8 +142,7 @@ class LaunchText : public XmlText {
         set(element, setting, edits, diagnostics);
       } else {
         diagnostics.error(place(element), setting.key + " and " + other->second + " both set " +
-                                              std::string(to_string(setting.element)) + " '" +
-                                              setting.name + "'; name another one");
+                                              subject(setting) + "; name another one");
       }
     }
     diagnostics.throw_if_errors();
@@ -145,8 +151,13 @@ class LaunchText : public XmlText {
 
  private:
   /// What says a value; of these an element has one.
-  static constexpr std::array kValueAttributes = {"value", "default", "textfile", "command",
-                                                  "binfile"};
+  static constexpr std::array<std::string_view, 5> kValueAttributes = {
+      "value", "default", "textfile", "command", "binfile"};
+
+  /// "param 'calibration_date'", for messages.
+  [[nodiscard]] static std::string subject(const LaunchSetting& setting) {
+    return std::string(to_string(setting.element)) + " '" + setting.name + "'";
+  }
 
   struct Named {
     pugi::xml_node node;
