@@ -89,6 +89,9 @@ TEST_F(Init, NamesTheOptionWhereNobodyCanBeAsked) {
   const Outcome arm = init("fetch", "--target leds");
   EXPECT_EQ(arm.code, 1);
   EXPECT_THAT(arm.err, AllOf(HasSubstr("--arm is required"), HasSubstr("gripper_led_frame")));
+  const Outcome camera = init("ur5e", "--target leds");
+  EXPECT_EQ(camera.code, 1);
+  EXPECT_THAT(camera.err, HasSubstr("--camera is required where nobody can be asked; no link of"));
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
 }
 
