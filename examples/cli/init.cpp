@@ -75,7 +75,8 @@ std::string ask(const Question& question, const Valid& valid) {
       return question.choices.front().answer;
     }
     throw InputError(question.option + " is required where nobody can be asked" +
-                     (question.choices.empty() ? "" : "; one of " + listed(question.choices)));
+                     (question.choices.empty() ? "; no link of the URDF looks like one"
+                                               : "; one of " + listed(question.choices)));
   }
   for (;;) {
     print(question);

@@ -4,7 +4,9 @@
 #include <poll.h>
 #include <pty.h>
 #include <unistd.h>
+#include <yaml-cpp/yaml.h>
 
+#include "support/data.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -87,6 +89,9 @@ TEST_F(Init, NamesTheOptionWhereNobodyCanBeAsked) {
   const Outcome arm = init("fetch", "--target leds");
   EXPECT_EQ(arm.code, 1);
   EXPECT_THAT(arm.err, AllOf(HasSubstr("--arm is required"), HasSubstr("gripper_led_frame")));
+  const Outcome camera = init("ur5e", "--target leds");
+  EXPECT_EQ(camera.code, 1);
+  EXPECT_THAT(camera.err, HasSubstr("--camera is required where nobody can be asked; no link of"));
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
 }
 
@@ -142,6 +147,38 @@ TEST_F(Init, WritesNothingWhereTheAnswersEnd) {
   EXPECT_EQ(left.code, 1) << left.out;
   EXPECT_THAT(left.out, HasSubstr("not answered; nothing is written"));
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
+}
+
+/// What init writes of a real robot calibrates it as far as its parameters can: the figures are
+/// those of an independent implementation.
+TEST_F(Init, WritesWhatCalibratesARealRobotAsItStands) {
+  KINECAL_NEEDS_DATA("ur5_tracker");
+  KINECAL_NEEDS_DATA("fetch/synth");
+  struct Set {
+    std::string urdf, samples, options;
+    double rms;  ///< of components, metres
+  };
+  const Set sets[] = {
+      {"ur5_tracker/ur5.urdf", "ur5_tracker/grid.yaml", "--target tracker",
+       0.560881e-3 / 1.7320508},
+      {"fetch/synth/fetch_arm_head.urdf", "fetch/synth/samples.yaml",
+       "--target leds --arm wrist_roll_link --camera head_camera_rgb_optical_frame", 1e-3}};
+  for (const Set& set : sets) {
+    const std::string robot = " --urdf " + (test::data_folder() / set.urdf).string();
+    const Outcome made =
+        run(KINECAL_PROGRAM " init --force" + robot + " " + set.options + " < /dev/null");
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Outcome done = run(KINECAL_PROGRAM " calibrate --config calibrate.yaml --output out" +
+                             robot + " --samples " + (test::data_folder() / set.samples).string());
+    ASSERT_EQ(done.code, 0) << done.err;
+    const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
+    constexpr double kLoss =
+        0.02;  // a robust loss and a prior change the least squares of the figure
+    EXPECT_NEAR(report["error_blocks"][0]["after"]["rms"].as<double>(), set.rms, kLoss * set.rms)
+        << set.urdf;
+    const YAML::Node observability = report["observability"][0];
+    EXPECT_LE(observability["unobservable"].size(), 1u) << "the tilt, which a prior keeps";
+  }
 }
 
 }  // namespace

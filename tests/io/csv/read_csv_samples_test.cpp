@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <clocale>
+#include <locale>
 
 namespace kinecal {
 namespace {
@@ -113,12 +114,20 @@ TEST_F(ReadCsvSamples, LeavesOutARowWithoutAJointAndSaysSo) {
   EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("t.csv:2: joint 'tilt' has no")));
 }
 
+/// As where a comma is the decimal point.
+struct DecimalComma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
 TEST_F(ReadCsvSamples, DoesNotDependOnTheLocale) {
-  const char* const german = std::setlocale(LC_ALL, "de_DE.UTF-8");
+  const std::locale before =
+      std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  (void)std::setlocale(LC_ALL, "de_DE.UTF-8");  // of the C library too, where it is installed
   const auto samples = read();
-  std::setlocale(LC_ALL, "C");
-  if (german == nullptr) GTEST_SKIP() << "no locale with a decimal comma is installed";
-  EXPECT_EQ(samples[0].observations[2].features[0].point.x(), 320.5);
+  std::locale::global(before);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_EQ(samples[0].observations[2].features[0].point, Vector3<double>(320.5, 240.0, 0.0));
+  EXPECT_EQ(samples[0].observations[0].features[0].point.y(), 0.5) << "of the mapping";
 }
 
 TEST_F(ReadCsvSamples, TellsAColumnThatIsNotThereAndTheNearest) {

@@ -11,10 +11,10 @@
 #include <optional>
 #include <random>
 
-#include "every_robot.hpp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/trust/observability.hpp"
+#include "support/every_robot.hpp"
 #include "support/instances.hpp"
 
 namespace kinecal {

@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "every_robot.hpp"
+#include "support/every_robot.hpp"
 
 namespace kinecal {
 namespace {
