@@ -250,6 +250,19 @@ TEST_F(CameraFile, TellsWhatIsWrongWithItsLine) {
               HasSubstr("c.yaml:1: camera_matrix is no list of numbers"));
 }
 
+TEST_F(CameraFile, RefusesAMisspeltMatrixInsteadOfDoingWithoutIt) {
+  CameraInfo camera;
+  camera.k = kMatrix;
+  camera.p = kProjection;
+  camera.width = camera.height = 480;
+  const std::string text = to_camera_info_yaml(camera, "head");
+  EXPECT_EQ(refusal(replaced(text, "projection_matrix", "projecton_matrix")),
+            "c.yaml:20: unknown key 'projecton_matrix'; did you mean 'projection_matrix'?");
+  (void)read(text + "grabber: 1\n");
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("unknown key 'grabber' is ignored")));
+}
+
 TEST_F(CameraFile, RefusesWhatIsNoCameraFile) {
   EXPECT_THAT(refusal("a: 1"), HasSubstr("c.yaml: is no camera file: neither camera_matrix"));
   EXPECT_THAT(refusal(""), HasSubstr("c.yaml: is no camera file"));

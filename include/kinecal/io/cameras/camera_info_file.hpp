@@ -30,6 +30,8 @@ namespace kinecal {
   }
   const bool has_r = read_camera_matrix(file, {"rectification_matrix", "R", "r"}, camera.r);
   const bool has_p = read_camera_matrix(file, {"projection_matrix", "P", "p"}, camera.p);
+  file.ignore({"camera_name", "header", "binning_x", "binning_y", "roi"});
+  file.report_unknown();  // a misspelt projection_matrix must not become camera_matrix
   complete_camera(camera, has_r, has_p, file.place(), file.diagnostics());
   return camera;
 }
