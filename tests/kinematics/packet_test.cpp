@@ -40,9 +40,9 @@ TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
     samples.push_back(
         measured_motions(chain, [&](const std::string& joint) { return positions(joint); }));
     for (std::size_t i = 0; i < packed.size(); ++i) {
-      packed[i].position[lane] = samples[lane][i].position;
-      packed[i].cos[lane] = samples[lane][i].cos;
-      packed[i].sin[lane] = samples[lane][i].sin;
+      packed[i].position.set(lane, samples[lane][i].position);
+      packed[i].cos.set(lane, samples[lane][i].cos);
+      packed[i].sin.set(lane, samples[lane][i].sin);
     }
   }
   ChainTwists<Packet> packed_twists;
