@@ -1,11 +1,5 @@
 // Feeds read_ros1_bag() with what nobody has recorded.
 //
-//   clang++-14 -std=c++20 -O1 -g -fsanitize=fuzzer,address,undefined -Iinclude \
-//     -DKINECAL_HAVE_BZ2 -DKINECAL_HAVE_LZ4 -DKINECAL_HAVE_ZSTD \
-//     tests/fuzz/ros1_bag_fuzz.cpp -o ros1_bag_fuzz -lbz2 -llz4 -lzstd
-//   mkdir -p found && ./ros1_bag_fuzz -malloc_limit_mb=100 -timeout=10 -max_total_time=60 \
-//     found tests/fuzz/corpus/ros1_bag
-//
 // Bags of the corpus have no padding after their bag header, so that they are small.
 #include <cstddef>
 #include <cstdint>
