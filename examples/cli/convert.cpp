@@ -126,8 +126,8 @@ void check_output(const ConvertOptions& options) {
 }  // namespace
 
 int convert(const ConvertOptions& options) {
-  const std::optional<Encoding> encoding = output_encoding(options.output);
   check_output(options);
+  const std::optional<Encoding> encoding = output_encoding(options.output);
   Diagnostics diagnostics;
   std::optional<std::string> words;
   if (encoding) {

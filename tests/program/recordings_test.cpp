@@ -8,6 +8,10 @@
 #include <string>
 
 #include "kinecal/io/bags/mcap.hpp"
+#include "kinecal/io/recordings/convert.hpp"
+#include "kinecal/io/samples/read_samples.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/kinematics/pose_walker.hpp"
 #include "support/data.hpp"
 #include "support/run_program.hpp"
 
@@ -101,14 +105,51 @@ TEST_F(RecordingsProgram, CalibrateToTheSameBytesFromAnyFormat) {
   }
 }
 
+/// The samples of the set with a torso that was at rest, and samples of the floor as a robot sees
+/// it whose URDF is right; the URDF is Fetch's own.
+void write_bag_with_ground(const fs::path& data, const std::string& path) {
+  Diagnostics diagnostics;
+  std::vector<Sample> samples = read_samples(data / "synth/samples.yaml", diagnostics);
+  const Robot robot = read_urdf(data / "fetch.urdf");
+  const RuntimeChain camera = make_chain(robot, "base_link", "head_camera_rgb_optical_frame");
+  std::vector<Sample> floor;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    Sample& sample = samples[n];
+    sample.joint_names.emplace_back("torso_lift_joint");
+    sample.joint_positions.push_back(0.1);
+    if (n % 4 != 0) continue;
+    const auto position = [&](const std::string& joint) { return *sample.position(joint); };
+    const Pose<double> camera_T_base = forward_kinematics(camera, position).inverse();
+    Sample& ground = floor.emplace_back(sample);
+    ground.observations = {*sample.observation("camera")};
+    ground.observations[0].features.clear();
+    for (int i = 0; i < 6; ++i) {
+      const Vector3<double> on_floor(1.0 + 0.2 * i, 0.3 * (i % 3) - 0.3, 0.0);
+      const Vector3<double> p = camera_T_base * on_floor;
+      if (p.z() < 0.3) continue;
+      ground.observations[0].features.push_back({"head_camera_rgb_optical_frame", p});
+    }
+    if (ground.observations[0].features.empty()) floor.pop_back();
+  }
+  samples.insert(samples.end(), floor.begin(), floor.end());
+  BagOutput bag(path, Encoding::ros1);
+  write_samples(bag, samples);
+  write_urdf(bag, read_urdf_text(data / "fetch.urdf"));
+  bag.finish();
+}
+
 TEST_F(RecordingsProgram, AreDropInForFetchsOwnFiles) {
   KINECAL_NEEDS_DATA("fetch/synth");
-  for (const char* config : {"calibrate.yaml", "calibrate_with_ground.yaml"}) {
+  const fs::path data = test::data_folder() / "fetch";
+  write_bag_with_ground(data, folder_ / "ground.bag");
+  const std::pair<std::string, std::string> calls[] = {
+      {"calibrate.yaml", synth() / "calibration_data.bag"},
+      {"calibrate_with_ground.yaml", "ground.bag"}};
+  for (const auto& [config, bag] : calls) {
     SCOPED_TRACE(config);
     fs::remove_all(folder_ / "out");
-    const test::Outcome outcome = kinecal(
-        "calibrate --config " + (test::data_folder() / "fetch" / config).string() + " --samples " +
-        (synth() / "calibration_data.bag").string() + " --output out --upstream-names");
+    const test::Outcome outcome = kinecal("calibrate --config " + (data / config).string() +
+                                          " --samples " + bag + " --output out --upstream-names");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     std::string calibration;
     for (const auto& file : fs::directory_iterator(folder_ / "out")) {

@@ -7,9 +7,11 @@
 //   ...
 //
 // A type without a package is of the package that uses it; of ROS 1, Header is std_msgs/Header and
-// time and duration are two numbers.  ROS 2 adds bounds (string<=10, int32[<=4]) and default
-// values. Source: ROS 1 wiki, msg; ROS 2 documentation, Interfaces. SPDX-License-Identifier:
-// Apache-2.0
+// time and duration are two numbers.  ROS 2 adds bounds (string<=10) and default values.
+//
+// Source: ROS 1 wiki, msg; ROS 2 documentation, Interfaces.
+//
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <fmt/format.h>
