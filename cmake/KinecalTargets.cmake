@@ -53,13 +53,19 @@ kinecal_add_library(kinecal
   LINK kinecal_io)
 
 # What kinecal's own programs and tests are built with; never seen by its users.
-add_library(kinecal_build_options INTERFACE)
-target_compile_options(kinecal_build_options INTERFACE
+add_library(kinecal_warnings INTERFACE)
+target_compile_options(kinecal_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   # g++ 12 takes "text" + std::string for an overlapping copy when it inlines (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<BOOL:${KINECAL_WARNINGS_AS_ERRORS}>:-Werror>
-  $<$<BOOL:${KINECAL_NATIVE}>:-march=native>
+  $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)
+
+# The same with sanitizers: not for examples, which run what the tests run and would take twice as
+# long to compile.
+add_library(kinecal_build_options INTERFACE)
+target_link_libraries(kinecal_build_options INTERFACE kinecal_warnings)
+target_compile_options(kinecal_build_options INTERFACE
   $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=all>
   # What the address sanitizer and the processor find as well would double the time to compile.
   $<$<BOOL:${KINECAL_SANITIZE}>:-fno-sanitize=null,alignment,object-size,vptr>
