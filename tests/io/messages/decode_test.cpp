@@ -157,5 +157,12 @@ TEST(Decode, RefusesLengthsBeyondTheBytesAndOtherCdr) {
   EXPECT_THROW((void)decode(list, Encoding::cdr, std::as_bytes(std::span(parameters))), BytesError);
 }
 
+TEST(Decode, RefusesListsOfWhatTakesNoBytes) {
+  const MessageDefinition nothings =
+      parse_definition("a/List", "Nothing[] all\n===\nMSG: a/Nothing\nuint8 CONSTANT=1\n");
+  const std::array<unsigned char, 8> three = {3, 0, 0, 0, 0, 0, 0, 0};
+  EXPECT_THROW((void)decode(nothings, Encoding::ros1, std::as_bytes(std::span(three))), BytesError);
+}
+
 }  // namespace
 }  // namespace kinecal

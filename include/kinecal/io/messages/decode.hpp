@@ -88,14 +88,19 @@ class Decoder {
     if (f.count == MessageField::Count::one) return one(f);
     const std::uint32_t count =
         f.count == MessageField::Count::fixed ? f.size : wire_.template number<std::uint32_t>();
-    // Not exact for messages in lists, but each has a byte at least, or it would have no field.
     if (count > wire_.reader().left()) {
       wire_.reader().fail("'" + f.name + "' has " + std::to_string(count) +
                           " items, more than bytes are left; is it cut off?");
     }
     if (f.type == FieldType::uint8 || f.type == FieldType::int8) return wire_.reader().take(count);
     MessageValue::List list;
-    for (std::uint32_t i = 0; i < count; ++i) list.push_back(one(f));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::size_t before = wire_.reader().read();
+      list.push_back(one(f));
+      if (wire_.reader().read() == before) {  // a few bytes could claim any number of them
+        wire_.reader().fail("the items of '" + f.name + "' take no bytes");
+      }
+    }
     return list;
   }
 
