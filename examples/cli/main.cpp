@@ -176,7 +176,6 @@ int run(int argc, char** argv) {
       app.add_subcommand("check", "find every mistake in the input, without calibrating");
   add_input(*check_command, checking.urdf, checking.config);
   check_command->add_option("--samples", checking.samples, "recorded samples")->type_name("FILE");
-
   add_cameras(*check_command, checking.cameras);
 
   InitOptions starting;

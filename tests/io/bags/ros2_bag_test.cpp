@@ -168,8 +168,8 @@ TEST(Ros2Formats, AreKnownByTheirFirstBytes) {
 }
 
 TEST(Ros2Formats, TypesAreCalledAsInRos1) {
-  EXPECT_EQ(detail::bag_topic_type("sensor_msgs/msg/JointState"), "sensor_msgs/JointState");
-  EXPECT_EQ(detail::bag_topic_type("sensor_msgs/JointState"), "sensor_msgs/JointState");
+  EXPECT_EQ(plain_type("sensor_msgs/msg/JointState"), "sensor_msgs/JointState");
+  EXPECT_EQ(plain_type("sensor_msgs/JointState"), "sensor_msgs/JointState");
   EXPECT_EQ(detail::ros2_type("sensor_msgs/JointState"), "sensor_msgs/msg/JointState");
   EXPECT_EQ(detail::ros2_type("sensor_msgs/msg/JointState"), "sensor_msgs/msg/JointState");
   EXPECT_EQ(detail::ros2_type("plain"), "plain");

@@ -10,10 +10,18 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "kinecal/io/bags/bytes.hpp"
 
 namespace kinecal {
+
+/// "sensor_msgs/msg/JointState" of ROS 2 is "sensor_msgs/JointState" of ROS 1.
+[[nodiscard]] inline std::string plain_type(std::string_view type) {
+  const std::size_t at = type.find("/msg/");
+  if (at == std::string_view::npos) return std::string(type);
+  return std::string(type.substr(0, at)) + std::string(type.substr(at + 4));
+}
 
 /// How messages are written as bytes.
 enum class Encoding { ros1, cdr };
@@ -23,7 +31,8 @@ struct BagTopic {
   std::string name;  ///< without a leading slash
   std::string
       type;  ///< "sensor_msgs/JointState", also where ROS 2 says "sensor_msgs/msg/JointState"
-  std::string definition = {};  ///< the .msg text with those that it needs, of ROS; empty if not told
+  std::string definition =
+      {};  ///< the .msg text with those that it needs, of ROS; empty if not told
   Encoding encoding = Encoding::ros1;
   std::string md5 = {};  ///< of the definition, of ROS 1; empty if not told
 };

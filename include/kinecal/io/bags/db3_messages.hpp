@@ -111,7 +111,7 @@ class Db3Messages {
       const std::string type = rows.text(2);
       const auto definition = definitions.find(type);
       topics.push_back({rows.number(0),
-                        {bag_topic_name(rows.text(1)), bag_topic_type(type),
+                        {bag_topic_name(rows.text(1)), plain_type(type),
                          definition == definitions.end() ? "" : definition->second, Encoding::cdr},
                         rows.text(3)});
     }

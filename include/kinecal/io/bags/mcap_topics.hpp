@@ -83,7 +83,7 @@ class McapTopics {
                             topic.channel_name, topic.schema));
       }
       const Schema& schema = it->second;
-      topic.topic.type = bag_topic_type(schema.name);
+      topic.topic.type = plain_type(schema.name);
       if (schema.encoding == "ros2msg" || schema.encoding == "ros1msg") {
         topic.topic.definition = schema.text;
       }

@@ -40,14 +40,6 @@ namespace detail {
   return std::string(name);
 }
 
-/// "sensor_msgs/msg/JointState" is "sensor_msgs/JointState".
-[[nodiscard]] inline std::string bag_topic_type(std::string_view type) {
-  constexpr std::string_view kMiddle = "/msg/";
-  const std::size_t at = type.find(kMiddle);
-  if (at == std::string_view::npos) return std::string(type);
-  return std::string(type.substr(0, at + 1)) + std::string(type.substr(at + kMiddle.size()));
-}
-
 /// "sensor_msgs/JointState" is "sensor_msgs/msg/JointState".
 [[nodiscard]] inline std::string ros2_type(std::string_view type) {
   const std::size_t at = type.find('/');

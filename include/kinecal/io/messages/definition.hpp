@@ -27,6 +27,8 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/io/bags/bag.hpp"
+
 namespace kinecal {
 
 /// A definition that cannot be read: what is wrong, with the line of the text.
@@ -67,13 +69,6 @@ struct MessageType {
 
 /// A message and all that it consists of; the message is the first.
 using MessageDefinition = std::vector<MessageType>;
-
-/// "sensor_msgs/msg/JointState" of ROS 2 is "sensor_msgs/JointState" of ROS 1.
-[[nodiscard]] inline std::string plain_type(std::string_view type) {
-  const std::size_t at = type.find("/msg/");
-  if (at == std::string_view::npos) return std::string(type);
-  return std::string(type.substr(0, at)) + std::string(type.substr(at + 4));
-}
 
 namespace detail {
 

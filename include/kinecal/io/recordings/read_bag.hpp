@@ -34,10 +34,11 @@ enum class RecordingFormat { yaml, ros1_bag, mcap, sqlite, ros2_bag };
   if (std::filesystem::is_directory(path, ignored)) return RecordingFormat::ros2_bag;
   std::array<char, 16> first{};
   std::ifstream(path, std::ios::binary).read(first.data(), first.size());
-  const std::string_view text(first.data(), first.size());
-  if (text.starts_with("#ROSBAG V")) return RecordingFormat::ros1_bag;
-  if (text.starts_with("\x89MCAP")) return RecordingFormat::mcap;
-  if (text.starts_with("SQLite format 3")) return RecordingFormat::sqlite;
+  const Bytes bytes = std::as_bytes(std::span(first));
+  if (is_mcap(bytes)) return RecordingFormat::mcap;
+  if (is_sqlite(bytes)) return RecordingFormat::sqlite;
+  const bool is_ros1 = std::string_view(first.data(), first.size()).starts_with("#ROSBAG V");
+  if (is_ros1) return RecordingFormat::ros1_bag;
   return RecordingFormat::yaml;
 }
 
