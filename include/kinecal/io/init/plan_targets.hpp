@@ -58,6 +58,12 @@ namespace kinecal::detail {
   return plan;
 }
 
+/// Two joints that turn at least: fewer do not tell where on what they move something is.
+[[nodiscard]] inline bool turns_about_two_axes(const std::vector<ChainJoint>& way) {
+  return std::count_if(way.begin(), way.end(),
+                       [](const ChainJoint& joint) { return turns(joint.type); }) >= 2;
+}
+
 /// A board in the world, seen by a camera that the robot moves.
 [[nodiscard]] inline InitPlan plan_world_checkerboard(const Robot& robot,
                                                       const InitAnswers& answers) {
@@ -78,9 +84,7 @@ namespace kinecal::detail {
   free_frame(plan, mount, "How the camera is mounted.");
   free_camera(plan, answers, false);
   add_hand_eye(plan, answers, "board");
-  const auto turning =
-      std::count_if(way.begin(), way.end(), [](const ChainJoint& j) { return turns(j.type); });
-  if (turning < 2) {
+  if (!turns_about_two_axes(way)) {
     keep_near_drawing(plan, mount,
                       "A camera that turns about one axis at most does not tell its frame from "
                       "that of the board: its drawing decides.");
@@ -124,9 +128,7 @@ namespace kinecal::detail {
         {"model_b", "tracker"},
         {"sigma", "0.0001"},
         {"loss", "{type: huber, scale: 3.0}"}}});
-  const auto turning =
-      std::count_if(way.begin(), way.end(), [](const ChainJoint& j) { return turns(j.type); });
-  if (turning < 2) {
+  if (!turns_about_two_axes(way)) {
     keep_near_drawing(plan, reflector,
                       "An arm that turns about one axis at most does not tell where the reflector "
                       "is from where the tracker stands.");
