@@ -29,7 +29,7 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
     const std::array twists = {BodyTwists<S>(views[0]->twists(chains[0])),
                                BodyTwists<S>(views[1]->twists(chains[1]))};
     FeatureGram<S> gram;
-    gram.resize(2, Rows::cameras(views, first));
+    gram.resize(2, Rows::cameras(views));
     std::vector<S> weights;
     std::vector<Vector3<S>> residuals;
     for (std::size_t i = first; i < Rows::features(views); ++i) {

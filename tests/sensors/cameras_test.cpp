@@ -57,7 +57,6 @@ void expect_the_jets_of_a_depth_camera(const std::array<double, 6>& v, unsigned 
   constexpr double kRounding = 1e-14;  // a dozen operations on metres, metres per unit
   const RandomViews<Q> views(seed);
   const CorrectedDepthCamera<Q> corrected(views.camera, v);
-  const Vector3<Q> point = corrected.point(views.measured);
   const auto seen = corrected.see(views.measured);
   using J = Jet<double, 6>;
   std::array<J, 6> variables;
@@ -68,11 +67,11 @@ void expect_the_jets_of_a_depth_camera(const std::array<double, 6>& v, unsigned 
     const Eigen::Matrix<J, 3, 1> jets = views.cameras[n].point(views.pixels[n], variables);
     Eigen::Matrix<double, 3, 6> expected, found = Eigen::Matrix<double, 3, 6>::Zero();
     for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(lane(point(k), i), p(k), kRounding);
-      EXPECT_NEAR(lane(seen.point(k), i), p(k), kRounding);
+      const Q ray = k == 0 ? seen.s : k == 1 ? seen.t : Q(1.0);
+      EXPECT_NEAR(lane(ray * seen.depth, i), p(k), kRounding);
       expected.row(k) = jets(k).v.transpose();
-      found(k, 4) = lane(seen.by_offset(k), i);
-      found(k, 5) = lane(seen.by_scaling(k), i);
+      found(k, 4) = lane(ray * seen.depth_by_offset, i);
+      found(k, 5) = lane(ray * seen.depth_by_scaling, i);
     }
     found(0, 0) = lane(seen.x_by_fx, i);
     found(1, 1) = lane(seen.y_by_fy, i);

@@ -30,10 +30,10 @@ class BlockRows {
     return result;
   }
 
-  /// Number of free camera parameters on which feature i depends.
-  [[nodiscard]] static std::size_t cameras(Views views, std::size_t i) {
+  /// Number of free camera parameters on which a feature depends.
+  [[nodiscard]] static std::size_t cameras(Views views) {
     std::size_t n = 0;
-    for (std::size_t s = 0; s < kBodies; ++s) n += views[s]->camera_motion(i).size();
+    for (std::size_t s = 0; s < kBodies; ++s) n += views[s]->num_camera_motions();
     if constexpr (SightBlock<B>) n += views[1]->state().free_camera.size();
     return n;
   }
@@ -128,10 +128,8 @@ class BlockRows {
       rows.residual = values_of(r);
       for (std::size_t s = 0; s < kBodies; ++s) {
         const ByPoint by_point = derivatives_by<3>(r, 3 * static_cast<int>(s));
-        const auto motion = views[s]->camera_motion(i);
         rows.set_point(s, p[s], by_point);
-        rows.set_camera(rows.cameras, motion, by_point);
-        rows.cameras += motion.size();
+        rows.add_camera(*views[s], i, by_point);
       }
     }
     return rows;
@@ -165,8 +163,7 @@ class BlockRows {
       const ByPoint by_base_point = by_camera_point * camera_T_base.rotation;
       rows.set_point(0, p_base, by_base_point);
       rows.set_point(1, p_base, -by_base_point);  // moving the camera: the point, the other way
-      rows.set_camera(0, views[0]->camera_motion(i), by_base_point);
-      rows.cameras = views[0]->camera_motion(i).size();
+      rows.add_camera(*views[0], i, by_base_point);
       for (const int k : camera.state().free_camera) {
         for (int m = 0; m < kSize; ++m) rows.by_camera[rows.cameras](m) = r(m).v(3 + k);
         ++rows.cameras;

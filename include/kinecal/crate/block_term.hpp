@@ -56,7 +56,7 @@ class BlockTerm final : public Term<S> {
       end = end_of_run(views, first);
       const Chains chains = Block::chains(views, first);
       if (add_difference(views, first, end, loss, sums)) continue;
-      sums.gram.resize(kBodies, Block::cameras(views, first));
+      sums.gram.resize(kBodies, Block::cameras(views));
       for (std::size_t i = first; i < end; ++i) {
         const Rows rows = Block::template rows<true>(block_, views, i, Linearization::measured);
         const S weight = add_cost(rows.residual, rows.weight, loss, sums);
@@ -82,27 +82,29 @@ class BlockTerm final : public Term<S> {
       end = end_of_run(views, first);
       auto& run = out.next_run();
       run.features = end - first;
-      if (!derivatives) continue;
-      run.chains = key(Block::chains(views, first));
-      run.width = num_columns(views, first);
-      run.jacobian = values;
-      values += run.features * kSize * run.width;
-    }
-    if (derivatives) out.jacobian.resize(values);
-    std::size_t i = 0;
-    for (std::size_t r = 0; r < out.num_runs; ++r) {
-      const auto& run = out.runs[r];
-      const Twists of_run = twists(views, Block::chains(views, i));
-      const std::size_t width = run.width;
-      S* jacobian = derivatives ? &out.jacobian[run.jacobian] : nullptr;
-      if (derivatives && at == Linearization::measured &&
-          write_differences(views, i, run.features, of_run, out, jacobian)) {
-        i += run.features;
+      if (!derivatives) {
+        for (std::size_t i = first; i < end; ++i) {
+          const Rows rows = Block::template rows<false>(block_, views, i, at);
+          store(i, rows.residual, rows.weight, out);
+        }
         continue;
       }
-      for (std::size_t n = 0; n < run.features; ++n, ++i) {
-        evaluate_feature(views, i, at, of_run, out, jacobian, width);
-        if (derivatives) jacobian += kSize * width;
+      const Chains chains = Block::chains(views, first);
+      const Twists of_run = twists(views, chains);
+      const auto sizes = sizes_of(views, chains);
+      run.chains = key(chains);
+      run.width = 0;
+      for (const BodySizes& of_body : sizes) run.width += of_body.columns();
+      run.jacobian = values;
+      values += run.features * kSize * run.width;
+      if (out.jacobian.size() < values) out.jacobian.resize(values);
+      S* jacobian = out.jacobian.data() + run.jacobian;
+      if (is_difference_ && at == Linearization::measured) {
+        write_differences(views, first, end, of_run, sizes, out, jacobian);
+      } else {
+        for (std::size_t i = first; i < end; ++i, jacobian += kSize * run.width) {
+          write_feature(views, i, at, of_run, out, jacobian, run.width);
+        }
       }
     }
   }
@@ -145,9 +147,13 @@ class BlockTerm final : public Term<S> {
 
   /// The first feature after `first` that hangs on other chains.
   [[nodiscard]] static std::size_t end_of_run(Views views, std::size_t first) {
-    std::size_t end = first + 1;
-    const Chains chains = Block::chains(views, first);
-    while (end < Block::features(views) && Block::chains(views, end) == chains) ++end;
+    std::size_t end = Block::features(views);
+    for (std::size_t s = 0; s < kBodies; ++s) {
+      const std::vector<std::size_t>& chain = views[s]->observation().chain;
+      std::size_t same = first + 1;
+      while (same < end && chain[same] == chain[first]) ++same;
+      end = same;
+    }
     return end;
   }
 
@@ -157,14 +163,15 @@ class BlockTerm final : public Term<S> {
     return result;
   }
 
-  /// How many columns features touch that hang on the same chains as feature i.
-  [[nodiscard]] static std::size_t num_columns(Views views, std::size_t i) {
-    std::size_t n = 0;
-    for (const BodyTwists<S>& body : twists(views, Block::chains(views, i))) {
-      n += body.turns.size() + body.shifts.size();
+  /// How many columns features on these chains touch.
+  [[nodiscard]] static std::array<BodySizes, kBodies> sizes_of(Views views, const Chains& chains) {
+    std::array<BodySizes, kBodies> sizes;
+    for (std::size_t s = 0; s < kBodies; ++s) {
+      const SensorState& state = views[s]->state();
+      const TwistColumns& twists = state.twist_columns[chains[s]];
+      sizes[s] = {twists.turns.size(), twists.shifts.size(), state.free_camera.size()};
     }
-    for (const SensorView<S>* view : views) n += view->state().camera_columns.size();
-    return n;
+    return sizes;
   }
 
   /// Adds what a feature costs.
@@ -199,41 +206,35 @@ class BlockTerm final : public Term<S> {
     return sums.by_chains.emplace(place, of_chains, LocalSums<S>(std::move(columns)))->second;
   }
 
-  /// Residuals and Jacobian of some features.
-  /// @returns  false if the block is not a difference
-  KINECAL_FLATTEN bool write_differences(Views views, std::size_t first, std::size_t features,
-                                         const Twists& twists, PackedRows<S>& out,
-                                         S* jacobian) const {
+  /// Residuals and Jacobian of the features from `first` to `end`, of a block that is a difference.
+  KINECAL_FLATTEN void write_differences(Views views, std::size_t first, std::size_t end,
+                                         const Twists& twists,
+                                         const std::array<BodySizes, kBodies>& sizes,
+                                         PackedRows<S>& out, S* jacobian) const {
     if constexpr (kMayBeDifference) {
-      if (!is_difference_) return false;
-      for (std::size_t i = first; i < first + features; ++i) {
-        const Vector3<S>&a = views[0]->points()[i], &b = views[1]->points()[i];
+      const auto store_residual = [&](std::size_t i, const Vector3<S>& a, const Vector3<S>& b) {
         store(i, block_(a, b), Block::weight(views, i), out);
-      }
-      const auto size = [&](std::size_t s) {
-        return BodySizes{twists[s].turns.size(), twists[s].shifts.size(),
-                         views[s]->camera_motion(first).size()};
       };
-      const Sizes sizes{size(0), size(1)};
       if constexpr (!std::is_void_v<Expected>) {
-        if (sizes.a == Expected::a && sizes.b == Expected::b) {
-          kinecal::write_differences(views, first, features, twists, Expected{}, jacobian);
-          return true;
+        if (sizes[0] == Expected::a && sizes[1] == Expected::b) {
+          kinecal::write_differences(views, first, end, twists, Expected{}, jacobian,
+                                     store_residual);
+          return;
         }
       }
-      kinecal::write_differences(views, first, features, twists, sizes, jacobian);
+      kinecal::write_differences(views, first, end, twists, Sizes{sizes[0], sizes[1]}, jacobian,
+                                 store_residual);
     }
-    return kMayBeDifference;
   }
 
-  /// @param jacobian  (kSize x width) where the rows of feature i go, or nullptr
-  KINECAL_FLATTEN void evaluate_feature(Views views, std::size_t i, Linearization at,
-                                        const Twists& twists, PackedRows<S>& out, S* jacobian,
-                                        std::size_t width) const {
-    const Rows rows = jacobian != nullptr ? Block::template rows<true>(block_, views, i, at)
-                                          : Block::template rows<false>(block_, views, i, at);
+  /// Residual and Jacobian of a feature.
+  /// @param jacobian  (kSize x width) where its rows go
+  KINECAL_FLATTEN void write_feature(Views views, std::size_t i, Linearization at,
+                                     const Twists& twists, PackedRows<S>& out, S* jacobian,
+                                     std::size_t width) const {
+    const Rows rows = Block::template rows<true>(block_, views, i, at);
     store(i, rows.residual, rows.weight, out);
-    if (jacobian != nullptr) write_rows(rows, twists, jacobian, width);
+    write_rows(rows, twists, jacobian, width);
   }
 
   static void store(std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual, const S& weight,

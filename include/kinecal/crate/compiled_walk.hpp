@@ -10,18 +10,25 @@
 
 namespace kinecal {
 
+/// Where a chain's walk goes on after what is the same for all samples of an evaluation.
+template <class S>
+struct WalkStart {
+  Pose<S> pose;                                          ///< in front of the first motion
+  std::size_t joint = 0;                                 ///< that moves so
+  const JointCorrection<double>* corrections = nullptr;  ///< of all joints
+  Twist<S>* turn = nullptr;     ///< where the twists go that are found from here on, if they
+  Vector3<S>* shift = nullptr;  ///< are wanted
+};
+
 template <class S>
 struct CompiledWalk {
-  using Motions = std::span<const Motion<S>>;
-  using CorrectionsOfJoints = std::span<const JointCorrection<double>>;
+  /// From there on; gives the tip's pose.
+  /// @param motions  of all joints
+  using Walk = void (*)(const WalkStart<S>&, const Motion<S>* motions, Pose<S>& tip);
 
   std::string tip;                    ///< of the chain
   std::vector<JointIndices> columns;  ///< for which with_twists is compiled
-  /// From the first motion on, where walk_to_first_motion() came to; gives the tip's pose.
-  void (*pose_only)(Motions, CorrectionsOfJoints, const Pose<S>& first, Pose<S>& tip);
-  /// The same with the twists that are found on the way, from `turn` and `shift` on.
-  void (*with_twists)(Motions, CorrectionsOfJoints, const Pose<S>& first, Pose<S>& tip,
-                      Twist<S>* turn, Vector3<S>* shift);
+  Walk pose_only, with_twists;
 };
 
 namespace detail {
@@ -36,21 +43,24 @@ struct StaticColumns {
 
 template <class S, class C, class F>
 struct WalkOf {
-  using Motions = typename CompiledWalk<S>::Motions;
-  using Corrections = typename CompiledWalk<S>::CorrectionsOfJoints;
-
-  KINECAL_FLATTEN static void pose_only(Motions motions, Corrections corrections,
-                                        const Pose<S>& first, Pose<S>& tip) {
-    PoseWalker<S> walker{first};
-    walk_on(C{}, C::kFirstMotion, motions, corrections, walker);
+  KINECAL_FLATTEN static void pose_only(const WalkStart<S>& start, const Motion<S>* motions,
+                                        Pose<S>& tip) {
+    PoseWalker<S> walker{start.pose};
+    go_on(start, motions, walker);
     tip = walker.pose;
   }
-  KINECAL_FLATTEN static void with_twists(Motions motions, Corrections corrections,
-                                          const Pose<S>& first, Pose<S>& tip, Twist<S>* turn,
-                                          Vector3<S>* shift) {
-    TwistWalker<S, StaticColumns<C, F>> walker({}, turn, shift, first);
-    walk_on(C{}, C::kFirstMotion, motions, corrections, walker);
+  KINECAL_FLATTEN static void with_twists(const WalkStart<S>& start, const Motion<S>* motions,
+                                          Pose<S>& tip) {
+    TwistWalker<S, StaticColumns<C, F>> walker({}, start.turn, start.shift, start.pose);
+    go_on(start, motions, walker);
     tip = walker.walker.pose;
+  }
+
+ private:
+  template <class W>
+  static void go_on(const WalkStart<S>& start, const Motion<S>* motions, W& walker) {
+    walk_on(C{}, C::kFirstMotion, std::span(motions, C::kSize),
+            std::span(start.corrections, C::kSize), walker);
   }
 };
 

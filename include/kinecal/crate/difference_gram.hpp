@@ -41,24 +41,25 @@ class DifferenceGram {
   void set(Views views, std::size_t first, std::span<const S> weights,
            std::span<const Vector3<S>> residuals) {
     set_points({views[0]->points().data() + first, views[1]->points().data() + first}, weights);
-    const std::array<std::span<const Vector3<S>>, 2> motions = {views[0]->camera_motion(first),
-                                                                views[1]->camera_motion(first)};
-    const std::size_t features = weights.size(), of_first = motions[0].size();
-    columns_.resize(of_first + motions[1].size() + 1);
+    const std::size_t features = weights.size(), of_first = views[0]->num_camera_motions(),
+                      cameras = of_first + views[1]->num_camera_motions();
+    motions_.resize(cameras * features);
+    Vector3<S>* motion = motions_.data();
+    for (std::size_t i = first; i < first + features; ++i) {
+      for (const SensorView<S>* view : views) {
+        view->for_each_camera_motion(i, [&](const Vector3<S>& v) { *motion++ = v; });
+      }
+    }
+    columns_.resize(cameras + 1);
     forces_.resize(columns_.size() * features);
     products_.resize(columns_.size() * columns_.size());
-    for (std::size_t c = 0; c < of_first; ++c) {
-      set_column(c, &motions[0][c], of_first, weights, 1.0);
+    const auto sign = [&](std::size_t c) { return c < of_first ? 1.0 : -1.0; };
+    for (std::size_t c = 0; c < cameras; ++c) {
+      set_column(c, &motions_[c], cameras, weights, sign(c));
     }
-    for (std::size_t c = 0; c < motions[1].size(); ++c) {
-      set_column(of_first + c, &motions[1][c], motions[1].size(), weights, -1.0);
-    }
-    set_column(columns_.size() - 1, residuals.data(), 1, weights, 1.0);
-    for (std::size_t c = 0; c < of_first; ++c) {
-      set_products(c, &motions[0][c], of_first, features, 1.0);
-    }
-    for (std::size_t c = 0; c < motions[1].size(); ++c) {
-      set_products(of_first + c, &motions[1][c], motions[1].size(), features, -1.0);
+    set_column(cameras, residuals.data(), 1, weights, 1.0);
+    for (std::size_t c = 0; c < cameras; ++c) {
+      set_products(c, &motions_[c], cameras, features, sign(c));
     }
   }
 
@@ -209,7 +210,8 @@ class DifferenceGram {
   std::vector<Column> columns_;        ///< of each camera parameter and the residual
   std::vector<S> products_;            ///< of each with each: the upper triangle
   std::array<std::vector<Vector3<S>>, 2> from_center_;  ///< each point
-  std::vector<Vector3<S>> forces_;                      ///< weight times motion, column by column
+  std::vector<Vector3<S>> motions_;  ///< of each feature by each camera parameter
+  std::vector<Vector3<S>> forces_;   ///< weight times motion, column by column
   std::array<ChainTwists<S>, 2> centered_;
 };
 

@@ -161,19 +161,21 @@ class Evaluator {
     for (std::size_t s = 0; s < states_.size(); ++s) {
       worker.views[s].start(problem_.sensors()[s], states_[s], derivatives, problem_.walks()[s]);
     }
-    std::vector<const SensorView<S>*> of_term;
+    std::vector<std::vector<const SensorView<S>*>> of_terms;
+    for (const auto& term : problem_.terms()) {
+      std::vector<const SensorView<S>*>& of_term = of_terms.emplace_back();
+      for (const int s : term->sensors()) {
+        of_term.push_back(&worker.views[static_cast<std::size_t>(s)]);
+      }
+    }
     for (const PackedSample<S>& pack : packs) {
       for (std::size_t s = 0; s < states_.size(); ++s) {
         if (!pack.seen[s]) continue;
         worker.views[s].update(*pack.seen[s]);
       }
       for (const int t : pack.shape->terms) {
-        const Term<S>& term = *problem_.terms()[static_cast<std::size_t>(t)];
-        of_term.clear();
-        for (const int s : term.sensors()) {
-          of_term.push_back(&worker.views[static_cast<std::size_t>(s)]);
-        }
-        visit(t, term, typename Term<S>::Views(of_term), pack);
+        const auto i = static_cast<std::size_t>(t);
+        visit(t, *problem_.terms()[i], typename Term<S>::Views(of_terms[i]), pack);
       }
     }
   }

@@ -37,12 +37,11 @@ struct FeatureRows {
     }
   }
 
-  /// Sets the columns of the camera that saw the point.
-  /// @param first   where the parameters of that camera start
-  /// @param motion  (3) of the point, by each of them
-  void set_camera(std::size_t first, std::span<const Vector3<S>> motion,
+  /// Adds the columns of the camera that saw the point, if one did.
+  void add_camera(const SensorView<S>& view, std::size_t feature,
                   const Eigen::Matrix<S, M, 3>& by_point) {
-    for (std::size_t k = 0; k < motion.size(); ++k) by_camera[first + k] = by_point * motion[k];
+    view.for_each_camera_motion(
+        feature, [&](const Vector3<S>& motion) { by_camera[cameras++] = by_point * motion; });
   }
 };
 

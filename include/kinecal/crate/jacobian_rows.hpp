@@ -50,15 +50,14 @@ struct Sizes {
 /// The same for r = p_a - p_b of some features: the columns are the velocities of the points.
 /// @param sizes  Sizes or KnownSizes, which must be right
 /// @param out    (3 features x columns), row-major
-template <class S, class AnySizes>
+/// @param visit  callable (feature, p_a, p_b), called for each
+template <class S, class AnySizes, class Visit>
 void write_differences(std::span<const SensorView<S>* const> views, std::size_t first,
-                       std::size_t features, const std::array<BodyTwists<S>, 2>& twists,
-                       const AnySizes& sizes, S* __restrict out) {
+                       std::size_t end, const std::array<BodyTwists<S>, 2>& twists,
+                       const AnySizes& sizes, S* out, Visit&& visit) {
   const Twist<S>*turns_a = twists[0].turns.data(), *turns_b = twists[1].turns.data();
   const Vector3<S>*shifts_a = twists[0].shifts.data(), *shifts_b = twists[1].shifts.data();
-  const Vector3<S>* cameras_a = views[0]->camera_motion(first).data();
-  const Vector3<S>* cameras_b = views[1]->camera_motion(first).data();
-  const Vector3<S>*points_a = &views[0]->points()[first], *points_b = &views[1]->points()[first];
+  const Vector3<S>*points_a = views[0]->points().data(), *points_b = views[1]->points().data();
   const std::size_t width = sizes.a.columns() + sizes.b.columns();
   const auto write = [&out, width](const Vector3<S>& v) {
     out[0] = v.x();
@@ -66,14 +65,15 @@ void write_differences(std::span<const SensorView<S>* const> views, std::size_t 
     out[2 * width] = v.z();
     ++out;
   };
-  for (std::size_t i = 0; i < features; ++i, out += 2 * width) {
+  for (std::size_t i = first; i < end; ++i, out += 2 * width) {
     const Vector3<S> a = points_a[i], b = points_b[i];
+    visit(i, a, b);
     for (std::size_t k = 0; k < sizes.a.turns; ++k) write(turns_a[k].velocity(a));
     for (std::size_t k = 0; k < sizes.a.shifts; ++k) write(shifts_a[k]);
     for (std::size_t k = 0; k < sizes.b.turns; ++k) write(turns_b[k].opposite_velocity(b));
     for (std::size_t k = 0; k < sizes.b.shifts; ++k) write(-shifts_b[k]);
-    for (std::size_t k = 0; k < sizes.a.cameras; ++k) write(*cameras_a++);
-    for (std::size_t k = 0; k < sizes.b.cameras; ++k) write(-*cameras_b++);
+    views[0]->for_each_camera_motion(i, sizes.a.cameras, write);
+    views[1]->for_each_camera_motion(i, sizes.b.cameras, [&](const Vector3<S>& v) { write(-v); });
   }
 }
 

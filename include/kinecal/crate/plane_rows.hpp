@@ -89,7 +89,7 @@ class PlaneLane {
         of_point.set_point(s, p, by_point);
         rows.by_body[s] += of_point.by_body[s];
         const std::vector<Vector3<double>> motion = camera_motion(s, features_[s][n]);
-        const std::size_t first = s == 0 ? 0 : views_[0]->camera_motion(0).size();
+        const std::size_t first = s == 0 ? 0 : views_[0]->num_camera_motions();
         for (std::size_t k = 0; k < motion.size(); ++k) {
           rows.by_camera[first + k] += by_point * motion[k];
         }
@@ -103,7 +103,8 @@ class PlaneLane {
 
   [[nodiscard]] std::vector<Vector3<double>> camera_motion(std::size_t s, std::size_t i) const {
     std::vector<Vector3<double>> motion;
-    for (const Vector3<S>& m : views_[s]->camera_motion(i)) motion.push_back(lane_of(m, lane_));
+    views_[s]->for_each_camera_motion(
+        i, [&](const Vector3<S>& m) { motion.push_back(lane_of(m, lane_)); });
     return motion;
   }
 
@@ -123,7 +124,7 @@ template <PlanePairBlock B, class S>
 [[nodiscard]] FeatureRows<S, kResiduals<B>, 2> plane_rows(
     const B& block, std::span<const SensorView<S>* const> views, bool derivatives) {
   FeatureRows<S, kResiduals<B>, 2> rows;
-  rows.cameras = views[0]->camera_motion(0).size() + views[1]->camera_motion(0).size();
+  rows.cameras = views[0]->num_camera_motions() + views[1]->num_camera_motions();
   for (int i = 0; i < kLanes<S>; ++i) {
     const auto one = detail::PlaneLane<B, S>(block, views, i).rows(derivatives);
     set_lane(rows.weight, i, one.weight);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -63,11 +64,31 @@ class SensorView {
   [[nodiscard]] const ChainTwists<S>& twists(std::size_t chain) const { return twists_[chain]; }
   [[nodiscard]] bool sees_depth() const { return observation_->depth_camera != nullptr; }
 
-  /// How the free parameters of a depth camera move feature i: metres, in the base, per unit.
-  [[nodiscard]] std::span<const Vector3<S>> camera_motion(std::size_t i) const {
-    if (!sees_depth() || !derivatives_) return {};
-    const std::size_t n = state_->free_camera.size();
-    return std::span(camera_motion_).subspan(i * n, n);
+  /// Number of free parameters of a depth camera.
+  [[nodiscard]] std::size_t num_camera_motions() const {
+    return sees_depth() ? state_->free_camera.size() : 0;
+  }
+  /// Calls visit(const Vector3<S>&) with how each of them moves feature i: metres, in the base, per
+  /// unit.
+  template <class Visit>
+  void for_each_camera_motion(std::size_t i, Visit&& visit) const {
+    for_each_camera_motion(i, num_camera_motions(), visit);
+  }
+  /// The same where their number is known.
+  template <class Visit>
+  void for_each_camera_motion(std::size_t i, std::size_t count, Visit&& visit) const {
+    if (count == 0) return;
+    const auto seen = camera_->see(observation_->measured[i]);
+    const Matrix3<S>& rotation = poses_[0].rotation;
+    const Vector3<S> ray = ray_of(rotation, seen);
+    if (count == DepthCamera<>::kParameters) {  // most often
+      [&]<int... K>(std::integer_sequence<int, K...>) {
+        (visit(moved(rotation, ray, seen, K)), ...);
+      }
+      (std::make_integer_sequence<int, DepthCamera<>::kParameters>{});
+    } else {
+      for (const int k : state_->free_camera) visit(moved(rotation, ray, seen, k));
+    }
   }
 
   /// Begins an evaluation: what does not depend on the samples.
@@ -81,12 +102,13 @@ class SensorView {
     poses_.resize(model.chains().size());
     twists_.resize(model.chains().size());
     starts_.resize(model.chains().size());
+    compiled_.assign(model.chains().size(), nullptr);
     for (std::size_t c = 0; c < starts_.size(); ++c) {
       start_chain(c);
       for (const CompiledWalk<S>& walk : walks) {
-        const bool fits =
-            walk.tip == model.chains()[c].tip && (!derivatives || walk.columns == state.columns[c]);
-        if (fits) starts_[c].compiled = &walk;
+        if (walk.tip != model.chains()[c].tip) continue;
+        if (!derivatives) compiled_[c] = walk.pose_only;
+        if (derivatives && walk.columns == state.columns[c]) compiled_[c] = walk.with_twists;
       }
     }
   }
@@ -94,8 +116,13 @@ class SensorView {
   /// Goes on to a pack of samples.
   void update(const PackedObservation<S>& seen) {
     observation_ = &seen;
-    for (std::size_t c = 0; c < poses_.size(); ++c) {
-      if (seen.motions[c]) walk_chain(c);
+    for (std::size_t c = 0, end = poses_.size(); c < end; ++c) {
+      if (!seen.motions[c]) continue;
+      if (compiled_[c] != nullptr) {
+        compiled_[c](starts_[c], seen.motions[c]->data(), poses_[c]);
+      } else {
+        walk_chain(c);
+      }
     }
     points_.resize(seen.measured.size());
     if (seen.depth_camera) {
@@ -108,104 +135,79 @@ class SensorView {
   }
 
  private:
-  /// How far the walk of a chain comes before anything moves.
-  struct Start {
-    Pose<S> pose;
-    std::size_t joint = 0;
-    std::ptrdiff_t turns = 0, shifts = 0;
-    const CompiledWalk<S>* compiled = nullptr;  ///< for the rest of it
-  };
-
   void start_chain(std::size_t c) {
     const RuntimeChain& chain = model_->chains()[c];
     const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
     if (!derivatives_) {
       PoseWalker<S> walker;
       const std::size_t joint = walk_to_first_motion(chain, corrections, walker);
-      starts_[c] = {walker.pose, joint, 0, 0, nullptr};
+      starts_[c] = {walker.pose, joint, corrections.data(), nullptr, nullptr};
       return;
     }
     state_->twist_columns[c].resize(twists_[c]);
     TwistWalker<S> walker(state_->columns[c], twists_[c]);
     const std::size_t joint = walk_to_first_motion(chain, corrections, walker);
-    starts_[c] = {walker.walker.pose, joint, walker.turn - twists_[c].turns.data(),
-                  walker.shift - twists_[c].shifts.data(), nullptr};
+    starts_[c] = {walker.walker.pose, joint, corrections.data(), walker.turn, walker.shift};
   }
 
   KINECAL_FLATTEN void walk_chain(std::size_t c) {
     const RuntimeChain& chain = model_->chains()[c];
     const std::span<const Motion<S>> motions = *observation_->motions[c];
     const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
-    const Start& start = starts_[c];
-    Twist<S>* turn = twists_[c].turns.data() + start.turns;
-    Vector3<S>* shift = twists_[c].shifts.data() + start.shifts;
-    if (start.compiled != nullptr) {
-      if (derivatives_) {
-        start.compiled->with_twists(motions, corrections, start.pose, poses_[c], turn, shift);
-      } else {
-        start.compiled->pose_only(motions, corrections, start.pose, poses_[c]);
-      }
-      return;
-    }
+    const WalkStart<S>& start = starts_[c];
     if (!derivatives_) {
       PoseWalker<S> walker{start.pose};
       walk_on(chain, start.joint, motions, corrections, walker);
       poses_[c] = walker.pose;
       return;
     }
-    TwistWalker<S> walker(state_->columns[c], turn, shift, start.pose);
+    TwistWalker<S> walker(state_->columns[c], start.turn, start.shift, start.pose);
     walk_on(chain, start.joint, motions, corrections, walker);
     poses_[c] = walker.walker.pose;
   }
 
   KINECAL_FLATTEN void place_camera_points() {
     const CorrectedDepthCamera<S> camera(*observation_->depth_camera, state_->camera_values);
-    const std::size_t features = points_.size(), parameters = state_->free_camera.size();
-    const Pose<S> pose = poses_[0];  // what a camera sees is in its own frame
+    if (derivatives_) camera_ = camera;
+    const Pose<S>& pose = poses_[0];  // what a camera sees is in its own frame
     const Vector3<S>* measured = observation_->measured.data();
-    Vector3<S>* points = points_.data();
-    if (!derivatives_) {
-      for (std::size_t i = 0; i < features; ++i) points[i] = pose * camera.point(measured[i]);
-      return;
-    }
-    camera_motion_.resize(features * parameters);
-    Vector3<S>* motion = camera_motion_.data();
-    for (std::size_t i = 0; i < features; ++i, motion += parameters) {
-      const auto seen = camera.see(measured[i]);
-      points[i] = pose * seen.point;
-      if (parameters == 6) {  // most often
-        for_all(std::make_index_sequence<6>{},
-                [&](auto k) { motion[k] = turned(pose.rotation, seen, static_cast<int>(k)); });
-      } else {
-        for (std::size_t k = 0; k < parameters; ++k) {
-          motion[k] = turned(pose.rotation, seen, state_->free_camera[k]);
-        }
-      }
+    for (Vector3<S>& point : points_) {
+      const auto seen = camera.see(*measured++);
+      const Vector3<S> ray = ray_of(pose.rotation, seen);
+      for (int r = 0; r < 3; ++r) point(r) = pose.translation(r) + ray(r) * seen.depth;
     }
   }
 
-  template <std::size_t... K, class F>
-  static void for_all(std::index_sequence<K...>, F&& f) {
-    (f(std::integral_constant<std::size_t, K>{}), ...);
+  using Seen = typename CorrectedDepthCamera<S>::Seen;
+
+  /// From the camera to a point that it sees, in the base, one long along the optical axis.
+  [[nodiscard]] static Vector3<S> ray_of(const Matrix3<S>& rotation, const Seen& seen) {
+    Vector3<S> ray;
+    for (int r = 0; r < 3; ++r) {
+      ray(r) = rotation(r, 0) * seen.s + rotation(r, 1) * seen.t + rotation(r, 2);
+    }
+    return ray;
   }
 
   /// How parameter k moves a point, in the base.
-  [[nodiscard]] static Vector3<S> turned(const Matrix3<S>& rotation,
-                                         const typename CorrectedDepthCamera<S>::Seen& seen,
-                                         int k) {
+  [[nodiscard]] static Vector3<S> moved(const Matrix3<S>& rotation, const Vector3<S>& ray,
+                                        const Seen& seen, int k) {
+    const auto times = [](const Vector3<S>& v, S x) {
+      return Vector3<S>(v(0) * x, v(1) * x, v(2) * x);
+    };
     switch (k) {
       case 0:
-        return rotation.col(0) * seen.x_by_fx;
+        return times(rotation.col(0), seen.x_by_fx);
       case 1:
-        return rotation.col(1) * seen.y_by_fy;
+        return times(rotation.col(1), seen.y_by_fy);
       case 2:
-        return rotation.col(0) * seen.x_by_cx;
+        return times(rotation.col(0), seen.x_by_cx);
       case 3:
-        return rotation.col(1) * seen.y_by_cy;
+        return times(rotation.col(1), seen.y_by_cy);
       case 4:
-        return rotated(rotation, seen.by_offset);
+        return times(ray, seen.depth_by_offset);
       default:
-        return rotated(rotation, seen.by_scaling);
+        return times(ray, seen.depth_by_scaling);
     }
   }
 
@@ -213,11 +215,12 @@ class SensorView {
   const SensorState* state_ = nullptr;
   bool derivatives_ = false;
   const PackedObservation<S>* observation_ = nullptr;
-  std::vector<Start> starts_;              ///< of each chain
-  std::vector<Pose<S>> poses_;             ///< of each chain's tip in the base
-  std::vector<ChainTwists<S>> twists_;     ///< of each chain
-  std::vector<Vector3<S>> points_;         ///< of each feature, in the base
-  std::vector<Vector3<S>> camera_motion_;  ///< of each feature and free camera parameter
+  std::vector<WalkStart<S>> starts_;                      ///< of each chain
+  std::vector<typename CompiledWalk<S>::Walk> compiled_;  ///< of each chain, if it is
+  std::vector<Pose<S>> poses_;                            ///< of each chain's tip in the base
+  std::vector<ChainTwists<S>> twists_;                    ///< of each chain
+  std::vector<Vector3<S>> points_;                        ///< of each feature, in the base
+  std::optional<CorrectedDepthCamera<S>> camera_;
 };
 
 }  // namespace kinecal

@@ -56,7 +56,8 @@ struct PackedRows {
   std::size_t num_runs = 0;  ///< (vectors keep their memory for the next pack)
   std::vector<S> weight;     ///< of each feature: one, or zero where it is missing
   std::vector<S> residual;   ///< of each feature, unweighted
-  std::vector<S> jacobian;   ///< of each residual, a value for each column of its run
+  std::vector<S> jacobian;   ///< of each residual, a value for each column of its run; behind
+                             ///< those of the last run, what earlier packs left
 
   [[nodiscard]] Run& next_run() {
     if (num_runs == runs.size()) runs.emplace_back();

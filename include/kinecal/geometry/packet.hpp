@@ -193,6 +193,26 @@ template <class S>
   }
 }
 
+/// x in a register.  What is multiplied more than once is otherwise often read from memory each
+/// time, and two reads a cycle are what a loop over twists waits for.
+template <class S>
+[[nodiscard]] S in_register(const S& x) {
+#if defined(__AVX512F__)
+#define KINECAL_REGISTER "+v"
+#elif defined(__SSE2__)
+#define KINECAL_REGISTER "+x"
+#endif
+#if defined(KINECAL_REGISTER)
+  if constexpr (requires { x.lanes(); }) {
+    auto lanes = x.lanes();
+    asm("" : KINECAL_REGISTER(lanes));
+    return S(lanes);
+  }
+#undef KINECAL_REGISTER
+#endif
+  return x;
+}
+
 /// a where the condition holds, else b; lane by lane.
 template <class Mask, class S>
 [[nodiscard]] S select(const Mask& condition, const S& a, const S& b) {

@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/geometry/packet.hpp"
 #include "kinecal/kinematics/pose_walker.hpp"
 
 namespace kinecal {
@@ -44,15 +45,19 @@ struct Twist {
   Vector3<S> linear, angular;
 
   [[nodiscard]] Vector3<S> velocity(const Vector3<S>& p_base) const {
-    const Vector3<S>&v = linear, &w = angular, &p = p_base;
-    return {v.x() + w.y() * p.z() - w.z() * p.y(),  // two fused multiply-adds each
-            v.y() + w.z() * p.x() - w.x() * p.z(), v.z() + w.x() * p.y() - w.y() * p.x()};
+    const Vector3<S>&v = linear, &p = p_base;
+    const S x = in_register(angular.x()), y = in_register(angular.y()),
+            z = in_register(angular.z());
+    return {v.x() + y * p.z() - z * p.y(),  // two fused multiply-adds each
+            v.y() + z * p.x() - x * p.z(), v.z() + x * p.y() - y * p.x()};
   }
   /// -velocity(p_base), at the same price
   [[nodiscard]] Vector3<S> opposite_velocity(const Vector3<S>& p_base) const {
-    const Vector3<S>&v = linear, &w = angular, &p = p_base;
-    return {(w.z() * p.y() - v.x()) - w.y() * p.z(), (w.x() * p.z() - v.y()) - w.z() * p.x(),
-            (w.y() * p.x() - v.z()) - w.x() * p.y()};
+    const Vector3<S>&v = linear, &p = p_base;
+    const S x = in_register(angular.x()), y = in_register(angular.y()),
+            z = in_register(angular.z());
+    return {(z * p.y() - v.x()) - y * p.z(), (x * p.z() - v.y()) - z * p.x(),
+            (y * p.x() - v.z()) - x * p.y()};
   }
 };
 

@@ -51,47 +51,46 @@ struct DepthCamera {
 /// A depth camera under corrected settings: what is the same for all points of a sample is found
 /// once.
 template <class Q>
-struct CorrectedDepthCamera {
-  /// A point in the optical frame and how each parameter moves it, one column each:
-  /// the first two change x alone, the next two y alone.
+class CorrectedDepthCamera {
+ public:
+  /// A point depth (s, t, 1) in the optical frame and how the parameters change it: focal lengths
+  /// and center move x or y alone, offset and scaling change the depth alone.
   struct Seen {
-    Vector3<Q> point;
+    Q s, t, depth;
     Q x_by_fx, y_by_fy, x_by_cx, y_by_cy;
-    Vector3<Q> by_offset, by_scaling;
+    Q depth_by_offset, depth_by_scaling;
   };
 
   /// @param v  (6) parameters in the order above
   CorrectedDepthCamera(const DepthCamera<Q>& recorded, const std::array<double, 6>& v)
       : per_fx_(Q(1.0) / (recorded.fx * Q(1.0 + v[0]))),
         per_fy_(Q(1.0) / (recorded.fy * Q(1.0 + v[1]))),
-        cx_(recorded.cx),
-        cy_(recorded.cy),
-        v_(v) {}
+        cx_(recorded.cx * Q(1.0 + v[2])),
+        cy_(recorded.cy * Q(1.0 + v[3])),
+        s_by_cx_(-(recorded.cx * per_fx_)),
+        t_by_cy_(-(recorded.cy * per_fy_)),
+        by_fx_(-(recorded.fx * per_fx_)),
+        by_fy_(-(recorded.fy * per_fy_)),
+        offset_(v[4]),
+        factor_(1.0 + v[5]) {}
 
   /// @param m  (3) pixel and raw depth
-  [[nodiscard]] Vector3<Q> point(const Vector3<Q>& m) const {
-    const Q z = (m.z() + Q(v_[4])) * Q(1.0 + v_[5]);
-    return {slope_x(m) * z, slope_y(m) * z, z};
-  }
-
   [[nodiscard]] Seen see(const Vector3<Q>& m) const {
-    const Q x = slope_x(m), y = slope_y(m), z0 = m.z() + Q(v_[4]);
-    const Q scale(1.0 + v_[5]), z = z0 * scale, px = x * z, py = y * z;
-    return {{px, py, z},          px * Q(-1.0 / (1.0 + v_[0])), py * Q(-1.0 / (1.0 + v_[1])),
-            -(cx_ * per_fx_ * z), -(cy_ * per_fy_ * z),         {x * scale, y * scale, scale},
-            {x * z0, y * z0, z0}};
+    const Q s = (m.x() - cx_) * per_fx_, t = (m.y() - cy_) * per_fy_;
+    const Q raw = m.z() + offset_, depth = raw * factor_;
+    return {s,
+            t,
+            depth,
+            s * depth * by_fx_,
+            t * depth * by_fy_,
+            s_by_cx_ * depth,
+            t_by_cy_ * depth,
+            factor_,
+            raw};
   }
 
  private:
-  [[nodiscard]] Q slope_x(const Vector3<Q>& m) const {
-    return (m.x() - cx_ * Q(1.0 + v_[2])) * per_fx_;
-  }
-  [[nodiscard]] Q slope_y(const Vector3<Q>& m) const {
-    return (m.y() - cy_ * Q(1.0 + v_[3])) * per_fy_;
-  }
-
-  Q per_fx_, per_fy_, cx_, cy_;
-  std::array<double, 6> v_;
+  Q per_fx_, per_fy_, cx_, cy_, s_by_cx_, t_by_cy_, by_fx_, by_fy_, offset_, factor_;
 };
 
 }  // namespace kinecal
