@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/bags.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace kinecal {
 namespace {
@@ -22,15 +23,8 @@ using ::testing::ThrowsMessage;
 
 namespace fs = std::filesystem;
 
-class Db3 : public testing::Test {
+class Db3 : public test::FolderTest {
  protected:
-  Db3() {
-    char folder[] = "/tmp/kinecal_db3_XXXXXX";
-    folder_ = mkdtemp(folder);
-    path_ = folder_ / "bag_0.db3";
-  }
-  ~Db3() override { fs::remove_all(folder_); }
-
   [[nodiscard]] BagReading read(std::vector<std::string> wanted = {}) const {
     return read_bag(wanted, [&](const BagReader& reader, Diagnostics& diagnostics) {
       read_db3(path_.string(), reader, diagnostics);
@@ -49,7 +43,7 @@ class Db3 : public testing::Test {
     return path_.string() + ": " + message;
   }
 
-  fs::path folder_, path_;
+  fs::path path_ = folder_ / "bag_0.db3";
 };
 
 TEST_F(Db3, AFileThatIsNoneIsAnError) {

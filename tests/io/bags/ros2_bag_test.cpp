@@ -10,6 +10,7 @@
 
 #include "kinecal/io/bags/write_mcap.hpp"
 #include "support/bags.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace kinecal {
 namespace {
@@ -22,29 +23,23 @@ using ::testing::SizeIs;
 
 namespace fs = std::filesystem;
 
-class Ros2Bag : public testing::Test {
+class Ros2Bag : public test::FolderTest {
  protected:
-  Ros2Bag() {
-    char folder[] = "/tmp/kinecal_bag_XXXXXX";
-    above_ = mkdtemp(folder);
-    folder_ = above_ / "bag";
-    fs::create_directory(folder_);
-  }
-  ~Ros2Bag() override { fs::remove_all(above_); }
+  Ros2Bag() { fs::create_directory(bag_); }
 
   [[nodiscard]] BagReading read(const std::string& folder = "") const {
     return read_bag({}, [&](const BagReader& reader, Diagnostics& diagnostics) {
-      read_ros2_bag(folder.empty() ? folder_.string() : folder, reader, diagnostics);
+      read_ros2_bag(folder.empty() ? bag_.string() : folder, reader, diagnostics);
     });
   }
 
   void write(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
+    std::ofstream(bag_ / name, std::ios::binary) << content;
   }
 
   /// With one message.
   void write_mcap(const std::string& name, const std::string& data) const {
-    std::ofstream out(folder_ / name, std::ios::binary);
+    std::ofstream out(bag_ / name, std::ios::binary);
     McapWriter writer(out);
     const auto topic = writer.add_topic({"said", "std_msgs/String", "", Encoding::cdr});
     writer.write(topic, 1, detail::as_bytes(data));
@@ -59,7 +54,7 @@ class Ros2Bag : public testing::Test {
     write("metadata.yaml", text + more);
   }
 
-  fs::path above_, folder_;
+  fs::path bag_ = folder_ / "bag";
 };
 
 TEST_F(Ros2Bag, FilesAreReadInTheOrderOfTheMetadata) {
@@ -71,7 +66,7 @@ TEST_F(Ros2Bag, FilesAreReadInTheOrderOfTheMetadata) {
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.warnings, IsEmpty());
   EXPECT_THAT(reading.messages, ElementsAre("said 1 1", "said 1 2"));
-  EXPECT_THAT(read(folder_.string() + "/").messages, SizeIs(2));
+  EXPECT_THAT(read(bag_.string() + "/").messages, SizeIs(2));
 }
 
 TEST_F(Ros2Bag, WithoutMetadataFilesAreReadAsPeopleCount) {
@@ -90,8 +85,8 @@ TEST_F(Ros2Bag, OldVersionsListFilesFromTheFolderAbove) {
   write_mcap("bag_0.mcap", "1");
   write_metadata({"bag/bag_0.mcap"});
   EXPECT_THAT(read().messages, SizeIs(1));
-  fs::rename(folder_, above_ / "renamed");
-  EXPECT_THAT(read((above_ / "renamed").string()).messages, SizeIs(1));
+  fs::rename(bag_, folder_ / "renamed");
+  EXPECT_THAT(read((folder_ / "renamed").string()).messages, SizeIs(1));
 }
 
 TEST_F(Ros2Bag, AMissingFileIsAnErrorAndNothingIsRead) {
@@ -145,7 +140,7 @@ TEST_F(Ros2Bag, AFolderThatIsNoneIsAnError) {
 TEST_F(Ros2Bag, FilesMayBeOfTwoKinds) {
   write_mcap("bag_0.mcap", "1");
   sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open((folder_ / "bag_1.db3").c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_open((bag_ / "bag_1.db3").c_str(), &database), SQLITE_OK);
   const char* statements =
       "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);"
       "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data);"

@@ -10,6 +10,7 @@
 #include "kinecal/io/recordings/bag_topics.hpp"
 #include "kinecal/io/recordings/convert.hpp"
 #include "support/data.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace kinecal {
 namespace {
@@ -17,14 +18,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class RecordingTest : public testing::Test {
+class RecordingTest : public test::FolderTest {
  protected:
-  RecordingTest() {
-    char folder[] = "/tmp/kinecal_recording_XXXXXX";
-    folder_ = mkdtemp(folder);
-  }
-  ~RecordingTest() override { std::filesystem::remove_all(folder_); }
-
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
 
   [[nodiscard]] Recording read(const std::string& file) {
@@ -38,7 +33,6 @@ class RecordingTest : public testing::Test {
     bag.finish();
   }
 
-  std::filesystem::path folder_;
   Diagnostics diagnostics_;
 };
 
