@@ -324,7 +324,7 @@ TEST(Ros1Bag, ABombIsAnError) {
     const std::vector<std::byte> packed = pack(std::vector<std::byte>(48 << 20), c);
     const std::string data(reinterpret_cast<const char*>(packed.data()), packed.size());
     for (const std::uint32_t size : {1000U, 1U << 25, 0xffffffffU}) {
-      const BagContents read = read_bag(open_bag(chunk(std::string(name_of(c)), size, data)));
+      const BagContents read = read_bag(open_bag(chunk(std::string(to_string(c)), size, data)));
       EXPECT_THAT(read.errors, ElementsAre(HasSubstr("byte 4117: the chunk "))) << size;
     }
   }
@@ -333,7 +333,7 @@ TEST(Ros1Bag, ABombIsAnError) {
 TEST(Ros1Bag, AMissingLibraryIsToldOnce) {
   for (const Compression c : {Compression::bz2, Compression::lz4}) {
     if (is_available(c)) continue;
-    const std::string packed = chunk(std::string(name_of(c)), 100, "12345");
+    const std::string packed = chunk(std::string(to_string(c)), 100, "12345");
     EXPECT_THAT(read_bag(open_bag(packed + packed)).errors,
                 ElementsAre("a.bag: byte 4117: the chunk " + detail::not_available(c)));
   }

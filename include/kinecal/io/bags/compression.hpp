@@ -23,7 +23,7 @@ namespace kinecal {
 
 enum class Compression { none, bz2, lz4, zstd };
 
-[[nodiscard]] constexpr std::string_view name_of(Compression compression) {
+[[nodiscard]] constexpr std::string_view to_string(Compression compression) {
   switch (compression) {
     case Compression::bz2:
       return "bz2";
@@ -41,7 +41,7 @@ enum class Compression { none, bz2, lz4, zstd };
 [[nodiscard]] constexpr std::optional<Compression> compression_named(std::string_view text) {
   using enum Compression;
   for (const Compression c : {none, bz2, lz4, zstd}) {
-    if (text == name_of(c)) return c;
+    if (text == to_string(c)) return c;
   }
   return text.empty() ? std::optional(none) : std::nullopt;
 }
@@ -58,8 +58,8 @@ namespace detail {
 
 /// "is compressed with lz4, and ...": a predicate without its subject.
 [[nodiscard]] inline std::string not_available(Compression compression) {
-  const std::string library = "lib" + std::string(name_of(compression));
-  return "is compressed with " + std::string(name_of(compression)) +
+  const std::string library = "lib" + std::string(to_string(compression));
+  return "is compressed with " + std::string(to_string(compression)) +
          ", and this kinecal was built without " + library + "; install " + library +
          "-dev and build again";
 }

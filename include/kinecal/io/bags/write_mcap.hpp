@@ -178,7 +178,7 @@ class McapWriter {
 
   /// As the file calls it.
   [[nodiscard]] std::string_view compression_name() const {
-    return options_.compression == Compression::none ? "" : name_of(options_.compression);
+    return options_.compression == Compression::none ? "" : to_string(options_.compression);
   }
 
   /// The records compressed; empty if they are written as they are.

@@ -134,7 +134,7 @@ class Ros1BagWriter {
     if (chunk_.empty()) return;
     const std::uint64_t place = place_;
     detail::Ros1Text header;
-    header.field("compression", name_of(compression_)).op(detail::Ros1Op::chunk);
+    header.field("compression", to_string(compression_)).op(detail::Ros1Op::chunk);
     header.number("size", static_cast<std::uint32_t>(chunk_.size()));
     if (compression_ == Compression::none) {
       put(detail::ros1_record(header, chunk_));
