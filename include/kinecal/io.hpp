@@ -21,7 +21,7 @@
 #include "kinecal/io/bags/mcap_records.hpp"
 #include "kinecal/io/bags/mcap_topics.hpp"
 #include "kinecal/io/bags/ros1_bag.hpp"
-#include "kinecal/io/bags/ros1_file.hpp"
+#include "kinecal/io/bags/ros1_head.hpp"
 #include "kinecal/io/bags/ros1_index.hpp"
 #include "kinecal/io/bags/ros1_messages.hpp"
 #include "kinecal/io/bags/ros1_record.hpp"

@@ -243,7 +243,7 @@ std::vector<std::string> errors_of_file(const std::string& path) {
 TEST(Ros1Bag, WhatCannotBeOpenedIsAnError) {
   EXPECT_THAT(errors_of_file("/absent.bag"),
               ElementsAre(HasSubstr("/absent.bag: cannot be opene")));
-  EXPECT_THAT(errors_of_file("/"), ElementsAre("/: is a folder, not a ROS 1 bag"));
+  EXPECT_THAT(errors_of_file("/"), ElementsAre("/: is a folder, not a file"));
   EXPECT_THAT(errors_of_file("/dev/null"), ElementsAre("/dev/null: is empty"));
 }
 

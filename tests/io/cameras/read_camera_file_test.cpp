@@ -111,7 +111,6 @@ class CameraFile : public test::FolderTest {
     return text.replace(at, from.size(), to);
   }
 
-  fs::path folder_;
   Diagnostics diagnostics_;
 };
 
