@@ -153,6 +153,16 @@ TEST_F(RecordingTest, TellsMessagesThatAreNotWhatTheyClaim) {
   EXPECT_THAT(diagnostics_.errors[0], HasSubstr("message 1 of topic 'calibration_data'"));
 }
 
+TEST_F(RecordingTest, TellsTheFirstOfManyMessagesThatAreNone) {
+  BagOutput bag(path("a"), Encoding::cdr);
+  const BagTopic topic{"calibration_data", "robot_calibration_msgs/CalibrationData", "int64 x\n",
+                       Encoding::cdr};
+  for (int i = 0; i < 1000; ++i) bag.copy(topic, 1, std::vector<std::byte>(6));
+  bag.finish();
+  (void)read(path("a"));
+  EXPECT_EQ(diagnostics_.errors.size(), 21u);
+}
+
 TEST_F(RecordingTest, LeavesOutWhatTheOtherRosDoesNotKnow) {
   {
     BagOutput bag(path("a"), Encoding::ros1);

@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
@@ -30,6 +31,8 @@
 #include "kinecal/io/bags/bag.hpp"
 
 namespace kinecal {
+
+inline constexpr std::size_t kMostOfADefinition = std::size_t{1} << 20;  ///< real ones: 0.01 of it
 
 /// A definition that cannot be read: what is wrong, with the line of the text.
 struct DefinitionError : std::runtime_error {
@@ -119,16 +122,16 @@ class DefinitionParser {
 
   /// @return  where the type stands in the definition
   std::size_t add(const std::string& name, int depth) {
-    for (std::size_t i = 0; i < types_.size(); ++i) {
-      if (types_[i].name == name) return i;
-    }
-    // A type is added before its fields: one within itself would never end when it is read.
-    if (depth > kMaxDepth) throw DefinitionError(fmt::format("'{}' is nested too deeply", name));
     const std::size_t here = types_.size();
+    if (const auto [at, is_new] = added_.try_emplace(name, here); !is_new) return at->second;
+    check_depth(name, depth);
     types_.push_back({name, {}});
+    heights_.push_back(kUnfinished);
+    int height = 1;
     if (name == kTime || name == kDuration) {
       const FieldType seconds = name == kTime ? FieldType::uint32 : FieldType::int32;
       types_[here].fields = {{"secs", seconds}, {"nsecs", seconds}};
+      heights_[here] = height;
       return here;
     }
     const auto part = by_name_.find(name);
@@ -136,11 +139,20 @@ class DefinitionParser {
       throw DefinitionError(fmt::format("type '{}' is used and not defined", name));
     }
     for (const auto& [line, text] : parts_[part->second].lines) {
-      if (auto field = parse_field(name, line, text, depth)) {
-        types_[here].fields.push_back(std::move(*field));
+      auto field = parse_field(name, line, text, depth);
+      if (!field) continue;
+      if (field->type == FieldType::message) {
+        height = std::max(height, heights_[field->message] + 1);
       }
+      types_[here].fields.push_back(std::move(*field));
     }
+    check_depth(name, height);
+    heights_[here] = height;
     return here;
+  }
+
+  static void check_depth(const std::string& name, int depth) {
+    if (depth > kMaxDepth) throw DefinitionError(fmt::format("'{}' is nested too deeply", name));
   }
 
   /// @return  nothing for a constant
@@ -154,6 +166,9 @@ class DefinitionParser {
     const std::size_t name_end = std::min(rest.find_first_of(" \t=#"), rest.size());
     MessageField field;
     field.name = rest.substr(0, name_end);
+    if (field.name.empty()) {
+      throw DefinitionError(fmt::format("line {}: '{}' has no name", line, text));
+    }
     if (trimmed(rest.substr(name_end)).starts_with('=')) return std::nullopt;
     std::string_view type = text.substr(0, type_end);
     if (const std::size_t bracket = type.find('['); bracket != std::string_view::npos) {
@@ -173,7 +188,7 @@ class DefinitionParser {
     if (size.empty() || size.starts_with("<=")) return;
     field.count = MessageField::Count::fixed;
     const auto [end, error] = std::from_chars(size.data(), size.data() + size.size(), field.size);
-    if (error != std::errc() || end != size.data() + size.size()) {
+    if (error != std::errc() || end != size.data() + size.size() || field.size == 0) {
       throw DefinitionError(fmt::format("line {}: '{}' is no size", line, brackets));
     }
   }
@@ -206,17 +221,10 @@ class DefinitionParser {
       throw DefinitionError(fmt::format("line {}: wide strings are not supported", line));
     }
     field.message = add(full_name(type, owner), depth + 1);
-    if (contains(field.message, owner, 0)) {
-      throw DefinitionError(fmt::format("line {}: '{}' contains itself", line, owner));
+    if (heights_[field.message] == kUnfinished) {  // would never end when it is read
+      throw DefinitionError(
+          fmt::format("line {}: '{}' contains itself", line, types_[field.message].name));
     }
-  }
-
-  [[nodiscard]] bool contains(std::size_t type, const std::string& name, int depth) const {
-    if (types_[type].name == name || depth > kMaxDepth) return true;
-    for (const MessageField& field : types_[type].fields) {
-      if (field.type == FieldType::message && contains(field.message, name, depth + 1)) return true;
-    }
-    return false;
   }
 
   [[nodiscard]] std::string full_name(std::string_view type, const std::string& owner) const {
@@ -227,10 +235,13 @@ class DefinitionParser {
   }
 
   static constexpr std::string_view kTime = "time", kDuration = "duration";
+  static constexpr int kUnfinished = 0;
 
   std::vector<DefinitionPart> parts_;
   std::map<std::string, std::size_t> by_name_;
   MessageDefinition types_;
+  std::map<std::string, std::size_t> added_;  ///< the same, by name
+  std::vector<int> heights_;                  ///< of each: how deep its fields go
 };
 
 }  // namespace detail
@@ -240,6 +251,10 @@ class DefinitionParser {
 /// @throws DefinitionError  naming the line of the text or the type that is missing
 [[nodiscard]] inline MessageDefinition parse_definition(const std::string& type,
                                                         std::string_view text) {
+  if (text.size() > kMostOfADefinition) {
+    throw DefinitionError(fmt::format("it has {} bytes; {} are the most that is read", text.size(),
+                                      kMostOfADefinition));
+  }
   return detail::DefinitionParser(detail::definition_parts(type, text)).parse();
 }
 

@@ -28,7 +28,8 @@ enum class TopicUse { none, samples, poses, urdf };
   return is_urdf ? TopicUse::urdf : TopicUse::none;
 }
 
-/// Decodes messages, and says once for each topic why it cannot be.
+/// Decodes messages, and says why they cannot be: once for each definition, and for the first
+/// messages.
 class MessageDecoder {
  public:
   /// @param file  as messages name it
@@ -43,8 +44,13 @@ class MessageDecoder {
     try {
       return kinecal::decode(*definition, message.topic.encoding, message.data);
     } catch (const BytesError& e) {
-      diagnostics_.error({file_, 0}, fmt::format("message {} of topic '{}' is no {}: {}", number,
-                                                 message.topic.name, message.topic.type, e.what()));
+      if (++mistakes_ <= kMostMistakes) {
+        diagnostics_.error({file_, 0},
+                           fmt::format("message {} of topic '{}' is no {}: {}", number,
+                                       message.topic.name, message.topic.type, e.what()));
+      } else if (mistakes_ == kMostMistakes + 1) {
+        diagnostics_.error({file_, 0}, "more messages cannot be read; the rest is not told");
+      }
       return std::nullopt;
     }
   }
@@ -70,7 +76,10 @@ class MessageDecoder {
     }
   }
 
+  static constexpr int kMostMistakes = 20;  ///< the rest are usually the same one again
+
   std::string file_;
+  int mistakes_ = 0;
   Diagnostics& diagnostics_;
   std::map<std::pair<std::string, std::string>, std::optional<MessageDefinition>> definitions_;
 };
