@@ -32,6 +32,8 @@
 #include "kinecal/io/bags/ros2_metadata.hpp"
 #include "kinecal/io/bags/sqlite.hpp"
 #include "kinecal/io/bags/unpack.hpp"
+#include "kinecal/io/bags/unpack_message.hpp"
+#include "kinecal/io/bags/unpacked_file.hpp"
 #include "kinecal/io/bags/write_mcap.hpp"
 #include "kinecal/io/bags/write_ros1_bag.hpp"
 #include "kinecal/io/camera_info.hpp"

@@ -137,6 +137,28 @@ TEST(Compression, PlausibleSizesAreBounded) {
   EXPECT_EQ(detail::most_unpacked(~std::uint64_t{0}), detail::kMostOfABlock);
 }
 
+TEST(Compression, ManySmallBombsAreOneLargeOne) {
+  if (available().empty()) GTEST_SKIP() << "built without any";
+  const auto packed = pack(std::vector<std::byte>(31 * kMegabyte), available().back());
+  BlockUnpacker unpack;
+  const auto block = [&] { return unpack(packed, available().back(), 31 * kMegabyte).size(); };
+  for (int i = 0; i < 33; ++i) EXPECT_EQ(block(), 31 * kMegabyte);
+  EXPECT_THROW((void)block(), BytesError);
+}
+
+TEST(Compression, PlausibleSizesOfAllBlocksAreBounded) {
+  EXPECT_EQ(detail::most_unpacked_in_all(0), detail::kMostOfABlock);
+  EXPECT_EQ(detail::most_unpacked_in_all(10 * detail::kMostOfABlock), 2560 * detail::kMostOfABlock);
+  EXPECT_GE(detail::most_unpacked_in_all(~std::uint64_t{0}), ~std::uint64_t{0} - 255);
+}
+
+TEST(Compression, BlocksThatAreNotCompressedAreNotCopied) {
+  const auto bytes = some_bytes(100);
+  BlockUnpacker unpack;
+  EXPECT_EQ(unpack(bytes, Compression::none, 100).data(), bytes.data());
+  EXPECT_THROW((void)unpack(bytes, Compression::none, 99), BytesError);
+}
+
 TEST(Compression, NoneIsCopied) {
   const auto bytes = some_bytes(100);
   std::vector<std::byte> out;

@@ -130,6 +130,18 @@ TEST_F(RecordingTest, OfSamplesAndAUrdfIsReadAgain) {
   EXPECT_THAT(diagnostics_.errors, ElementsAre());
 }
 
+TEST_F(RecordingTest, OfACompressedFileIsRead) {
+  if (!is_available(Compression::zstd)) GTEST_SKIP() << "built without zstd";
+  BagOutput bag(path("a.mcap"), Encoding::cdr);
+  write_samples(bag, made_samples());
+  bag.finish();
+  const auto packed = pack(detail::as_bytes(content(path("a.mcap"))), Compression::zstd);
+  write("a.mcap.zstd", {reinterpret_cast<const char*>(packed.data()), packed.size()});
+  EXPECT_EQ(recording_format(path("a.mcap.zstd")), RecordingFormat::zstd);
+  expect_same(read(path("a.mcap.zstd")).samples, made_samples());
+  EXPECT_THAT(diagnostics_.errors, ElementsAre());
+}
+
 TEST_F(RecordingTest, WithoutSamplesSaysSo) {
   BagOutput bag(path("a"), Encoding::cdr);
   write_urdf(bag, "<robot/>");

@@ -24,6 +24,7 @@
 #include "kinecal/io/bags/bag.hpp"
 #include "kinecal/io/bags/ros2_formats.hpp"
 #include "kinecal/io/bags/sqlite.hpp"
+#include "kinecal/io/bags/unpack_message.hpp"
 #include "kinecal/io/diagnostics.hpp"
 
 namespace kinecal::detail {
@@ -66,7 +67,9 @@ class Db3Messages {
     row_->bind(id);
     if (row_->next()) {
       const auto topic = wanted_.find(row_->number(0));
-      if (topic != wanted_.end()) return BagMessage{topic->second, row_->number(1), row_->bytes(2)};
+      if (topic != wanted_.end()) {
+        return BagMessage{topic->second, row_->number(1), content(topic->second)};
+      }
     }
     throw BytesError(
         fmt::format("the database is damaged: an index and table 'messages' differ at "
@@ -75,6 +78,17 @@ class Db3Messages {
   }
 
  private:
+  /// The data of the row that is there.
+  /// @throws BytesError  if they cannot all be in the file: a page that is of many messages
+  [[nodiscard]] Bytes content(const BagTopic& topic) {
+    const Bytes data = row_->bytes(2);
+    read_ += data.size();
+    if (read_ > database_.size()) {
+      throw BytesError("the database is damaged: its messages have more bytes than it");
+    }
+    return unpack_message_(topic, data);
+  }
+
   struct Row {
     std::int64_t id;
     BagTopic topic;
@@ -143,6 +157,8 @@ class Db3Messages {
   const SqliteDatabase& database_;
   std::map<std::int64_t, BagTopic> wanted_;
   std::optional<SqliteRows> order_, row_;
+  std::uint64_t read_ = 0;  ///< bytes of messages
+  MessageUnpacker unpack_message_;
 };
 
 }  // namespace kinecal::detail

@@ -147,14 +147,10 @@ class Ros1BagReading {
       throw CutOffError(at(head.place) + "the chunk is cut off");
     }
     const Bytes packed = read_ros1_data(file_, head, packed_);
+    Bytes records;
     try {
       if (!compression) throw BytesError("is compressed in a way that is not of ROS 1");
-      if (compression != Compression::none) {
-        unpack(packed, *compression, size, unpacked_);
-      } else if (size != packed.size()) {
-        throw BytesError("has " + std::to_string(packed.size()) + " bytes, not the " +
-                         std::to_string(size) + " that it claims");
-      }
+      records = unpack_(packed, *compression, size);
     } catch (const BytesError& e) {
       const bool again =
           compression && !is_available(*compression) && !told_.insert(*compression).second;
@@ -162,9 +158,9 @@ class Ros1BagReading {
       return;
     }
     if (compression == Compression::none) {
-      messages_.records({packed, head.data_place, ""});
+      messages_.records({records, head.data_place, ""});
     } else {
-      messages_.records({unpacked_, 0, at(head.place) + "in what the chunk unpacks to, "});
+      messages_.records({records, 0, at(head.place) + "in what the chunk unpacks to, "});
     }
   }
 
@@ -208,7 +204,8 @@ class Ros1BagReading {
   std::uint64_t end_ = 0;          ///< of what is walked
   std::uint64_t read_to_ = 0;
   std::set<Compression> told_;  ///< not to be available
-  std::vector<std::byte> header_bytes_, packed_, unpacked_;
+  std::vector<std::byte> header_bytes_, packed_;
+  BlockUnpacker unpack_;
 };
 
 }  // namespace detail
