@@ -13,6 +13,7 @@
 #include "kinecal/io/bags/crc32.hpp"
 #include "kinecal/io/bags/db3.hpp"
 #include "kinecal/io/bags/db3_messages.hpp"
+#include "kinecal/io/bags/kept_bytes.hpp"
 #include "kinecal/io/bags/mcap.hpp"
 #include "kinecal/io/bags/mcap_chunk.hpp"
 #include "kinecal/io/bags/mcap_content.hpp"

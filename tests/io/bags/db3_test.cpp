@@ -240,6 +240,14 @@ TEST_F(Db3, MessagesThatAreCompressedOneByOneAreUnpacked) {
               ElementsAre(HasSubstr("bag_0.db3: a message of topic 'joint_states' ")));
 }
 
+TEST_F(Db3, DefinitionsHaveNoMoreBytesThanArePlausible) {
+  run(path_, kNewTables + kTopics + kMessages +
+                 "UPDATE message_definitions SET encoded_message_definition = "
+                 "CAST(randomblob(1) || zeroblob(40000000) AS TEXT), encoding = 'ros2msg';");
+  EXPECT_THAT(read().errors,
+              ElementsAre(HasSubstr("more topics and definitions than are plausible")));
+}
+
 /// Pages that are of many messages at once: a small file without end.
 TEST_F(Db3, MessagesWithMoreBytesThanTheFileAreDamaged) {
   run(path_, kOldTables + kTopics + kMessages);

@@ -191,6 +191,40 @@ TEST(Mcap, ADamagedIndexIsToldAndEverythingIsReadWithoutIt) {
               ElementsAre(AllOf(HasSubstr("b.mcap: byte "), HasSubstr("the index is damaged"))));
 }
 
+TEST(Mcap, AnIndexOfMoreBytesThanIsPlausibleIsNotRead) {
+  std::string file = whole(channel(1, 0, "/a", "cdr") + message(1, 5, std::string(70 << 20, 'x')));
+  file[file.size() - 8 - 20] = '\x08';  // where it begins: at once
+  const BagReading reading = read(file);
+  EXPECT_THAT(reading.errors, IsEmpty());
+  EXPECT_THAT(reading.messages, SizeIs(1));
+  EXPECT_THAT(reading.warnings, ElementsAre(HasSubstr("the index is told to begin at byte 8")));
+}
+
+TEST(Mcap, AnIndexThatBeginsElsewhereLosesNoMessage) {
+  std::string file = bag_of(8, {Compression::none, 100, true});
+  const std::size_t place = file.size() - 8 - 20;
+  for (std::size_t i = 9; i <= 12; ++i) file[file.size() - i] = '\0';  // its sum is not told
+  const auto first = static_cast<unsigned char>(file[place]);
+  for (int by = -100; by < 200; ++by) {
+    std::string wrong = file;
+    wrong[place] = static_cast<char>(first + by);
+    const BagReading reading = read(wrong, {"camera/image"});
+    EXPECT_THAT(reading.errors, IsEmpty()) << by;
+    EXPECT_THAT(reading.messages, SizeIs(4)) << by;
+  }
+}
+
+TEST(Mcap, DefinitionsHaveNoMoreBytesThanArePlausible) {
+  std::string records = schema(1, "a/msg/B", "ros2msg", std::string(20 << 20, ' '));
+  for (std::uint16_t i = 1; i < 10; ++i) {
+    records += channel(i, 1, "/a", "cdr") + message(i, 5, "x");
+  }
+  const BagReading reading = read(whole(records));
+  EXPECT_THAT(reading.messages, SizeIs(2));
+  EXPECT_THAT(reading.errors,
+              ElementsAre(HasSubstr("more topics and definitions than are plausible")));
+}
+
 TEST(Mcap, ADamagedChunkIsNamedByItsByte) {
   std::string file = bag_of(8, {Compression::none, 100, true});
   const std::size_t at = file.find("message 0");
@@ -360,6 +394,8 @@ TEST(McapWriter, RefusesWhatIsNotOfRos2) {
   McapWriter writer(out);
   EXPECT_THROW((void)writer.add_topic({"a", "b/C", "", Encoding::ros1}), std::invalid_argument);
   EXPECT_THROW(writer.write(1, 0, {}), std::out_of_range);
+  const auto topic = writer.add_topic(kJoints);
+  EXPECT_THROW(writer.write(topic, -1, {}), std::invalid_argument);
 }
 
 }  // namespace

@@ -318,6 +318,34 @@ TEST(Ros1Bag, ChunkInfosThatPointElsewhereLoseNoMessage) {
   EXPECT_FALSE(read.errors.empty());
 }
 
+TEST(Ros1Bag, ChunkInfosThatTellTooLittleLoseNoMessage) {
+  std::string bag = bag_of(some_messages(50));
+  for (std::size_t at = bag.rfind("chunk_pos="), i = 0; i < 2;
+       at = bag.rfind("chunk_pos=", at - 1), ++i) {
+    bag.replace(bag.find("count=", at) + 6, 4, 4, '\0');
+  }
+  const BagContents all = read_bag(bag);
+  EXPECT_EQ(all.messages, some_messages(50));
+  EXPECT_THAT(all.errors, IsEmpty());
+  EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("more topics than its chunk info tells of")));
+  EXPECT_THAT(read_bag(bag, {"robot_description"}).warnings, IsEmpty());
+}
+
+TEST(Ros1Bag, DefinitionsHaveNoMoreBytesThanArePlausible) {
+  std::string records;
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    Ros1Text header, data;
+    header.number("conn", i).op(Ros1Op::connection).field("topic", "a");
+    data.field("type", "T/A").field("message_definition", std::string(5 << 20, char('a' + i)));
+    records += detail::ros1_record(header, data.text()) + message(i, 1, "x");
+  }
+  const BagContents read = read_bag(open_bag(records));
+  EXPECT_EQ(read.topics.size(), 6u);
+  EXPECT_EQ(read.messages.size(), 6u);
+  ASSERT_EQ(read.errors.size(), 4u);
+  EXPECT_THAT(read.errors[0], HasSubstr("more topics and definitions than are plausible"));
+}
+
 TEST(Ros1Bag, ABombIsAnError) {
   for (const Compression c : compressions_of_ros1()) {
     if (c == Compression::none) continue;

@@ -175,6 +175,42 @@ TEST_F(RecordingTest, TellsTheFirstOfManyMessagesThatAreNone) {
   EXPECT_EQ(diagnostics_.errors.size(), 21u);
 }
 
+TEST_F(RecordingTest, KeepsTheVersionsOfATopicApart) {
+  for (const Encoding encoding : {Encoding::ros1, Encoding::cdr}) {
+    BagOutput bag(path("a"), encoding);
+    for (const char* definition : {"float64 t\n", "float32 t\n"}) {
+      const BagTopic topic{"temperature", "sensor_msgs/Temperature", definition, encoding};
+      bag.copy(topic, 1, std::vector<std::byte>(12));
+    }
+    bag.finish();
+    convert(path("a"), path("b"), encoding);
+    std::vector<std::string> definitions;
+    const auto handle = [&](const BagMessage& message) {
+      definitions.push_back(message.topic.definition);
+    };
+    read_bag(path("b"), {[](const BagTopic&) { return true; }, handle}, diagnostics_);
+    EXPECT_THAT(definitions, ElementsAre("float64 t\n", "float32 t\n"));
+  }
+}
+
+TEST_F(RecordingTest, TellsTimesThatRos1DoesNotHave) {
+  BagOutput bag(path("a"), Encoding::cdr);
+  const std::string urdf = known_definition("std_msgs/String", Encoding::cdr);
+  const BagTopic topic{"robot_description", "std_msgs/String", urdf, Encoding::cdr};
+  const std::array<std::byte, 9> empty{std::byte{0}, std::byte{1}};
+  for (const std::int64_t time : {std::int64_t{5'000'000'000'000'000'000}, std::int64_t{1}}) {
+    bag.copy(topic, time, empty);
+    bag.copy(topic, time, empty);
+  }
+  bag.finish();
+  convert(path("a"), path("b"), Encoding::ros1);
+  ASSERT_EQ(diagnostics_.errors.size(), 1u);
+  EXPECT_THAT(diagnostics_.errors[0],
+              HasSubstr("a: message 1 of topic 'robot_description' cannot be written: its time of "
+                        "recording is not of 1970 to 2106"));
+  EXPECT_EQ(bag_topics(path("b"), diagnostics_).at(0).messages, 2);
+}
+
 TEST_F(RecordingTest, LeavesOutWhatTheOtherRosDoesNotKnow) {
   {
     BagOutput bag(path("a"), Encoding::ros1);

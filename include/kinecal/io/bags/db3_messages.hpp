@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/kept_bytes.hpp"
 #include "kinecal/io/bags/ros2_formats.hpp"
 #include "kinecal/io/bags/sqlite.hpp"
 #include "kinecal/io/bags/unpack_message.hpp"
@@ -118,14 +119,17 @@ class Db3Messages {
   }
 
   [[nodiscard]] std::vector<Row> read_topics() const {
-    const std::map<std::string, std::string> definitions = read_definitions();
+    KeptBytes kept;
+    const std::map<std::string, std::string> definitions = read_definitions(kept);
     std::vector<Row> topics;
     SqliteRows rows(database_, "SELECT id, name, type, serialization_format FROM topics");
     while (rows.next()) {
       const std::string type = rows.text(2);
       const auto definition = definitions.find(type);
+      const std::size_t size = definition == definitions.end() ? 0 : definition->second.size();
+      kept.add(type.size() + rows.bytes(1).size() + rows.bytes(3).size() + size);
       topics.push_back({rows.number(0),
-                        {bag_topic_name(rows.text(1)), plain_type(type),
+                        {plain_topic(rows.text(1)), plain_type(type),
                          definition == definitions.end() ? "" : definition->second, Encoding::cdr},
                         rows.text(3)});
     }
@@ -133,7 +137,7 @@ class Db3Messages {
   }
 
   /// Texts of the types that have one, by the names that ROS 2 gives them.
-  [[nodiscard]] std::map<std::string, std::string> read_definitions() const {
+  [[nodiscard]] std::map<std::string, std::string> read_definitions(KeptBytes& kept) const {
     std::map<std::string, std::string> definitions;
     const std::set<std::string> has = columns_of("message_definitions");
     for (const char* column : {"topic_type", "encoding", "encoded_message_definition"}) {
@@ -142,7 +146,10 @@ class Db3Messages {
     SqliteRows rows(database_,
                     "SELECT topic_type, encoded_message_definition FROM message_definitions "
                     "WHERE encoding = 'ros2msg'");
-    while (rows.next()) definitions.emplace(rows.text(0), rows.text(1));
+    while (rows.next()) {
+      kept.add(rows.bytes(0).size() + rows.bytes(1).size());
+      definitions.emplace(rows.text(0), rows.text(1));
+    }
     return definitions;
   }
 

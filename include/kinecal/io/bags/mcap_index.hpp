@@ -66,6 +66,7 @@ inline void read_mcap_summary(Bytes summary, std::uint64_t place, McapIndex& ind
 /// @return  what is known without reading all of it; nothing at all if the recording was
 ///          interrupted
 [[nodiscard]] inline McapIndex read_mcap_index(ByteFile& file) {
+  constexpr std::uint64_t kMostOfASummary = std::uint64_t{1} << 26;  // of some 100 GB
   constexpr std::uint64_t kEnd = kMcapHeadBytes + kMcapFooterBytes + kMcapMagic.size();
   std::vector<std::byte> buffer;
   McapIndex index;
@@ -81,7 +82,7 @@ inline void read_mcap_summary(Bytes summary, std::uint64_t place, McapIndex& ind
   index.complete = in.text(kMcapMagic.size()) == kMcapMagic;
   if (!index.complete || footer.summary == 0) return index;
   try {
-    if (footer.summary > footer_place || footer_place - footer.summary > kMostOfABlock) {
+    if (footer.summary > footer_place || footer_place - footer.summary > kMostOfASummary) {
       throw BytesError(fmt::format("byte {}: the index is told to begin at byte {}", footer_place,
                                    footer.summary));
     }

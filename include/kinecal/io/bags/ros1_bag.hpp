@@ -125,8 +125,9 @@ class Ros1BagReading {
       case Ros1Op::connection:
         return messages_.connection(
             {head.fields, read_ros1_data(file_, head, packed_), head.data_place}, "");
-      case Ros1Op::bag:
       case Ros1Op::index:
+        return index(head);
+      case Ros1Op::bag:
       case Ros1Op::chunk_info:
         return skip_ros1_data(file_, head);
     }
@@ -134,7 +135,12 @@ class Ros1BagReading {
   }
 
   void chunk(const Ros1Head& head) {
-    if (is_unwanted(head.place)) return skip_ros1_data(file_, head);
+    skipped_.reset();
+    if (is_unwanted(head.place)) {
+      skip_ros1_data(file_, head);
+      skipped_ = head.place;
+      return;
+    }
     const auto compression = compression_named(head.fields.text("compression"));
     const auto size = head.fields.number<std::uint32_t>("size");
     if (head.data_size == 0 && size == 0) {  // its records follow; sizes are written when it closes
@@ -162,6 +168,22 @@ class Ros1BagReading {
     } else {
       messages_.records({records, 0, at(head.place) + "in what the chunk unpacks to, "});
     }
+  }
+
+  /// An index of the chunk in front of it.  It may tell of what the chunk info does not.
+  void index(const Ros1Head& head) {
+    skip_ros1_data(file_, head);
+    if (!skipped_ || head.fields.number<std::uint32_t>("count") == 0) return;
+    if (!messages_.topics().may_be_wanted(head.fields.number<std::uint32_t>("conn"))) return;
+    if (!wrong_infos_) {
+      messages_.warning(at(*skipped_) + "the chunk holds more topics than its chunk info tells of");
+    }
+    wrong_infos_ = true;
+    const std::uint64_t next = file_.place();
+    chunks_.erase(*skipped_);
+    file_.go_to(*skipped_);
+    chunk(read_ros1_head(file_, header_bytes_));
+    file_.go_to(next);
   }
 
   [[nodiscard]] bool is_unwanted(std::uint64_t chunk) const {
@@ -200,8 +222,10 @@ class Ros1BagReading {
   Ros1BagHeader header_;
   Ros1ChunkInfos chunks_;
   bool has_index_ = false;
-  bool is_in_open_chunk_ = false;  ///< compressed, so that its records cannot be read
-  std::uint64_t end_ = 0;          ///< of what is walked
+  bool wrong_infos_ = false;              ///< which has been told
+  std::optional<std::uint64_t> skipped_;  ///< the last chunk, if it was
+  bool is_in_open_chunk_ = false;         ///< compressed, so that its records cannot be read
+  std::uint64_t end_ = 0;                 ///< of what is walked
   std::uint64_t read_to_ = 0;
   std::set<Compression> told_;  ///< not to be available
   std::vector<std::byte> header_bytes_, packed_;

@@ -78,7 +78,9 @@ class Ros1BagWriter {
     if (topic >= topics_.size()) throw std::invalid_argument("add_topic() gave no such number");
     if (closed_) throw std::invalid_argument("the bag is closed");
     if (data.size() > kMostOfAMessage) throw std::invalid_argument("message is too large");
-    if (time < 0 || time / kSecond > 0xffffffff) throw std::invalid_argument("no time of ROS 1");
+    if (time < 0 || time / kSecond > 0xffffffff) {
+      throw std::invalid_argument("its time of recording is not of 1970 to 2106, as ROS 1 has it");
+    }
     if (chunk_.size() + data.size() > kMostOfAMessage) end_chunk();
     if (!topics_[topic].written) chunk_ += topics_[topic].record;
     topics_[topic].written = true;

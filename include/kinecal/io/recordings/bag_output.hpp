@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -74,7 +75,7 @@ class BagOutput {
 
  private:
   [[nodiscard]] std::uint32_t number_of(const BagTopic& topic) {
-    const auto key = std::pair(topic.name, topic.type);
+    const auto key = std::tuple(topic.name, topic.type, topic.definition);
     if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
     std::uint32_t number = 0;
     if (auto* bag = std::get_if<Ros1BagWriter>(&writer_)) {
@@ -98,7 +99,8 @@ class BagOutput {
   detail::StagingFolder staging_;
   std::ofstream file_;
   std::variant<std::monostate, Ros1BagWriter, McapWriter> writer_;
-  std::map<std::pair<std::string, std::string>, std::uint32_t> numbers_;
+  /// By name, type and definition: of one topic there may be messages of several versions.
+  std::map<std::tuple<std::string, std::string, std::string>, std::uint32_t> numbers_;
   std::map<std::string, MessageDefinition> definitions_;  ///< of known types, in this encoding
 };
 
