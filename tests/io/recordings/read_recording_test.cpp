@@ -9,6 +9,7 @@
 
 #include "kinecal/io/recordings/bag_topics.hpp"
 #include "kinecal/io/recordings/convert.hpp"
+#include "kinecal/io/recordings/pose_messages.hpp"
 #include "support/data.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -140,6 +141,21 @@ TEST_F(RecordingTest, OfACompressedFileIsRead) {
   EXPECT_EQ(recording_format(path("a.mcap.zstd")), RecordingFormat::zstd);
   expect_same(read(path("a.mcap.zstd")).samples, made_samples());
   EXPECT_THAT(diagnostics_.errors, ElementsAre());
+}
+
+TEST_F(RecordingTest, OfRos1HasTheTopicsThatRobotCalibrationLooksFor) {
+  BagOutput bag(path("a"), Encoding::ros1);
+  write_samples(bag, made_samples());
+  write_urdf(bag, "<robot/>");
+  write_poses(bag, {{{"pan"}, {0.5}, {}}});
+  bag.finish();
+  convert(path("a"), path("b"), Encoding::ros1);
+  for (const char* file : {"a", "b"}) {
+    const std::string bytes = content(path(file));
+    EXPECT_THAT(bytes, HasSubstr("topic=/calibration_data"));
+    EXPECT_THAT(bytes, HasSubstr("topic=/robot_description"));
+    EXPECT_THAT(bytes, HasSubstr("topic=calibration_joint_states"));
+  }
 }
 
 TEST_F(RecordingTest, WithoutSamplesSaysSo) {

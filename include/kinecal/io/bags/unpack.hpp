@@ -32,6 +32,8 @@ concept Unpacker = requires(U u, Bytes in, std::span<std::byte> out) {
 
 inline constexpr std::uint64_t kMostOfABlock = std::uint64_t{1} << 30;
 
+inline constexpr std::uint64_t kMostOfAMessage = kMostOfABlock / 2;  ///< that is written
+
 inline constexpr std::uint64_t kMostRatio = 256;  ///< of lz4; sensors' data have a tenth of it
 
 /// Bytes that a block may unpack to: black images are small, yet not without bounds.

@@ -71,9 +71,11 @@ class McapWriter {
   /// @param time   of recording, nanoseconds, not negative
   /// @param data   CDR with the four bytes that stand before it
   /// @throws std::out_of_range      if there is no such topic
-  /// @throws std::invalid_argument  if the time is negative
+  /// @throws std::invalid_argument  if the time is negative, or the message has more than half a GB
   void write(std::uint16_t topic, std::int64_t time, Bytes data) {
     if (time < 0) throw std::invalid_argument("its time of recording is before 1970");
+    if (data.size() > detail::kMostOfAMessage) throw std::invalid_argument("message is too large");
+    if (chunk_.records.size() + data.size() > detail::kMostOfAMessage) end_chunk();
     const auto stamp = static_cast<std::uint64_t>(time);
     const auto sequence = static_cast<std::uint32_t>(++counts_.at(topic - std::size_t{1}));
     times_.add(stamp);

@@ -77,11 +77,11 @@ class Ros1BagWriter {
   void write(std::uint32_t topic, std::int64_t time, Bytes data) {
     if (topic >= topics_.size()) throw std::invalid_argument("add_topic() gave no such number");
     if (closed_) throw std::invalid_argument("the bag is closed");
-    if (data.size() > kMostOfAMessage) throw std::invalid_argument("message is too large");
+    if (data.size() > detail::kMostOfAMessage) throw std::invalid_argument("message is too large");
     if (time < 0 || time / kSecond > 0xffffffff) {
       throw std::invalid_argument("its time of recording is not of 1970 to 2106, as ROS 1 has it");
     }
-    if (chunk_.size() + data.size() > kMostOfAMessage) end_chunk();
+    if (chunk_.size() + data.size() > detail::kMostOfAMessage) end_chunk();
     if (!topics_[topic].written) chunk_ += topics_[topic].record;
     topics_[topic].written = true;
     index_[topic].emplace_back(time, static_cast<std::uint32_t>(chunk_.size()));
@@ -109,7 +109,6 @@ class Ros1BagWriter {
   }
 
  private:
-  static constexpr std::size_t kMostOfAMessage = detail::kMostOfABlock / 2;
   static constexpr std::int64_t kSecond = 1'000'000'000;
 
   struct Topic {

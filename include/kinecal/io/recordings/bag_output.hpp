@@ -79,11 +79,19 @@ class BagOutput {
     if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
     std::uint32_t number = 0;
     if (auto* bag = std::get_if<Ros1BagWriter>(&writer_)) {
-      number = bag->add_topic(topic, topic.name.ends_with("robot_description"));
+      BagTopic named = topic;
+      named.name = name_in_ros1(topic.name);
+      number = bag->add_topic(named, topic.name.ends_with("robot_description"));
     } else {
       number = std::get<McapWriter>(writer_).add_topic(topic);
     }
     return numbers_.emplace(key, number).first->second;
+  }
+
+  /// As rosbag records it, since rosbag finds a topic only by its whole name.
+  [[nodiscard]] static std::string name_in_ros1(const std::string& name) {
+    const bool poses = name == "calibration_joint_states";  // robot_calibration's own, without
+    return poses ? name : "/" + name;
   }
 
   void write(std::uint32_t number, std::int64_t time, Bytes data) {
