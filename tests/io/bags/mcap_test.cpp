@@ -200,11 +200,17 @@ TEST(Mcap, AnIndexOfMoreBytesThanIsPlausibleIsNotRead) {
   EXPECT_THAT(reading.warnings, ElementsAre(HasSubstr("the index is told to begin at byte 8")));
 }
 
+/// Where the summary begins, as the footer says; its sum is taken back.
+std::size_t start_of_summary(std::string& file) {
+  for (std::size_t i = 9; i <= 12; ++i) file[file.size() - i] = '\0';
+  ByteReader footer(detail::as_bytes(std::string_view(file).substr(file.size() - 28)));
+  return footer.number<std::uint64_t>();
+}
+
 TEST(Mcap, AnIndexThatBeginsElsewhereLosesNoMessage) {
   std::string file = bag_of(8, {Compression::none, 100, true});
+  const auto first = static_cast<int>(start_of_summary(file) % 256);
   const std::size_t place = file.size() - 8 - 20;
-  for (std::size_t i = 9; i <= 12; ++i) file[file.size() - i] = '\0';  // its sum is not told
-  const auto first = static_cast<unsigned char>(file[place]);
   for (int by = -100; by < 200; ++by) {
     std::string wrong = file;
     wrong[place] = static_cast<char>(first + by);
@@ -223,6 +229,23 @@ TEST(Mcap, DefinitionsHaveNoMoreBytesThanArePlausible) {
   EXPECT_THAT(reading.messages, SizeIs(2));
   EXPECT_THAT(reading.errors,
               ElementsAre(HasSubstr("more topics and definitions than are plausible")));
+}
+
+TEST(Mcap, AnIndexWithoutSchemasOrChannelsLosesNoMessage) {
+  for (const McapOp left_out : {McapOp::schema, McapOp::channel, McapOp::statistics}) {
+    std::string file = bag_of(8, {Compression::none, 1, true});
+    ByteReader summary(detail::as_bytes(file));
+    summary.skip(start_of_summary(file));
+    while (summary.left() > 28) {
+      const std::size_t at = summary.read();
+      if (summary.number<std::uint8_t>() == static_cast<std::uint8_t>(left_out)) file[at] = '\x42';
+      summary.skip(summary.number<std::uint64_t>());
+    }
+    const BagReading reading = read(file, {"camera/image"});
+    EXPECT_THAT(reading.errors, IsEmpty()) << static_cast<int>(left_out);
+    EXPECT_THAT(reading.warnings, IsEmpty());
+    EXPECT_THAT(reading.messages, SizeIs(4));
+  }
 }
 
 TEST(Mcap, ADamagedChunkIsNamedByItsByte) {

@@ -204,6 +204,8 @@ TEST_F(Ros2Bag, MetadataThatIsNoneIsAnErrorWithItsPlace) {
     return read().errors;
   };
   EXPECT_THAT(errors_of(""), ElementsAre(HasSubstr("has no map 'rosbag2_bagfile_information'")));
+  EXPECT_THAT(errors_of(std::string(200'000, '[')), SizeIs(1));
+  EXPECT_THAT(errors_of(std::string(200'000, '{')), SizeIs(1));
   EXPECT_THAT(errors_of("[1, 2"), ElementsAre(HasSubstr("metadata.yaml:")));
   EXPECT_THAT(errors_of("rosbag2_bagfile_information: [1]"), SizeIs(1));
   EXPECT_THAT(errors_of("rosbag2_bagfile_information: {version: 1}"),

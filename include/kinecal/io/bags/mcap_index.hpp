@@ -27,9 +27,11 @@ struct McapIndex {
   McapTopics topics;
   std::string damage;  ///< why the summary is not used; empty if it is, or if there is none
 
-  /// Whether a chunk that is skipped cannot hold the only definition of a channel.
-  [[nodiscard]] bool knows_all_channels() const {
-    return statistics && statistics->channels <= topics.count();
+  /// Whether a chunk that is skipped cannot hold the only record of a channel or a schema; writers
+  /// may leave out either from the summary.
+  [[nodiscard]] bool knows_all_topics() const {
+    return statistics && statistics->channels <= topics.channels() &&
+           statistics->schemas <= topics.schemas();
   }
 };
 

@@ -119,7 +119,7 @@ class McapMessages {
     const auto it = index_.chunks.find(start);
     if (it == index_.chunks.end() || it->second.length != kMcapHeadBytes + length) return false;
     const std::vector<std::uint16_t>& channels = it->second.channels;
-    if (channels.empty() || !index_.knows_all_channels()) return false;
+    if (channels.empty() || !index_.knows_all_topics()) return false;
     const ByteReader here(Bytes{}, std::endian::little, start);
     return std::none_of(channels.begin(), channels.end(), [&](std::uint16_t channel) {
       McapTopics::Topic* topic = index_.topics.find(channel);

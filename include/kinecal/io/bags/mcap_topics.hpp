@@ -60,7 +60,8 @@ class McapTopics {
     }
   }
 
-  [[nodiscard]] std::size_t count() const { return topics_.size(); }
+  [[nodiscard]] std::size_t channels() const { return topics_.size(); }
+  [[nodiscard]] std::size_t schemas() const { return schemas_.size(); }
 
   /// Null if it has not been there yet.
   [[nodiscard]] Topic* find(std::uint16_t channel) {

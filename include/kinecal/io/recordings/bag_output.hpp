@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -75,7 +76,7 @@ class BagOutput {
 
  private:
   [[nodiscard]] std::uint32_t number_of(const BagTopic& topic) {
-    const auto key = std::tuple(topic.name, topic.type, topic.definition);
+    const auto key = std::tie(topic.name, topic.type, topic.definition);
     if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
     std::uint32_t number = 0;
     if (auto* bag = std::get_if<Ros1BagWriter>(&writer_)) {
@@ -108,7 +109,7 @@ class BagOutput {
   std::ofstream file_;
   std::variant<std::monostate, Ros1BagWriter, McapWriter> writer_;
   /// By name, type and definition: of one topic there may be messages of several versions.
-  std::map<std::tuple<std::string, std::string, std::string>, std::uint32_t> numbers_;
+  std::map<std::tuple<std::string, std::string, std::string>, std::uint32_t, std::less<>> numbers_;
   std::map<std::string, MessageDefinition> definitions_;  ///< of known types, in this encoding
 };
 

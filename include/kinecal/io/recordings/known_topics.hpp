@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "kinecal/io/bags/bag.hpp"
@@ -57,7 +58,7 @@ class MessageDecoder {
 
   /// nullptr if there is none, which has been told.
   [[nodiscard]] const MessageDefinition* definition_of(const BagTopic& topic) {
-    const auto key = std::pair(topic.type, topic.definition);
+    const auto key = std::tie(topic.type, topic.definition);
     auto found = definitions_.find(key);
     if (found == definitions_.end()) found = definitions_.emplace(key, parse(topic)).first;
     return found->second ? &*found->second : nullptr;
@@ -81,7 +82,9 @@ class MessageDecoder {
   std::string file_;
   int mistakes_ = 0;
   Diagnostics& diagnostics_;
-  std::map<std::pair<std::string, std::string>, std::optional<MessageDefinition>> definitions_;
+  /// By type and text.
+  std::map<std::tuple<std::string, std::string>, std::optional<MessageDefinition>, std::less<>>
+      definitions_;
 };
 
 }  // namespace kinecal
