@@ -74,6 +74,7 @@ TEST_F(Ros2Bag, WithoutMetadataFilesAreReadAsPeopleCount) {
     write_mcap("bag_" + number + ".mcap", number);
   }
   write("notes.txt", "");
+  fs::create_directory(bag_ / "folder.mcap");
   const BagReading reading = read();
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.warnings, ElementsAre(HasSubstr("there is no metadata.yaml")));

@@ -91,6 +91,7 @@ inline void read_ros2_bag_file(const std::string& path, const BagReader& reader,
   std::set<std::string, decltype(&naturally_before)> files(&naturally_before);
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (!entry.is_regular_file(ignored)) continue;
     const std::filesystem::path name = entry.path().filename();
     const bool packed = name.extension() == kZstdEnding;
     if (!is_ros2_bag_file(packed ? name.stem() : name)) continue;

@@ -140,7 +140,7 @@ class Ros1BagWriter {
     if (compression_ == Compression::none) {
       put(detail::ros1_record(header, chunk_));
     } else {
-      put(detail::ros1_record(header, pack(std::as_bytes(std::span(chunk_)), compression_)));
+      put(detail::ros1_record(header, pack(detail::as_bytes(chunk_), compression_)));
     }
     chunk_.clear();
     end_index(place);
