@@ -75,6 +75,7 @@
 #include "kinecal/io/messages/encode.hpp"
 #include "kinecal/io/messages/known_definitions.hpp"
 #include "kinecal/io/messages/make.hpp"
+#include "kinecal/io/messages/message_type.hpp"
 #include "kinecal/io/messages/value.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/io/poses/poses.hpp"

@@ -68,6 +68,20 @@ TEST(Definition, FindsHeaderAndTimeOfRos1AndThePackagesOfRos2) {
   EXPECT_THAT(field_names(two[2]), ElementsAre("sec", "nanosec"));
 }
 
+TEST(Definition, MayHaveAHeaderOfItsPackageAndLackTheTimesOfRos2) {
+  const MessageDefinition d = parse_definition("a/msg/Type",
+                                               "Header header\nstd_msgs/Header other\n"
+                                               "===\nMSG: a/Header\nint8 own\n===\n"
+                                               "MSG: std_msgs/Header\n"
+                                               "builtin_interfaces/Time stamp\n"
+                                               "builtin_interfaces/msg/Duration since\n");
+  ASSERT_EQ(d.size(), 5u);
+  EXPECT_THAT(field_names(d[1]), ElementsAre("own"));
+  EXPECT_THAT(field_names(d[2]), ElementsAre("stamp", "since"));
+  EXPECT_THAT(field_names(d[3]), ElementsAre("sec", "nanosec"));
+  EXPECT_THAT(field_names(d[4]), ElementsAre("sec", "nanosec"));
+}
+
 TEST(Definition, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(refusal("float64 x\nOther other\n"), HasSubstr("'a/Other' is used and not defined"));
   EXPECT_THAT(refusal("float64\n"), HasSubstr("line 1: 'float64' has no name"));

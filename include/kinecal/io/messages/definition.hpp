@@ -6,8 +6,9 @@
 //   MSG: geometry_msgs/PointStamped
 //   ...
 //
-// A type without a package is of the package that uses it; of ROS 1, Header is std_msgs/Header and
-// time and duration are two numbers.  ROS 2 adds bounds (string<=10) and default values.
+// A type without a package is of the package that uses it; Header, where that has none, is
+// std_msgs/Header.  Of ROS 1, time and duration are two numbers.  ROS 2 adds bounds (string<=10)
+// and default values.
 //
 // Source: ROS 1 wiki, msg; ROS 2 documentation, Interfaces.
 //
@@ -29,6 +30,7 @@
 #include <vector>
 
 #include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/messages/message_type.hpp"
 
 namespace kinecal {
 
@@ -38,40 +40,6 @@ inline constexpr std::size_t kMostOfADefinition = std::size_t{1} << 20;  ///< re
 struct DefinitionError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-
-enum class FieldType : std::uint8_t {
-  boolean,
-  int8,
-  uint8,
-  int16,
-  uint16,
-  int32,
-  uint32,
-  int64,
-  uint64,
-  float32,
-  float64,
-  text,
-  message
-};
-
-struct MessageField {
-  enum class Count : std::uint8_t { one, fixed, any };
-
-  std::string name;
-  FieldType type = FieldType::message;
-  std::size_t message = 0;  ///< of type message: which one of the definition
-  Count count = Count::one;
-  std::uint32_t size = 1;  ///< of a list of fixed size
-};
-
-struct MessageType {
-  std::string name;  ///< "package/Type"
-  std::vector<MessageField> fields;
-};
-
-/// A message and all that it consists of; the message is the first.
-using MessageDefinition = std::vector<MessageType>;
 
 namespace detail {
 
@@ -128,15 +96,11 @@ class DefinitionParser {
     types_.push_back({name, {}});
     heights_.push_back(kUnfinished);
     int height = 1;
-    if (name == kTime || name == kDuration) {
-      const FieldType seconds = name == kTime ? FieldType::uint32 : FieldType::int32;
-      types_[here].fields = {{"secs", seconds}, {"nsecs", seconds}};
-      heights_[here] = height;
-      return here;
-    }
     const auto part = by_name_.find(name);
     if (part == by_name_.end()) {
-      throw DefinitionError(fmt::format("type '{}' is used and not defined", name));
+      types_[here].fields = built_in(name);
+      heights_[here] = height;
+      return here;
     }
     for (const auto& [line, text] : parts_[part->second].lines) {
       auto field = parse_field(name, line, text, depth);
@@ -149,6 +113,16 @@ class DefinitionParser {
     check_depth(name, height);
     heights_[here] = height;
     return here;
+  }
+
+  /// Two numbers; of ROS 2 its own types, which some who write bags leave out.
+  [[nodiscard]] static std::vector<MessageField> built_in(const std::string& name) {
+    if (name == kTime) return {{"secs", FieldType::uint32}, {"nsecs", FieldType::uint32}};
+    if (name == kDuration) return {{"secs", FieldType::int32}, {"nsecs", FieldType::int32}};
+    if (name == "builtin_interfaces/Time" || name == "builtin_interfaces/Duration") {
+      return {{"sec", FieldType::int32}, {"nanosec", FieldType::uint32}};
+    }
+    throw DefinitionError(fmt::format("type '{}' is used and not defined", name));
   }
 
   static void check_depth(const std::string& name, int depth) {
@@ -229,9 +203,9 @@ class DefinitionParser {
 
   [[nodiscard]] std::string full_name(std::string_view type, const std::string& owner) const {
     if (type == kTime || type == kDuration) return std::string(type);
-    if (type == "Header") return "std_msgs/Header";
     if (type.find('/') != std::string_view::npos) return plain_type(type);
-    return owner.substr(0, owner.find('/') + 1) + std::string(type);
+    std::string name = owner.substr(0, owner.find('/') + 1) + std::string(type);
+    return type == "Header" && !by_name_.contains(name) ? "std_msgs/Header" : name;
   }
 
   static constexpr std::string_view kTime = "time", kDuration = "duration";
