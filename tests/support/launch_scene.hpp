@@ -11,6 +11,8 @@
 #include <map>
 #include <string>
 
+#include "support/temporary_folder.hpp"
+
 namespace kinecal::test {
 
 /// As on Fetch: CRLF here and there, comments that look like what is set, both kinds of quotes.
@@ -27,11 +29,9 @@ inline const char* const kLaunch =
     "  <!-- end -->\n"
     "</launch>";
 
-class InstallScene : public testing::Test {
+class InstallScene : public FolderTest {
  protected:
   InstallScene() {
-    char folder[] = "/tmp/kinecal_install_XXXXXX";
-    folder_ = mkdtemp(folder);
     std::filesystem::create_directories(folder_ / "out");
     std::filesystem::create_directories(folder_ / "robot");
     write("robot/robot.launch", kLaunch);
@@ -43,7 +43,6 @@ class InstallScene : public testing::Test {
           "depth_info: depth_camera.yaml\nrgb_info: rgb_camera.yaml\nurdf: calibrated.urdf\n");
     write("out/report.json", "{\n  \"converged\": true,\n  \"termination\": \"a\\u0001\"\n}\n");
   }
-  ~InstallScene() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] static std::string urdf(const std::string& z) {
     return "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"fixed\">"
@@ -62,13 +61,6 @@ class InstallScene : public testing::Test {
            f + ", 0.0, 320.0, 0.0, 0.0, " + f + ", 240.0, 0.0, 0.0, 0.0, 1.0, 0.0]\n";
   }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
   [[nodiscard]] std::string launch() const { return read("robot/robot.launch"); }
   /// Replaces a piece of a file, once.
   void spoil(const std::string& name, const std::string& from, const std::string& to) const {
@@ -86,8 +78,6 @@ class InstallScene : public testing::Test {
     }
     return all;
   }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace kinecal::test

@@ -11,6 +11,8 @@
 #include <iterator>
 #include <string>
 
+#include "support/temporary_folder.hpp"
+
 namespace kinecal::test {
 
 struct Outcome {
@@ -29,26 +31,10 @@ inline Outcome run_in(const std::filesystem::path& folder, const std::string& ca
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out.txt"), read("err.txt")};
 }
 
-class ProgramTest : public testing::Test {
+class ProgramTest : public FolderTest {
  protected:
-  ProgramTest() {
-    char folder[] = "/tmp/kinecal_program_XXXXXX";
-    folder_ = mkdtemp(folder);
-  }
-  ~ProgramTest() override { std::filesystem::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
   /// A program and its arguments, by way of the shell.
   [[nodiscard]] Outcome run(const std::string& call) const { return run_in(folder_, call); }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace kinecal::test

@@ -1,15 +1,18 @@
 #include "kinecal/io/bags/db3.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "support/bags.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace kinecal {
 namespace {
@@ -22,15 +25,8 @@ using ::testing::ThrowsMessage;
 
 namespace fs = std::filesystem;
 
-class Db3 : public testing::Test {
+class Db3 : public test::FolderTest {
  protected:
-  Db3() {
-    char folder[] = "/tmp/kinecal_db3_XXXXXX";
-    folder_ = mkdtemp(folder);
-    path_ = folder_ / "bag_0.db3";
-  }
-  ~Db3() override { fs::remove_all(folder_); }
-
   [[nodiscard]] BagReading read(std::vector<std::string> wanted = {}) const {
     return read_bag(wanted, [&](const BagReader& reader, Diagnostics& diagnostics) {
       read_db3(path_.string(), reader, diagnostics);
@@ -49,7 +45,7 @@ class Db3 : public testing::Test {
     return path_.string() + ": " + message;
   }
 
-  fs::path folder_, path_;
+  fs::path path_ = folder_ / "bag_0.db3";
 };
 
 TEST_F(Db3, AFileThatIsNoneIsAnError) {
@@ -226,6 +222,42 @@ TEST_F(Db3, AColumnThatIsComputedIsNone) {
       "INSERT INTO topics VALUES(1, '/a', 'b/msg/C', 'cdr');"
       "INSERT INTO messages(topic_id, timestamp) VALUES(1, 1);");
   EXPECT_THAT(read().errors, ElementsAre(HasSubstr("table 'messages' has no column 'data'")));
+}
+
+TEST_F(Db3, MessagesThatAreCompressedOneByOneAreUnpacked) {
+  if (!is_available(Compression::zstd)) GTEST_SKIP() << "built without zstd";
+  std::string hex;
+  for (const std::byte byte : pack(std::as_bytes(std::span("hello", 5)), Compression::zstd)) {
+    hex += fmt::format("{:02x}", std::to_integer<int>(byte));
+  }
+  run(path_, kOldTables + kTopics +
+                 fmt::format("INSERT INTO messages(topic_id, timestamp, data) VALUES(1, 10, "
+                             "x'{}'), (1, 20, x'{}00'), (1, 30, x'00');",
+                             hex, hex));
+  const BagReading reading = read();
+  EXPECT_THAT(reading.messages, ElementsAre("joint_states 10 hello"));
+  EXPECT_THAT(reading.errors,
+              ElementsAre(HasSubstr("bag_0.db3: a message of topic 'joint_states' ")));
+}
+
+TEST_F(Db3, DefinitionsHaveNoMoreBytesThanArePlausible) {
+  run(path_, kNewTables + kTopics + kMessages +
+                 "UPDATE message_definitions SET encoded_message_definition = "
+                 "CAST(randomblob(1) || zeroblob(40000000) AS TEXT), encoding = 'ros2msg';");
+  EXPECT_THAT(read().errors,
+              ElementsAre(HasSubstr("more topics and definitions than are plausible")));
+}
+
+/// Pages that are of many messages at once: a small file without end.
+TEST_F(Db3, MessagesWithMoreBytesThanTheFileAreDamaged) {
+  run(path_, kOldTables + kTopics + kMessages);
+  const std::string uri = "file:" + path_.string() + "?mode=ro&immutable=1";
+  const BagReading reading = read_bag({}, [&](const BagReader& reader, Diagnostics& diagnostics) {
+    detail::read_db3_database([&] { return detail::SqliteDatabase(uri, 12); }, "a.db3", reader,
+                              diagnostics);
+  });
+  EXPECT_THAT(reading.messages, ElementsAre("joint_states 10 first", "joint_states 10 second"));
+  EXPECT_THAT(reading.errors, ElementsAre(HasSubstr("its messages have more bytes than it")));
 }
 
 TEST_F(Db3, WhatHasNoEndIsInterrupted) {

@@ -191,6 +191,63 @@ TEST(Mcap, ADamagedIndexIsToldAndEverythingIsReadWithoutIt) {
               ElementsAre(AllOf(HasSubstr("b.mcap: byte "), HasSubstr("the index is damaged"))));
 }
 
+TEST(Mcap, AnIndexOfMoreBytesThanIsPlausibleIsNotRead) {
+  std::string file = whole(channel(1, 0, "/a", "cdr") + message(1, 5, std::string(70 << 20, 'x')));
+  file[file.size() - 8 - 20] = '\x08';  // where it begins: at once
+  const BagReading reading = read(file);
+  EXPECT_THAT(reading.errors, IsEmpty());
+  EXPECT_THAT(reading.messages, SizeIs(1));
+  EXPECT_THAT(reading.warnings, ElementsAre(HasSubstr("the index is told to begin at byte 8")));
+}
+
+/// Where the summary begins, as the footer says; its sum is taken back.
+std::size_t start_of_summary(std::string& file) {
+  for (std::size_t i = 9; i <= 12; ++i) file[file.size() - i] = '\0';
+  ByteReader footer(detail::as_bytes(std::string_view(file).substr(file.size() - 28)));
+  return footer.number<std::uint64_t>();
+}
+
+TEST(Mcap, AnIndexThatBeginsElsewhereLosesNoMessage) {
+  std::string file = bag_of(8, {Compression::none, 100, true});
+  const auto first = static_cast<int>(start_of_summary(file) % 256);
+  const std::size_t place = file.size() - 8 - 20;
+  for (int by = -100; by < 200; ++by) {
+    std::string wrong = file;
+    wrong[place] = static_cast<char>(first + by);
+    const BagReading reading = read(wrong, {"camera/image"});
+    EXPECT_THAT(reading.errors, IsEmpty()) << by;
+    EXPECT_THAT(reading.messages, SizeIs(4)) << by;
+  }
+}
+
+TEST(Mcap, DefinitionsHaveNoMoreBytesThanArePlausible) {
+  std::string records = schema(1, "a/msg/B", "ros2msg", std::string(20 << 20, ' '));
+  for (std::uint16_t i = 1; i < 10; ++i) {
+    records += channel(i, 1, "/a", "cdr") + message(i, 5, "x");
+  }
+  const BagReading reading = read(whole(records));
+  EXPECT_THAT(reading.messages, SizeIs(2));
+  EXPECT_THAT(reading.errors,
+              ElementsAre(HasSubstr("more topics and definitions than are plausible")));
+}
+
+TEST(Mcap, AnIndexWithoutSchemasOrChannelsLosesNoMessage) {
+  for (const McapOp left_out : {McapOp::schema, McapOp::channel, McapOp::statistics}) {
+    std::string file = bag_of(8, {Compression::none, 1, true});
+    ByteReader summary(detail::as_bytes(file));
+    summary.skip(start_of_summary(file));
+    while (summary.left() > 28) {
+      const std::size_t at = summary.read();
+      if (summary.number<std::uint8_t>() == static_cast<std::uint8_t>(left_out)) file[at] = '\x42';
+      summary.skip(summary.number<std::uint64_t>());
+    }
+    const BagReading reading = read(file, {"camera/image"});
+    EXPECT_THAT(reading.errors, IsEmpty()) << static_cast<int>(left_out);
+    EXPECT_THAT(reading.warnings, IsEmpty());
+    EXPECT_THAT(reading.messages, SizeIs(4));
+  }
+}
+
 TEST(Mcap, ADamagedChunkIsNamedByItsByte) {
   std::string file = bag_of(8, {Compression::none, 100, true});
   const std::size_t at = file.find("message 0");
@@ -247,6 +304,36 @@ TEST(Mcap, SchemasTellTypesAndTexts) {
                           "'json' and others"));
 }
 
+/// ROS 2 does so in its compression mode MESSAGE.
+TEST(Mcap, MessagesThatAreCompressedOneByOneAreUnpacked) {
+  const auto packed_as = [](const std::string& text) {
+    const auto bytes = pack(detail::as_bytes(text), Compression::zstd);
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  const std::string channels = channel(1, 0, "/said", "cdr") + channel(2, 0, "/ros1", "ros1");
+  if (!is_available(Compression::zstd)) {
+    EXPECT_THAT(read(whole(channels + message(1, 5, std::string(kZstdMagic)))).errors,
+                ElementsAre(HasSubstr("a message of topic 'said' is compressed with zstd, and this "
+                                      "kinecal was built without")));
+    GTEST_SKIP() << "without zstd there is nothing to unpack";
+  }
+  const std::string hello = packed_as("hello"), data(200, 'x');
+  EXPECT_THAT(read(whole(channels + message(1, 5, hello) + message(1, 6, packed_as(data)) +
+                         message(1, 7, "plain")))
+                  .messages,
+              ElementsAre("said 5 hello", "said 6 " + data, "said 7 plain"));
+  EXPECT_THAT(read(whole(channels + message(2, 5, hello))).messages, ElementsAre("ros1 5 " + hello))
+      << "of ROS 1 they are what they are";
+  for (std::size_t size = kZstdMagic.size(); size < hello.size(); ++size) {
+    const BagReading reading = read(whole(channels + message(1, 5, hello.substr(0, size))));
+    EXPECT_THAT(reading.errors, ElementsAre(HasSubstr("a message of topic 'said' ")));
+    EXPECT_THAT(reading.messages, IsEmpty());
+  }
+  const std::string bomb = packed_as(std::string(40 << 20, '\0'));
+  EXPECT_THAT(read(whole(channels + message(1, 5, bomb))).errors,
+              ElementsAre(HasSubstr("does not unpack to 33554432 bytes, but to more")));
+}
+
 TEST(Mcap, WhatContradictsItselfIsDamaged) {
   const std::string string = schema(1, "std_msgs/msg/String", "ros2msg", "string data\n");
   const auto errors = [](const std::string& records) { return read(whole(records)).errors; };
@@ -265,7 +352,8 @@ TEST(Mcap, WhatContradictsItselfIsDamaged) {
 
 TEST(Mcap, ChunksThatLieAboutTheirSizeAreErrors) {
   const auto errors = [](const std::string& records) { return read(whole(records)).errors; };
-  EXPECT_THAT(errors(chunk("", 5, 0, "four")), ElementsAre(HasSubstr("5 are declared")));
+  EXPECT_THAT(errors(chunk("", 5, 0, "four")),
+              ElementsAre(HasSubstr("has 4 bytes, not the 5 that it claims")));
   EXPECT_THAT(errors(chunk("rar", 5, 0, "four")), ElementsAre(HasSubstr("compressed with 'rar'")));
   for (const std::string format : {"lz4", "zstd"}) {
     EXPECT_THAT(errors(chunk(format, 5, 0, "four")), SizeIs(1));
@@ -329,6 +417,8 @@ TEST(McapWriter, RefusesWhatIsNotOfRos2) {
   McapWriter writer(out);
   EXPECT_THROW((void)writer.add_topic({"a", "b/C", "", Encoding::ros1}), std::invalid_argument);
   EXPECT_THROW(writer.write(1, 0, {}), std::out_of_range);
+  const auto topic = writer.add_topic(kJoints);
+  EXPECT_THROW(writer.write(topic, -1, {}), std::invalid_argument);
 }
 
 }  // namespace

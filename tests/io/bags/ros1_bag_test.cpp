@@ -243,7 +243,7 @@ std::vector<std::string> errors_of_file(const std::string& path) {
 TEST(Ros1Bag, WhatCannotBeOpenedIsAnError) {
   EXPECT_THAT(errors_of_file("/absent.bag"),
               ElementsAre(HasSubstr("/absent.bag: cannot be opene")));
-  EXPECT_THAT(errors_of_file("/"), ElementsAre("/: is a folder, not a ROS 1 bag"));
+  EXPECT_THAT(errors_of_file("/"), ElementsAre("/: is a folder, not a file"));
   EXPECT_THAT(errors_of_file("/dev/null"), ElementsAre("/dev/null: is empty"));
 }
 
@@ -318,13 +318,41 @@ TEST(Ros1Bag, ChunkInfosThatPointElsewhereLoseNoMessage) {
   EXPECT_FALSE(read.errors.empty());
 }
 
+TEST(Ros1Bag, ChunkInfosThatTellTooLittleLoseNoMessage) {
+  std::string bag = bag_of(some_messages(50));
+  for (std::size_t at = bag.rfind("chunk_pos="), i = 0; i < 2;
+       at = bag.rfind("chunk_pos=", at - 1), ++i) {
+    bag.replace(bag.find("count=", at) + 6, 4, 4, '\0');
+  }
+  const BagContents all = read_bag(bag);
+  EXPECT_EQ(all.messages, some_messages(50));
+  EXPECT_THAT(all.errors, IsEmpty());
+  EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("more topics than its chunk info tells of")));
+  EXPECT_THAT(read_bag(bag, {"robot_description"}).warnings, IsEmpty());
+}
+
+TEST(Ros1Bag, DefinitionsHaveNoMoreBytesThanArePlausible) {
+  std::string records;
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    Ros1Text header, data;
+    header.number("conn", i).op(Ros1Op::connection).field("topic", "a");
+    data.field("type", "T/A").field("message_definition", std::string(5 << 20, char('a' + i)));
+    records += detail::ros1_record(header, data.text()) + message(i, 1, "x");
+  }
+  const BagContents read = read_bag(open_bag(records));
+  EXPECT_EQ(read.topics.size(), 6u);
+  EXPECT_EQ(read.messages.size(), 6u);
+  ASSERT_EQ(read.errors.size(), 4u);
+  EXPECT_THAT(read.errors[0], HasSubstr("more topics and definitions than are plausible"));
+}
+
 TEST(Ros1Bag, ABombIsAnError) {
   for (const Compression c : compressions_of_ros1()) {
     if (c == Compression::none) continue;
     const std::vector<std::byte> packed = pack(std::vector<std::byte>(48 << 20), c);
     const std::string data(reinterpret_cast<const char*>(packed.data()), packed.size());
     for (const std::uint32_t size : {1000U, 1U << 25, 0xffffffffU}) {
-      const BagContents read = read_bag(open_bag(chunk(std::string(name_of(c)), size, data)));
+      const BagContents read = read_bag(open_bag(chunk(std::string(to_string(c)), size, data)));
       EXPECT_THAT(read.errors, ElementsAre(HasSubstr("byte 4117: the chunk "))) << size;
     }
   }
@@ -333,7 +361,7 @@ TEST(Ros1Bag, ABombIsAnError) {
 TEST(Ros1Bag, AMissingLibraryIsToldOnce) {
   for (const Compression c : {Compression::bz2, Compression::lz4}) {
     if (is_available(c)) continue;
-    const std::string packed = chunk(std::string(name_of(c)), 100, "12345");
+    const std::string packed = chunk(std::string(to_string(c)), 100, "12345");
     EXPECT_THAT(read_bag(open_bag(packed + packed)).errors,
                 ElementsAre("a.bag: byte 4117: the chunk " + detail::not_available(c)));
   }

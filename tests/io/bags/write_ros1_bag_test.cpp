@@ -27,9 +27,9 @@ TEST(WriteRos1Bag, WhatIsWrittenReadsBackWithEachCompression) {
   for (const Compression c : compressions_of_ros1()) {
     for (const std::size_t chunk_bytes : {std::size_t{1}, std::size_t{300}, std::size_t{1} << 20}) {
       const test::BagContents read = read_bag(bag_of(messages, c, chunk_bytes));
-      EXPECT_THAT(read.errors, IsEmpty()) << name_of(c);
-      EXPECT_THAT(read.warnings, IsEmpty()) << name_of(c);
-      EXPECT_EQ(read.messages, messages) << name_of(c) << ", " << chunk_bytes;
+      EXPECT_THAT(read.errors, IsEmpty()) << to_string(c);
+      EXPECT_THAT(read.warnings, IsEmpty()) << to_string(c);
+      EXPECT_EQ(read.messages, messages) << to_string(c) << ", " << chunk_bytes;
     }
   }
 }
@@ -55,7 +55,7 @@ TEST(WriteRos1Bag, LargeMessagesAndLargeBagsReadBack) {
   for (const Compression c : compressions_of_ros1()) {
     const auto read = read_bag(bag_of(messages, c, Ros1BagWriter::kChunkBytes));
     EXPECT_THAT(read.errors, IsEmpty());
-    EXPECT_TRUE(read.messages == messages) << name_of(c);
+    EXPECT_TRUE(read.messages == messages) << to_string(c);
   }
 }
 
@@ -160,7 +160,7 @@ TEST_F(Rosbag, ReadsWhatIsWritten) {
     const test::Outcome read = run("/usr/bin/python3 read.py a.bag");
     if (const std::string why = absent(read); !why.empty()) GTEST_SKIP() << why;
     EXPECT_EQ(read.code, 0) << read.err;
-    EXPECT_EQ(read.out, expected) << name_of(c);
+    EXPECT_EQ(read.out, expected) << to_string(c);
   }
 }
 
@@ -169,13 +169,13 @@ TEST_F(Rosbag, WritesWhatIsRead) {
   const std::vector<Recorded> messages = some_messages(50);
   write("a.bag", bag_of(messages));
   for (const Compression c : compressions_of_ros1()) {
-    const test::Outcome copy = run("/usr/bin/python3 write.py a.bag " + std::string(name_of(c)));
+    const test::Outcome copy = run("/usr/bin/python3 write.py a.bag " + std::string(to_string(c)));
     if (const std::string why = absent(copy); !why.empty()) GTEST_SKIP() << why;
     ASSERT_EQ(copy.code, 0) << copy.err;
     const test::BagContents all = read_bag(read("copy.bag"));
-    EXPECT_THAT(all.errors, IsEmpty()) << name_of(c);
-    EXPECT_THAT(all.warnings, IsEmpty()) << name_of(c);
-    EXPECT_EQ(all.messages, messages) << name_of(c);
+    EXPECT_THAT(all.errors, IsEmpty()) << to_string(c);
+    EXPECT_THAT(all.warnings, IsEmpty()) << to_string(c);
+    EXPECT_EQ(all.messages, messages) << to_string(c);
   }
 }
 

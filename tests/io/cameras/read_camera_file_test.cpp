@@ -9,6 +9,7 @@
 
 #include "kinecal/io/camera_info.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace kinecal {
 namespace {
@@ -81,14 +82,8 @@ roi: {x_offset: 0}
 ---
 )";
 
-class CameraFile : public testing::Test {
+class CameraFile : public test::FolderTest {
  protected:
-  CameraFile() {
-    char folder[] = "/tmp/kinecal_cameras_XXXXXX";
-    folder_ = mkdtemp(folder);
-  }
-  ~CameraFile() override { fs::remove_all(folder_); }
-
   CameraInfo read(const std::string& text, const std::string& which = {}) {
     const std::string path = (folder_ / "c.yaml").string();
     std::ofstream(path, std::ios::binary) << text;
@@ -116,7 +111,6 @@ class CameraFile : public testing::Test {
     return text.replace(at, from.size(), to);
   }
 
-  fs::path folder_;
   Diagnostics diagnostics_;
 };
 

@@ -7,6 +7,8 @@
 #include <clocale>
 #include <locale>
 
+#include "support/temporary_folder.hpp"
+
 namespace kinecal {
 namespace {
 
@@ -39,18 +41,12 @@ const char* const kTable =
     "q1,q2,l,dl,x,y,z,dx,dy,dz,u,v\n"
     "90,-45,100,0.5,1000.1,2,3,0.1,0.2,0.3,320.5,240\n";
 
-class ReadCsvSamples : public testing::Test {
+class ReadCsvSamples : public test::FolderTest {
  protected:
-  ReadCsvSamples() {
-    char folder[] = "/tmp/kinecal_csv_XXXXXX";
-    folder_ = mkdtemp(folder);
-  }
-  ~ReadCsvSamples() override { fs::remove_all(folder_); }
-
   std::vector<Sample> read(const std::string& table = kTable,
                            const std::string& mapping = kMapping) {
-    std::ofstream(folder_ / "t.csv") << table;
-    std::ofstream(folder_ / "m.yaml") << mapping;
+    write("t.csv", table);
+    write("m.yaml", mapping);
     diagnostics_ = {};
     return read_csv_samples((folder_ / "t.csv").string(), (folder_ / "m.yaml").string(),
                             diagnostics_);
@@ -62,7 +58,6 @@ class ReadCsvSamples : public testing::Test {
     return text.replace(at, from.size(), to);
   }
 
-  fs::path folder_;
   Diagnostics diagnostics_;
 };
 

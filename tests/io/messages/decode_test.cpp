@@ -157,11 +157,63 @@ TEST(Decode, RefusesLengthsBeyondTheBytesAndOtherCdr) {
   EXPECT_THROW((void)decode(list, Encoding::cdr, std::as_bytes(std::span(parameters))), BytesError);
 }
 
-TEST(Decode, RefusesListsOfWhatTakesNoBytes) {
+TEST(Decode, SaysWhichCdrItCannotRead) {
+  const MessageDefinition definition = parse_definition("a/B", "int8 x\n");
+  const auto refusal = [&](unsigned char kind) -> std::string {
+    const std::array<unsigned char, 8> bytes = {0, kind, 0, 0, 0, 0, 0, 0};
+    try {
+      (void)decode(definition, Encoding::cdr, std::as_bytes(std::span(bytes)));
+    } catch (const BytesError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(0), "");
+  EXPECT_EQ(refusal(1), "");
+  EXPECT_EQ(refusal(3),
+            "byte 0: the message is PL_CDR (its first bytes are 0 3); plain CDR is what "
+            "can be read");
+  EXPECT_THAT(refusal(7), testing::HasSubstr("is XCDR version 2"));
+  EXPECT_THAT(refusal(0x28), testing::HasSubstr("is no CDR"));
+}
+
+TEST(Decode, TakesTextsOfRos2WithoutTheirNul) {
+  const MessageDefinition definition = parse_definition("a/B", "string a\nstring b\nuint8 c\n");
+  const std::array<unsigned char, 16> bytes = {0, 1, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 'x', 'y', 5, 0};
+  const MessageFields value = decode(definition, Encoding::cdr, std::as_bytes(std::span(bytes)));
+  EXPECT_EQ(*value.find("a")->as<std::string_view>(), "");
+  EXPECT_EQ(*value.find("b")->as<std::string_view>(), "xy");
+  EXPECT_EQ(number(value, "c"), 5.0);
+}
+
+TEST(Decode, RefusesManyItemsThatTakeNoBytes) {
   const MessageDefinition nothings =
       parse_definition("a/List", "Nothing[] all\n===\nMSG: a/Nothing\nuint8 CONSTANT=1\n");
-  const std::array<unsigned char, 8> three = {3, 0, 0, 0, 0, 0, 0, 0};
-  EXPECT_THROW((void)decode(nothings, Encoding::ros1, std::as_bytes(std::span(three))), BytesError);
+  std::vector<std::byte> bytes(4 + 1001);
+  bytes[0] = std::byte{3};
+  const MessageFields three = decode(nothings, Encoding::ros1, bytes);
+  EXPECT_EQ(three.find("all")->as<MessageValue::List>()->size(), 3u);
+  bytes[0] = std::byte{1001 % 256}, bytes[1] = std::byte{1001 / 256};
+  EXPECT_THROW((void)decode(nothings, Encoding::ros1, bytes), BytesError);
+  std::string text;  // 2^20 of them in no bytes at all
+  for (int i = 0; i < 20; ++i) {
+    const std::string next = "T" + std::to_string(i + 1);
+    text += next + " one\n" + next + " two\n===\nMSG: a/" + next + "\n";
+  }
+  EXPECT_THROW((void)decode(parse_definition("a/T0", text), Encoding::ros1, {}), BytesError);
+}
+
+/// A value takes some 32 bytes of memory.
+TEST(Decode, RefusesMoreValuesThanAMessageHas) {
+  const MessageDefinition list = parse_definition("a/List", "bool[] all\n");
+  constexpr std::uint32_t kMost = 1 << 20;
+  std::vector<std::byte> bytes(4 + kMost + 1);
+  std::memcpy(bytes.data(), &kMost, 4);
+  EXPECT_EQ(decode(list, Encoding::ros1, bytes).find("all")->as<MessageValue::List>()->size(),
+            kMost);
+  const std::uint32_t more = kMost + 1;
+  std::memcpy(bytes.data(), &more, 4);
+  EXPECT_THROW((void)decode(list, Encoding::ros1, bytes), BytesError);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "support/temporary_folder.hpp"
+
 namespace kinecal {
 namespace {
 
@@ -16,17 +18,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 std::vector<CapturePose> read(const std::string& text, Diagnostics& diagnostics) {
-  char folder[] = "/tmp/kinecal_poses_XXXXXX";
-  const std::filesystem::path path = std::filesystem::path(mkdtemp(folder)) / "poses.yaml";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "poses.yaml";
   std::ofstream(path) << text;
-  try {
-    auto poses = read_poses_yaml(path.string(), diagnostics);
-    std::filesystem::remove_all(folder);
-    return poses;
-  } catch (...) {
-    std::filesystem::remove_all(folder);
-    throw;
-  }
+  return read_poses_yaml(path.string(), diagnostics);
 }
 
 std::string written(const std::vector<CapturePose>& poses) {

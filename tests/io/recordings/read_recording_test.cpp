@@ -9,7 +9,9 @@
 
 #include "kinecal/io/recordings/bag_topics.hpp"
 #include "kinecal/io/recordings/convert.hpp"
+#include "kinecal/io/recordings/pose_messages.hpp"
 #include "support/data.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace kinecal {
 namespace {
@@ -17,14 +19,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class RecordingTest : public testing::Test {
+class RecordingTest : public test::FolderTest {
  protected:
-  RecordingTest() {
-    char folder[] = "/tmp/kinecal_recording_XXXXXX";
-    folder_ = mkdtemp(folder);
-  }
-  ~RecordingTest() override { std::filesystem::remove_all(folder_); }
-
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
 
   [[nodiscard]] Recording read(const std::string& file) {
@@ -38,7 +34,6 @@ class RecordingTest : public testing::Test {
     bag.finish();
   }
 
-  std::filesystem::path folder_;
   Diagnostics diagnostics_;
 };
 
@@ -136,6 +131,33 @@ TEST_F(RecordingTest, OfSamplesAndAUrdfIsReadAgain) {
   EXPECT_THAT(diagnostics_.errors, ElementsAre());
 }
 
+TEST_F(RecordingTest, OfACompressedFileIsRead) {
+  if (!is_available(Compression::zstd)) GTEST_SKIP() << "built without zstd";
+  BagOutput bag(path("a.mcap"), Encoding::cdr);
+  write_samples(bag, made_samples());
+  bag.finish();
+  const auto packed = pack(detail::as_bytes(content(path("a.mcap"))), Compression::zstd);
+  write("a.mcap.zstd", {reinterpret_cast<const char*>(packed.data()), packed.size()});
+  EXPECT_EQ(recording_format(path("a.mcap.zstd")), RecordingFormat::zstd);
+  expect_same(read(path("a.mcap.zstd")).samples, made_samples());
+  EXPECT_THAT(diagnostics_.errors, ElementsAre());
+}
+
+TEST_F(RecordingTest, OfRos1HasTheTopicsThatRobotCalibrationLooksFor) {
+  BagOutput bag(path("a"), Encoding::ros1);
+  write_samples(bag, made_samples());
+  write_urdf(bag, "<robot/>");
+  write_poses(bag, {{{"pan"}, {0.5}, {}}});
+  bag.finish();
+  convert(path("a"), path("b"), Encoding::ros1);
+  for (const char* file : {"a", "b"}) {
+    const std::string bytes = content(path(file));
+    EXPECT_THAT(bytes, HasSubstr("topic=/calibration_data"));
+    EXPECT_THAT(bytes, HasSubstr("topic=/robot_description"));
+    EXPECT_THAT(bytes, HasSubstr("topic=calibration_joint_states"));
+  }
+}
+
 TEST_F(RecordingTest, WithoutSamplesSaysSo) {
   BagOutput bag(path("a"), Encoding::cdr);
   write_urdf(bag, "<robot/>");
@@ -157,6 +179,52 @@ TEST_F(RecordingTest, TellsMessagesThatAreNotWhatTheyClaim) {
   EXPECT_EQ(read(path("a")).samples.size(), 3u);
   ASSERT_EQ(diagnostics_.errors.size(), 1u);
   EXPECT_THAT(diagnostics_.errors[0], HasSubstr("message 1 of topic 'calibration_data'"));
+}
+
+TEST_F(RecordingTest, TellsTheFirstOfManyMessagesThatAreNone) {
+  BagOutput bag(path("a"), Encoding::cdr);
+  const BagTopic topic{"calibration_data", "robot_calibration_msgs/CalibrationData", "int64 x\n",
+                       Encoding::cdr};
+  for (int i = 0; i < 1000; ++i) bag.copy(topic, 1, std::vector<std::byte>(6));
+  bag.finish();
+  (void)read(path("a"));
+  EXPECT_EQ(diagnostics_.errors.size(), 21u);
+}
+
+TEST_F(RecordingTest, KeepsTheVersionsOfATopicApart) {
+  for (const Encoding encoding : {Encoding::ros1, Encoding::cdr}) {
+    BagOutput bag(path("a"), encoding);
+    for (const char* definition : {"float64 t\n", "float32 t\n"}) {
+      const BagTopic topic{"temperature", "sensor_msgs/Temperature", definition, encoding};
+      bag.copy(topic, 1, std::vector<std::byte>(12));
+    }
+    bag.finish();
+    convert(path("a"), path("b"), encoding);
+    std::vector<std::string> definitions;
+    const auto handle = [&](const BagMessage& message) {
+      definitions.push_back(message.topic.definition);
+    };
+    read_bag(path("b"), {[](const BagTopic&) { return true; }, handle}, diagnostics_);
+    EXPECT_THAT(definitions, ElementsAre("float64 t\n", "float32 t\n"));
+  }
+}
+
+TEST_F(RecordingTest, TellsTimesThatRos1DoesNotHave) {
+  BagOutput bag(path("a"), Encoding::cdr);
+  const std::string urdf = known_definition("std_msgs/String", Encoding::cdr);
+  const BagTopic topic{"robot_description", "std_msgs/String", urdf, Encoding::cdr};
+  const std::array<std::byte, 9> empty{std::byte{0}, std::byte{1}};
+  for (const std::int64_t time : {std::int64_t{5'000'000'000'000'000'000}, std::int64_t{1}}) {
+    bag.copy(topic, time, empty);
+    bag.copy(topic, time, empty);
+  }
+  bag.finish();
+  convert(path("a"), path("b"), Encoding::ros1);
+  ASSERT_EQ(diagnostics_.errors.size(), 1u);
+  EXPECT_THAT(diagnostics_.errors[0],
+              HasSubstr("a: message 1 of topic 'robot_description' cannot be written: its time of "
+                        "recording is not of 1970 to 2106"));
+  EXPECT_EQ(bag_topics(path("b"), diagnostics_).at(0).messages, 2);
 }
 
 TEST_F(RecordingTest, LeavesOutWhatTheOtherRosDoesNotKnow) {

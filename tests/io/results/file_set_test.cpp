@@ -6,28 +6,18 @@
 #include <iterator>
 #include <thread>
 
+#include "support/temporary_folder.hpp"
+
 namespace kinecal {
 namespace {
 
 namespace fs = std::filesystem;
 
-class FileSet : public testing::Test {
+class FileSet : public test::FolderTest {
  protected:
-  FileSet() {
-    char folder[] = "/tmp/kinecal_files_XXXXXX";
-    folder_ = mkdtemp(folder);
-  }
-  ~FileSet() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
   [[nodiscard]] std::ptrdiff_t count() const {
     return std::distance(fs::directory_iterator(folder_), {});
   }
-
-  fs::path folder_;
 };
 
 TEST_F(FileSet, ReplacesFilesAndLeavesNothingElse) {

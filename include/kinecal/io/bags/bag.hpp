@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -21,6 +22,12 @@ namespace kinecal {
   const std::size_t at = type.find("/msg/");
   if (at == std::string_view::npos) return std::string(type);
   return std::string(type.substr(0, at)) + std::string(type.substr(at + 4));
+}
+
+/// "/joint_states" is "joint_states".
+[[nodiscard]] inline std::string plain_topic(std::string_view name) {
+  name.remove_prefix(std::min(name.find_first_not_of('/'), name.size()));
+  return std::string(name);
 }
 
 /// How messages are written as bytes.

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <istream>
+#include <span>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -16,6 +17,11 @@
 #include "kinecal/io/bags/bytes.hpp"
 
 namespace kinecal {
+
+/// What begins in a file does not end in it.
+struct CutOffError : BytesError {
+  using BytesError::BytesError;
+};
 
 /// @throws BytesError  if it is not there, is a folder or may not be read
 [[nodiscard]] inline std::ifstream open_bytes(const std::string& path) {
@@ -35,7 +41,7 @@ class ByteFile {
     const std::streamoff end = in_.tellg();
     if (!in_ || end < 0) throw BytesError("its size is unknown; it must be a file, not a pipe");
     size_ = static_cast<std::uint64_t>(end);
-    go_to(0);
+    in_.seekg(0);
   }
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
@@ -44,37 +50,48 @@ class ByteFile {
 
   /// The next `count` bytes.
   /// @param buffer  what they are kept in; it never shrinks
-  /// @throws BytesError  if there are fewer
+  /// @throws CutOffError  if there are fewer; nothing is read then
   [[nodiscard]] Bytes read(std::uint64_t count, std::vector<std::byte>& buffer) {
     if (count > left()) fail(count);
     if (buffer.size() < count) buffer.resize(count);
-    const auto wanted = static_cast<std::streamsize>(count);
-    in_.read(reinterpret_cast<char*>(buffer.data()), wanted);
-    if (in_.gcount() != wanted) fail(count);
-    place_ += count;
+    read(std::span(buffer).first(count));
     return Bytes(buffer).first(count);
   }
 
+  /// @throws CutOffError  if there are fewer bytes; nothing is read then
+  void read(std::span<std::byte> bytes) {
+    if (bytes.size() > left()) fail(bytes.size());
+    const auto wanted = static_cast<std::streamsize>(bytes.size());
+    in_.read(reinterpret_cast<char*>(bytes.data()), wanted);
+    if (in_.gcount() != wanted) {
+      throw CutOffError("byte " + std::to_string(place_) + ": the file cannot be read on");
+    }
+    place_ += bytes.size();
+  }
+
+  /// @throws CutOffError  if there are fewer bytes
   void skip(std::uint64_t count) {
-    // What stands in the stream's buffer costs less to drop than to read again.
-    constexpr std::uint64_t kNear = 4096;
     if (count > left()) fail(count);
-    if (count > kNear) return go_to(place_ + count);
-    in_.ignore(static_cast<std::streamsize>(count));
-    place_ += count;
+    go_to(place_ + count);
   }
 
   /// @param place  not beyond the end
   void go_to(std::uint64_t place) {
-    in_.clear();
-    in_.seekg(static_cast<std::streamoff>(place));
+    // A seek throws away what the stream has read ahead.
+    constexpr std::uint64_t kNear = 4096;
+    if (place >= place_ && place - place_ <= kNear) {
+      in_.ignore(static_cast<std::streamsize>(place - place_));
+    } else {
+      in_.clear();
+      in_.seekg(static_cast<std::streamoff>(place));
+    }
     place_ = place;
   }
 
  private:
   [[noreturn]] void fail(std::uint64_t count) const {
-    throw BytesError("byte " + std::to_string(place_) + ": " + std::to_string(count) +
-                     " bytes are needed and cannot be read; is it cut off?");
+    throw CutOffError("byte " + std::to_string(place_) + ": " + std::to_string(count) +
+                      " bytes are needed and " + std::to_string(left()) + " are left");
   }
 
   std::istream& in_;

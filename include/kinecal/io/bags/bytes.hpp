@@ -74,4 +74,20 @@ class ByteReader {
   std::size_t read_ = 0;
 };
 
+namespace detail {
+
+[[nodiscard]] inline Bytes as_bytes(std::string_view text) {
+  return std::as_bytes(std::span(text));
+}
+
+/// Little endian.
+template <std::integral T>
+void append_number(std::string& bytes, T number) {
+  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(number);
+  if constexpr (std::endian::native != std::endian::little) std::reverse(raw.begin(), raw.end());
+  bytes.append(raw.data(), raw.size());
+}
+
+}  // namespace detail
+
 }  // namespace kinecal

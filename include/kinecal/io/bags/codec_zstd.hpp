@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <memory>
@@ -24,10 +25,11 @@ inline constexpr bool kHaveZstd = true;
 class UnpackZstd {
  public:
   /// @param packed  bytes in all; a window, the memory of zstd, is no larger than what they may
-  /// hold
+  ///                hold, nor than zstd itself allows where it is not asked for more
   explicit UnpackZstd(std::size_t packed) : context_(ZSTD_createDCtx()) {
     if (!context_) throw std::bad_alloc();
-    const int log = static_cast<int>(std::bit_width(most_unpacked(packed) - 1));
+    constexpr int kMostLog = 27;
+    const int log = std::min(kMostLog, static_cast<int>(std::bit_width(most_unpacked(packed) - 1)));
     ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, log);
   }
 

@@ -23,7 +23,7 @@ namespace kinecal {
 
 enum class Compression { none, bz2, lz4, zstd };
 
-[[nodiscard]] constexpr std::string_view name_of(Compression compression) {
+[[nodiscard]] constexpr std::string_view to_string(Compression compression) {
   switch (compression) {
     case Compression::bz2:
       return "bz2";
@@ -41,7 +41,7 @@ enum class Compression { none, bz2, lz4, zstd };
 [[nodiscard]] constexpr std::optional<Compression> compression_named(std::string_view text) {
   using enum Compression;
   for (const Compression c : {none, bz2, lz4, zstd}) {
-    if (text == name_of(c)) return c;
+    if (text == to_string(c)) return c;
   }
   return text.empty() ? std::optional(none) : std::nullopt;
 }
@@ -58,10 +58,16 @@ namespace detail {
 
 /// "is compressed with lz4, and ...": a predicate without its subject.
 [[nodiscard]] inline std::string not_available(Compression compression) {
-  const std::string library = "lib" + std::string(name_of(compression));
-  return "is compressed with " + std::string(name_of(compression)) +
+  const std::string library = "lib" + std::string(to_string(compression));
+  return "is compressed with " + std::string(to_string(compression)) +
          ", and this kinecal was built without " + library + "; install " + library +
          "-dev and build again";
+}
+
+inline void check_size(Bytes bytes, std::optional<std::uint64_t> size) {
+  if (size.value_or(bytes.size()) == bytes.size()) return;
+  throw BytesError("has " + std::to_string(bytes.size()) + " bytes, not the " +
+                   std::to_string(*size) + " that it claims");
 }
 
 }  // namespace detail
@@ -93,16 +99,38 @@ inline void unpack([[maybe_unused]] Bytes packed, Compression compression,
     }
 #endif
     case Compression::none:
-      if (size.value_or(packed.size()) != packed.size()) {
-        throw BytesError("has " + std::to_string(packed.size()) + " bytes, not the " +
-                         std::to_string(*size) + " that it claims");
-      }
+      detail::check_size(packed, size);
       out.assign(packed.begin(), packed.end());
       return;
     default:
       throw BytesError(detail::not_available(compression));
   }
 }
+
+/// Unpacks the blocks of a bag, one after the other.  Many small bombs are no less than a large
+/// one: what comes out of all of them is bounded by what went in.
+class BlockUnpacker {
+ public:
+  /// @return  what it unpacks to, valid up to the next one; the same bytes if it is not compressed
+  /// @throws BytesError  as unpack()
+  [[nodiscard]] Bytes operator()(Bytes packed, Compression compression,
+                                 std::optional<std::uint64_t> size) {
+    if (compression == Compression::none) {
+      detail::check_size(packed, size);
+      return packed;
+    }
+    unpack(packed, compression, size, unpacked_);
+    read_ += packed.size();
+    written_ += unpacked_.size();
+    if (written_ <= detail::most_unpacked_in_all(read_)) return unpacked_;
+    throw BytesError("unpacks, with those before it, from " + std::to_string(read_) + " bytes to " +
+                     std::to_string(written_) + ", which is not plausible");
+  }
+
+ private:
+  std::vector<std::byte> unpacked_;
+  std::uint64_t read_ = 0, written_ = 0;
+};
 
 /// @throws std::invalid_argument  if this kinecal was built without the library
 [[nodiscard]] inline std::vector<std::byte> pack(Bytes bytes, Compression compression) {

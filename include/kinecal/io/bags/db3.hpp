@@ -78,26 +78,31 @@ void read_db3_database(const Open& open, const std::string& name, const BagReade
 
 /// All wanted messages of a file, in the order of time.
 /// @param path         of a .db3 file
+/// @param name         as messages name the file
 /// @param diagnostics  receives what is wrong with it, at most one error, after which nothing is
 ///                     read; also that this kinecal was built without SQLite.  Only what the
 ///                     handler throws is thrown.
-inline void read_db3(const std::string& path, [[maybe_unused]] const BagReader& reader,
-                     Diagnostics& diagnostics) {
+inline void read_db3(const std::string& path, const std::string& name,
+                     [[maybe_unused]] const BagReader& reader, Diagnostics& diagnostics) {
   try {
     detail::check_is_sqlite(path);
   } catch (const BytesError& e) {
-    diagnostics.error({path, 0}, e.what());
+    diagnostics.error({name, 0}, e.what());
     return;
   }
 #ifdef KINECAL_HAVE_SQLITE
   detail::warn_of_journals(path, diagnostics);
-  detail::read_db3_database([&] { return detail::SqliteDatabase::open(path); }, path, reader,
+  detail::read_db3_database([&] { return detail::SqliteDatabase::open(path); }, name, reader,
                             diagnostics);
 #else
-  diagnostics.error({path, 0},
+  diagnostics.error({name, 0},
                     "is an SQLite database, and this kinecal was built without libsqlite3; install "
                     "libsqlite3-dev and build again");
 #endif
+}
+
+inline void read_db3(const std::string& path, const BagReader& reader, Diagnostics& diagnostics) {
+  read_db3(path, path, reader, diagnostics);
 }
 
 }  // namespace kinecal

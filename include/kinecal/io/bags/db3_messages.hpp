@@ -22,8 +22,10 @@
 #include <vector>
 
 #include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/kept_bytes.hpp"
 #include "kinecal/io/bags/ros2_formats.hpp"
 #include "kinecal/io/bags/sqlite.hpp"
+#include "kinecal/io/bags/unpack_message.hpp"
 #include "kinecal/io/diagnostics.hpp"
 
 namespace kinecal::detail {
@@ -66,7 +68,9 @@ class Db3Messages {
     row_->bind(id);
     if (row_->next()) {
       const auto topic = wanted_.find(row_->number(0));
-      if (topic != wanted_.end()) return BagMessage{topic->second, row_->number(1), row_->bytes(2)};
+      if (topic != wanted_.end()) {
+        return BagMessage{topic->second, row_->number(1), content(topic->second)};
+      }
     }
     throw BytesError(
         fmt::format("the database is damaged: an index and table 'messages' differ at "
@@ -75,6 +79,17 @@ class Db3Messages {
   }
 
  private:
+  /// The data of the row that is there.
+  /// @throws BytesError  if they cannot all be in the file: a page that is of many messages
+  [[nodiscard]] Bytes content(const BagTopic& topic) {
+    const Bytes data = row_->bytes(2);
+    read_ += data.size();
+    if (read_ > database_.size()) {
+      throw BytesError("the database is damaged: its messages have more bytes than it");
+    }
+    return unpack_message_(topic, data);
+  }
+
   struct Row {
     std::int64_t id;
     BagTopic topic;
@@ -104,14 +119,17 @@ class Db3Messages {
   }
 
   [[nodiscard]] std::vector<Row> read_topics() const {
-    const std::map<std::string, std::string> definitions = read_definitions();
+    KeptBytes kept;
+    const std::map<std::string, std::string> definitions = read_definitions(kept);
     std::vector<Row> topics;
     SqliteRows rows(database_, "SELECT id, name, type, serialization_format FROM topics");
     while (rows.next()) {
       const std::string type = rows.text(2);
       const auto definition = definitions.find(type);
+      const std::size_t size = definition == definitions.end() ? 0 : definition->second.size();
+      kept.add(type.size() + rows.bytes(1).size() + rows.bytes(3).size() + size);
       topics.push_back({rows.number(0),
-                        {bag_topic_name(rows.text(1)), plain_type(type),
+                        {plain_topic(rows.text(1)), plain_type(type),
                          definition == definitions.end() ? "" : definition->second, Encoding::cdr},
                         rows.text(3)});
     }
@@ -119,7 +137,7 @@ class Db3Messages {
   }
 
   /// Texts of the types that have one, by the names that ROS 2 gives them.
-  [[nodiscard]] std::map<std::string, std::string> read_definitions() const {
+  [[nodiscard]] std::map<std::string, std::string> read_definitions(KeptBytes& kept) const {
     std::map<std::string, std::string> definitions;
     const std::set<std::string> has = columns_of("message_definitions");
     for (const char* column : {"topic_type", "encoding", "encoded_message_definition"}) {
@@ -128,7 +146,10 @@ class Db3Messages {
     SqliteRows rows(database_,
                     "SELECT topic_type, encoded_message_definition FROM message_definitions "
                     "WHERE encoding = 'ros2msg'");
-    while (rows.next()) definitions.emplace(rows.text(0), rows.text(1));
+    while (rows.next()) {
+      kept.add(rows.bytes(0).size() + rows.bytes(1).size());
+      definitions.emplace(rows.text(0), rows.text(1));
+    }
     return definitions;
   }
 
@@ -143,6 +164,8 @@ class Db3Messages {
   const SqliteDatabase& database_;
   std::map<std::int64_t, BagTopic> wanted_;
   std::optional<SqliteRows> order_, row_;
+  std::uint64_t read_ = 0;  ///< bytes of messages
+  MessageUnpacker unpack_message_;
 };
 
 }  // namespace kinecal::detail

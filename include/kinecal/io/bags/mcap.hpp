@@ -44,15 +44,21 @@ inline void read_mcap(std::istream& in, const std::string& name, const BagReader
 }
 
 /// @param path  of an .mcap file
-inline void read_mcap(const std::string& path, const BagReader& reader, Diagnostics& diagnostics) {
+/// @param name  as messages name the file
+inline void read_mcap(const std::string& path, const std::string& name, const BagReader& reader,
+                      Diagnostics& diagnostics) {
   std::ifstream in;
   try {
     in = open_bytes(path);
   } catch (const BytesError& e) {
-    diagnostics.error({path, 0}, e.what());
+    diagnostics.error({name, 0}, e.what());
     return;
   }
-  read_mcap(in, path, reader, diagnostics);
+  read_mcap(in, name, reader, diagnostics);
+}
+
+inline void read_mcap(const std::string& path, const BagReader& reader, Diagnostics& diagnostics) {
+  read_mcap(path, path, reader, diagnostics);
 }
 
 }  // namespace kinecal

@@ -4,11 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 #include "kinecal/io/bags/compression.hpp"
 #include "kinecal/io/bags/crc32.hpp"
@@ -29,10 +27,9 @@ inline void check_mcap_sum(Bytes bytes, std::uint32_t told, std::uint64_t place,
 }
 
 /// The records of a chunk.
-/// @param unpacked  what they are kept in if they were compressed
+/// @param unpack  what they are kept in if they were compressed
 /// @throws BytesError  if they are damaged, or compressed by what this kinecal lacks
-[[nodiscard]] inline Bytes unpack_mcap_chunk(const McapChunk& chunk,
-                                             std::vector<std::byte>& unpacked) {
+[[nodiscard]] inline Bytes unpack_mcap_chunk(const McapChunk& chunk, BlockUnpacker& unpack) {
   const std::optional<Compression> compression = compression_named(chunk.compression);
   if (!compression) {
     throw BytesError(
@@ -40,14 +37,7 @@ inline void check_mcap_sum(Bytes bytes, std::uint32_t told, std::uint64_t place,
                     "zstd, lz4 or none",
                     chunk.compression));
   }
-  Bytes records = chunk.records;
-  if (*compression != Compression::none) {
-    unpack(chunk.records, *compression, chunk.size, unpacked);
-    records = unpacked;
-  } else if (records.size() != chunk.size) {
-    throw BytesError(fmt::format("it has {} bytes, and {} are declared; it is damaged",
-                                 records.size(), chunk.size));
-  }
+  const Bytes records = unpack(chunk.records, *compression, chunk.size);
   check_mcap_sum(records, chunk.sum, chunk.records_place, "its content");
   return records;
 }

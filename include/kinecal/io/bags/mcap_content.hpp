@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -20,9 +17,7 @@ class McapContent {
  public:
   template <std::unsigned_integral T>
   McapContent& number(T value) {
-    auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
-    if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
-    content_.append(raw.data(), raw.size());
+    append_number(content_, value);
     return *this;
   }
 
@@ -51,9 +46,5 @@ class McapContent {
  private:
   std::string content_;
 };
-
-[[nodiscard]] inline Bytes as_bytes(std::string_view text) {
-  return std::as_bytes(std::span(text.data(), text.size()));
-}
 
 }  // namespace kinecal::detail

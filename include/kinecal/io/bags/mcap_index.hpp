@@ -27,9 +27,11 @@ struct McapIndex {
   McapTopics topics;
   std::string damage;  ///< why the summary is not used; empty if it is, or if there is none
 
-  /// Whether a chunk that is skipped cannot hold the only definition of a channel.
-  [[nodiscard]] bool knows_all_channels() const {
-    return statistics && statistics->channels <= topics.count();
+  /// Whether a chunk that is skipped cannot hold the only record of a channel or a schema; writers
+  /// may leave out either from the summary.
+  [[nodiscard]] bool knows_all_topics() const {
+    return statistics && statistics->channels <= topics.channels() &&
+           statistics->schemas <= topics.schemas();
   }
 };
 
@@ -66,6 +68,7 @@ inline void read_mcap_summary(Bytes summary, std::uint64_t place, McapIndex& ind
 /// @return  what is known without reading all of it; nothing at all if the recording was
 ///          interrupted
 [[nodiscard]] inline McapIndex read_mcap_index(ByteFile& file) {
+  constexpr std::uint64_t kMostOfASummary = std::uint64_t{1} << 26;  // of some 100 GB
   constexpr std::uint64_t kEnd = kMcapHeadBytes + kMcapFooterBytes + kMcapMagic.size();
   std::vector<std::byte> buffer;
   McapIndex index;
@@ -81,7 +84,7 @@ inline void read_mcap_summary(Bytes summary, std::uint64_t place, McapIndex& ind
   index.complete = in.text(kMcapMagic.size()) == kMcapMagic;
   if (!index.complete || footer.summary == 0) return index;
   try {
-    if (footer.summary > footer_place || footer_place - footer.summary > kMostOfABlock) {
+    if (footer.summary > footer_place || footer_place - footer.summary > kMostOfASummary) {
       throw BytesError(fmt::format("byte {}: the index is told to begin at byte {}", footer_place,
                                    footer.summary));
     }

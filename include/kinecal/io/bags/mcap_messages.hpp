@@ -18,6 +18,7 @@
 #include "kinecal/io/bags/bag.hpp"
 #include "kinecal/io/bags/mcap_chunk.hpp"
 #include "kinecal/io/bags/mcap_index.hpp"
+#include "kinecal/io/bags/unpack_message.hpp"
 #include "kinecal/io/diagnostics.hpp"
 
 namespace kinecal::detail {
@@ -105,7 +106,7 @@ class McapMessages {
     const McapChunk chunk(ByteReader(content(length), std::endian::little, start + kMcapHeadBytes));
     chunk_place_ = start;
     try {
-      const Bytes records = unpack_mcap_chunk(chunk, unpacked_);
+      const Bytes records = unpack_mcap_chunk(chunk, unpack_);
       const std::uint64_t first = chunk.compression.empty() ? chunk.records_place : 0;
       in_chunk_.emplace(records, std::endian::little, first);
     } catch (const BytesError& e) {
@@ -118,7 +119,7 @@ class McapMessages {
     const auto it = index_.chunks.find(start);
     if (it == index_.chunks.end() || it->second.length != kMcapHeadBytes + length) return false;
     const std::vector<std::uint16_t>& channels = it->second.channels;
-    if (channels.empty() || !index_.knows_all_channels()) return false;
+    if (channels.empty() || !index_.knows_all_topics()) return false;
     const ByteReader here(Bytes{}, std::endian::little, start);
     return std::none_of(channels.begin(), channels.end(), [&](std::uint16_t channel) {
       McapTopics::Topic* topic = index_.topics.find(channel);
@@ -161,10 +162,11 @@ class McapMessages {
     return index_.topics.wants(*topic, reader_, in) ? topic : nullptr;
   }
 
-  [[nodiscard]] static BagMessage message(McapTopics::Topic& topic, const McapMessageHead& head,
-                                          Bytes data) {
+  [[nodiscard]] BagMessage message(McapTopics::Topic& topic, const McapMessageHead& head,
+                                   Bytes data) {
     ++topic.handled;
-    return {topic.topic, static_cast<std::int64_t>(head.log_time), data};
+    return {topic.topic, static_cast<std::int64_t>(head.log_time),
+            unpack_message_(topic.topic, data)};
   }
 
   std::nullopt_t interrupted(std::uint64_t start) {
@@ -221,8 +223,9 @@ class McapMessages {
   Place place_;
   Diagnostics& diagnostics_;
   McapIndex index_;
-  std::vector<std::byte> buffer_;    ///< of the file: a record, a chunk
-  std::vector<std::byte> unpacked_;  ///< of a chunk that was compressed
+  std::vector<std::byte> buffer_;   ///< of the file: a record, a chunk
+  BlockUnpacker unpack_;            ///< holds a chunk that was compressed
+  MessageUnpacker unpack_message_;  ///< and a message
   std::optional<ByteReader> in_chunk_;
   std::uint64_t chunk_place_ = 0;
   bool ended_ = false;

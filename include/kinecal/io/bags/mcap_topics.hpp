@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/kept_bytes.hpp"
 #include "kinecal/io/bags/mcap_records.hpp"
 #include "kinecal/io/bags/ros2_formats.hpp"
 
@@ -33,9 +34,12 @@ class McapTopics {
   /// @throws BytesError  if there was another of its number that says something else
   void add_schema(const ByteReader& in) {
     const McapSchema record(in);
-    Schema schema{std::string(record.name), std::string(record.encoding), std::string(record.text)};
-    const auto [it, is_new] = schemas_.try_emplace(record.id, std::move(schema));
-    if (!is_new && (it->second.name != record.name || it->second.text != record.text)) {
+    const auto it = schemas_.find(record.id);
+    if (it == schemas_.end()) {
+      kept_.add(record.name.size() + record.text.size());
+      schemas_[record.id] = {std::string(record.name), std::string(record.encoding),
+                             std::string(record.text)};
+    } else if (it->second.name != record.name || it->second.text != record.text) {
       in.fail(fmt::format("schema {} is '{}' and was '{}', or has another text; it is damaged",
                           record.id, record.name, it->second.name));
     }
@@ -46,6 +50,7 @@ class McapTopics {
     const auto [it, is_new] = topics_.try_emplace(record.id);
     Topic& topic = it->second;
     if (is_new) {
+      kept_.add(record.topic.size() + record.encoding.size());
       topic.schema = record.schema;
       topic.channel_name = record.topic;
       topic.encoding = record.encoding;
@@ -55,7 +60,8 @@ class McapTopics {
     }
   }
 
-  [[nodiscard]] std::size_t count() const { return topics_.size(); }
+  [[nodiscard]] std::size_t channels() const { return topics_.size(); }
+  [[nodiscard]] std::size_t schemas() const { return schemas_.size(); }
 
   /// Null if it has not been there yet.
   [[nodiscard]] Topic* find(std::uint16_t channel) {
@@ -74,7 +80,7 @@ class McapTopics {
       }
       return false;
     }
-    topic.topic.name = bag_topic_name(topic.channel_name);
+    topic.topic.name = plain_topic(topic.channel_name);
     topic.topic.encoding = topic.encoding == "cdr" ? Encoding::cdr : Encoding::ros1;
     if (topic.schema != 0) {
       const auto it = schemas_.find(topic.schema);
@@ -85,6 +91,7 @@ class McapTopics {
       const Schema& schema = it->second;
       topic.topic.type = plain_type(schema.name);
       if (schema.encoding == "ros2msg" || schema.encoding == "ros1msg") {
+        kept_.add(schema.text.size());
         topic.topic.definition = schema.text;
       }
     }
@@ -103,6 +110,7 @@ class McapTopics {
   struct Schema {
     std::string name, encoding, text;
   };
+  KeptBytes kept_;
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, Topic> topics_;  ///< they stay where they are
   std::size_t foreign_ = 0;

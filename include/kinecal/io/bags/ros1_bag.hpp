@@ -7,26 +7,23 @@
 #pragma once
 
 #include <algorithm>
-#include <cerrno>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <exception>
-#include <filesystem>
 #include <fstream>
 #include <istream>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/bags/byte_file.hpp"
 #include "kinecal/io/bags/bytes.hpp"
 #include "kinecal/io/bags/compression.hpp"
-#include "kinecal/io/bags/ros1_file.hpp"
+#include "kinecal/io/bags/ros1_head.hpp"
 #include "kinecal/io/bags/ros1_index.hpp"
 #include "kinecal/io/bags/ros1_messages.hpp"
 #include "kinecal/io/bags/ros1_record.hpp"
@@ -63,10 +60,9 @@ class Ros1BagReading {
 
  private:
   void check_magic() {
-    if (!file_.known()) throw BytesError("cannot be sought in; is it a pipe? read it from a file");
     if (file_.size() == 0) throw BytesError("is empty");
-    file_.read(std::min<std::uint64_t>(file_.size(), kRos1Magic.size()), packed_);
-    const std::string_view text(reinterpret_cast<const char*>(packed_.data()), packed_.size());
+    const auto size = std::min<std::uint64_t>(file_.size(), kRos1Magic.size());
+    const std::string_view text = ByteReader(file_.read(size, packed_)).text(size);
     if (text == kRos1Magic) return;
     if (kRos1Magic.starts_with(text)) throw BytesError("is cut off within its first line");
     if (text.starts_with("#ROSBAG V1.") || text.starts_with("#ROSRECORD V1.")) {
@@ -108,7 +104,7 @@ class Ros1BagReading {
 
   /// @throws BytesError  if none begins here, or it does not end in the file
   void record() {
-    const Ros1File::Head head = file_.head();
+    const Ros1Head head = read_ros1_head(file_, header_bytes_);
     const Ros1Op op = head.fields.op();
     try {
       handle(op, head);
@@ -116,29 +112,35 @@ class Ros1BagReading {
       throw;
     } catch (const BytesError& e) {  // where the next one begins is known nevertheless
       messages_.error(std::string(e.what()) + "; the record is left out");
-      file_.skip_data(head);
+      skip_ros1_data(file_, head);
     }
   }
 
-  void handle(Ros1Op op, const Ros1File::Head& head) {
+  void handle(Ros1Op op, const Ros1Head& head) {
     switch (op) {
       case Ros1Op::chunk:
         return chunk(head);
       case Ros1Op::message:
         return message(head);
       case Ros1Op::connection:
-        file_.read_data(head, packed_);
-        return messages_.connection({head.fields, packed_, head.data_place}, "");
-      case Ros1Op::bag:
+        return messages_.connection(
+            {head.fields, read_ros1_data(file_, head, packed_), head.data_place}, "");
       case Ros1Op::index:
+        return index(head);
+      case Ros1Op::bag:
       case Ros1Op::chunk_info:
-        return file_.skip_data(head);
+        return skip_ros1_data(file_, head);
     }
     throw BytesError(at(head.place) + "a record of unknown kind");
   }
 
-  void chunk(const Ros1File::Head& head) {
-    if (is_unwanted(head.place)) return file_.skip_data(head);
+  void chunk(const Ros1Head& head) {
+    skipped_.reset();
+    if (is_unwanted(head.place)) {
+      skip_ros1_data(file_, head);
+      skipped_ = head.place;
+      return;
+    }
     const auto compression = compression_named(head.fields.text("compression"));
     const auto size = head.fields.number<std::uint32_t>("size");
     if (head.data_size == 0 && size == 0) {  // its records follow; sizes are written when it closes
@@ -146,19 +148,15 @@ class Ros1BagReading {
       return;
     }
     if (!has_index_ && compression == Compression::none && head.data_size > file_.left()) {
-      file_.read(file_.left(), packed_);
-      messages_.records({packed_, head.data_place, "", false});
+      const std::uint64_t left = std::min(file_.left(), kMostOfABlock);
+      messages_.records({file_.read(left, packed_), head.data_place, "", false});
       throw CutOffError(at(head.place) + "the chunk is cut off");
     }
-    file_.read_data(head, packed_);
+    const Bytes packed = read_ros1_data(file_, head, packed_);
+    Bytes records;
     try {
       if (!compression) throw BytesError("is compressed in a way that is not of ROS 1");
-      if (compression != Compression::none) {
-        unpack(packed_, *compression, size, unpacked_);
-      } else if (size != packed_.size()) {
-        throw BytesError("has " + std::to_string(packed_.size()) + " bytes, not the " +
-                         std::to_string(size) + " that it claims");
-      }
+      records = unpack_(packed, *compression, size);
     } catch (const BytesError& e) {
       const bool again =
           compression && !is_available(*compression) && !told_.insert(*compression).second;
@@ -166,10 +164,26 @@ class Ros1BagReading {
       return;
     }
     if (compression == Compression::none) {
-      messages_.records({packed_, head.data_place, ""});
+      messages_.records({records, head.data_place, ""});
     } else {
-      messages_.records({unpacked_, 0, at(head.place) + "in what the chunk unpacks to, "});
+      messages_.records({records, 0, at(head.place) + "in what the chunk unpacks to, "});
     }
+  }
+
+  /// An index of the chunk in front of it.  It may tell of what the chunk info does not.
+  void index(const Ros1Head& head) {
+    skip_ros1_data(file_, head);
+    if (!skipped_ || head.fields.number<std::uint32_t>("count") == 0) return;
+    if (!messages_.topics().may_be_wanted(head.fields.number<std::uint32_t>("conn"))) return;
+    if (!wrong_infos_) {
+      messages_.warning(at(*skipped_) + "the chunk holds more topics than its chunk info tells of");
+    }
+    wrong_infos_ = true;
+    const std::uint64_t next = file_.place();
+    chunks_.erase(*skipped_);
+    file_.go_to(*skipped_);
+    chunk(read_ros1_head(file_, header_bytes_));
+    file_.go_to(next);
   }
 
   [[nodiscard]] bool is_unwanted(std::uint64_t chunk) const {
@@ -181,12 +195,11 @@ class Ros1BagReading {
   }
 
   /// A message that is in no chunk.
-  void message(const Ros1File::Head& head) {
+  void message(const Ros1Head& head) {
     const BagTopic* topic = messages_.wanted(head.fields, at(head.place));
-    if (topic == nullptr) return file_.skip_data(head);
+    if (topic == nullptr) return skip_ros1_data(file_, head);
     const std::int64_t time = ros1_time(head.fields, "time");
-    file_.read_data(head, packed_);
-    messages_.handle(*topic, time, packed_);
+    messages_.handle(*topic, time, read_ros1_data(file_, head, packed_));
   }
 
   void tell_no_index(const std::string& why) {
@@ -204,16 +217,19 @@ class Ros1BagReading {
     return "byte " + std::to_string(place) + ": ";
   }
 
-  Ros1File file_;
+  ByteFile file_;
   Ros1Messages messages_;
   Ros1BagHeader header_;
   Ros1ChunkInfos chunks_;
   bool has_index_ = false;
-  bool is_in_open_chunk_ = false;  ///< compressed, so that its records cannot be read
-  std::uint64_t end_ = 0;          ///< of what is walked
+  bool wrong_infos_ = false;              ///< which has been told
+  std::optional<std::uint64_t> skipped_;  ///< the last chunk, if it was
+  bool is_in_open_chunk_ = false;         ///< compressed, so that its records cannot be read
+  std::uint64_t end_ = 0;                 ///< of what is walked
   std::uint64_t read_to_ = 0;
   std::set<Compression> told_;  ///< not to be available
-  std::vector<std::byte> packed_, unpacked_;
+  std::vector<std::byte> header_bytes_, packed_;
+  BlockUnpacker unpack_;
 };
 
 }  // namespace detail
@@ -226,6 +242,8 @@ inline void read_ros1_bag(std::istream& in, const std::string& name, const BagRe
                           Diagnostics& diagnostics) {
   try {
     detail::Ros1BagReading(in, name, reader, diagnostics).read();
+  } catch (const BytesError& e) {
+    diagnostics.error({name, 0}, e.what());
   } catch (const detail::PassedOn& passed_on) {
     std::rethrow_exception(passed_on.thrown);
   }
@@ -236,14 +254,11 @@ inline void read_ros1_bag(std::istream& in, const std::string& name, const BagRe
 ///                     what the reader's functions throw passes through, and nothing else is thrown
 inline void read_ros1_bag(const std::string& path, const BagReader& reader,
                           Diagnostics& diagnostics) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    return diagnostics.error({path, 0}, "is a folder, not a ROS 1 bag");
-  }
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    return diagnostics.error({path, 0}, std::string("cannot be opened: ") + std::strerror(errno));
+  std::ifstream in;
+  try {
+    in = open_bytes(path);
+  } catch (const BytesError& e) {
+    return diagnostics.error({path, 0}, e.what());
   }
   read_ros1_bag(in, path, reader, diagnostics);
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "kinecal/io/bags/bytes.hpp"
-#include "kinecal/io/bags/ros1_file.hpp"
+#include "kinecal/io/bags/ros1_head.hpp"
 #include "kinecal/io/bags/ros1_record.hpp"
 #include "kinecal/io/bags/ros1_topics.hpp"
 
@@ -24,8 +24,9 @@ struct Ros1BagHeader {
 };
 
 /// @throws BytesError  if it is not one, or says that the bag is encrypted
-[[nodiscard]] inline Ros1BagHeader read_ros1_bag_header(Ros1File& file) {
-  const Ros1File::Head head = file.head();
+[[nodiscard]] inline Ros1BagHeader read_ros1_bag_header(ByteFile& file) {
+  std::vector<std::byte> bytes;
+  const Ros1Head head = read_ros1_head(file, bytes);
   if (head.fields.op() != Ros1Op::bag) {
     throw BytesError("byte " + std::to_string(head.place) + ": the bag header is missing");
   }
@@ -37,7 +38,7 @@ struct Ros1BagHeader {
   header.index_place = head.fields.number<std::uint64_t>("index_pos");
   header.connections = head.fields.number<std::uint32_t>("conn_count");
   header.chunks = head.fields.number<std::uint32_t>("chunk_count");
-  file.skip_data(head);
+  skip_ros1_data(file, head);
   return header;
 }
 
@@ -59,10 +60,10 @@ inline void add_ros1_chunk_info(const Ros1Fields& header, Bytes data, std::uint6
 
 /// Reads all of the index.
 /// @return  empty if it is whole, otherwise what is wrong with it; then `chunks` is empty
-[[nodiscard]] inline std::string read_ros1_index(Ros1File& file, const Ros1BagHeader& header,
+[[nodiscard]] inline std::string read_ros1_index(ByteFile& file, const Ros1BagHeader& header,
                                                  Ros1Topics& topics, Ros1ChunkInfos& chunks) {
   std::uint64_t connections = 0, infos = 0;
-  std::vector<std::byte> data;
+  std::vector<std::byte> header_bytes, data;
   try {
     if (header.index_place < file.place() || header.index_place > file.size()) {
       throw BytesError("byte " + std::to_string(header.index_place) +
@@ -70,13 +71,13 @@ inline void add_ros1_chunk_info(const Ros1Fields& header, Bytes data, std::uint6
     }
     file.go_to(header.index_place);
     while (file.left() > 0) {
-      const Ros1File::Head head = file.head();
-      file.read_data(head, data);
-      if (head.fields.op() == Ros1Op::connection) {
-        topics.add(head.fields, data, head.data_place);
+      const Ros1Head head = read_ros1_head(file, header_bytes);
+      const Ros1Op op = head.fields.op();
+      if (op == Ros1Op::connection) {
+        topics.add(head.fields, read_ros1_data(file, head, data), head.data_place);
         ++connections;
-      } else if (head.fields.op() == Ros1Op::chunk_info) {
-        add_ros1_chunk_info(head.fields, data, head.data_place, chunks);
+      } else if (op == Ros1Op::chunk_info) {
+        add_ros1_chunk_info(head.fields, read_ros1_data(file, head, data), head.data_place, chunks);
         ++infos;
       } else {
         throw BytesError("byte " + std::to_string(head.place) + ": another record is there");

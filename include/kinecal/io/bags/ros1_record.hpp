@@ -49,7 +49,7 @@ class Ros1Fields {
       const std::size_t equals = field.find('=');
       if (equals == std::string_view::npos) reader.fail("a field without '=' ends here");
       if (field.substr(0, equals) == name) {
-        return std::as_bytes(std::span(field.substr(equals + 1)));
+        return as_bytes(field.substr(equals + 1));
       }
     }
     return std::nullopt;

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,14 +12,6 @@
 #include "kinecal/io/bags/ros1_record.hpp"
 
 namespace kinecal::detail {
-
-/// Little endian.
-template <std::integral T>
-void append_number(std::string& bytes, T number) {
-  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(number);
-  if constexpr (std::endian::native != std::endian::little) std::reverse(raw.begin(), raw.end());
-  bytes.append(raw.data(), raw.size());
-}
 
 /// Fields: a header, or the data of a connection.  In alphabetical order, as rosbag has them.
 class Ros1Text {
@@ -60,7 +48,7 @@ class Ros1Text {
 }
 
 [[nodiscard]] inline std::string ros1_record(const Ros1Text& header, std::string_view data) {
-  return ros1_record(header, std::as_bytes(std::span(data)));
+  return ros1_record(header, as_bytes(data));
 }
 
 }  // namespace kinecal::detail

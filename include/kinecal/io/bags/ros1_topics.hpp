@@ -4,7 +4,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <exception>
@@ -16,6 +15,7 @@
 
 #include "kinecal/io/bags/bag.hpp"
 #include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/io/bags/kept_bytes.hpp"
 #include "kinecal/io/bags/ros1_record.hpp"
 
 namespace kinecal::detail {
@@ -46,14 +46,15 @@ class Ros1Topics {
     const auto number = header.number<std::uint32_t>("conn");
     const Ros1Fields told(data, data_place);
     BagTopic topic;
-    topic.name = header.text("topic");
-    topic.name.erase(0, std::min(topic.name.find_first_not_of('/'), topic.name.size()));
+    if (data.size() > KeptBytes::kMost) kept_.add(data.size());
+    topic.name = plain_topic(header.text("topic"));
     topic.type = told.text("type");
     topic.definition = optional_text(told, "message_definition");
     topic.md5 = optional_text(told, "md5sum");
     const std::string key = key_of(topic);
     const Asked*& known = connections_[number];
     if (known == nullptr) {
+      kept_.add(0);
       known = find_or_ask(key, std::move(topic));
     } else if (const auto found = topics_.find(key);
                found == topics_.end() || &found->second != known) {
@@ -100,6 +101,7 @@ class Ros1Topics {
   }
 
   [[nodiscard]] const Asked* find_or_ask(const std::string& key, BagTopic topic) {
+    if (!topics_.contains(key)) kept_.add(2 * key.size());
     const auto [at, is_new] = topics_.try_emplace(key);
     if (is_new) {
       Asked& asked = at->second;
@@ -110,6 +112,7 @@ class Ros1Topics {
   }
 
   const std::function<bool(const BagTopic&)>& wants_;
+  KeptBytes kept_;
   std::unordered_map<std::string, Asked> topics_;  ///< stay where they are while others are added
   std::unordered_map<std::uint32_t, const Asked*> connections_;  ///< nullptr: unknown, and told
 };

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "kinecal/io/bags/mcap.hpp"
 #include "kinecal/io/bags/ros2_formats.hpp"
 #include "kinecal/io/bags/ros2_metadata.hpp"
+#include "kinecal/io/bags/unpacked_file.hpp"
 #include "kinecal/io/diagnostics.hpp"
 
 namespace kinecal {
@@ -31,25 +33,32 @@ inline constexpr const char* kZstdEnding = ".zstd";
   return ending == ".mcap" || ending == ".db3";
 }
 
+/// @throws BytesError  if it cannot be read
+[[nodiscard]] inline std::vector<std::byte> first_bytes(const std::string& path) {
+  std::vector<std::byte> first(16);
+  std::ifstream in = open_bytes(path);
+  in.read(reinterpret_cast<char*>(first.data()), static_cast<std::streamsize>(first.size()));
+  first.resize(static_cast<std::size_t>(in.gcount()));
+  return first;
+}
+
 /// Reads one file of a bag by how it begins, whatever it is called.
 inline void read_ros2_bag_file(const std::string& path, const BagReader& reader,
                                Diagnostics& diagnostics) {
-  std::vector<std::byte> first(16);
+  std::vector<std::byte> first;
+  std::optional<UnpackedFile> unpacked;
   try {
-    std::ifstream in = open_bytes(path);
-    in.read(reinterpret_cast<char*>(first.data()), static_cast<std::streamsize>(first.size()));
-    first.resize(static_cast<std::size_t>(in.gcount()));
+    first = first_bytes(path);
+    if (begins_with(first, kZstdMagic)) {
+      unpacked.emplace(path);
+      first = first_bytes(unpacked->path());
+    }
   } catch (const BytesError& e) {
     return diagnostics.error({path, 0}, e.what());
   }
-  if (is_mcap(first)) return read_mcap(path, reader, diagnostics);
-  if (is_sqlite(first)) return read_db3(path, reader, diagnostics);
-  if (begins_with(first, kZstdMagic)) {
-    return diagnostics.error({path, 0},
-                             "is compressed as a whole with zstd; decompress it beside the "
-                             "compressed file: zstd -d " +
-                                 path);
-  }
+  const std::string plain = unpacked ? unpacked->path() : path;
+  if (is_mcap(first)) return read_mcap(plain, path, reader, diagnostics);
+  if (is_sqlite(first)) return read_db3(plain, path, reader, diagnostics);
   diagnostics.error({path, 0}, first.empty() ? "is empty"
                                              : "is neither an MCAP file nor an SQLite database: "
                                                "it begins like neither");
@@ -75,18 +84,21 @@ inline void read_ros2_bag_file(const std::string& path, const BagReader& reader,
   return "";
 }
 
-/// The files of a folder without metadata.yaml, as people count them.
+/// The files of a folder without metadata.yaml, as people count them.  One that is there compressed
+/// and decompressed is one file.
 [[nodiscard]] inline std::vector<std::string> list_ros2_bag_files(
     const std::filesystem::path& folder) {
-  std::vector<std::string> files;
+  std::set<std::string, decltype(&naturally_before)> files(&naturally_before);
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    std::filesystem::path path = entry.path();
-    if (path.extension() == kZstdEnding) path = path.stem();
-    if (is_ros2_bag_file(path)) files.push_back(entry.path().filename().string());
+    if (!entry.is_regular_file(ignored)) continue;
+    const std::filesystem::path name = entry.path().filename();
+    const bool packed = name.extension() == kZstdEnding;
+    if (!is_ros2_bag_file(packed ? name.stem() : name)) continue;
+    if (packed && std::filesystem::exists(folder / name.stem(), ignored)) continue;
+    files.insert(name.string());
   }
-  std::sort(files.begin(), files.end(), naturally_before);
-  return files;
+  return {files.begin(), files.end()};
 }
 
 /// The files of a bag as metadata.yaml lists them, or else as they are in the folder.
@@ -97,13 +109,10 @@ inline void read_ros2_bag_file(const std::string& path, const BagReader& reader,
   std::error_code ignored;
   if (std::filesystem::exists(metadata_path, ignored)) {
     const Ros2Metadata metadata = read_ros2_metadata(metadata_path);
-    std::string mode = metadata.compression_mode;
-    std::transform(mode.begin(), mode.end(), mode.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    if (mode == "MESSAGE") {
-      throw InputError(metadata_path +
-                       ": compression_mode MESSAGE: every message is compressed on its own, which "
-                       "is not read; write the bag again without: ros2 bag convert");
+    if (!metadata.compression.empty() && metadata.compression != "zstd") {
+      throw InputError(metadata_path + ": compression_format '" + metadata.compression +
+                       "' is not known; write the bag again with zstd or without: ros2 bag "
+                       "convert");
     }
     if (metadata.files.empty()) throw InputError(metadata_path + ": lists no files");
     return metadata.files;

@@ -34,12 +34,6 @@ namespace detail {
 
 namespace detail {
 
-/// "/joint_states" is "joint_states".
-[[nodiscard]] inline std::string bag_topic_name(std::string_view name) {
-  if (name.starts_with('/')) name.remove_prefix(1);
-  return std::string(name);
-}
-
 /// "sensor_msgs/JointState" is "sensor_msgs/msg/JointState".
 [[nodiscard]] inline std::string ros2_type(std::string_view type) {
   const std::size_t at = type.find('/');

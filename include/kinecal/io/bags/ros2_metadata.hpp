@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,9 +18,8 @@
 namespace kinecal::detail {
 
 struct Ros2Metadata {
-  std::string storage;             ///< "sqlite3", "mcap"
   std::vector<std::string> files;  ///< in the order of recording, as they are listed
-  std::string compression_mode;    ///< "FILE", "MESSAGE", or nothing
+  std::string compression;         ///< "zstd", or nothing
 };
 
 [[nodiscard]] inline std::string scalar_or_nothing(const YAML::Node& node) {
@@ -30,10 +28,15 @@ struct Ros2Metadata {
 
 /// @throws InputError  "file:line: ..." if it cannot be read or is none
 [[nodiscard]] inline Ros2Metadata read_ros2_metadata(const std::string& path) {
+  constexpr std::uint64_t kMost = 1 << 24;
   constexpr const char* kTop = "rosbag2_bagfile_information";
   try {
     std::ifstream in = open_bytes(path);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    ByteFile file(in);
+    if (file.size() > kMost) throw BytesError("has more bytes than such a file may have");
+    std::vector<std::byte> buffer;
+    const Bytes bytes = file.read(file.size(), buffer);
+    const std::string text(ByteReader(bytes).text(bytes.size()));
     const std::vector<YAML::Node> documents = load_yaml_documents(text);
     const bool is_map = !documents.empty() && documents.front().IsMap();
     const YAML::Node bag = is_map ? documents.front()[kTop] : YAML::Node();
@@ -41,9 +44,8 @@ struct Ros2Metadata {
     const YAML::Node paths = bag["relative_file_paths"];
     if (!paths || !paths.IsSequence()) throw BytesError("has no list 'relative_file_paths'");
     Ros2Metadata metadata;
-    metadata.storage = scalar_or_nothing(bag["storage_identifier"]);
-    metadata.compression_mode = scalar_or_nothing(bag["compression_mode"]);
-    for (const YAML::Node& file : paths) metadata.files.push_back(file.as<std::string>());
+    metadata.compression = scalar_or_nothing(bag["compression_format"]);
+    for (const YAML::Node& listed : paths) metadata.files.push_back(listed.as<std::string>());
     return metadata;
   } catch (const YAML::Exception& e) {
     throw InputError(Place{path, e.mark.line + 1}.str() + ": " + e.msg);

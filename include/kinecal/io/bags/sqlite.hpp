@@ -34,7 +34,7 @@ class SqliteDatabase {
 
   /// @param uri   as SQLite's, "file:..."
   /// @param size  bytes of it: what is read, and how long it takes, is bounded by them
-  SqliteDatabase(const std::string& uri, std::uint64_t size) {
+  SqliteDatabase(const std::string& uri, std::uint64_t size) : size_(size) {
     sqlite3* made = nullptr;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
     const int code = sqlite3_open_v2(uri.c_str(), &made, flags, nullptr);
@@ -57,6 +57,7 @@ class SqliteDatabase {
         steps_.get());
   }
 
+  [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
 
   /// @throws BytesError  with what SQLite says
@@ -104,6 +105,7 @@ class SqliteDatabase {
     return text;
   }
 
+  std::uint64_t size_;
   std::unique_ptr<std::uint64_t> steps_;  ///< that are left, in SQLite's own measure
   std::unique_ptr<sqlite3, Close> handle_;
 };

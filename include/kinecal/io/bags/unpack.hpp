@@ -32,11 +32,20 @@ concept Unpacker = requires(U u, Bytes in, std::span<std::byte> out) {
 
 inline constexpr std::uint64_t kMostOfABlock = std::uint64_t{1} << 30;
 
+inline constexpr std::uint64_t kMostOfAMessage = kMostOfABlock / 2;  ///< that is written
+
+inline constexpr std::uint64_t kMostRatio = 256;  ///< of lz4; sensors' data have a tenth of it
+
 /// Bytes that a block may unpack to: black images are small, yet not without bounds.
 [[nodiscard]] constexpr std::uint64_t most_unpacked(std::uint64_t packed) {
   constexpr std::uint64_t kAlways = std::uint64_t{1} << 25;
-  constexpr std::uint64_t kRatio = 256;  // lz4 ends here, sensors' data at a tenth of it
-  return std::min(kMostOfABlock, std::max(kAlways, kRatio * std::min(packed, kMostOfABlock)));
+  return std::min(kMostOfABlock, std::max(kAlways, kMostRatio * std::min(packed, kMostOfABlock)));
+}
+
+/// Bytes that all blocks of a file may unpack to.
+[[nodiscard]] constexpr std::uint64_t most_unpacked_in_all(std::uint64_t packed) {
+  constexpr std::uint64_t kMost = ~std::uint64_t{0} / kMostRatio;
+  return std::max(kMostOfABlock, kMostRatio * std::min(packed, kMost));
 }
 
 /// @param size  bytes that must come out, where it is known

@@ -61,7 +61,7 @@ class McapWriter {
     counts_.push_back(0);
     const auto id = static_cast<std::uint16_t>(counts_.size());
     detail::McapContent channel;
-    channel.number(id).number(schema).text("/" + detail::bag_topic_name(topic.name));
+    channel.number(id).number(schema).text("/" + plain_topic(topic.name));
     channel.text("cdr").text("");  // no metadata
     channels_ += add(channel.record(detail::McapOp::channel));
     return id;
@@ -70,8 +70,12 @@ class McapWriter {
   /// @param topic  of add_topic()
   /// @param time   of recording, nanoseconds, not negative
   /// @param data   CDR with the four bytes that stand before it
-  /// @throws std::out_of_range  if there is no such topic
+  /// @throws std::out_of_range      if there is no such topic
+  /// @throws std::invalid_argument  if the time is negative, or the message has more than half a GB
   void write(std::uint16_t topic, std::int64_t time, Bytes data) {
+    if (time < 0) throw std::invalid_argument("its time of recording is before 1970");
+    if (data.size() > detail::kMostOfAMessage) throw std::invalid_argument("message is too large");
+    if (chunk_.records.size() + data.size() > detail::kMostOfAMessage) end_chunk();
     const auto stamp = static_cast<std::uint64_t>(time);
     const auto sequence = static_cast<std::uint32_t>(++counts_.at(topic - std::size_t{1}));
     times_.add(stamp);
@@ -178,7 +182,7 @@ class McapWriter {
 
   /// As the file calls it.
   [[nodiscard]] std::string_view compression_name() const {
-    return options_.compression == Compression::none ? "" : name_of(options_.compression);
+    return options_.compression == Compression::none ? "" : to_string(options_.compression);
   }
 
   /// The records compressed; empty if they are written as they are.

@@ -77,9 +77,11 @@ class Ros1BagWriter {
   void write(std::uint32_t topic, std::int64_t time, Bytes data) {
     if (topic >= topics_.size()) throw std::invalid_argument("add_topic() gave no such number");
     if (closed_) throw std::invalid_argument("the bag is closed");
-    if (data.size() > kMostOfAMessage) throw std::invalid_argument("message is too large");
-    if (time < 0 || time / kSecond > 0xffffffff) throw std::invalid_argument("no time of ROS 1");
-    if (chunk_.size() + data.size() > kMostOfAMessage) end_chunk();
+    if (data.size() > detail::kMostOfAMessage) throw std::invalid_argument("message is too large");
+    if (time < 0 || time / kSecond > 0xffffffff) {
+      throw std::invalid_argument("its time of recording is not of 1970 to 2106, as ROS 1 has it");
+    }
+    if (chunk_.size() + data.size() > detail::kMostOfAMessage) end_chunk();
     if (!topics_[topic].written) chunk_ += topics_[topic].record;
     topics_[topic].written = true;
     index_[topic].emplace_back(time, static_cast<std::uint32_t>(chunk_.size()));
@@ -107,7 +109,6 @@ class Ros1BagWriter {
   }
 
  private:
-  static constexpr std::size_t kMostOfAMessage = detail::kMostOfABlock / 2;
   static constexpr std::int64_t kSecond = 1'000'000'000;
 
   struct Topic {
@@ -134,12 +135,12 @@ class Ros1BagWriter {
     if (chunk_.empty()) return;
     const std::uint64_t place = place_;
     detail::Ros1Text header;
-    header.field("compression", name_of(compression_)).op(detail::Ros1Op::chunk);
+    header.field("compression", to_string(compression_)).op(detail::Ros1Op::chunk);
     header.number("size", static_cast<std::uint32_t>(chunk_.size()));
     if (compression_ == Compression::none) {
       put(detail::ros1_record(header, chunk_));
     } else {
-      put(detail::ros1_record(header, pack(std::as_bytes(std::span(chunk_)), compression_)));
+      put(detail::ros1_record(header, pack(detail::as_bytes(chunk_), compression_)));
     }
     chunk_.clear();
     end_index(place);

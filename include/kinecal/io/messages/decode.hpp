@@ -4,8 +4,10 @@
 //   CDR     a header of 4 bytes, the second of which tells the order of bytes; a number of N bytes
 //           stands at a multiple of N from there; the length of a text counts its final NUL
 //
-// Lengths are checked against the bytes that are left before memory is taken for them.
-// Source: ROS 1 wiki, Connection header and msg; OMG CORBA 3.0, 15.3; DDSI-RTPS 2.2, 10.
+// Lengths are checked against the bytes that are left before memory is taken for them; and a value
+// takes more memory than bytes, so that a message may only have so many.
+// Source: ROS 1 wiki, Connection header and msg; OMG CORBA 3.0, 15.3; DDSI-RTPS 2.2, 10; DDS-XTypes
+// 1.3, 7.6.3.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -42,9 +44,18 @@ class CdrWire {
  public:
   /// @throws BytesError  if it is no plain CDR
   explicit CdrWire(Bytes data) : reader_(data) {
-    const auto header = reader_.take(kHeader);
-    const int kind = std::to_integer<int>(header[0]) * 256 + std::to_integer<int>(header[1]);
-    if (kind > 1) reader_.fail("the message is not plain CDR");
+    const auto kind = ByteReader(data, std::endian::big).number<std::uint16_t>();
+    if (kind > 1) {
+      const bool lists_parameters = kind == 2 || kind == 3;
+      const bool is_second = kind >= 6 && kind <= 11;
+      reader_.fail("the message is " +
+                   std::string(lists_parameters ? "PL_CDR"
+                               : is_second      ? "XCDR version 2"
+                                                : "no CDR") +
+                   " (its first bytes are " + std::to_string(kind >> 8) + " " +
+                   std::to_string(kind & 0xff) + "); plain CDR is what can be read");
+    }
+    reader_.skip(kHeader);
     const auto order = kind == 1 ? std::endian::little : std::endian::big;
     reader_ = ByteReader(data.subspan(kHeader), order, kHeader);
   }
@@ -77,7 +88,11 @@ class Decoder {
   [[nodiscard]] MessageFields message(std::size_t type = 0) {
     MessageFields result;
     const MessageType& message = definition_[type];
-    if (message.fields.empty()) wire_.empty_message();
+    if (message.fields.empty()) {
+      wire_.empty_message();
+      // In ROS 1 it takes no bytes: a few bytes could claim any number of them.
+      if (++empty_ > kMostEmpty) wire_.reader().fail("the message is of too many empty ones");
+    }
     result.fields.reserve(message.fields.size());
     for (const MessageField& f : message.fields) result.fields.emplace_back(f.name, field(f));
     return result;
@@ -94,17 +109,14 @@ class Decoder {
     }
     if (f.type == FieldType::uint8 || f.type == FieldType::int8) return wire_.reader().take(count);
     MessageValue::List list;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::size_t before = wire_.reader().read();
-      list.push_back(one(f));
-      if (wire_.reader().read() == before) {  // a few bytes could claim any number of them
-        wire_.reader().fail("the items of '" + f.name + "' take no bytes");
-      }
-    }
+    for (std::uint32_t i = 0; i < count; ++i) list.push_back(one(f));
     return list;
   }
 
   [[nodiscard]] MessageValue one(const MessageField& f) {
+    if (++values_ > kMostValues) {
+      wire_.reader().fail("the message has more than " + std::to_string(kMostValues) + " values");
+    }
     switch (f.type) {
       case FieldType::boolean:
       case FieldType::uint8:
@@ -135,8 +147,12 @@ class Decoder {
     return message(f.message);
   }
 
+  static constexpr std::size_t kMostEmpty = 1000;
+  static constexpr std::size_t kMostValues = std::size_t{1} << 20;  ///< 100 000 features have them
+
   const MessageDefinition& definition_;
   Wire wire_;
+  std::size_t empty_ = 0, values_ = 0;
 };
 
 }  // namespace detail

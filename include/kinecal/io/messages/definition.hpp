@@ -6,8 +6,9 @@
 //   MSG: geometry_msgs/PointStamped
 //   ...
 //
-// A type without a package is of the package that uses it; of ROS 1, Header is std_msgs/Header and
-// time and duration are two numbers.  ROS 2 adds bounds (string<=10) and default values.
+// A type without a package is of the package that uses it; Header, where that has none, is
+// std_msgs/Header.  Of ROS 1, time and duration are two numbers.  ROS 2 adds bounds (string<=10)
+// and default values.
 //
 // Source: ROS 1 wiki, msg; ROS 2 documentation, Interfaces.
 //
@@ -16,6 +17,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
@@ -28,47 +30,16 @@
 #include <vector>
 
 #include "kinecal/io/bags/bag.hpp"
+#include "kinecal/io/messages/message_type.hpp"
 
 namespace kinecal {
+
+inline constexpr std::size_t kMostOfADefinition = std::size_t{1} << 20;  ///< real ones: 0.01 of it
 
 /// A definition that cannot be read: what is wrong, with the line of the text.
 struct DefinitionError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-
-enum class FieldType : std::uint8_t {
-  boolean,
-  int8,
-  uint8,
-  int16,
-  uint16,
-  int32,
-  uint32,
-  int64,
-  uint64,
-  float32,
-  float64,
-  text,
-  message
-};
-
-struct MessageField {
-  enum class Count : std::uint8_t { one, fixed, any };
-
-  std::string name;
-  FieldType type = FieldType::message;
-  std::size_t message = 0;  ///< of type message: which one of the definition
-  Count count = Count::one;
-  std::uint32_t size = 1;  ///< of a list of fixed size
-};
-
-struct MessageType {
-  std::string name;  ///< "package/Type"
-  std::vector<MessageField> fields;
-};
-
-/// A message and all that it consists of; the message is the first.
-using MessageDefinition = std::vector<MessageType>;
 
 namespace detail {
 
@@ -119,28 +90,43 @@ class DefinitionParser {
 
   /// @return  where the type stands in the definition
   std::size_t add(const std::string& name, int depth) {
-    for (std::size_t i = 0; i < types_.size(); ++i) {
-      if (types_[i].name == name) return i;
-    }
-    // A type is added before its fields: one within itself would never end when it is read.
-    if (depth > kMaxDepth) throw DefinitionError(fmt::format("'{}' is nested too deeply", name));
     const std::size_t here = types_.size();
+    if (const auto [at, is_new] = added_.try_emplace(name, here); !is_new) return at->second;
+    check_depth(name, depth);
     types_.push_back({name, {}});
-    if (name == kTime || name == kDuration) {
-      const FieldType seconds = name == kTime ? FieldType::uint32 : FieldType::int32;
-      types_[here].fields = {{"secs", seconds}, {"nsecs", seconds}};
-      return here;
-    }
+    heights_.push_back(kUnfinished);
+    int height = 1;
     const auto part = by_name_.find(name);
     if (part == by_name_.end()) {
-      throw DefinitionError(fmt::format("type '{}' is used and not defined", name));
+      types_[here].fields = built_in(name);
+      heights_[here] = height;
+      return here;
     }
     for (const auto& [line, text] : parts_[part->second].lines) {
-      if (auto field = parse_field(name, line, text, depth)) {
-        types_[here].fields.push_back(std::move(*field));
+      auto field = parse_field(name, line, text, depth);
+      if (!field) continue;
+      if (field->type == FieldType::message) {
+        height = std::max(height, heights_[field->message] + 1);
       }
+      types_[here].fields.push_back(std::move(*field));
     }
+    check_depth(name, height);
+    heights_[here] = height;
     return here;
+  }
+
+  /// Two numbers; of ROS 2 its own types, which some who write bags leave out.
+  [[nodiscard]] static std::vector<MessageField> built_in(const std::string& name) {
+    if (name == kTime) return {{"secs", FieldType::uint32}, {"nsecs", FieldType::uint32}};
+    if (name == kDuration) return {{"secs", FieldType::int32}, {"nsecs", FieldType::int32}};
+    if (name == "builtin_interfaces/Time" || name == "builtin_interfaces/Duration") {
+      return {{"sec", FieldType::int32}, {"nanosec", FieldType::uint32}};
+    }
+    throw DefinitionError(fmt::format("type '{}' is used and not defined", name));
+  }
+
+  static void check_depth(const std::string& name, int depth) {
+    if (depth > kMaxDepth) throw DefinitionError(fmt::format("'{}' is nested too deeply", name));
   }
 
   /// @return  nothing for a constant
@@ -154,6 +140,9 @@ class DefinitionParser {
     const std::size_t name_end = std::min(rest.find_first_of(" \t=#"), rest.size());
     MessageField field;
     field.name = rest.substr(0, name_end);
+    if (field.name.empty()) {
+      throw DefinitionError(fmt::format("line {}: '{}' has no name", line, text));
+    }
     if (trimmed(rest.substr(name_end)).starts_with('=')) return std::nullopt;
     std::string_view type = text.substr(0, type_end);
     if (const std::size_t bracket = type.find('['); bracket != std::string_view::npos) {
@@ -173,7 +162,7 @@ class DefinitionParser {
     if (size.empty() || size.starts_with("<=")) return;
     field.count = MessageField::Count::fixed;
     const auto [end, error] = std::from_chars(size.data(), size.data() + size.size(), field.size);
-    if (error != std::errc() || end != size.data() + size.size()) {
+    if (error != std::errc() || end != size.data() + size.size() || field.size == 0) {
       throw DefinitionError(fmt::format("line {}: '{}' is no size", line, brackets));
     }
   }
@@ -206,31 +195,27 @@ class DefinitionParser {
       throw DefinitionError(fmt::format("line {}: wide strings are not supported", line));
     }
     field.message = add(full_name(type, owner), depth + 1);
-    if (contains(field.message, owner, 0)) {
-      throw DefinitionError(fmt::format("line {}: '{}' contains itself", line, owner));
+    if (heights_[field.message] == kUnfinished) {  // would never end when it is read
+      throw DefinitionError(
+          fmt::format("line {}: '{}' contains itself", line, types_[field.message].name));
     }
-  }
-
-  [[nodiscard]] bool contains(std::size_t type, const std::string& name, int depth) const {
-    if (types_[type].name == name || depth > kMaxDepth) return true;
-    for (const MessageField& field : types_[type].fields) {
-      if (field.type == FieldType::message && contains(field.message, name, depth + 1)) return true;
-    }
-    return false;
   }
 
   [[nodiscard]] std::string full_name(std::string_view type, const std::string& owner) const {
     if (type == kTime || type == kDuration) return std::string(type);
-    if (type == "Header") return "std_msgs/Header";
     if (type.find('/') != std::string_view::npos) return plain_type(type);
-    return owner.substr(0, owner.find('/') + 1) + std::string(type);
+    std::string name = owner.substr(0, owner.find('/') + 1) + std::string(type);
+    return type == "Header" && !by_name_.contains(name) ? "std_msgs/Header" : name;
   }
 
   static constexpr std::string_view kTime = "time", kDuration = "duration";
+  static constexpr int kUnfinished = 0;
 
   std::vector<DefinitionPart> parts_;
   std::map<std::string, std::size_t> by_name_;
   MessageDefinition types_;
+  std::map<std::string, std::size_t> added_;  ///< the same, by name
+  std::vector<int> heights_;                  ///< of each: how deep its fields go
 };
 
 }  // namespace detail
@@ -240,6 +225,10 @@ class DefinitionParser {
 /// @throws DefinitionError  naming the line of the text or the type that is missing
 [[nodiscard]] inline MessageDefinition parse_definition(const std::string& type,
                                                         std::string_view text) {
+  if (text.size() > kMostOfADefinition) {
+    throw DefinitionError(fmt::format("it has {} bytes; {} are the most that is read", text.size(),
+                                      kMostOfADefinition));
+  }
   return detail::DefinitionParser(detail::definition_parts(type, text)).parse();
 }
 

@@ -45,7 +45,7 @@ class WireWriter {
   }
   void text(std::string_view text) {
     count(text.size() + (cdr_ ? 1 : 0));
-    raw(std::as_bytes(std::span(text)));
+    raw(as_bytes(text));
     if (cdr_) bytes_.push_back(std::byte{0});
   }
   void count(std::size_t n) {

@@ -6,9 +6,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -74,15 +76,23 @@ class BagOutput {
 
  private:
   [[nodiscard]] std::uint32_t number_of(const BagTopic& topic) {
-    const auto key = std::pair(topic.name, topic.type);
+    const auto key = std::tie(topic.name, topic.type, topic.definition);
     if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
     std::uint32_t number = 0;
     if (auto* bag = std::get_if<Ros1BagWriter>(&writer_)) {
-      number = bag->add_topic(topic, topic.name.ends_with("robot_description"));
+      BagTopic named = topic;
+      named.name = name_in_ros1(topic.name);
+      number = bag->add_topic(named, topic.name.ends_with("robot_description"));
     } else {
       number = std::get<McapWriter>(writer_).add_topic(topic);
     }
     return numbers_.emplace(key, number).first->second;
+  }
+
+  /// As rosbag records it, since rosbag finds a topic only by its whole name.
+  [[nodiscard]] static std::string name_in_ros1(const std::string& name) {
+    const bool poses = name == "calibration_joint_states";  // robot_calibration's own, without
+    return poses ? name : "/" + name;
   }
 
   void write(std::uint32_t number, std::int64_t time, Bytes data) {
@@ -98,7 +108,8 @@ class BagOutput {
   detail::StagingFolder staging_;
   std::ofstream file_;
   std::variant<std::monostate, Ros1BagWriter, McapWriter> writer_;
-  std::map<std::pair<std::string, std::string>, std::uint32_t> numbers_;
+  /// By name, type and definition: of one topic there may be messages of several versions.
+  std::map<std::tuple<std::string, std::string, std::string>, std::uint32_t, std::less<>> numbers_;
   std::map<std::string, MessageDefinition> definitions_;  ///< of known types, in this encoding
 };
 

@@ -8,7 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -48,19 +49,18 @@ enum class Clouds { keep, drop };
 inline std::size_t convert_bag(const std::string& from, BagOutput& to, Clouds clouds,
                                Diagnostics& diagnostics) {
   MessageDecoder decoder(from, diagnostics);
-  std::map<std::string, std::size_t> left_out;
+  std::set<std::string> left_out, refused;
   std::size_t written = 0;
   int number = 0;
   const auto wants = [&](const BagTopic& topic) {
     const bool known = !known_definition(topic.type, to.encoding()).empty();
     const bool copied = topic.encoding == to.encoding() && !topic.definition.empty();
-    if (!known && !copied) left_out.emplace(topic.name, 0);
+    if (!known && !copied) left_out.insert(topic.name);
     return known || copied;
   };
-  const auto handle = [&](const BagMessage& message) {
+  const auto write = [&](const BagMessage& message) {
     const BagTopic& topic = message.topic;
     const bool drops = clouds == Clouds::drop && use_of(topic) == TopicUse::samples;
-    ++number;
     if (topic.encoding == to.encoding() && !drops && !topic.definition.empty()) {
       to.copy(topic, message.time, message.data);
     } else if (const auto content = decoder.decode(message, number)) {
@@ -70,8 +70,18 @@ inline std::size_t convert_bag(const std::string& from, BagOutput& to, Clouds cl
     }
     ++written;
   };
+  const auto handle = [&](const BagMessage& message) {
+    ++number;
+    try {
+      write(message);
+    } catch (const std::invalid_argument& e) {  // once for each topic
+      if (!refused.insert(message.topic.name).second) return;
+      diagnostics.error({from, 0}, fmt::format("message {} of topic '{}' cannot be written: {}",
+                                               number, message.topic.name, e.what()));
+    }
+  };
   read_bag(from, {wants, handle}, diagnostics);
-  for (const auto& [name, count] : left_out) {
+  for (const std::string& name : left_out) {
     diagnostics.warning({from, 0}, fmt::format("topic '{}' is left out: its type is not known in "
                                                "the other ROS",
                                                name));

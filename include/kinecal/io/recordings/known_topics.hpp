@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "kinecal/io/bags/bag.hpp"
@@ -28,7 +29,8 @@ enum class TopicUse { none, samples, poses, urdf };
   return is_urdf ? TopicUse::urdf : TopicUse::none;
 }
 
-/// Decodes messages, and says once for each topic why it cannot be.
+/// Decodes messages, and says why they cannot be: once for each definition, and for the first
+/// messages.
 class MessageDecoder {
  public:
   /// @param file  as messages name it
@@ -43,15 +45,20 @@ class MessageDecoder {
     try {
       return kinecal::decode(*definition, message.topic.encoding, message.data);
     } catch (const BytesError& e) {
-      diagnostics_.error({file_, 0}, fmt::format("message {} of topic '{}' is no {}: {}", number,
-                                                 message.topic.name, message.topic.type, e.what()));
+      if (++mistakes_ <= kMostMistakes) {
+        diagnostics_.error({file_, 0},
+                           fmt::format("message {} of topic '{}' is no {}: {}", number,
+                                       message.topic.name, message.topic.type, e.what()));
+      } else if (mistakes_ == kMostMistakes + 1) {
+        diagnostics_.error({file_, 0}, "more messages cannot be read; the rest is not told");
+      }
       return std::nullopt;
     }
   }
 
   /// nullptr if there is none, which has been told.
   [[nodiscard]] const MessageDefinition* definition_of(const BagTopic& topic) {
-    const auto key = std::pair(topic.type, topic.definition);
+    const auto key = std::tie(topic.type, topic.definition);
     auto found = definitions_.find(key);
     if (found == definitions_.end()) found = definitions_.emplace(key, parse(topic)).first;
     return found->second ? &*found->second : nullptr;
@@ -70,9 +77,14 @@ class MessageDecoder {
     }
   }
 
+  static constexpr int kMostMistakes = 20;  ///< the rest are usually the same one again
+
   std::string file_;
+  int mistakes_ = 0;
   Diagnostics& diagnostics_;
-  std::map<std::pair<std::string, std::string>, std::optional<MessageDefinition>> definitions_;
+  /// By type and text.
+  std::map<std::tuple<std::string, std::string>, std::optional<MessageDefinition>, std::less<>>
+      definitions_;
 };
 
 }  // namespace kinecal

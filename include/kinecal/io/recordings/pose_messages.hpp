@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "kinecal/io/messages/make.hpp"
 #include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/recordings/bag_output.hpp"
 #include "kinecal/io/recordings/known_topics.hpp"
 #include "kinecal/io/recordings/read_bag.hpp"
-#include "kinecal/io/recordings/sample_message.hpp"
 
 namespace kinecal {
 namespace detail {

@@ -18,12 +18,12 @@
 
 namespace kinecal {
 
-enum class RecordingFormat { yaml, ros1_bag, mcap, sqlite, ros2_bag };
+enum class RecordingFormat { yaml, ros1_bag, mcap, sqlite, ros2_bag, zstd };
 
 /// The name of a format as messages say it.
 [[nodiscard]] inline std::string_view to_string(RecordingFormat format) {
-  constexpr std::array<std::string_view, 5> kNames = {"YAML", "ROS 1 bag", "MCAP",
-                                                      "ROS 2 bag (SQLite)", "ROS 2 bag"};
+  constexpr std::array<std::string_view, 6> kNames = {
+      "YAML", "ROS 1 bag", "MCAP", "ROS 2 bag (SQLite)", "ROS 2 bag", "ROS 2 bag (zstd)"};
   return kNames[static_cast<std::size_t>(format)];
 }
 
@@ -37,6 +37,7 @@ enum class RecordingFormat { yaml, ros1_bag, mcap, sqlite, ros2_bag };
   const Bytes bytes = std::as_bytes(std::span(first));
   if (is_mcap(bytes)) return RecordingFormat::mcap;
   if (is_sqlite(bytes)) return RecordingFormat::sqlite;
+  if (detail::begins_with(bytes, kZstdMagic)) return RecordingFormat::zstd;
   const bool is_ros1 = std::string_view(first.data(), first.size()).starts_with("#ROSBAG V");
   if (is_ros1) return RecordingFormat::ros1_bag;
   return RecordingFormat::yaml;
@@ -54,6 +55,8 @@ inline void read_bag(const std::string& path, const BagReader& reader, Diagnosti
       return read_db3(path, reader, diagnostics);
     case RecordingFormat::ros2_bag:
       return read_ros2_bag(path, reader, diagnostics);
+    case RecordingFormat::zstd:
+      return detail::read_ros2_bag_file(path, reader, diagnostics);
     case RecordingFormat::yaml:
       diagnostics.error({path, 0}, "is no bag");
   }
