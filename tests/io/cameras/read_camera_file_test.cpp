@@ -230,7 +230,7 @@ TEST_F(CameraFile, RefusesWhatOpencvHasAndCameraInfoHasNot) {
   EXPECT_THAT(refusal(replaced(kOpencv, "flags: 0", "fisheye_model: 1")),
               HasSubstr("c.yaml:6: fisheye_model"));
   EXPECT_THAT(refusal(replaced(kOpencv, "rows: 5", "rows: 4")),
-              HasSubstr("distortion_coefficients has 5 numbers, not 4 x 1"));
+              HasSubstr("distortion_coefficients has 5 numbers, not '4' x '1'"));
 }
 
 TEST_F(CameraFile, TellsWhatIsWrongWithItsLine) {
