@@ -10,9 +10,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -22,6 +19,7 @@
 
 #include "kinecal/io/csv/csv_mapping.hpp"
 #include "kinecal/io/csv/csv_table.hpp"
+#include "kinecal/io/text_file.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -235,11 +233,7 @@ class CsvSamples {
                                                           Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   const CsvMapping columns = read_csv_mapping(mapping, diagnostics);
-  std::ifstream file(csv, std::ios::binary);
-  if (!file || std::filesystem::is_directory(csv)) {
-    throw InputError(csv + ": is not there or cannot be read");
-  }
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = read_text_file(csv);
   if (diagnostics.errors.size() != before) return {};
   return csv_samples(text, columns, csv, diagnostics);
 }
