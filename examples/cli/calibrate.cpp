@@ -73,6 +73,9 @@ SolveOptions solve_options(const CalibrateOptions& options) {
 }  // namespace
 
 int calibrate(const CalibrateOptions& options) {
+  if (options.output.empty() && !options.dry_run) {
+    throw InputError("--output is required (or --dry-run)");
+  }
   const Clock::time_point start = Clock::now();
   const Input input = read_input(options.urdf, options.config, options.samples, options.cameras);
   print(input.diagnostics);
