@@ -95,9 +95,12 @@ int calibrate(const CalibrateOptions& options) {
     std::fflush(stdout);
     print_doubts(input.calibration, result, observability);
   }
-  if (!result.converged) {
+  const std::string why = result.converged
+                              ? impossible_camera(input.calibration, result.table, input.samples)
+                              : result.termination;
+  if (!why.empty()) {
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
-               result.steps.back().name, result.termination);
+               result.steps.back().name, why);
     return kNotConverged;
   }
   if (folder) {

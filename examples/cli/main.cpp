@@ -239,6 +239,7 @@ int run(int argc, char** argv) {
                "kinecal");
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
+  app.footer("'kinecal COMMAND --help' tells what a command takes.");
   Commands commands(app);
   commands.add("init", "write a first configuration from a URDF: asks what is not given", add_init,
                init);

@@ -759,6 +759,17 @@ TEST_F(Program, WarnsOfACameraThatWasSetDifferently) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("s.yaml:"), HasSubstr("'camera' differs")));
 }
 
+TEST_F(Program, WritesNoCameraThatCannotBe) {
+  for (const std::string& found : {std::string("fx: -2.0"), std::string("z_scaling: -1.5")}) {
+    write("c.yaml", kConfig + ("initial_values: {camera_" + found + "}\n"));
+    const Outcome result = calibrate();
+    EXPECT_EQ(result.code, 2) << result.out;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("error: step 'calibrate' is not calibrated, nothing "),
+                                  HasSubstr("camera 'camera': ")));
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
+}
+
 TEST_F(Program, ACameraFileThatIsThereIsReplacedOnlyIfForced) {
   ASSERT_EQ(calibrate().code, 0);
   write("mine.yaml", "mine");

@@ -233,6 +233,13 @@ TEST_F(CameraFile, RefusesWhatOpencvHasAndCameraInfoHasNot) {
               HasSubstr("distortion_coefficients has 5 numbers, not '4' x '1'"));
 }
 
+TEST_F(CameraFile, WithoutASizeIsReadWithAWarning) {
+  const CameraInfo camera = read(replaced(kMessage, "width: 640\n", ""));
+  EXPECT_EQ(camera.width, 0);
+  EXPECT_THAT(diagnostics_.errors, testing::IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, testing::ElementsAre(HasSubstr("c.yaml: the size of the")));
+}
+
 TEST_F(CameraFile, TellsWhatIsWrongWithItsLine) {
   EXPECT_THAT(refusal(replaced(kMessage, "0.0, 0.0, 1.0]\nr", "0.0, 1.0]\nr")),
               HasSubstr("c.yaml:8: k has 8 numbers, not 9"));

@@ -119,6 +119,9 @@ inline void check_camera(const CameraInfo& camera, const Place& place, Diagnosti
                                   "than zero",
                                   camera.p[0], camera.p[5]));
   }
+  if (camera.width == 0 || camera.height == 0) {
+    diagnostics.warning(place, "the size of the image is missing; drivers need it");
+  }
 }
 
 }  // namespace kinecal::detail
