@@ -13,6 +13,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,6 +112,9 @@ class CsvSamples {
                                                             joint.name));
       }
       complete = complete && !std::isnan(q);
+      if (!joint.unit.degrees && !joint.unit.millimetres) {
+        doubt(row, "joint '" + joint.name + "'", q, 4.0 * std::numbers::pi, "radians or metres");
+      }
       sample.joint_names.push_back(joint.name);
       sample.joint_positions.push_back(q);
     }
@@ -120,9 +124,13 @@ class CsvSamples {
       for (const auto& point : observation.constants) {
         seen.features.push_back({observation.frame, point});
       }
-      for (std::size_t i = 0; i < observation.points.size(); ++i) {
+      for (const auto& point : observation.points) {
         Vector3<double> p;
         for (Eigen::Index k = 0; k < 3; ++k) p(k) = value(row, points_[next++], observation.unit);
+        if (!observation.unit.millimetres && !point[2].empty()) {
+          doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0,
+                "metres");
+        }
         seen.features.push_back({observation.frame, p});
       }
       sample.observations.push_back(std::move(seen));
@@ -148,6 +156,15 @@ class CsvSamples {
       if (const auto index = columns_.find(column)) indices.emplace_back(*index, &column);
     }
     return indices;
+  }
+
+  /// Warns once of a number so large that its unit is likely to be another.
+  void doubt(const CsvRow& row, const std::string& what, double number, double most,
+             const char* unit) {
+    if (!(std::abs(number) > most) || !doubted_.insert(what).second) return;
+    diagnostics_.warning({file_, row.line}, fmt::format("{} is at {} {}; is a unit missing in the "
+                                                        "columns' file?",
+                                                        what, number, unit));
   }
 
   void mistake(const CsvRow& row, const CsvColumn& column, const std::string& what) {
@@ -188,6 +205,7 @@ class CsvSamples {
   Diagnostics& diagnostics_;
   std::vector<Indices> joints_, points_;  ///< in the order of the mapping
   std::size_t mistakes_ = 0;
+  std::set<std::string> doubted_;  ///< what was warned of
 };
 
 }  // namespace detail
@@ -220,6 +238,9 @@ class CsvSamples {
     if (auto sample = reader.sample(row)) samples.push_back(std::move(*sample));
   }
   reader.finish();
+  if (samples.empty() && diagnostics.errors.size() == before) {
+    diagnostics.error({file, 0}, "no row has a position of every joint");
+  }
   return samples;
 }
 
