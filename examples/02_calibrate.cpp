@@ -8,7 +8,7 @@
 #include "kinecal/errors.hpp"
 #include "kinecal/solve.hpp"
 #include "robots/mobile_manipulator.hpp"
-#include "simulation.hpp"
+#include "true_robot.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "kinecal/errors/error_block.hpp"
 #include "kinecal/solve.hpp"
 #include "robots/mobile_manipulator.hpp"
-#include "simulation.hpp"
+#include "true_robot.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "kinecal/solve.hpp"
 #include "kinecal/trust.hpp"
 #include "robots/mobile_manipulator.hpp"
-#include "simulation.hpp"
+#include "true_robot.hpp"
 
 namespace {
 

@@ -13,8 +13,6 @@
 
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
-#include "kinecal/parameters.hpp"
-#include "simulation.hpp"
 #include "true_robot.hpp"
 
 namespace {
@@ -93,29 +91,6 @@ ParameterTable random_truth(SeededRandom& random) {
   add("camera_z_scaling", random.either_sign(0.005, 0.015));
   return truth;
 }
-
-/// A camera as it really is.
-class TrueCamera {
- public:
-  explicit TrueCamera(const ParameterTable& truth)
-      : camera_(DepthCamera<>::from(example_camera_info())) {
-    for (std::size_t i = 0; i < errors_.size(); ++i) {
-      errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
-    }
-  }
-
-  /// What its driver reports of a point.
-  /// @param p_camera  (3) metres, in the optical frame
-  [[nodiscard]] Feature record(const Vector3<double>& p_camera, SeededRandom& random) const {
-    return {kOpticalFrame, recorded_point(camera_, p_camera, errors_, {}, random)};
-  }
-
-  [[nodiscard]] const DepthCamera<>& driver() const { return camera_; }
-
- private:
-  DepthCamera<> camera_;
-  std::array<double, 6> errors_{};
-};
 
 /// The robot of this example: what moves and what sees.
 struct Simulated {
@@ -246,7 +221,7 @@ void generate(const Options& options) {
   const Robot robot = read_urdf(options.urdf);
   SeededRandom random(options.seed);
   const ParameterTable truth = random_truth(random);
-  const Simulated simulated{TrueRobot(robot, truth, kFrames), TrueCamera(truth)};
+  const Simulated simulated{TrueRobot(robot, truth, kFrames), TrueCamera(truth, kOpticalFrame)};
   std::vector<Sample> samples;
   for (int n = 0; n < options.samples; ++n) samples.push_back(led_sample(simulated, random));
   const int bad = options.samples / 3;

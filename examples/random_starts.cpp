@@ -12,18 +12,16 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <optional>
 
 #include "kinecal/errors.hpp"
 #include "kinecal/solve.hpp"
-#include "simulation.hpp"
+#include "true_robot.hpp"
 
 namespace {
 
 using namespace kinecal;
 using namespace kinecal::examples;
-using Positions = std::map<std::string, double>;
 
 constexpr int kSamples = 50;
 constexpr double kJointError = 4.0 * kDegree;
@@ -114,69 +112,42 @@ Problem make_problem(const Robot& robot, const ParameterTable& table) {
   return problem;
 }
 
-/// Where the true robot's camera and LEDs are.
-class TrueRobot {
- public:
-  TrueRobot(const Robot& robot, const ParameterTable& truth)
-      : robot_(robot), truth_(truth), camera_(DepthCamera<>::from(example_camera_info())) {
-    for (std::size_t i = 0; i < errors_.size(); ++i) {
-      errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
-    }
+/// Turns the head to the gripper, not quite, and takes a sample; none if not all LEDs are seen.
+std::optional<Sample> look(const TrueRobot& robot, const TrueCamera& camera, Positions positions,
+                           SeededRandom& random) {
+  const auto gripper_from = [&](const char* link) {
+    return robot.pose(link, "gripper", positions).translation;
+  };
+  const Vector3<double> beside = gripper_from("head");
+  positions["head_pan"] = std::atan2(beside.y(), beside.x()) + random.uniform(-0.4, 0.4);
+  const Vector3<double> below = gripper_from("face");
+  positions["head_tilt"] = std::atan2(-below.z(), below.x()) + random.uniform(-0.3, 0.3);
+  const Pose<double> camera_T_leds = robot.pose("optical", "gripper", positions, "leds");
+  Observation known{"arm", {}}, seen{"camera", {}, example_camera_info()};
+  for (const Vector3<double>& led : kLeds) {
+    const Vector3<double> p = camera_T_leds * led;
+    if (p.z() < 0.3 || p.z() > 1.5 || !is_in_image(camera.driver(), p)) return std::nullopt;
+    known.features.push_back({"leds", led});
+    seen.features.push_back(camera.record(p, random));
   }
-
-  /// Turns the head to the gripper, not quite, and takes a sample; none if not all LEDs are seen.
-  [[nodiscard]] std::optional<Sample> look(Positions positions, SeededRandom& random) const {
-    const auto gripper_from = [&](const char* link) {
-      return pose(make_chain(robot_, link, "gripper", kFrames), positions).translation;
-    };
-    const Vector3<double> beside = gripper_from("head");
-    positions["head_pan"] = std::atan2(beside.y(), beside.x()) + random.uniform(-0.4, 0.4);
-    const Vector3<double> below = gripper_from("face");
-    positions["head_tilt"] = std::atan2(-below.z(), below.x()) + random.uniform(-0.3, 0.3);
-    const RuntimeChain chain = make_chain(robot_, "optical", "gripper", kFrames);
-    const Pose<double> camera_T_leds = pose(with_virtual_frame(chain, "leds"), positions);
-    Observation arm{"arm", {}}, camera{"camera", {}, example_camera_info()};
-    for (const Vector3<double>& led : kLeds) {
-      const Vector3<double> p = camera_T_leds * led;
-      if (p.z() < 0.3 || p.z() > 1.5 || !is_in_image(camera_, p)) return std::nullopt;
-      arm.features.push_back({"leds", led});
-      camera.features.push_back({"optical", recorded_point(camera_, p, errors_, {}, random)});
-    }
-    Sample sample;
-    for (const auto& [joint, position] : positions) {
-      sample.joint_names.push_back(joint);
-      sample.joint_positions.push_back(position);
-    }
-    sample.observations = {arm, camera};
-    return sample;
-  }
-
- private:
-  [[nodiscard]] Pose<double> pose(const RuntimeChain& chain, const Positions& positions) const {
-    const Eigen::VectorXd values = truth_.values();
-    const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-    return forward_kinematics(
-        chain, [&](const std::string& joint) { return positions.at(joint); },
-        corrections_for(chain_parameters(chain, truth_), all));
-  }
-
-  const Robot& robot_;
-  const ParameterTable& truth_;
-  DepthCamera<> camera_;
-  std::array<double, 6> errors_{};
-};
+  Sample sample = sample_at(positions);
+  sample.observations = {known, seen};
+  return sample;
+}
 
 /// Adds samples with the arm at random.
 void add_samples(Problem& problem, const Robot& robot, const ParameterTable& truth,
                  SeededRandom& random) {
-  const TrueRobot true_robot(robot, truth);
+  const TrueRobot true_robot(robot, truth, kFrames);
+  const TrueCamera camera(truth, "optical");
   while (problem.num_samples() < kSamples) {
     Positions positions;
     for (const Joint& joint : robot.joints()) {
       if (moves(joint.type)) positions[joint.name] = 0.0;
       if (joint.name.starts_with("arm_")) positions[joint.name] = random.uniform(-2.0, 2.0);
     }
-    if (const auto sample = true_robot.look(positions, random)) problem.add_sample(*sample);
+    if (const auto sample = look(true_robot, camera, positions, random))
+      problem.add_sample(*sample);
   }
 }
 

@@ -1,5 +1,5 @@
-// What the examples use to pretend that they had a robot: random numbers, a true robot that is not
-// as its drawing says, and a depth camera.
+// What the examples use to pretend that they had a robot: random numbers, poses and a depth camera.
+// Where the robot really is, true_robot.hpp knows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,12 +8,11 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "kinecal/kinematics/pose_walker.hpp"
-#include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
 
 namespace kinecal::examples {
@@ -72,22 +71,6 @@ class SeededRandom {
                                          : random.uniform(-std::numbers::pi, std::numbers::pi));
   }
   return sample;
-}
-
-/// Where a link really is while the joints report what the sample says.
-/// @param robot  as it is drawn
-/// @param truth  what is wrong with it, by the names of the parameters
-[[nodiscard]] inline Pose<double> true_pose(const Robot& robot, const ParameterTable& truth,
-                                            const std::string& base, const std::string& tip,
-                                            const Sample& sample) {
-  std::set<std::string> joints;  // any of them may have a frame correction
-  for (const Joint& joint : robot.joints()) joints.insert(joint.name);
-  const RuntimeChain chain = make_chain(robot, base, tip, joints);
-  const Eigen::VectorXd values = truth.values();
-  const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-  return forward_kinematics(
-      chain, [&](const std::string& joint) { return sample.position(joint).value(); },
-      corrections_for(chain_parameters(chain, truth), all));
 }
 
 /// 640 x 480 pixels, as its driver has it.

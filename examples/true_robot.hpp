@@ -1,14 +1,18 @@
-// A robot as it really is, beside what its URDF says: for examples that simulate one.
+// A robot and a camera as they really are, beside what URDF and driver say: for examples that
+// simulate them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
-#include "kinecal/parameters.hpp"
-#include "kinecal/samples/sample.hpp"
+#include "kinecal/kinematics/pose_walker.hpp"
+#include "kinecal/parameters/chain_parameters.hpp"
+#include "simulation.hpp"
 
 namespace kinecal::examples {
 
@@ -54,6 +58,46 @@ class TrueRobot {
   const ParameterTable& truth_;
   std::set<std::string> frames_;
   mutable std::map<std::pair<std::string, std::string>, Way> ways_;  ///< those asked for so far
+};
+
+/// Where a link really is while the joints report what the sample says.
+/// @param truth  what is wrong with the robot's drawing: of any joint, as an offset or a frame
+[[nodiscard]] inline Pose<double> true_pose(const Robot& robot, const ParameterTable& truth,
+                                            const std::string& base, const std::string& tip,
+                                            const Sample& sample) {
+  std::set<std::string> joints;
+  for (const Joint& joint : robot.joints()) joints.insert(joint.name);
+  Positions positions;
+  for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
+    positions[sample.joint_names[i]] = sample.joint_positions[i];
+  }
+  return TrueRobot(robot, truth, joints).pose(base, tip, positions);
+}
+
+/// A depth camera that its driver takes for example_camera_info().
+class TrueCamera {
+ public:
+  /// @param truth  holds what is wrong with it: camera_fx, ..., camera_z_scaling
+  /// @param frame  its optical frame
+  TrueCamera(const ParameterTable& truth, std::string frame)
+      : driver_(DepthCamera<>::from(example_camera_info())), frame_(std::move(frame)) {
+    for (std::size_t i = 0; i < errors_.size(); ++i) {
+      errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
+    }
+  }
+
+  /// What its driver reports of a point.
+  /// @param p_camera  (3) metres, in the optical frame
+  [[nodiscard]] Feature record(const Vector3<double>& p_camera, SeededRandom& random) const {
+    return {frame_, recorded_point(driver_, p_camera, errors_, {}, random)};
+  }
+
+  [[nodiscard]] const DepthCamera<>& driver() const { return driver_; }
+
+ private:
+  DepthCamera<> driver_;
+  std::string frame_;
+  std::array<double, 6> errors_{};
 };
 
 /// A sample of these positions in which nothing observes yet.

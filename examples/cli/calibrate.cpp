@@ -73,6 +73,9 @@ SolveOptions solve_options(const CalibrateOptions& options) {
 }  // namespace
 
 int calibrate(const CalibrateOptions& options) {
+  if (options.output.empty() && !options.dry_run) {
+    throw InputError("--output is required (or --dry-run)");
+  }
   const Clock::time_point start = Clock::now();
   const Input input = read_input(options.urdf, options.config, options.samples, options.cameras);
   print(input.diagnostics);
@@ -92,9 +95,12 @@ int calibrate(const CalibrateOptions& options) {
     std::fflush(stdout);
     print_doubts(input.calibration, result, observability);
   }
-  if (!result.converged) {
+  const std::string why = result.converged
+                              ? impossible_camera(input.calibration, result.table, input.samples)
+                              : result.termination;
+  if (!why.empty()) {
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
-               result.steps.back().name, result.termination);
+               result.steps.back().name, why);
     return kNotConverged;
   }
   if (folder) {

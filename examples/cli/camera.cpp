@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <span>
-#include <system_error>
 
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/io/camera_info.hpp"
 #include "kinecal/io/cameras/read_camera_file.hpp"
-#include "kinecal/io/results/file_set.hpp"
+#include "output_file.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -33,22 +31,18 @@ void print_camera(const CameraInfo& camera) {
 }  // namespace
 
 int camera(const CameraOptions& options) {
+  if (!options.output.empty()) {
+    const std::string without_name = options.file.substr(0, options.file.rfind(':'));
+    check_output(options.output, {options.file, without_name}, options.force);
+  }
   Diagnostics diagnostics;
   const CameraInfo camera = read_camera_argument(options.file, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
   print_camera(camera);
   if (options.output.empty()) return kDone;
-  const std::filesystem::path output(options.output);
-  std::error_code missing;
-  for (const std::string& input : {options.file, options.file.substr(0, options.file.rfind(':'))}) {
-    if (!std::filesystem::equivalent(output, input, missing)) continue;
-    throw OutputError(options.output + ": would replace the input; choose another --output");
-  }
-  OutputFolder folder(output.has_parent_path() ? output.parent_path() : ".");
-  folder.write({{output.filename().string(), options.keys == "message"
-                                                 ? to_camera_message_yaml(camera)
-                                                 : to_camera_info_yaml(camera, options.name)}});
+  write_file(options.output, options.keys == "message" ? to_camera_message_yaml(camera)
+                                                       : to_camera_info_yaml(camera, options.name));
   fmt::print("wrote {}\n", options.output);
   return kDone;
 }

@@ -39,6 +39,7 @@ struct CheckOptions {
 struct InitOptions {
   std::string urdf, output = "calibrate.yaml";
   std::string base, arm, camera, camera_type, camera_name;  ///< empty: asked, or proposed
+  std::string target_frame, tracker_frame;                  ///< likewise
   std::vector<std::string> targets;
   bool force = false;  ///< replace a file
 };
@@ -60,6 +61,7 @@ struct CameraOptions {
   std::string file;    ///< or file:cam1
   std::string output;  ///< empty: none
   std::string keys = "file", name = "camera";
+  bool force = false;  ///< replace a file
 };
 
 /// Says what a camera file says, and writes it as camera_info.

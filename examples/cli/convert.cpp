@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <sstream>
 
@@ -16,6 +15,7 @@
 #include "kinecal/io/recordings/pose_messages.hpp"
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
+#include "output_file.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -36,37 +36,52 @@ std::optional<Encoding> output_encoding(const std::string& output) {
   throw InputError(output + ": is to be in no known format; name it .yaml, .bag or .mcap");
 }
 
-/// YAML of poses is a list, that of samples begins with a key.
-bool is_list_of_poses(const std::string& path) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#' || line.starts_with("---")) continue;
-    return line[first] == '-' || line[first] == '[';
-  }
-  return false;
-}
-
-Content read_content(const ConvertOptions& options, Diagnostics& diagnostics) {
-  const std::string& input = options.input;
-  if (!options.columns.empty()) {
-    return {read_csv_samples(input, options.columns, diagnostics), {}};
+/// Samples or poses in YAML.
+Content read_yaml(const std::string& input, Diagnostics& diagnostics) {
+  if (is_poses_yaml(input)) return {{}, read_poses_yaml(input, diagnostics)};
+  Content content;
+  Diagnostics found;
+  try {
+    content.samples = read_samples(input, found);
+  } catch (const InputError& error) {
+    found.errors.emplace_back(error.what());
   }
   const std::string extension = std::filesystem::path(input).extension().string();
-  if (extension == ".csv" || extension == ".tsv" || extension == ".txt") {
-    throw InputError(input + ": is a table; say what its columns mean: --columns FILE");
+  if (!found.errors.empty() &&
+      (extension == ".csv" || extension == ".tsv" || extension == ".txt")) {
+    throw InputError(input + ": is no YAML; say what the columns of a table mean: --columns FILE");
   }
-  if (recording_format(input) == RecordingFormat::yaml) {
-    if (is_list_of_poses(input)) return {{}, read_poses_yaml(input, diagnostics)};
-    return {read_samples(input, diagnostics), {}};
-  }
-  const std::vector<TopicContent> topics = bag_topics(input, diagnostics);
-  if (!diagnostics.errors.empty()) return {};
+  diagnostics.errors.insert(diagnostics.errors.end(), found.errors.begin(), found.errors.end());
+  diagnostics.warnings.insert(diagnostics.warnings.end(), found.warnings.begin(),
+                              found.warnings.end());
+  return content;
+}
+
+/// What YAML can hold of a bag: its samples or, without any, its poses; the rest is told.
+Content read_bag_content(const std::string& input, Diagnostics& diagnostics) {
+  Diagnostics told_again;  // when the messages are read
+  const std::vector<TopicContent> topics = bag_topics(input, told_again);
   const bool has_samples = std::any_of(topics.begin(), topics.end(), [](const TopicContent& topic) {
     return topic.use == TopicUse::samples && topic.messages > 0;
   });
+  const TopicUse used = has_samples ? TopicUse::samples : TopicUse::poses;
+  for (const TopicContent& topic : topics) {
+    if (topic.use == used || topic.messages == 0) continue;
+    diagnostics.warning({input, 0},
+                        fmt::format("topic '{}' ({}) is left out: YAML holds {} alone", topic.name,
+                                    topic.type, has_samples ? "samples" : "poses"));
+  }
   if (has_samples) return {read_recording(input, diagnostics).samples, {}};
   return {{}, read_bag_poses(input, diagnostics)};
+}
+
+Content read_content(const ConvertOptions& options, Diagnostics& diagnostics) {
+  if (!options.columns.empty()) {
+    return {read_csv_samples(options.input, options.columns, diagnostics), {}};
+  }
+  return recording_format(options.input) == RecordingFormat::yaml
+             ? read_yaml(options.input, diagnostics)
+             : read_bag_content(options.input, diagnostics);
 }
 
 std::string counted(const Content& content) {
@@ -75,15 +90,14 @@ std::string counted(const Content& content) {
 }
 
 /// Everything that is in the input, as YAML.
-std::string write_yaml(const Content& content, const std::filesystem::path& output) {
+std::string write_yaml(const Content& content, const std::string& output) {
   std::ostringstream text;
   if (content.samples.empty()) {
     write_poses_yaml(text, content.poses);
   } else {
     write_samples(text, content.samples);
   }
-  OutputFolder folder(output.has_parent_path() ? output.parent_path() : ".");
-  folder.write({{output.filename().string(), text.str()}});
+  write_file(output, text.str());
   return counted(content);
 }
 
@@ -96,6 +110,7 @@ std::optional<std::string> write_bag(const ConvertOptions& options, Encoding enc
   Content content;
   if (!from_bag) content = read_content(options, diagnostics);
   if (!diagnostics.errors.empty()) return std::nullopt;
+  const OutputFolder folder(folder_of(options.output));  // made where it is missing
   BagOutput bag(options.output, encoding,
                 encoding == Encoding::cdr ? best_mcap_compression() : Compression::none);
   std::string words = counted(content);
@@ -111,22 +126,10 @@ std::optional<std::string> write_bag(const ConvertOptions& options, Encoding enc
   return words;
 }
 
-void check_output(const ConvertOptions& options) {
-  const std::filesystem::path output = options.output;
-  if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(output))) {
-    throw OutputError(options.output + ": exists; give --force to replace it, or another name");
-  }
-  std::error_code missing;
-  if (std::filesystem::equivalent(output, options.input, missing) ||
-      std::filesystem::equivalent(output, options.columns, missing)) {
-    throw OutputError(options.output + ": would replace an input; choose another name");
-  }
-}
-
 }  // namespace
 
 int convert(const ConvertOptions& options) {
-  check_output(options);
+  check_output(options.output, {options.input, options.columns}, options.force);
   const std::optional<Encoding> encoding = output_encoding(options.output);
   Diagnostics diagnostics;
   std::optional<std::string> words;

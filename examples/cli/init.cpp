@@ -1,109 +1,30 @@
 // kinecal init: a first configuration, by a few questions.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <charconv>
-#include <filesystem>
-#include <iostream>
-#include <optional>
 #include <utility>
 
 #include "commands.hpp"
 #include "kinecal/io/init/initial_config.hpp"
-#include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "output_file.hpp"
+#include "question.hpp"
 
 namespace kinecal::cli {
 namespace {
 
-/// What can be chosen: the answer, and a line that says what it means.
-struct Choice {
-  std::string answer, says;
-};
-
-std::vector<Choice> choices(const std::vector<std::string>& answers) {
-  std::vector<Choice> all;
-  for (const std::string& answer : answers) all.push_back({answer, ""});
-  return all;
-}
-
-std::string listed(const std::vector<Choice>& all) {
-  std::string text;
-  for (const Choice& choice : all) text += (text.empty() ? "" : ", ") + choice.answer;
-  return text;
-}
-
-/// One question; what is answered on the command line is not asked.
-struct Question {
-  std::string option;  ///< "--arm"
-  std::string asks;
-  std::vector<Choice> choices;  ///< the first is the one that Enter chooses
-};
-
-void print(const Question& question) {
-  fmt::print("{}\n", question.asks);
-  int number = 0;
-  for (const Choice& choice : question.choices) {
-    fmt::print("  {}  {}{}{}\n", ++number, choice.answer, choice.says.empty() ? "" : ": ",
-               choice.says);
-  }
-  fmt::print("{}: ", question.choices.empty() ? "name" : "number or name [1]");
-  std::fflush(stdout);
-}
-
-/// What an answer typed stands for; nothing if it must be asked again.
-std::optional<std::string> understood(const Question& question, const std::string& line) {
-  const std::vector<Choice>& choices = question.choices;
-  if (line.empty() && !choices.empty()) return choices.front().answer;
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
-  if (error == std::errc() && end == line.data() + line.size()) {
-    if (number >= 1 && number <= choices.size()) return choices[number - 1].answer;
-    return std::nullopt;
-  }
-  return line.empty() ? std::nullopt : std::optional(line);
-}
-
-/// Asks on the terminal.  Where there is none, the only choice is taken, and several are an error.
-/// @param valid  whether a name is a good answer; it says why if not
-template <class Valid>
-std::string ask(const Question& question, const Valid& valid) {
-  if (isatty(STDIN_FILENO) == 0) {
-    if (question.choices.size() == 1) {
-      fmt::print("{} {} (the only one)\n", question.option, question.choices.front().answer);
-      return question.choices.front().answer;
-    }
-    throw InputError(question.option + " is required where nobody can be asked" +
-                     (question.choices.empty() ? "; no link of the URDF looks like one"
-                                               : "; one of " + listed(question.choices)));
-  }
-  for (;;) {
-    print(question);
-    std::string line;
-    if (!std::getline(std::cin, line)) {
-      throw InputError(question.option + ": not answered; nothing is written");
-    }
-    const auto begin = line.find_first_not_of(" \t\r");
-    line = begin == std::string::npos
-               ? ""
-               : line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1);
-    const auto answer = understood(question, line);
-    if (!answer) {
-      fmt::print("  there is no such number\n");
-    } else if (const std::string why = valid(*answer); !why.empty()) {
-      fmt::print("  {}\n", why);
-    } else {
-      return *answer;
-    }
-  }
+/// What is wrong with an answer; empty if nothing is.
+/// @param check  reports it to diagnostics
+template <class Check>
+std::string why_not(const Check& check) {
+  Diagnostics diagnostics;
+  check(diagnostics);
+  return diagnostics.errors.empty() ? "" : diagnostics.errors.front();
 }
 
 std::string ask_link(const Robot& robot, const Question& question) {
-  return ask(question, [&](const std::string& link) -> std::string {
-    if (robot.has_link(link)) return "";
-    return fmt::format("the robot has no link '{}'{}", link,
-                       did_you_mean(link, robot.link_names()));
+  return ask(question, [&](const std::string& link) {
+    return why_not([&](Diagnostics& d) { check_init_link(robot, question.option, link, d); });
   });
 }
 
@@ -124,7 +45,7 @@ void answer_targets(const InitOptions& options, InitAnswers& answers) {
     }
     words = {ask(question, check_target)};
     const InitTarget target = *init_target(words.front());
-    if (needs_camera(target) && target != InitTarget::ground && isatty(STDIN_FILENO) != 0 &&
+    if (needs_camera(target) && target != InitTarget::ground && on_a_terminal() &&
         options.camera_type != "camera2d") {
       const Question floor{"--target", "Does the camera see the floor too, in samples of its own?",
                            choices({"no", "yes"})};
@@ -166,7 +87,7 @@ void answer_camera(const Robot& robot, const InitOptions& options, InitAnswers& 
   const bool floor = answers.with_ground || answers.target == InitTarget::ground;
   if (!options.camera_type.empty()) {
     answers.camera_type = options.camera_type;
-  } else if (isatty(STDIN_FILENO) != 0 && !floor) {
+  } else if (on_a_terminal() && !floor) {
     const Question question{
         "--camera-type",
         "What does the camera give?",
@@ -175,62 +96,113 @@ void answer_camera(const Robot& robot, const InitOptions& options, InitAnswers& 
       return type == "camera3d" || type == "camera2d" ? "" : "camera3d or camera2d";
     });
   }
-  if (!options.camera_name.empty()) answers.camera_name = options.camera_name;
+  answers.camera_name = ask_unless_given(
+      options.camera_name,
+      {"--robot-camera-name", "What do the samples call the camera (sensor_name)?",
+       choices({answers.camera_name})},
+      [](const std::string& name) {
+        return why_not([&](Diagnostics& d) { check_init_camera_name("camera", name, d); });
+      });
+}
+
+/// Names that have a proposal: frames that are in no URDF, the base.
+void answer_names(const Robot& robot, const InitOptions& options, InitAnswers& answers) {
+  const InitAnswers proposed = with_proposals(robot, answers);
+  const auto frame = [&](const std::string& given, const Question& question) {
+    return ask_unless_given(given, question, [&](const std::string& name) {
+      return why_not([&](Diagnostics& d) { check_init_frame(robot, question.option, name, d); });
+    });
+  };
+  const bool tracker = answers.target == InitTarget::tracker;
+  if (needs_target_frame(answers.target)) {
+    answers.target_frame =
+        frame(options.target_frame,
+              {"--target-frame",
+               fmt::format("What do the samples call the frame of the {} (frame_id)?",
+                           tracker ? "reflector" : "board"),
+               choices({proposed.target_frame})});
+  }
+  if (tracker) {
+    answers.tracker_frame =
+        frame(options.tracker_frame,
+              {"--tracker-frame", "What do the samples call the frame of the tracker (frame_id)?",
+               choices({proposed.tracker_frame})});
+  }
+  if (proposed.base.empty()) return;  // for a link that is none, told later
+  const bool floor = answers.with_ground || answers.target == InitTarget::ground;
+  answers.base = ask_unless_given(
+      options.base,
+      {"--base",
+       fmt::format("In which link is everything compared{}?", floor ? " (z = 0 is the floor)" : ""),
+       choices({proposed.base})},
+      [&](const std::string& link) {
+        return why_not([&](Diagnostics& d) { check_init_link(robot, "--base", link, d); });
+      });
 }
 
 /// Before any question: what was given must not be found wrong at the end.
-void check_given_links(const Robot& robot, const InitOptions& options) {
+void check_given(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
   for (const auto& [option, link] :
        {std::pair("--base", options.base), std::pair("--arm", options.arm),
         std::pair("--camera", options.camera)}) {
     if (!link.empty()) check_init_link(robot, option, link, diagnostics);
   }
+  for (const auto& [option, frame] : {std::pair("--target-frame", options.target_frame),
+                                      std::pair("--tracker-frame", options.tracker_frame)}) {
+    if (!frame.empty()) check_init_frame(robot, option, frame, diagnostics);
+  }
   diagnostics.throw_if_errors();
 }
 
+/// Tells options that the target makes no use of.
+void warn_of_idle(const InitOptions& options, InitTarget target) {
+  const auto warn = [&](bool is_used, const std::string& given, const char* option) {
+    if (is_used || given.empty()) return;
+    fmt::print(stderr, "warning: {} has no part in target {}\n", option, to_string(target));
+  };
+  warn(needs_arm(target), options.arm, "--arm");
+  warn(needs_camera(target), options.camera, "--camera");
+  warn(needs_camera(target), options.camera_type, "--camera-type");
+  warn(needs_camera(target), options.camera_name, "--robot-camera-name");
+  warn(needs_target_frame(target), options.target_frame, "--target-frame");
+  warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
+}
+
 InitAnswers answer(const Robot& robot, const InitOptions& options) {
-  check_given_links(robot, options);
+  check_given(robot, options);
   InitAnswers answers;
   answers.base = options.base;
   answers.arm = options.arm;
   answers.camera = options.camera;
   answer_targets(options, answers);
+  warn_of_idle(options, answers.target);
   if (needs_arm(answers.target) && answers.arm.empty()) {
     answers.arm = ask_link(robot, {"--arm", "Which link is at the end of the arm, with the target?",
                                    choices(propose_arms(robot))});
   }
   if (needs_camera(answers.target)) answer_camera(robot, options, answers);
-  const std::string& end = needs_arm(answers.target) ? answers.arm : answers.camera;
-  if (answers.base.empty() && robot.has_link(end)) answers.base = propose_base(robot, end);
-  if (!needs_arm(answers.target) && !options.arm.empty()) {
-    fmt::print(stderr, "warning: --arm has no part in target {}\n", to_string(answers.target));
-  }
-  if (!needs_camera(answers.target) && !options.camera.empty()) {
-    fmt::print(stderr, "warning: --camera has no part in target {}\n", to_string(answers.target));
-  }
+  answer_names(robot, options, answers);
   return answers;
 }
 
-void refuse_existing(const InitOptions& options) {
-  if (options.force || !std::filesystem::exists(std::filesystem::symlink_status(options.output))) {
-    return;
-  }
-  throw OutputError(options.output + ": exists; give --force to replace it, or another --output");
+/// As a shell takes it for one word.
+std::string as_word(const std::string& text) {
+  const bool is_plain = text.find_first_of(" \t\"$&;()<>|*?'") == std::string::npos;
+  return is_plain ? text : "'" + text + "'";
 }
 
 }  // namespace
 
 int init(const InitOptions& options) {
-  refuse_existing(options);  // before any question
+  const auto check = [&] { check_output(options.output, {options.urdf}, options.force); };
+  check();  // before any question
   const Robot robot = read_urdf(options.urdf);
   const std::string text = initial_config(robot, answer(robot, options));
-  const std::filesystem::path output = options.output;
-  refuse_existing(options);  // somebody may have written it while questions were answered
-  OutputFolder folder(output.has_parent_path() ? output.parent_path() : ".");
-  folder.write({{output.filename().string(), text}});
-  fmt::print("wrote {}\nnext: kinecal check --urdf {} --config {}\n", options.output, options.urdf,
-             options.output);
+  check();  // somebody may have written it while questions were answered
+  write_file(options.output, text);
+  fmt::print("wrote {}\nnext: kinecal check --urdf {} --config {}\n", options.output,
+             as_word(options.urdf), as_word(options.output));
   return kDone;
 }
 

@@ -3,8 +3,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <optional>
+#include <system_error>
 
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
@@ -29,7 +32,16 @@ auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(re
 
 Recording read_recordings(const std::vector<std::string>& files, Diagnostics& diagnostics) {
   Recording all;
+  std::vector<std::string> before;
   for (const std::string& file : files) {
+    std::error_code missing;
+    const auto same = [&](const std::string& other) {
+      return std::filesystem::equivalent(file, other, missing);
+    };
+    if (std::any_of(before.begin(), before.end(), same)) {
+      diagnostics.warning({file, 0}, "is given twice: its samples count twice");
+    }
+    before.push_back(file);
     auto read = attempt([&] { return read_recording(file, diagnostics); }, diagnostics);
     if (!read) continue;
     all.samples.insert(all.samples.end(), std::make_move_iterator(read->samples.begin()),

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/io/recordings/bag_topics.hpp"
+#include "kinecal/io/recordings/pose_messages.hpp"
 #include "kinecal/report/text.hpp"
 
 namespace kinecal::cli {
@@ -118,22 +119,51 @@ void print_topics(const std::string& file, const std::vector<TopicContent>& topi
   fmt::print("{}\n", table.str());
 }
 
-/// Prints what bags hold.
+/// Poses to capture: joints, and what is looked for there.
+void print_poses(const std::vector<CapturePose>& poses) {
+  std::vector<Sample> samples(poses.size());
+  std::map<std::string, std::size_t> finders;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    samples[i].joint_names = poses[i].joint_names;
+    samples[i].joint_positions = poses[i].positions;
+    for (const std::string& finder : poses[i].features) ++finders[finder];
+    if (poses[i].features.empty()) ++finders["(all)"];
+  }
+  fmt::print("{} poses to capture\n\n", poses.size());
+  print_joints(samples);
+  TextTable table({"looked for", "poses"});
+  for (const auto& [finder, count] : finders) table.add({finder, fmt::format("{}", count)});
+  fmt::print("Features\n{}\n", table.str());
+}
+
+/// Prints what bags hold, and poses.
 /// @return  the files with samples
 std::vector<std::string> with_samples(const std::vector<std::string>& files,
                                       Diagnostics& diagnostics) {
   std::vector<std::string> found;
   for (const std::string& file : files) {
     if (recording_format(file) == RecordingFormat::yaml) {
-      found.push_back(file);
+      if (is_poses_yaml(file)) {
+        print_poses(read_poses_yaml(file, diagnostics));
+      } else {
+        found.push_back(file);
+      }
       continue;
     }
     const std::vector<TopicContent> topics = bag_topics(file, diagnostics);
     if (!topics.empty()) print_topics(file, topics);
-    if (std::any_of(topics.begin(), topics.end(), [](const TopicContent& topic) {
-          return topic.use == TopicUse::samples && topic.messages > 0;
-        })) {
+    const auto has = [&](TopicUse use) {
+      return std::any_of(topics.begin(), topics.end(), [&](const TopicContent& topic) {
+        return topic.use == use && topic.messages > 0;
+      });
+    };
+    if (has(TopicUse::samples)) {
       found.push_back(file);
+    } else if (has(TopicUse::poses)) {
+      Diagnostics of_poses;  // with what the topics told already
+      const std::vector<CapturePose> poses = read_bag_poses(file, of_poses);
+      if (diagnostics.errors.empty()) diagnostics.errors = of_poses.errors;
+      print_poses(poses);
     }
   }
   return found;

@@ -50,7 +50,7 @@ int install_result(const InstallOptions& options) {
 }
 
 int restore(const InstallOptions& options) {
-  const std::string undone = restore_installed(options.folder, options.launch);
+  const std::string undone = restore_installed(options.folder, options.launch, options.force);
   fmt::print("restored {}; the one that it replaced is {}\n", in_folder(options, options.launch),
              undone);
   return kDone;
@@ -60,6 +60,9 @@ int restore(const InstallOptions& options) {
 
 int install(const InstallOptions& options) {
   if (options.restore) return restore(options);
+  if (!options.date && options.result.empty()) {
+    throw InputError("a result is required (or --restore, or --date)");
+  }
   if (!options.date) return install_result(options);
   fmt::print("{}\n", installed_date(options.folder, options.launch, launch_names(options.names)));
   return kDone;

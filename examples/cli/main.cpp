@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,13 +75,27 @@ void add_init(CLI::App& command, InitOptions& options) {
       .add_option("--target", options.targets,
                   "what the robot is measured against: leds, checkerboard (in the gripper), "
                   "world_checkerboard, tracker or ground; ground may come with another")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->type_name("TARGET");
+  command
+      .add_option("--target-frame", options.target_frame,
+                  "frame_id of the board's corners or of the reflector in the samples, which is in "
+                  "no URDF; by default 'checkerboard' or 'smr'")
+      ->type_name("NAME");
+  command
+      .add_option("--tracker-frame", options.tracker_frame,
+                  "frame_id of what a tracker measured, by default 'tracker_frame'")
+      ->type_name("NAME");
   command.add_option("--arm", options.arm, "link at the end of the arm")->type_name("LINK");
   command.add_option("--camera", options.camera, "the camera's optical frame")->type_name("LINK");
-  command.add_option("--camera-type", options.camera_type,
-                     "camera3d (points in metres, default) or camera2d (pixels)");
-  command.add_option("--robot-camera-name", options.camera_name,
-                     "sensor_name of the camera in the samples, by default 'camera'");
+  command
+      .add_option("--camera-type", options.camera_type,
+                  "camera3d (points in metres, default) or camera2d (pixels)")
+      ->type_name("TYPE");
+  command
+      .add_option("--robot-camera-name", options.camera_name,
+                  "sensor_name of the camera in the samples, by default 'camera'")
+      ->type_name("NAME");
   command
       .add_option("--base", options.base,
                   "link in which everything is compared, by default the highest one")
@@ -103,7 +119,7 @@ void add_convert(CLI::App& command, ConvertOptions& options) {
                   "the input is a table; YAML that tells what its columns mean")
       ->type_name("FILE");
   command.add_flag("--drop-clouds", options.drop_clouds,
-                   "leave out the point clouds and images of observations");
+                   "leave out the point clouds and images of observations; YAML never has them");
   command.add_flag("--force", options.force, "replace the file that is there");
 }
 
@@ -121,6 +137,7 @@ void add_camera(CLI::App& command, CameraOptions& options) {
   command.add_option("--name", options.name, "camera_name in the file")
       ->needs(output)
       ->capture_default_str();
+  command.add_flag("--force", options.force, "replace the file that is there")->needs(output);
 }
 
 /// The arguments in the order that the parser takes, the last one first.  It takes -.5 for an
@@ -151,7 +168,8 @@ void add_install(CLI::App& command, InstallOptions& installing) {
                   "z_offset_mm=camera/z_offset_mm; KEY= sets nothing")
       ->type_name("KEY=NAME")
       ->allow_extra_args(false);
-  command.add_flag("--force", installing.force, "install what did not converge")->needs(result);
+  command.add_flag("--force", installing.force,
+                   "install what did not converge; restore what has lost files");
   CLI::Option* restore =
       command.add_flag("--restore", installing.restore, "take the last installation back")
           ->excludes(result);
@@ -160,82 +178,92 @@ void add_install(CLI::App& command, InstallOptions& installing) {
       ->excludes(restore);
 }
 
+void add_check(CLI::App& command, CheckOptions& options) {
+  add_input(command, options.urdf, options.config);
+  command.add_option("--samples", options.samples, "recorded samples")->type_name("FILE");
+  add_cameras(command, options.cameras);
+}
+
+void add_inspect(CLI::App& command, std::vector<std::string>& samples) {
+  command.add_option("samples", samples, "recorded samples")->required()->type_name("FILE");
+}
+
+void add_rpy(CLI::App& command, RpyOptions& options) {
+  command.add_option("numbers", options.numbers, "A B C, or R P Y; radians")
+      ->required()
+      ->expected(3);
+  command.add_flag("--to-vector", options.to_vector, "the numbers are roll, pitch, yaw");
+}
+
+/// The commands of the program, and which of them the arguments call.
+class Commands {
+ public:
+  explicit Commands(CLI::App& app) : app_(app) {}
+
+  /// @param describe  adds the options to the command
+  /// @param run       does what it is for
+  template <class Options>
+  void add(const char* name, const char* says, void (*describe)(CLI::App&, Options&),
+           int (*run)(const Options&)) {
+    const auto options = std::make_shared<Options>();
+    names_.push_back(name);
+    CLI::App* const command = app_.add_subcommand(name, says);
+    describe(*command, *options);
+    command->callback([this, options, run] { called_ = [=] { return run(*options); }; });
+  }
+
+  [[nodiscard]] int run_called() const { return called_(); }
+
+  /// What is said of arguments that are wrong.
+  [[nodiscard]] std::string refusal(const std::string& first, const CLI::Error& error) const {
+    std::string names;
+    for (const std::string& name : names_) {
+      if (name == first) {
+        return std::string("error: ") + error.what() + "; 'kinecal " + name +
+               " --help' tells what it takes\n";
+      }
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    return "error: " + (first.empty() ? "no command is given" : "'" + first + "' is no command") +
+           "; one of " + names + "\n";
+  }
+
+ private:
+  CLI::App& app_;
+  std::vector<std::string> names_;
+  std::function<int()> called_;
+};
+
 int run(int argc, char** argv) {
   CLI::App app("Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.",
                "kinecal");
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
-
-  CalibrateOptions calibrating;
-  CLI::App* calibrate_command = app.add_subcommand(
-      "calibrate", "calibrate the robot and write its corrected URDF and camera files");
-  add_calibrate(*calibrate_command, calibrating);
-
-  CheckOptions checking;
-  CLI::App* check_command =
-      app.add_subcommand("check", "find every mistake in the input, without calibrating");
-  add_input(*check_command, checking.urdf, checking.config);
-  check_command->add_option("--samples", checking.samples, "recorded samples")->type_name("FILE");
-  add_cameras(*check_command, checking.cameras);
-
-  InitOptions starting;
-  CLI::App* init_command =
-      app.add_subcommand("init", "write a first configuration from a URDF: asks what is not given");
-  add_init(*init_command, starting);
-
-  ConvertOptions converting;
-  CLI::App* convert_command =
-      app.add_subcommand("convert", "write samples or poses in another format");
-  add_convert(*convert_command, converting);
-
-  std::vector<std::string> inspected;
-  CLI::App* inspect_command = app.add_subcommand(
-      "inspect", "show what is in the samples: sensors, features, joint ranges, gaps");
-  inspect_command->add_option("samples", inspected, "recorded samples")
-      ->required()
-      ->type_name("FILE");
-
-  CameraOptions showing;
-  CLI::App* camera_command =
-      app.add_subcommand("camera", "show a camera file, and write it as camera_info");
-  add_camera(*camera_command, showing);
-
-  InstallOptions installing;
-  CLI::App* install_command =
-      app.add_subcommand("install", "put a result onto the robot: its files and its launch file");
-  add_install(*install_command, installing);
-
-  RpyOptions turning;
-  CLI::App* rpy_command = app.add_subcommand(
-      "rpy", "a rotation vector (a b c of a free frame) as roll, pitch, yaw (a URDF's), and back");
-  rpy_command->add_option("numbers", turning.numbers, "A B C, or R P Y; radians")
-      ->required()
-      ->expected(3);
-  rpy_command->add_flag("--to-vector", turning.to_vector, "the numbers are roll, pitch, yaw");
-
+  app.footer("'kinecal COMMAND --help' tells what a command takes.");
+  Commands commands(app);
+  commands.add("init", "write a first configuration from a URDF: asks what is not given", add_init,
+               init);
+  commands.add("check", "find every mistake in the input, without calibrating", add_check, check);
+  commands.add("calibrate", "calibrate the robot and write its corrected URDF and camera files",
+               add_calibrate, calibrate);
+  commands.add("install", "put a result onto the robot: its files and its launch file", add_install,
+               install);
+  commands.add("inspect", "show what is in recordings: topics, sensors, features, joints, gaps",
+               add_inspect, inspect);
+  commands.add("convert", "write samples or poses in another format", add_convert, convert);
+  commands.add("camera", "show a camera file, and write it as camera_info", add_camera, camera);
+  commands.add("rpy",
+               "a rotation vector (a b c of a free frame) as roll, pitch, yaw (a URDF's), and back",
+               add_rpy, rpy);
   try {
-    std::vector<std::string> arguments = arguments_of(argc, argv);
-    app.parse(std::move(arguments));
+    app.parse(arguments_of(argc, argv));
   } catch (const CLI::ParseError& e) {
+    const std::string first = argc > 1 ? argv[1] : "";
+    app.failure_message(
+        [&](const CLI::App*, const CLI::Error& error) { return commands.refusal(first, error); });
     return app.exit(e) == 0 ? kDone : kBadInput;
   }
-  if (*calibrate_command && calibrating.output.empty() && !calibrating.dry_run) {
-    std::fprintf(stderr, "error: --output is required (or --dry-run)\n");
-    return kBadInput;
-  }
-  if (*install_command && installing.result.empty() && !installing.restore && !installing.date) {
-    std::fprintf(stderr, "error: a result is required (or --restore, or --date)\n");
-    return kBadInput;
-  }
-  int code = kDone;
-  if (*calibrate_command) code = calibrate(calibrating);
-  if (*check_command) code = check(checking);
-  if (*init_command) code = init(starting);
-  if (*convert_command) code = convert(converting);
-  if (*inspect_command) code = inspect(inspected);
-  if (*camera_command) code = camera(showing);
-  if (*install_command) code = install(installing);
-  if (*rpy_command) code = rpy(turning);
+  const int code = commands.run_called();
   if (std::fflush(stdout) == 0) return code;
   std::fprintf(stderr, "error: the output cannot be printed\n");
   return kBadInput;

@@ -26,6 +26,8 @@ Vector3<double> three_numbers(const std::vector<std::string>& texts) {
     if (!number || !std::isfinite(*number)) {
       throw InputError("'" + text + "' is not a finite number");
     }
+    constexpr double kMost = 1e6;  // radians; beyond that no digits are left
+    if (std::abs(*number) > kMost) throw InputError("'" + text + "' is too large for an angle");
     numbers(i) = *number;
   }
   return numbers;
@@ -33,8 +35,9 @@ Vector3<double> three_numbers(const std::vector<std::string>& texts) {
 
 /// One line for programs: every digit; and one for people.
 void print(const char* what, const Vector3<double>& v) {
-  const Vector3<double> d = v * (180.0 / std::numbers::pi);
-  fmt::print("{}, rad  {:.17g} {:.17g} {:.17g}\n", what, v.x(), v.y(), v.z());
+  const Vector3<double> r = v + Vector3<double>::Zero();  // never -0
+  const Vector3<double> d = r * (180.0 / std::numbers::pi);
+  fmt::print("{}, rad  {:.17g} {:.17g} {:.17g}\n", what, r.x(), r.y(), r.z());
   fmt::print("{}, deg  {:.6f} {:.6f} {:.6f}\n", what, d.x(), d.y(), d.z());
 }
 

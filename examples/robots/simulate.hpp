@@ -14,7 +14,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "../simulation.hpp"
 #include "../true_robot.hpp"
 #include "robot_example.hpp"
 

@@ -52,6 +52,35 @@ TEST_F(Convert, AsksForTheColumnsOfATable) {
   EXPECT_THAT(made.err, HasSubstr("--columns FILE"));
 }
 
+TEST_F(Convert, TakesSamplesForWhatTheyAreWhateverTheirName) {
+  ASSERT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 0);
+  fs::rename(folder_ / "samples.yaml", folder_ / "samples.csv");
+  const Outcome made = kinecal("convert samples.csv again.yaml");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(read("again.yaml"), read("samples.csv"));
+}
+
+TEST_F(Convert, MakesTheFolderOfItsOutput) {
+  for (const char* name : {"one/a.yaml", "two/a.bag", "three/a.mcap"}) {
+    const std::string output = name;
+    const Outcome made = kinecal("convert tracker.csv " + output + " --columns columns.yaml");
+    EXPECT_EQ(made.code, 0) << made.err;
+    EXPECT_TRUE(fs::exists(folder_ / output));
+  }
+}
+
+TEST_F(Convert, AFullDiskIsToldWithTheNameOfTheOutput) {
+  for (const std::string output : {"full.yaml", "full.bag", "full.mcap"}) {
+    // The greatest file that may be written, in blocks of 512 or 1024 bytes: 2.
+    const Outcome made =
+        run("bash -c \"trap '' XFSZ; ulimit -f 2; " KINECAL_PROGRAM " convert tracker.csv " +
+            output + " --columns columns.yaml 2>&1 | cat\"");
+    EXPECT_THAT(made.out, HasSubstr(output + ": "));
+    EXPECT_THAT(made.out, testing::Not(HasSubstr(".kinecal-")));
+    EXPECT_FALSE(fs::exists(folder_ / output));
+  }
+}
+
 TEST_F(Convert, ReplacesNothingUnlessForcedAndNeverItsInput) {
   write("samples.yaml", "mine");
   EXPECT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 1);

@@ -120,25 +120,65 @@ TEST_F(Init, KeepsAFileThatIsThereUnlessForced) {
   EXPECT_THAT(read("deep/er/c.yaml"), HasSubstr("models:"));
 }
 
+TEST_F(Init, NeverWritesOverTheUrdf) {
+  fs::copy(urdf("ur5e"), folder_ / "my robot.urdf");
+  const std::string before = read("my robot.urdf");
+  const Outcome made = run(KINECAL_PROGRAM
+                           " init --urdf 'my robot.urdf' --target tracker --force --output "
+                           "'./my robot.urdf' < /dev/null");
+  EXPECT_EQ(made.code, 1);
+  EXPECT_THAT(made.err, HasSubstr("my robot.urdf: would replace an input"));
+  EXPECT_EQ(read("my robot.urdf"), before);
+  const Outcome next =
+      run(KINECAL_PROGRAM " init --urdf 'my robot.urdf' --target tracker < /dev/null");
+  EXPECT_THAT(next.out, HasSubstr("check --urdf 'my robot.urdf' --config calibrate.yaml"));
+}
+
+TEST_F(Init, NamesFramesByOptionsAndTellsThoseOfNoUse) {
+  const Outcome made = init(
+      "ur5e", "--target tracker --target-frame ball --tracker-frame at960 --camera-type camera2d");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("warning: --camera-type has no part in target tracker"));
+  EXPECT_THAT(read("calibrate.yaml"),
+              AllOf(HasSubstr("{name: at960, x: true"), HasSubstr("{name: ball, x: true"),
+                    Not(HasSubstr("smr")), Not(HasSubstr("tracker_frame"))));
+  EXPECT_EQ(check("ur5e").code, 0);
+  EXPECT_THAT(init("ur5e", "--target tracker --force --tracker-frame elbow_joint").err,
+              HasSubstr("--tracker-frame: 'elbow_joint' is a link or a joint"));
+}
+
 TEST_F(Init, AsksOnATerminal) {
-  // Target 2, the floor: no; arm 9 is none, 1; camera: misspelt, then Enter; type: Enter.
-  const Outcome asked = type("fetch", "", "2\n\n9\n1\nhead_camera_rgb_optcal_frame\n\n\n");
+  // Target 2, the floor: no; arm 9 is none, 1; camera: misspelt, then Enter; type: Enter; its name:
+  // no good, then eye; the board's frame: that of a joint, then charuco; the base: Enter.
+  const Outcome asked = type("fetch", "",
+                             "2\n\n9\n1\nhead_camera_rgb_optcal_frame\n\n\narm\neye\n"
+                             "elbow_flex_joint\ncharuco\n\n");
   EXPECT_EQ(asked.code, 0) << asked.out;
   EXPECT_THAT(asked.out, AllOf(HasSubstr("2  checkerboard: "), HasSubstr("no such number"),
                                HasSubstr("did you mean 'head_camera_rgb_optical_frame'?"),
                                HasSubstr("camera2d: pixels"), HasSubstr("wrote calibrate.yaml")));
+  EXPECT_THAT(asked.out,
+              AllOf(HasSubstr("(sensor_name)? [camera]: "), HasSubstr("'arm' cannot be the camera"),
+                    HasSubstr("the board (frame_id)? [checkerboard]: "),
+                    HasSubstr("'elbow_flex_joint' is a link or a joint"),
+                    HasSubstr("everything compared? [base_link]: ")));
   EXPECT_THAT(read("calibrate.yaml"),
-              AllOf(HasSubstr("{name: checkerboard, x: true"), HasSubstr("camera_z_offset"),
+              AllOf(HasSubstr("{name: charuco, x: true"), HasSubstr("eye_z_offset"),
                     HasSubstr("frame: gripper_link"), Not(HasSubstr("ground_plane"))));
   EXPECT_EQ(check("fetch").code, 0);
 }
 
 TEST_F(Init, DoesNotAskWhatOptionsSay) {
-  const Outcome asked = type(
-      "panda", "--target world_checkerboard --camera-type camera2d --robot-camera-name eye", "\n");
+  const Outcome asked =
+      type("panda",
+           "--target world_checkerboard --camera-type camera2d --robot-camera-name eye "
+           "--target-frame wall --base panda_link0",
+           "\n");
   EXPECT_EQ(asked.code, 0) << asked.out;
-  EXPECT_THAT(asked.out, AllOf(Not(HasSubstr("measured against")), HasSubstr("optical frame")));
-  EXPECT_THAT(read("calibrate.yaml"), AllOf(HasSubstr("model_2d: eye"), HasSubstr(" - eye_fx")));
+  EXPECT_THAT(asked.out, AllOf(Not(HasSubstr("measured against")), HasSubstr("optical frame"),
+                               Not(HasSubstr("samples call"))));
+  EXPECT_THAT(read("calibrate.yaml"), AllOf(HasSubstr("model_2d: eye"), HasSubstr(" - eye_fx"),
+                                            HasSubstr("{name: wall, x: true")));
   EXPECT_EQ(check("panda").code, 0);
 }
 

@@ -74,12 +74,25 @@ TEST_F(InstallProgram, RefusesWhatDidNotConvergeUnlessForced) {
   EXPECT_EQ(run("--date --to robot").out, "2026-01-02 03:04:05\n");
 }
 
+TEST_F(InstallProgram, RestoresWhatHasLostFilesOnlyIfForced) {
+  EXPECT_EQ(run("out --to robot").code, 0);
+  std::string older = launch();
+  const std::string urdf = "calibrated_2026_01_02_03_04_05.urdf";
+  older.replace(older.find(urdf), urdf.size(), "gone.urdf");
+  write("robot/robot.launch.backup_1", older);
+  expect_refused("--restore --to robot",
+                 AllOf(HasSubstr("robot.launch.backup_1: names what is not there any more: "
+                                 "gone.urdf; "),
+                       HasSubstr("--force")));
+  EXPECT_EQ(run("--restore --to robot --force").code, 0);
+  EXPECT_EQ(launch(), older);
+}
+
 TEST_F(InstallProgram, RefusesWrongArguments) {
   expect_refused("out", HasSubstr("--to"));
   expect_refused("--to robot", HasSubstr("a result is required"));
   expect_refused("out --restore --to robot", HasSubstr("excludes"));
   expect_refused("--date --restore --to robot", HasSubstr("excludes"));
-  expect_refused("--restore --force --to robot", HasSubstr("requires"));
   expect_refused("uot --to robot", HasSubstr("error: uot: cannot be read"));
   expect_refused("out --to rboot", HasSubstr("error: rboot: is not a folder"));
   expect_refused("out --to robot --launch robot/robot.launch", HasSubstr("is not the name of a"));

@@ -350,7 +350,7 @@ TEST_F(Program, ShowsACameraFileAndWritesItAsCameraInfo) {
   EXPECT_THAT(read("x/info.yaml"), HasSubstr("camera_name: head\n"));
   EXPECT_EQ(run("camera x/info.yaml --output y.yaml --keys message").code, 0);
   EXPECT_THAT(read("y.yaml"), HasSubstr("d: [0.1, 0.0, 0.0, 0.0, 0.0]\n"));
-  EXPECT_THAT(run("camera y.yaml --output y.yaml").err, HasSubstr("would replace the input"));
+  EXPECT_THAT(run("camera y.yaml --output y.yaml").err, HasSubstr("would replace an input"));
   EXPECT_THAT(run("camera y.yaml --keys message").err, HasSubstr("--output"));
   spoil("chain.yaml", "radtan", "fov");
   EXPECT_THAT(run("camera chain.yaml").err,
@@ -395,10 +395,11 @@ TEST_F(Program, CheckTellsEveryMistakeInOneGo) {
                                 HasSubstr("did you mean 'hand'?")));
 }
 
-TEST_F(Program, AcceptsASampleFileTwice) {
-  EXPECT_EQ(
-      run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml s.yaml --output out").code,
-      0);
+TEST_F(Program, AcceptsASampleFileTwiceAndSaysSo) {
+  const Outcome result =
+      run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml ./s.yaml --output out");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.err, HasSubstr("warning: ./s.yaml: is given twice"));
 }
 
 // Bad input, one test each.
@@ -756,6 +757,68 @@ TEST_F(Program, WarnsOfACameraThatWasSetDifferently) {
   write_all(all);
   const Outcome result = calibrate();
   EXPECT_THAT(result.err, AllOf(HasSubstr("s.yaml:"), HasSubstr("'camera' differs")));
+}
+
+TEST_F(Program, WritesNoCameraThatCannotBe) {
+  for (const std::string& found : {std::string("fx: -2.0"), std::string("z_scaling: -1.5")}) {
+    write("c.yaml", kConfig + ("initial_values: {camera_" + found + "}\n"));
+    const Outcome result = calibrate();
+    EXPECT_EQ(result.code, 2) << result.out;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("error: step 'calibrate' is not calibrated, nothing "),
+                                  HasSubstr("camera 'camera': ")));
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
+}
+
+TEST_F(Program, ACameraFileThatIsThereIsReplacedOnlyIfForced) {
+  ASSERT_EQ(calibrate().code, 0);
+  write("mine.yaml", "mine");
+  const Outcome refused = run("camera out/rgb_camera.yaml --output mine.yaml");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("error: mine.yaml: exists"), HasSubstr("--force")));
+  EXPECT_EQ(read("mine.yaml"), "mine");
+  EXPECT_EQ(run("camera out/rgb_camera.yaml --output mine.yaml --force").code, 0);
+  EXPECT_THAT(read("mine.yaml"), HasSubstr("camera_matrix:"));
+}
+
+TEST_F(Program, TellsWhereTheBaseIsMisspeltOrMissing) {
+  spoil("c.yaml", "base_link: base_link", "base_link: base_lnk");
+  expect_refused(AllOf(HasSubstr("c.yaml:1: base_link: no link 'base_lnk'"),
+                       HasSubstr("did you mean 'base_link'?")));
+  spoil("c.yaml", "base_link: base_lnk\n", "");
+  std::string text = kUrdf;
+  for (std::size_t at; (at = text.find("\"base_link\"")) != std::string::npos;) {
+    text.replace(at, 11, "\"root\"");
+  }
+  write("tiny.urdf", text);
+  expect_refused(HasSubstr("c.yaml: base_link is not given: no link 'base_link' in robot 'tiny'"));
+}
+
+TEST_F(Program, RefusesAFolderWhereAFileIsMeant) {
+  fs::create_directory(folder_ / "folder");
+  EXPECT_THAT(run("check --urdf tiny.urdf --config folder").err,
+              HasSubstr("folder: is a folder, not a file"));
+  EXPECT_THAT(run("check --urdf folder --config c.yaml").err, HasSubstr("folder: is a folder"));
+}
+
+TEST_F(Program, TellsTheCommandsToWhomMisspellsOne) {
+  const Outcome misspelt = run("calibrat --urdf tiny.urdf");
+  EXPECT_EQ(misspelt.code, 1);
+  EXPECT_THAT(misspelt.err,
+              AllOf(HasSubstr("error: 'calibrat' is no command; one of "), HasSubstr("calibrate")));
+  EXPECT_THAT(run("").err, HasSubstr("error: no command is given; one of init, "));
+  EXPECT_THAT(
+      run("check --config c.yaml --urfd x").err,
+      AllOf(HasSubstr("error: "), HasSubstr("--urfd"), HasSubstr("'kinecal check --help'")));
+  EXPECT_THAT(run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml").err,
+              HasSubstr("error: --output is required"));
+  const Outcome help = run("--help");
+  for (const char* command :
+       {"init", "check", "calibrate", "install", "inspect", "convert", "camera", "rpy"}) {
+    EXPECT_THAT(help.out, HasSubstr("  " + std::string(command) + " "));
+    EXPECT_THAT(run(std::string(command) + " --help").out,
+                HasSubstr("Usage: kinecal " + std::string(command)));
+  }
 }
 
 TEST_F(Program, RefusesUnknownOptionsWithExitCode1) {

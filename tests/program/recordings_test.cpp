@@ -173,7 +173,7 @@ TEST_F(RecordingsProgram, AreInspectedTopicByTopic) {
   const test::Outcome poses =
       kinecal("inspect " + (test::data_folder() / "fetch/calibration_poses.bag").string());
   EXPECT_EQ(poses.code, 0) << poses.err;
-  EXPECT_THAT(poses.out, AllOf(HasSubstr("poses to capture"), HasSubstr("101")));
+  EXPECT_THAT(poses.out, AllOf(HasSubstr("101 poses to capture"), HasSubstr("elbow_flex_joint")));
 }
 
 TEST_F(RecordingsProgram, GivePosesBackAsTheyWere) {
@@ -185,6 +185,21 @@ TEST_F(RecordingsProgram, GivePosesBackAsTheyWere) {
   ASSERT_EQ(kinecal("convert c.mcap d.yaml").code, 0);
   EXPECT_EQ(read("a.yaml"), read("d.yaml"));
   EXPECT_THAT(read("a.yaml"), HasSubstr("ground_plane_finder"));
+  write("bom.yaml", "\xEF\xBB\xBF" + read("a.yaml"));
+  const test::Outcome poses = kinecal("inspect bom.yaml");
+  EXPECT_EQ(poses.code, 0) << poses.err;
+  EXPECT_THAT(poses.out, AllOf(HasSubstr("130 poses to capture"), HasSubstr("wrist_roll_joint"),
+                               testing::ContainsRegex("led_finder +101\n")));
+}
+
+TEST_F(RecordingsProgram, TellWhatYamlCannotHold) {
+  KINECAL_NEEDS_DATA("fetch/synth");
+  const std::string bag = synth() / "calibration_data.bag";
+  const test::Outcome converted = kinecal("convert " + bag + " a.yaml");
+  EXPECT_EQ(converted.code, 0);
+  EXPECT_THAT(converted.err, AllOf(HasSubstr("warning: "), HasSubstr("topic 'robot_description'"),
+                                   HasSubstr("is left out: YAML holds samples alone")));
+  EXPECT_EQ(kinecal("convert " + bag + " a.mcap").err, "");
 }
 
 TEST_F(RecordingsProgram, ThatWereCutOffGiveWhatWasWrittenWholeAndAWarning) {

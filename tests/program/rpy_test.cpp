@@ -55,6 +55,8 @@ TEST_F(Rpy, RefusesWhatIsNotThreeNumbers) {
   EXPECT_EQ(run("1 2 3 4").code, 1);
   EXPECT_EQ(run("").code, 1);
   EXPECT_EQ(run("1 2 nan").code, 1);
+  EXPECT_EQ(run("1 2 -inf").code, 1);
+  EXPECT_THAT(run("1e308 0 0").err, HasSubstr("error: '1e308' is too large for an angle"));
   EXPECT_THAT(run("1 2 3deg").err, HasSubstr("error: '3deg' is not a finite number"));
 }
 

@@ -191,8 +191,9 @@ inline bool add_models(Problem& problem, const StepConfig& step,
   Calibration calibration;
   if (!robot.has_link(config.base_link)) {
     diagnostics.error(
-        config.place,
-        fmt::format("base_link: no link '{}' in robot '{}'{}", config.base_link, robot.name(),
+        config.base_link_place.value_or(config.place),
+        fmt::format("base_link{}: no link '{}' in robot '{}'{}",
+                    config.base_link_place ? "" : " is not given", config.base_link, robot.name(),
                     did_you_mean(config.base_link, robot.link_names())));
     return calibration;
   }

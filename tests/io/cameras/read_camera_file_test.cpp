@@ -224,7 +224,14 @@ TEST_F(CameraFile, RefusesWhatOpencvHasAndCameraInfoHasNot) {
   EXPECT_THAT(refusal(replaced(kOpencv, "flags: 0", "fisheye_model: 1")),
               HasSubstr("c.yaml:6: fisheye_model"));
   EXPECT_THAT(refusal(replaced(kOpencv, "rows: 5", "rows: 4")),
-              HasSubstr("distortion_coefficients has 5 numbers, not 4 x 1"));
+              HasSubstr("distortion_coefficients has 5 numbers, not '4' x '1'"));
+}
+
+TEST_F(CameraFile, WithoutASizeIsReadWithAWarning) {
+  const CameraInfo camera = read(replaced(kMessage, "width: 640\n", ""));
+  EXPECT_EQ(camera.width, 0);
+  EXPECT_THAT(diagnostics_.errors, testing::IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, testing::ElementsAre(HasSubstr("c.yaml: the size of the")));
 }
 
 TEST_F(CameraFile, TellsWhatIsWrongWithItsLine) {

@@ -104,7 +104,8 @@ TEST_F(ReadCsvSamples, MakesAMissingValueAFeatureWithoutWeight) {
 }
 
 TEST_F(ReadCsvSamples, LeavesOutARowWithoutAJointAndSaysSo) {
-  EXPECT_THAT(read(with(kTable, "-45", "")), IsEmpty());
+  const std::string whole = "91,-44,100,0.5,1000,2,3,0.1,0.2,0.3,320,240\n";
+  EXPECT_THAT(read(with(kTable, "-45", "") + whole), testing::SizeIs(1));
   EXPECT_THAT(diagnostics_.errors, IsEmpty());
   EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("t.csv:2: joint 'tilt' has no")));
 }
@@ -113,6 +114,33 @@ TEST_F(ReadCsvSamples, LeavesOutARowWithoutAJointAndSaysSo) {
 struct DecimalComma : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
 };
+
+TEST_F(ReadCsvSamples, RefusesATableOfWhichNoRowIsLeft) {
+  EXPECT_THAT(read(with(kTable, "90,-45", "90,")), IsEmpty());
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("t.csv: no row has a position of every joint")));
+}
+
+TEST_F(ReadCsvSamples, DoubtsNumbersOfWhichTheUnitIsMissing) {
+  (void)read();
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+  const std::string twice = kTable + std::string("91,-44,100,0.5,1000,2,3,0.1,0.2,0.3,320,240\n");
+  (void)read(twice,
+             with(with(kMapping, "  unit: degrees\n", ""),
+                  "   frame: tracker_frame\n   unit: millimetres\n", "   frame: tracker_frame\n"));
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(HasSubstr("t.csv:2: joint 'pan' is at 90 radians or metres; is a unit"),
+                          HasSubstr("t.csv:2: joint 'tilt' is at -45 radians or metres"),
+                          HasSubstr("t.csv:2: sensor 'tracker' is at 1000.1 metres")));
+}
+
+TEST_F(ReadCsvSamples, AConstantHasTheUnitOfItsObservation) {
+  const auto samples = read(kTable, with(kMapping, "constant: [0, 0.5, 0]",
+                                         "unit: millimetres\n   constant: [0, 500, 0]"));
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_EQ(samples.at(0).observations.at(0).features.at(0).point, Vector3<double>(0, 0.5, 0));
+}
 
 TEST_F(ReadCsvSamples, DoesNotDependOnTheLocale) {
   const std::locale before =

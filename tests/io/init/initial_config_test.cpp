@@ -205,11 +205,19 @@ TEST_P(InitialConfig, FreesOnlyWhatSamplesTellOrAPriorKeeps) {
   }
 }
 
+class InitialConfigOfWrongRobots : public InitialConfig {};
+
+/// The floor alone frees no offset and no virtual frame.
+std::vector<Case> every_case_with_offsets() {
+  std::vector<Case> all = every_case();
+  std::erase_if(all, [](const Case& c) { return c.answers.target == InitTarget::ground; });
+  return all;
+}
+
 /// As far off as its comments allow: joints by 2 degrees, frames that were measured by hand by 30
 /// degrees and 0.1 m (a board), 60 degrees and 0.5 m (a tracker).
-TEST_P(InitialConfig, FindsARobotThatIsWrongFromWhereItStarts) {
+TEST_P(InitialConfigOfWrongRobots, AreFoundFromWhereItStarts) {
   const InitAnswers& answers = GetParam().answers;
-  if (answers.target == InitTarget::ground) GTEST_SKIP() << "frees no offset and no virtual frame";
   const Robot robot = read_urdf(GetParam().urdf.string());
   Diagnostics diagnostics;
   const Config config = read_again(initial_config(robot, answers), diagnostics);
@@ -249,7 +257,11 @@ TEST_P(InitialConfig, FitsIntoLinesAndExplainsEachList) {
 
 INSTANTIATE_TEST_SUITE_P(EveryRobot, InitialConfig, testing::ValuesIn(every_case()),
                          [](const auto& param) { return param.param.name; });
+INSTANTIATE_TEST_SUITE_P(EveryRobot, InitialConfigOfWrongRobots,
+                         testing::ValuesIn(every_case_with_offsets()),
+                         [](const auto& param) { return param.param.name; });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(InitialConfig);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(InitialConfigOfWrongRobots);
 
 class InitialConfigMistakes : public testing::Test {
  protected:
@@ -298,6 +310,24 @@ TEST_F(InitialConfigMistakes, PixelsDoNotShowTheFloor) {
 TEST_F(InitialConfigMistakes, TheCameraHasANameOfItsOwn) {
   good_.camera_name = "board";
   EXPECT_THAT(message(good_), HasSubstr("--robot-camera-name: 'board'"));
+}
+
+TEST_F(InitialConfigMistakes, FramesHaveTheNamesThatAreGivenAndNoOthers) {
+  EXPECT_THAT(initial_config(robot_, good_), HasSubstr("{name: checkerboard, x: true"));
+  good_.target_frame = "charuco";
+  const std::string text = initial_config(robot_, good_);
+  EXPECT_THAT(text, testing::AllOf(HasSubstr("{name: charuco, x: true"),
+                                   testing::Not(HasSubstr("{name: checkerboard"))));
+  good_.target_frame = "panda_joint44";
+  EXPECT_THAT(message(good_), HasSubstr("--target-frame: 'panda_joint44' is a link or a joint"));
+  good_.target = InitTarget::tracker;
+  good_.target_frame = good_.tracker_frame = "laser";
+  EXPECT_THAT(message(good_), HasSubstr("--tracker-frame: is the frame of the reflector too"));
+}
+
+TEST_F(InitialConfigMistakes, TheBaseNeedNotBeGiven) {
+  good_.base = "";
+  EXPECT_THAT(initial_config(robot_, good_), HasSubstr("base_link: panda_link0\n"));
 }
 
 TEST(InitialConfigNames, AreQuotedWhereYamlWouldMistakeThem) {

@@ -165,11 +165,47 @@ TEST_F(Install, RestoringNeedsABackup) {
 }
 
 TEST_F(Install, TheNewestBackupIsTheGreatestNumberNotTheLastLetter) {
-  write("robot/robot.launch.backup_9", "nine");
-  write("robot/robot.launch.backup_10", "ten");
+  write("robot/robot.launch.backup_9", "<launch>nine</launch>");
+  write("robot/robot.launch.backup_10", "<launch>ten</launch>");
   write("robot/robot.launch.backup_11.old", "no backup");
   restore();
-  EXPECT_EQ(launch(), "ten");
+  EXPECT_EQ(launch(), "<launch>ten</launch>");
+}
+
+TEST_F(Install, RestoresNothingThatTheRobotCouldNotStartFrom) {
+  install();
+  recalibrate();
+  install();
+  fs::remove(folder_ / "robot/calibrated_2026_01_02_03_04_05.urdf");
+  fs::remove(folder_ / "robot/rgb_camera_2026_01_02_03_04_05.yaml");
+  const auto before = robot();
+  try {
+    restore();
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("robot.launch.backup_2: names what is not there any "
+                                              "more: calibrated_2026_01_02_03_04_05.urdf, "
+                                              "rgb_camera_2026_01_02_03_04_05.yaml; "),
+                                    HasSubstr("--force")));
+  }
+  EXPECT_EQ(robot(), before);
+  (void)restore_installed(folder_ / "robot", "robot.launch", true);
+  EXPECT_EQ(date(), "2026-01-02 03:04:05");
+}
+
+TEST_F(Install, FilesElsewhereAreNoMatterOfARestoration) {
+  spoil("robot/robot.launch", "$(find robot)/rgb.yaml", "/home/robot/rgb_that_never_was.yaml");
+  install();
+  restore();
+  EXPECT_THAT(launch(), HasSubstr("file:///home/robot/rgb_that_never_was.yaml"));
+}
+
+TEST_F(Install, ABackupThatIsNoLaunchFileIsNotRestored) {
+  install();
+  const std::string installed = launch();
+  write("robot/robot.launch.backup_1", "<launch>cut o");
+  EXPECT_THROW(restore(), InputError);
+  EXPECT_EQ(launch(), installed);
 }
 
 TEST_F(Install, KeepsWhoMayReadTheLaunchFile) {

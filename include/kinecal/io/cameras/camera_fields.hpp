@@ -56,11 +56,11 @@ using CameraKeys = std::vector<std::string>;
   }
   if (!entry.value.IsMap()) return numbers;
   const YAML::Node rows = entry.value["rows"], cols = entry.value["cols"];
-  const auto r = rows ? config_number(rows) : std::nullopt;
-  const auto c = cols ? config_number(cols) : std::nullopt;
-  if (r && c && *r * *c != static_cast<double>(numbers.size())) {
-    map.error(entry.place,
-              fmt::format("{} has {} numbers, not {} x {}", entry.key, numbers.size(), *r, *c));
+  if (!rows || !cols) return numbers;
+  const double size = config_number(rows).value_or(0.0) * config_number(cols).value_or(0.0);
+  if (size != static_cast<double>(numbers.size())) {
+    map.error(entry.place, fmt::format("{} has {} numbers, not {} x {}", entry.key, numbers.size(),
+                                       describe_config(rows), describe_config(cols)));
     return std::nullopt;
   }
   return numbers;
@@ -118,6 +118,9 @@ inline void check_camera(const CameraInfo& camera, const Place& place, Diagnosti
                       fmt::format("focal lengths {} and {} of the projection are not greater "
                                   "than zero",
                                   camera.p[0], camera.p[5]));
+  }
+  if (camera.width == 0 || camera.height == 0) {
+    diagnostics.warning(place, "the size of the image is missing; drivers need it");
   }
 }
 

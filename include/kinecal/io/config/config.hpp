@@ -97,6 +97,7 @@ struct StepConfig {
 
 struct Config {
   std::string base_link = "base_link";
+  std::optional<Place> base_link_place = {};  ///< nothing where the default stands
   std::vector<StepConfig> steps;
   Place place;
 };

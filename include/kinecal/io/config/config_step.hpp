@@ -16,8 +16,7 @@ namespace kinecal {
 /// What has been read so far, and what the steps to come need of it.
 struct ConfigProgress {
   Config config;
-  std::optional<Place> base_link_place;  ///< where base_link was stated first
-  FreeAxes free_axes;                    ///< free in any step so far
+  FreeAxes free_axes;  ///< free in any step so far
 };
 
 /// base_link, verbose and max_num_iterations of the file or of a step.
@@ -26,12 +25,12 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   map.ignore({"verbose"});
   if (const auto link = map.text("base_link")) {
     const Place place = map.find("base_link")->place;
-    if (!progress.base_link_place) {
+    if (!progress.config.base_link_place) {
       progress.config.base_link = *link;
-      progress.base_link_place = place;
+      progress.config.base_link_place = place;
     } else if (*link != progress.config.base_link) {
       map.error(place, "base_link '" + *link + "' differs from '" + progress.config.base_link +
-                           "' in line " + std::to_string(progress.base_link_place->line) +
+                           "' in line " + std::to_string(progress.config.base_link_place->line) +
                            "; all steps have the same");
     }
   }

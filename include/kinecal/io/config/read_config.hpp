@@ -6,15 +6,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "kinecal/io/config/config_ros1.hpp"
 #include "kinecal/io/config/config_ros2.hpp"
+#include "kinecal/io/text_file.hpp"
 #include "kinecal/io/yaml/yaml_documents.hpp"
 
 namespace kinecal {
@@ -23,13 +21,8 @@ namespace kinecal {
 /// @throws InputError       if the file cannot be read
 /// @throws YAML::Exception  if it is not YAML
 [[nodiscard]] inline YAML::Node load_config(const std::string& path, Diagnostics& diagnostics) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) {
-    throw InputError(path + ": is not there or cannot be read");
-  }
   YAML::Node content;
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  for (const YAML::Node& document : load_yaml_documents(text)) {
+  for (const YAML::Node& document : load_yaml_documents(read_text_file(path))) {
     if (document.IsNull()) continue;
     if (content.IsNull()) {
       content.reset(document);

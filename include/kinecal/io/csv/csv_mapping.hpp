@@ -8,7 +8,7 @@
 //   observations:
 //    - sensor: arm
 //      frame: reflector
-//      constant: [0, 0, 0]          # the same point in every row, metres
+//      constant: [0, 0, 0]          # the same point in every row; unit: as for points
 //    - sensor: tracker
 //      frame: tracker_frame
 //      unit: millimetres            # metres (default) or millimetres
@@ -133,7 +133,7 @@ inline void read_csv_points(ConfigMap& map, const std::string& key, std::size_t 
   }
 }
 
-/// `constant: [x, y, z]`, metres
+/// `constant: [x, y, z]`, in the observation's unit
 inline void read_csv_constant(ConfigMap& map, CsvObservation& observation) {
   const ConfigEntry* entry = map.find("constant");
   if (entry == nullptr) return;
@@ -145,9 +145,9 @@ inline void read_csv_constant(ConfigMap& map, CsvObservation& observation) {
     if (good) point(static_cast<Eigen::Index>(i)) = *number;
   }
   if (!good) {
-    map.error(entry->place, "constant is not a list of three numbers, [x, y, z] in metres");
+    map.error(entry->place, "constant is not a list of three numbers, [x, y, z]");
   }
-  observation.constants.push_back(point);
+  observation.constants.push_back(observation.unit.millimetres ? point / 1000.0 : point);
 }
 
 inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {

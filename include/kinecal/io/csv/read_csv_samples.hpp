@@ -10,18 +10,17 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "kinecal/io/csv/csv_mapping.hpp"
 #include "kinecal/io/csv/csv_table.hpp"
+#include "kinecal/io/text_file.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -113,6 +112,9 @@ class CsvSamples {
                                                             joint.name));
       }
       complete = complete && !std::isnan(q);
+      if (!joint.unit.degrees && !joint.unit.millimetres) {
+        doubt(row, "joint '" + joint.name + "'", q, 4.0 * std::numbers::pi, "radians or metres");
+      }
       sample.joint_names.push_back(joint.name);
       sample.joint_positions.push_back(q);
     }
@@ -122,9 +124,13 @@ class CsvSamples {
       for (const auto& point : observation.constants) {
         seen.features.push_back({observation.frame, point});
       }
-      for (std::size_t i = 0; i < observation.points.size(); ++i) {
+      for (const auto& point : observation.points) {
         Vector3<double> p;
         for (Eigen::Index k = 0; k < 3; ++k) p(k) = value(row, points_[next++], observation.unit);
+        if (!observation.unit.millimetres && !point[2].empty()) {
+          doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0,
+                "metres");
+        }
         seen.features.push_back({observation.frame, p});
       }
       sample.observations.push_back(std::move(seen));
@@ -150,6 +156,15 @@ class CsvSamples {
       if (const auto index = columns_.find(column)) indices.emplace_back(*index, &column);
     }
     return indices;
+  }
+
+  /// Warns once of a number so large that its unit is likely to be another.
+  void doubt(const CsvRow& row, const std::string& what, double number, double most,
+             const char* unit) {
+    if (!(std::abs(number) > most) || !doubted_.insert(what).second) return;
+    diagnostics_.warning({file_, row.line}, fmt::format("{} is at {} {}; is a unit missing in the "
+                                                        "columns' file?",
+                                                        what, number, unit));
   }
 
   void mistake(const CsvRow& row, const CsvColumn& column, const std::string& what) {
@@ -190,6 +205,7 @@ class CsvSamples {
   Diagnostics& diagnostics_;
   std::vector<Indices> joints_, points_;  ///< in the order of the mapping
   std::size_t mistakes_ = 0;
+  std::set<std::string> doubted_;  ///< what was warned of
 };
 
 }  // namespace detail
@@ -222,6 +238,9 @@ class CsvSamples {
     if (auto sample = reader.sample(row)) samples.push_back(std::move(*sample));
   }
   reader.finish();
+  if (samples.empty() && diagnostics.errors.size() == before) {
+    diagnostics.error({file, 0}, "no row has a position of every joint");
+  }
   return samples;
 }
 
@@ -235,11 +254,7 @@ class CsvSamples {
                                                           Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   const CsvMapping columns = read_csv_mapping(mapping, diagnostics);
-  std::ifstream file(csv, std::ios::binary);
-  if (!file || std::filesystem::is_directory(csv)) {
-    throw InputError(csv + ": is not there or cannot be read");
-  }
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = read_text_file(csv);
   if (diagnostics.errors.size() != before) return {};
   return csv_samples(text, columns, csv, diagnostics);
 }

@@ -50,6 +50,11 @@ inline constexpr std::array<InitTargetWord, 5> kInitTargets = {{
   return target != InitTarget::tracker;
 }
 
+/// Whether points are recorded in a frame of the target that is in no URDF.
+[[nodiscard]] constexpr bool needs_target_frame(InitTarget target) {
+  return target != InitTarget::leds && target != InitTarget::ground;
+}
+
 /// Links are those of the URDF; what a target does not need stays empty.
 struct InitAnswers {
   InitTarget target = InitTarget::leds;
@@ -59,6 +64,8 @@ struct InitAnswers {
   std::string camera;                    ///< link of the camera, z ahead: its optical frame
   std::string camera_type = "camera3d";  ///< camera3d (points in metres) or camera2d (pixels)
   std::string camera_name = "camera";    ///< sensor_name of the samples, prefix of its parameters
+  std::string target_frame = {};   ///< of the board or the reflector, the frame_id of its points
+  std::string tracker_frame = {};  ///< of a laser tracker, the frame_id of what it measures
 };
 
 }  // namespace kinecal

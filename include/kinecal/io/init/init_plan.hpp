@@ -55,17 +55,6 @@ inline void free_frame(InitPlan& plan, const std::string& name, const std::strin
   }
 }
 
-/// A name for a frame that is in no URDF: no joint or link has it or one that is near it.
-/// @param proposed  names, the best first
-[[nodiscard]] inline std::string virtual_frame_name(const Robot& robot,
-                                                    std::vector<std::string> proposed) {
-  const std::vector<std::string> joints = robot.joint_names();
-  for (std::size_t i = 0;; ++i) {
-    if (i == proposed.size()) proposed.push_back("virtual_frame_" + std::to_string(i));
-    if (!robot.has_link(proposed[i]) && !nearest_name(proposed[i], joints)) return proposed[i];
-  }
-}
-
 /// The joints that move between two links.
 /// @throws RobotError  as make_chain()
 [[nodiscard]] inline std::vector<ChainJoint> movers(const Robot& robot, const std::string& base,

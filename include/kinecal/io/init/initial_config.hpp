@@ -27,6 +27,26 @@ inline void check_init_link(const Robot& robot, const std::string& option, const
   }
 }
 
+/// Reports a name that a frame which is in no URDF cannot have.
+inline void check_init_frame(const Robot& robot, const std::string& option, const std::string& name,
+                             Diagnostics& diagnostics) {
+  if (name.empty()) {
+    diagnostics.error({option, 0}, "no frame is given");
+  } else if (!is_free_frame_name(robot, name)) {
+    diagnostics.error({option, 0}, "'" + name +
+                                       "' is a link or a joint of the robot, or nearly; a frame "
+                                       "that is in no URDF needs another name");
+  }
+}
+
+/// Reports a name that a camera cannot have beside the other models.
+inline void check_init_camera_name(const std::string& option, const std::string& name,
+                                   Diagnostics& diagnostics) {
+  if (name.empty() || name == "arm" || name == "board") {
+    diagnostics.error({option, 0}, "'" + name + "' cannot be the camera's name; choose another");
+  }
+}
+
 namespace detail {
 
 /// Words of a text as lines of comments, at most 100 columns wide.
@@ -135,10 +155,15 @@ inline void check_answers(const Robot& robot, const InitAnswers& answers) {
                         fmt::format("'{}' is neither camera3d nor camera2d{}", answers.camera_type,
                                     did_you_mean(answers.camera_type, types)));
     }
-    const std::string& name = answers.camera_name;
-    if (name.empty() || name == "arm" || name == "board") {
-      diagnostics.error({"--robot-camera-name", 0},
-                        "'" + name + "' cannot be the camera's name; choose another");
+    check_init_camera_name("--robot-camera-name", answers.camera_name, diagnostics);
+  }
+  if (needs_target_frame(target)) {
+    check_init_frame(robot, "--target-frame", answers.target_frame, diagnostics);
+  }
+  if (target == InitTarget::tracker) {
+    check_init_frame(robot, "--tracker-frame", answers.tracker_frame, diagnostics);
+    if (answers.target_frame == answers.tracker_frame) {
+      diagnostics.error({"--tracker-frame", 0}, "is the frame of the reflector too");
     }
   }
   const bool floor = target == InitTarget::ground || answers.with_ground;
@@ -155,9 +180,11 @@ inline void check_answers(const Robot& robot, const InitAnswers& answers) {
 }  // namespace detail
 
 /// What is freed and compared.
+/// @param given  without them, the base and the names of frames are those of with_proposals()
 /// @throws InputError  "--option: what is wrong; what to do": a link that does not exist or cannot
 ///                     be reached, a target that tells nothing of this robot
-[[nodiscard]] inline InitPlan plan_initial_config(const Robot& robot, const InitAnswers& answers) {
+[[nodiscard]] inline InitPlan plan_initial_config(const Robot& robot, const InitAnswers& given) {
+  const InitAnswers answers = with_proposals(robot, given);
   detail::check_answers(robot, answers);
   try {
     InitPlan plan;
@@ -180,7 +207,8 @@ inline void check_answers(const Robot& robot, const InitAnswers& answers) {
 
 /// The text of a configuration, in robot_calibration's dialect of ROS 1.
 /// @throws InputError  as plan_initial_config()
-[[nodiscard]] inline std::string initial_config(const Robot& robot, const InitAnswers& answers) {
+[[nodiscard]] inline std::string initial_config(const Robot& robot, const InitAnswers& given) {
+  const InitAnswers answers = with_proposals(robot, given);
   return detail::plan_to_yaml(robot, answers, plan_initial_config(robot, answers));
 }
 

@@ -114,9 +114,7 @@ inline void keep_near_drawing(InitPlan& plan, const std::string& frame, const st
 }
 
 /// The frame of a board that the gripper holds or that stands somewhere.
-[[nodiscard]] inline std::string add_board(InitPlan& plan, const Robot& robot,
-                                           const std::string& link) {
-  const std::string name = virtual_frame_name(robot, {"checkerboard", "board_frame"});
+inline void add_board(InitPlan& plan, const std::string& name, const std::string& link) {
   free_frame(plan, name,
              "Where the checkerboard is, seen from link " + name_to_yaml(link) +
                  ".  The frame is in no URDF: it is the frame_id of the board's corners.");
@@ -126,7 +124,6 @@ inline void keep_near_drawing(InitPlan& plan, const std::string& frame, const st
                         " and how the board is turned (x along its rows, y along its columns).  "
                         "0.1 m and 30 degrees off are near enough; a board that is upside down "
                         "may not be found.");
-  return name;
 }
 
 }  // namespace kinecal::detail

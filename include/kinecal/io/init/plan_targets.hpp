@@ -39,8 +39,8 @@ namespace kinecal::detail {
 
   const std::string mount = require_mount(robot, answers, {answers.base, answers.arm}).name;
   const std::string head_frame = head.empty() ? mount : head.front().name;
-  const std::string board_frame = board ? add_board(plan, robot, answers.arm) : "";
-  free_offsets(plan, arm, head_frame, board_frame);
+  if (board) add_board(plan, answers.target_frame, answers.arm);
+  free_offsets(plan, arm, head_frame, board ? answers.target_frame : "");
   const bool mount_moves =
       std::any_of(head.begin(), head.end(), [&](const ChainJoint& j) { return j.name == mount; });
   free_offsets(plan, head, head_frame, mount_moves ? mount : "");
@@ -79,8 +79,8 @@ namespace kinecal::detail {
                   "board", answers.base);
   add_camera_model(plan, answers);
   const std::string mount = require_mount(robot, answers, {answers.base}).name;
-  const std::string board = add_board(plan, robot, answers.base);
-  free_offsets(plan, way, board, mount);
+  add_board(plan, answers.target_frame, answers.base);
+  free_offsets(plan, way, answers.target_frame, mount);
   free_frame(plan, mount, "How the camera is mounted.");
   free_camera(plan, answers, false);
   add_hand_eye(plan, answers, "board");
@@ -100,8 +100,7 @@ namespace kinecal::detail {
     throw InputError(
         fmt::format("--arm: link '{}' does not move in link '{}'", answers.arm, answers.base));
   }
-  const std::string tracker = virtual_frame_name(robot, {"tracker_frame", "laser_frame"});
-  const std::string reflector = virtual_frame_name(robot, {"smr", "reflector"});
+  const std::string &tracker = answers.tracker_frame, &reflector = answers.target_frame;
   add_chain_model(plan, "Knows where the reflector is: point (0, 0, 0) of frame " + reflector + ".",
                   "arm", answers.arm);
   add_chain_model(plan,

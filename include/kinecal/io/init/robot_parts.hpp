@@ -1,5 +1,5 @@
-// Which links of a robot are likely to be the end of an arm, a camera, the base: proposals to
-// choose from, the likeliest first.
+// Which links of a robot are likely to be the end of an arm, a camera, the base, and what frames
+// may be called that it does not have: proposals to choose from, the likeliest first.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/io/init/init_answers.hpp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
 
 namespace kinecal {
 
@@ -122,6 +124,38 @@ namespace detail {
     base = joint->parent;
   }
   return base;
+}
+
+/// Whether a frame that is in no URDF may have a name: no link has it, no joint has it or nearly.
+[[nodiscard]] inline bool is_free_frame_name(const Robot& robot, const std::string& name) {
+  return !robot.has_link(name) && !nearest_name(name, robot.joint_names());
+}
+
+/// A name for a frame that is in no URDF.
+/// @param names  the best first
+[[nodiscard]] inline std::string propose_frame(const Robot& robot, std::vector<std::string> names) {
+  for (std::size_t i = 0;; ++i) {
+    if (i == names.size()) names.push_back("virtual_frame_" + std::to_string(i));
+    if (is_free_frame_name(robot, names[i])) return names[i];
+  }
+}
+
+/// Answers with proposals where those are empty that need not be given: the base, names of frames.
+/// @throws RobotError  if the end of the chain is no link
+[[nodiscard]] inline InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
+  const auto propose = [](std::string& answer, const std::string& proposal) {
+    if (answer.empty()) answer = proposal;
+  };
+  const InitTarget target = answers.target;
+  const std::string& end = needs_arm(target) ? answers.arm : answers.camera;
+  if (robot.has_link(end)) propose(answers.base, propose_base(robot, end));
+  if (target == InitTarget::tracker) {
+    propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
+    propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
+  } else if (needs_target_frame(target)) {
+    propose(answers.target_frame, propose_frame(robot, {"checkerboard", "board_frame"}));
+  }
+  return answers;
 }
 
 }  // namespace kinecal

@@ -77,6 +77,22 @@ inline void check_path(const std::filesystem::path& folder) {
   }
 }
 
+/// Refuses a launch file that names files of its folder which are not there.
+inline void check_named_files(const std::filesystem::path& launch) {
+  std::string missing;
+  for (const std::filesystem::path& file :
+       LaunchText(read_text_file(launch), launch.string()).named_files()) {
+    std::error_code no_such_folder;
+    const bool is_ours =
+        std::filesystem::equivalent(file.parent_path(), launch.parent_path(), no_such_folder);
+    if (!is_ours || std::filesystem::exists(file)) continue;
+    missing += (missing.empty() ? "" : ", ") + file.filename().string();
+  }
+  if (missing.empty()) return;
+  throw InputError(launch.string() + ": names what is not there any more: " + missing +
+                   "; nothing restored, --force restores it all the same");
+}
+
 }  // namespace detail
 
 /// Installs a result.
@@ -110,11 +126,14 @@ inline Installation install(const ResultFolder& result, const std::filesystem::p
 }
 
 /// Takes back the last installation; again, the one before it.
-/// @return  what the replaced launch file is called now
-/// @throws InputError, OutputError  as LaunchFolder::restore()
-inline std::string restore_installed(const std::filesystem::path& folder,
-                                     const std::string& launch) {
-  return LaunchFolder(folder, launch).restore();
+/// @param force  also if files are missing that the launch file of before names
+/// @return       what the replaced launch file is called now
+/// @throws InputError, OutputError  as LaunchFolder::restore(); if files are missing
+inline std::string restore_installed(const std::filesystem::path& folder, const std::string& launch,
+                                     bool force = false) {
+  LaunchFolder target(folder, launch);
+  if (!force) detail::check_named_files(target.backup());
+  return target.restore();
 }
 
 /// The date of the calibration that is installed, as the launch file says.

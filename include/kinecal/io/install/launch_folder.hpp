@@ -77,6 +77,12 @@ class LaunchFolder {
     placed.names.clear();
   }
 
+  /// The launch file that restore() would put back: the newest backup.
+  /// @throws InputError  if there is none
+  [[nodiscard]] std::filesystem::path backup() const {
+    return folder_ / backup_name(checked_backup());
+  }
+
   /// Puts the newest backup in place of the launch file, which is kept as robot.launch.undone_<n>,
   /// n that of the backup or the next one that is free.
   /// @return  the name that the replaced launch file has now
@@ -84,14 +90,8 @@ class LaunchFolder {
   /// @throws OutputError  naming the file; the folder is then as it was
   std::string restore() {
     const std::string text = read_text_file(launch());
-    int n = newest_backup();
-    for (; n > 0 && read_text_file(folder_ / backup_name(n)) == text; n = newest_backup()) {
-      remove(backup_name(n));  // left from a run that was stopped; it would restore nothing
-    }
-    if (n == 0) {
-      throw InputError(launch().string() + ": there is nothing to restore: no " + backup_name(1) +
-                       " or later stands beside it");
-    }
+    const int n = checked_backup();
+    for (int k = newest_backup(); k > n; k = newest_backup()) remove(backup_name(k));
     std::string undone;
     for (int k = n; undone.empty() || is_other(undone, text); ++k) {
       undone = launch_ + ".undone_" + std::to_string(k);
@@ -179,6 +179,20 @@ class LaunchFolder {
     return newest;
   }
 
+  /// Number of the newest backup that is not the launch file itself: one that is was left from a
+  /// run that was stopped, and would restore nothing.
+  /// @throws InputError  if there is none
+  [[nodiscard]] int checked_backup() const {
+    const std::string text = read_text_file(launch());
+    for (int n = newest_backup(); n > 0; --n) {
+      const std::filesystem::path path = folder_ / backup_name(n);
+      const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(path));
+      if (is_there && read_text_file(path) != text) return n;
+    }
+    throw InputError(launch().string() + ": there is nothing to restore: no " + backup_name(1) +
+                     " or later stands beside it");
+  }
+
   /// Writes files that those may read who may read the launch file.
   void write_like_launch(const Staging& staging, const std::vector<OutputFile>& files) const {
     struct stat like = {};
@@ -186,13 +200,14 @@ class LaunchFolder {
       detail::throw_output_error(launch(), "cannot be read");
     for (const OutputFile& written : files) {
       const std::filesystem::path path = staging.path / written.name;
-      detail::write_durably(path, written.content);
+      const std::filesystem::path target = folder_ / written.name;
+      detail::write_durably(path, written.content, target);
       const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-      if (file < 0) detail::throw_output_error(path, "cannot be read");
+      if (file < 0) detail::throw_output_error(target, "cannot be read");
       // Only root may give files away; for others it is no mistake that they cannot.
       [[maybe_unused]] const int may_fail = ::fchown(file, like.st_uid, like.st_gid);
       const bool done = ::fchmod(file, like.st_mode & 0777) == 0 && ::fsync(file) == 0;
-      if (::close(file) != 0 || !done) detail::throw_output_error(path, "cannot be written");
+      if (::close(file) != 0 || !done) detail::throw_output_error(target, "cannot be written");
     }
   }
 
@@ -208,7 +223,7 @@ class LaunchFolder {
   void keep(const Staging& staging, const std::string& name) const {
     const std::filesystem::path kept = staging.path / name;
     if (::link(launch().c_str(), kept.c_str()) != 0) {  // a file system without links
-      detail::write_durably(kept, read_text_file(launch()));
+      detail::write_durably(kept, read_text_file(launch()), folder_ / name);
     }
     detail::rename_file(kept, folder_ / name);
   }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -95,6 +96,19 @@ class LaunchText : public XmlText {
       if (const auto value = element.attribute(name.data())) return value.value();
     }
     return {};
+  }
+
+  /// Files that the text names by their full path.
+  [[nodiscard]] std::vector<std::filesystem::path> named_files() const {
+    std::vector<std::filesystem::path> files;
+    for (const LaunchElement element : {LaunchElement::param, LaunchElement::arg}) {
+      for (const Named& named : elements(element)) {
+        std::string value = value_of(named.node);
+        if (value.starts_with("file://")) value.erase(0, std::string_view("file://").size());
+        if (value.starts_with('/')) files.emplace_back(value);
+      }
+    }
+    return files;
   }
 
   /// The edit that sets an element, added to others; none where it is set already.

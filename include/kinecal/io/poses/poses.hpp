@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -76,6 +77,20 @@ namespace detail {
 }
 
 }  // namespace detail
+
+/// Whether a YAML file holds poses: it is a list, while samples begin with a key.
+[[nodiscard]] inline bool is_poses_yaml(const std::string& path) {
+  std::ifstream file(path);
+  bool is_first = true;
+  for (std::string line; std::getline(file, line);) {
+    if (std::exchange(is_first, false) && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#' || line[first] == '%') continue;
+    if (line.starts_with("---")) continue;
+    return line[first] == '-' || line[first] == '[';
+  }
+  return false;
+}
 
 /// Reads poses.  All mistakes are gathered; with errors the poses are incomplete.
 /// @param diagnostics  is added errors and warnings, each with "file:line: "

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -34,11 +35,13 @@ class BagOutput {
         encoding_(encoding),
         staging_(path_.has_parent_path() ? path_.parent_path() : "."),
         file_(staging_.path() / path_.filename(), std::ios::binary) {
-    if (encoding_ == Encoding::ros1) {
-      writer_.emplace<Ros1BagWriter>(file_, compression);
-    } else {
-      writer_.emplace<McapWriter>(file_, McapOptions{compression});
-    }
+    name_mistakes([&] {
+      if (encoding_ == Encoding::ros1) {
+        writer_.emplace<Ros1BagWriter>(file_, compression);
+      } else {
+        writer_.emplace<McapWriter>(file_, McapOptions{compression});
+      }
+    });
   }
 
   [[nodiscard]] Encoding encoding() const { return encoding_; }
@@ -64,11 +67,13 @@ class BagOutput {
   /// Gives the bag its name.
   /// @throws OutputError  if it could not be written to its end, as on a full disk
   void finish() {
-    std::visit(
-        [](auto& writer) {
-          if constexpr (requires { writer.close(); }) writer.close();
-        },
-        writer_);
+    name_mistakes([&] {
+      std::visit(
+          [](auto& writer) {
+            if constexpr (requires { writer.close(); }) writer.close();
+          },
+          writer_);
+    });
     file_.close();
     if (!file_) throw OutputError(path_.string() + ": cannot be written to its end");
     detail::rename_file(staging_.path() / path_.filename(), path_);
@@ -96,10 +101,22 @@ class BagOutput {
   }
 
   void write(std::uint32_t number, std::int64_t time, Bytes data) {
-    if (auto* bag = std::get_if<Ros1BagWriter>(&writer_)) {
-      bag->write(number, time, data);
-    } else {
-      std::get<McapWriter>(writer_).write(static_cast<std::uint16_t>(number), time, data);
+    name_mistakes([&] {
+      if (auto* bag = std::get_if<Ros1BagWriter>(&writer_)) {
+        bag->write(number, time, data);
+      } else {
+        std::get<McapWriter>(writer_).write(static_cast<std::uint16_t>(number), time, data);
+      }
+    });
+  }
+
+  /// Does something; what goes wrong is told with the bag's name.
+  template <class Do>
+  void name_mistakes(const Do& act) const {
+    try {
+      act();
+    } catch (const std::runtime_error& error) {
+      throw OutputError(path_.string() + ": " + error.what());
     }
   }
 

@@ -38,20 +38,24 @@ namespace detail {
 }
 
 /// Writes a file and waits until it is on the disk: a full disk is noticed here.
-inline void write_durably(const std::filesystem::path& path, const std::string& content) {
+/// @param target  the name that it gets when it is whole, for messages
+inline void write_durably(const std::filesystem::path& path, const std::string& content,
+                          const std::filesystem::path& target) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0644);
-  if (file < 0) throw_output_error(path, "cannot be created");
+  if (file < 0) throw_output_error(target, "cannot be created");
   std::size_t written = 0;
   while (written < content.size()) {
     const ssize_t n = ::write(file, content.data() + written, content.size() - written);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
+      const int why = errno;
       ::close(file);
-      throw_output_error(path, "cannot be written");
+      errno = why;
+      throw_output_error(target, "cannot be written");
     }
     written += static_cast<std::size_t>(n);
   }
-  if (::fsync(file) != 0 || ::close(file) != 0) throw_output_error(path, "cannot be written");
+  if (::fsync(file) != 0 || ::close(file) != 0) throw_output_error(target, "cannot be written");
 }
 
 /// A lock on a folder, held while files are placed in it: of two runs one waits for the other.
@@ -137,7 +141,7 @@ class OutputFolder {
     for (const OutputFile& file : files) check_target(folder_ / file.name);
     const detail::StagingFolder staging(folder_);
     for (const OutputFile& file : files) {
-      detail::write_durably(staging.path() / file.name, file.content);
+      detail::write_durably(staging.path() / file.name, file.content, folder_ / file.name);
     }
     const detail::FolderLock lock(folder_);
     std::vector<std::string> placed;

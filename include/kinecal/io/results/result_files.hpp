@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/cameras/camera_fields.hpp"
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/urdf/patch_urdf.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
@@ -80,6 +81,23 @@ struct CalibratedCamera {
     }
   }
   return cameras;
+}
+
+/// Why there is no camera such as was found, as one bad capture far away may make it; empty if all
+/// are possible.
+[[nodiscard]] inline std::string impossible_camera(const Calibration& calibration,
+                                                   const ParameterTable& table,
+                                                   std::span<const Sample> samples) {
+  Diagnostics diagnostics;
+  for (const CalibratedCamera& camera : calibrated_cameras(calibration, table, samples)) {
+    const Place place{"camera '" + camera.sensor.name + "'", 0};
+    detail::check_camera(camera.info, place, diagnostics);
+    const std::string scaling = parameter_name(camera.sensor.parameter_prefix(), "z_scaling");
+    if (camera.sensor.type == SensorType::camera3d && !(table[scaling].value > -1.0)) {
+      diagnostics.error(place, fmt::format("depths times {}", 1.0 + table[scaling].value));
+    }
+  }
+  return diagnostics.errors.empty() ? "" : diagnostics.errors.front();
 }
 
 namespace detail {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output_file.hpp"
+
+#include <system_error>
+
+#include "kinecal/io/results/file_set.hpp"
+
+namespace kinecal::cli {
+
+void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force) {
+  for (const std::string& input : inputs) {
+    std::error_code missing;
+    if (std::filesystem::equivalent(output, input, missing)) {
+      throw OutputError(output + ": would replace an input; choose another name");
+    }
+  }
+  if (force || !std::filesystem::exists(std::filesystem::symlink_status(output))) return;
+  throw OutputError(output + ": exists; give --force to replace it, or another name");
+}
+
+std::filesystem::path folder_of(const std::string& output) {
+  const std::filesystem::path path(output);
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+void write_file(const std::string& output, const std::string& text) {
+  OutputFolder folder(folder_of(output));
+  folder.write({{std::filesystem::path(output).filename().string(), text}});
+}
+
+}  // namespace kinecal::cli
