@@ -759,6 +759,16 @@ TEST_F(Program, WarnsOfACameraThatWasSetDifferently) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("s.yaml:"), HasSubstr("'camera' differs")));
 }
 
+TEST_F(Program, WarnsOfPointsThatAreNotInMetres) {
+  auto all = samples();
+  EXPECT_THAT(calibrate("--dry-run").err, Not(HasSubstr("metres")));
+  for (Feature& feature : all[3].observations[0].features) feature.point *= 1000.0;
+  write_all(all);
+  EXPECT_THAT(run("check --urdf tiny.urdf --config c.yaml --samples s.yaml").err,
+              AllOf(HasSubstr("3 points are more than 100 m away"), HasSubstr("s.yaml:"),
+                    HasSubstr("sensor 'camera', ")));
+}
+
 TEST_F(Program, WritesNoCameraThatCannotBe) {
   for (const std::string& found : {std::string("fx: -2.0"), std::string("z_scaling: -1.5")}) {
     write("c.yaml", kConfig + ("initial_values: {camera_" + found + "}\n"));

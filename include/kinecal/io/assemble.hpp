@@ -206,6 +206,7 @@ inline bool add_models(Problem& problem, const StepConfig& step,
     }
   }
   detail::warn_of_unusable(samples, diagnostics);
+  detail::warn_of_far_points(config, samples, diagnostics);
   detail::warn_of_changing_cameras(samples, diagnostics);
   for (const StepConfig& step : config.steps) {
     Problem problem(robot, config.base_link,

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <span>
@@ -32,6 +33,36 @@ inline void warn_of_unusable(std::span<const Sample> samples, Diagnostics& diagn
   diagnostics.warnings.push_back(
       fmt::format("{} feature{} not a number and left out; the first is at {}", unusable,
                   unusable == 1 ? " is" : "s are", first));
+}
+
+/// Points farther away than any that is calibrated with: a unit, or a capture, is wrong.
+inline void warn_of_far_points(const Config& config, std::span<const Sample> samples,
+                               Diagnostics& diagnostics) {
+  constexpr double kFar = 100.0;
+  std::set<std::string> in_pixels;
+  for (const StepConfig& step : config.steps) {
+    for (const ModelConfig& model : step.models) {
+      if (model.type == "camera2d") in_pixels.insert(model.name);
+    }
+  }
+  std::size_t count = 0;
+  std::string first;
+  for (const Sample& sample : samples) {
+    for (const Observation& seen : sample.observations) {
+      if (in_pixels.contains(seen.sensor)) continue;
+      for (const Feature& feature : seen.features) {
+        const double distance = feature.point.norm();
+        if (!(std::isfinite(distance) && distance > kFar)) continue;
+        if (count++ > 0) continue;
+        first = fmt::format("{}, sensor '{}', {:.0f} m", sample.source, seen.sensor, distance);
+      }
+    }
+  }
+  if (count == 0) return;
+  diagnostics.warnings.push_back(
+      fmt::format("{} point{} more than {:.0f} m away from the frame of the sensor; are they in "
+                  "metres?  The first is at {}",
+                  count, count == 1 ? " is" : "s are", kFar, first));
 }
 
 /// Cameras that were set differently in some samples: the files written are those of the first one.
