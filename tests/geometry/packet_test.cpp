@@ -54,6 +54,12 @@ TEST(Packet, SelectsLaneByLane) {
   }
 }
 
+TEST(Packet, AValueInARegisterIsTheSame) {
+  EXPECT_EQ(in_register(2.5), 2.5);
+  const Packet x = counting(-1.5), same = in_register(x);
+  for (int i = 0; i < kLanes<Packet>; ++i) EXPECT_EQ(lane(same, i), lane(x, i));
+}
+
 /// What is not chosen may be anything.
 TEST(Packet, SelectIsNotSpoiledByWhatIsNotChosen) {
   const Packet x = counting(-1.0);

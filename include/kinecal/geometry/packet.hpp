@@ -197,20 +197,18 @@ template <class S>
 /// time, and two reads a cycle are what a loop over twists waits for.
 template <class S>
 [[nodiscard]] S in_register(const S& x) {
-#if defined(__AVX512F__)
-#define KINECAL_REGISTER "+v"
-#elif defined(__SSE2__)
-#define KINECAL_REGISTER "+x"
-#endif
-#if defined(KINECAL_REGISTER)
-  if constexpr (requires { x.lanes(); }) {
+  constexpr int n = kLanes<S>, widest = kLanes<Packet>;
+  if constexpr (n > 1 && n <= widest) {
     auto lanes = x.lanes();
-    asm("" : KINECAL_REGISTER(lanes));
-    return S(lanes);
-  }
-#undef KINECAL_REGISTER
+#if defined(__AVX512F__)
+    asm("" : "+v"(lanes));
+#elif defined(__SSE2__)
+    asm("" : "+x"(lanes));
 #endif
-  return x;
+    return S(lanes);
+  } else {
+    return x;
+  }
 }
 
 /// a where the condition holds, else b; lane by lane.
