@@ -1,9 +1,8 @@
 // A sensor's features in the base, for given parameters, and how each parameter moves them.
 //
 // Filled once per pack of samples and shared by all error blocks; what lies before the first joint
-// that moves, once per evaluation.  Kinematics contributes one twist
-// per parameter for all points of a chain; a depth camera's own parameters move each point in its
-// own way.
+// that moves, once per evaluation.  Kinematics contributes one twist per parameter for all points
+// of a chain; a depth camera's own parameters move each point in its own way, found when asked for.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -64,9 +63,9 @@ class SensorView {
   [[nodiscard]] const ChainTwists<S>& twists(std::size_t chain) const { return twists_[chain]; }
   [[nodiscard]] bool sees_depth() const { return observation_->depth_camera != nullptr; }
 
-  /// Number of free parameters of a depth camera.
+  /// Number of free parameters of a depth camera; zero where derivatives are not wanted.
   [[nodiscard]] std::size_t num_camera_motions() const {
-    return sees_depth() ? state_->free_camera.size() : 0;
+    return sees_depth() && derivatives_ ? state_->free_camera.size() : 0;
   }
   /// Calls visit(const Vector3<S>&) with how each of them moves feature i: metres, in the base, per
   /// unit.
@@ -74,7 +73,7 @@ class SensorView {
   void for_each_camera_motion(std::size_t i, Visit&& visit) const {
     for_each_camera_motion(i, num_camera_motions(), visit);
   }
-  /// The same where their number is known.
+  /// @param count  num_camera_motions(), where the compiler knows it
   template <class Visit>
   void for_each_camera_motion(std::size_t i, std::size_t count, Visit&& visit) const {
     if (count == 0) return;
