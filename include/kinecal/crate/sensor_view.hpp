@@ -54,6 +54,10 @@ struct SensorState {
 template <class S>
 class SensorView {
  public:
+  SensorView() = default;
+  SensorView(SensorView&&) = default;  // no copies: starts_ point to what is in twists_
+  SensorView& operator=(SensorView&&) = default;
+
   [[nodiscard]] const PackedObservation<S>& observation() const { return *observation_; }
   [[nodiscard]] const SensorState& state() const { return *state_; }
   /// Each feature in the base, metres.

@@ -60,8 +60,8 @@ inline void warn_of_far_points(const Config& config, std::span<const Sample> sam
   }
   if (count == 0) return;
   diagnostics.warnings.push_back(
-      fmt::format("{} point{} more than {:.0f} m away from the frame of the sensor; are they in "
-                  "metres?  The first is at {}",
+      fmt::format("{} point{} more than {:.0f} m away from their frame; are they in metres?  "
+                  "The first is at {}",
                   count, count == 1 ? " is" : "s are", kFar, first));
 }
 
