@@ -1,4 +1,4 @@
-// Door of report/: results for people and programs.
+// Umbrella header of report/: results for people and programs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

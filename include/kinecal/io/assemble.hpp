@@ -1,226 +1,25 @@
-// From what the user wrote to what can be solved: configuration + robot + samples -> problems.
+// Builds the calibration: configuration + robot + samples -> problems that can be solved.
 //
-// Every mistake is told, with its place; nothing is solved here.
+// Every error is reported with its place.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/errors.hpp"
-#include "kinecal/io/config/config_free.hpp"
-#include "kinecal/io/parameters_from_config.hpp"
-#include "kinecal/io/sample_warnings.hpp"
+#include <span>
+
+#include "kinecal/io/config/config.hpp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
 
-namespace detail {
-
-[[nodiscard]] inline LossType loss_type(const std::string& name) {
-  if (name == "huber") return LossType::huber;
-  if (name == "cauchy") return LossType::cauchy;
-  return name == "tukey" ? LossType::tukey : LossType::none;
-}
-
-inline void add_block(Problem& problem, const BlockConfig& block) {
-  const auto number = [&](const char* key) { return block.numbers.at(key); };
-  TermOptions options;
-  options.type = block.type;
-  options.alone = block.alone;
-  options.loss = {loss_type(block.loss.type), block.loss.scale};
-  options.weight = 1.0 / block.sigma;
-  if (block.type == "chain3d_to_chain3d") {
-    problem.add_block(block.name, PointToPoint{}, block.models, options);
-  } else if (block.type == "chain3d_to_camera2d") {
-    options.weight *= number("scale");
-    options.unit = "px";
-    problem.add_block(block.name, PointToPixel{}, block.models, options);
-  } else if (block.type == "chain3d_to_plane") {
-    options.weight *= number("scale");
-    problem.add_block(block.name, PointToPlane(number("a"), number("b"), number("c"), number("d")),
-                      block.models, options);
-  } else if (block.type == "plane_to_plane") {
-    options.unit = "1";
-    problem.add_block(block.name, PlaneToPlane{number("normal_scale"), number("offset_scale")},
-                      block.models, options);
-  } else {
-    options.unit = "1";
-    problem.add_prior(
-        block.name,
-        {block.param, number("joint_scale"), number("position_scale"), number("rotation_scale")},
-        options);
-  }
-}
-
-/// A prior must name something of the table.
-inline void check_prior(const BlockConfig& block, const ParameterTable& table,
-                        const std::set<std::string>& frames, Diagnostics& diagnostics) {
-  if (block.type != "outrageous" || frames.contains(block.param) || table.find(block.param) >= 0) {
-    return;
-  }
-  std::vector<std::string> names(frames.begin(), frames.end());
-  for (const Parameter& parameter : table) names.push_back(parameter.name);
-  diagnostics.error(block.place,
-                    fmt::format("error block '{}': param '{}' is neither a free joint nor a free "
-                                "frame{}",
-                                block.name, block.param, did_you_mean(block.param, names)));
-}
-
-inline void add_samples(Problem& problem, std::span<const Sample> samples,
-                        Diagnostics& diagnostics) {
-  constexpr std::size_t kTold = 5;  // the first few show what is wrong
-  std::size_t refused = 0;
-  for (const Sample& sample : samples) {
-    try {
-      problem.add_sample(sample);
-    } catch (const SampleError& e) {
-      if (++refused <= kTold) diagnostics.errors.emplace_back(e.what());
-    }
-  }
-  if (refused > kTold) {
-    diagnostics.errors.push_back(
-        fmt::format("{} more samples have mistakes like these", refused - kTold));
-  }
-}
-
-/// Terms that find no sample; plane blocks that also take the samples of another block.
-inline void check_terms(const StepConfig& step, const Problem& problem, Diagnostics& diagnostics) {
-  int total = 0;
-  for (std::size_t t = 0; t < problem.terms().size(); ++t) {
-    const auto& term = *problem.terms()[t];
-    const auto block = std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
-                                    [&](const BlockConfig& b) { return b.name == term.name(); });
-    const int count = problem.samples_of(static_cast<int>(t));
-    total += count;
-    if (count == 0) {
-      diagnostics.warning(block->place, fmt::format("error block '{}': no sample has usable "
-                                                    "features of all its sensors",
-                                                    term.name()));
-    } else if (const int paired = problem.shared_samples(static_cast<int>(t));
-               block->type == "chain3d_to_plane" && paired > 0 && paired < count) {
-      diagnostics.warning(
-          block->place,
-          fmt::format("error block '{0}' also takes the {1} samples in which other sensors observe "
-                      "something together with '{2}'; write 'samples: alone' in it to leave them "
-                      "out",
-                      term.name(), paired, block->models.front()));
-    }
-  }
-  if (total == 0) {
-    diagnostics.error(step.place, fmt::format("step '{}': no sample has usable features for any of "
-                                              "its error blocks",
-                                              step.name));
-  }
-}
-
-/// The free parameters of a step in the order of the file, less those that no residual depends on.
-[[nodiscard]] inline FreeSet free_set(const StepConfig& step, const Problem& problem,
-                                      bool have_samples, Diagnostics& diagnostics) {
-  const ParameterTable& table = problem.table();
-  const std::vector<int> touched = problem.touched_parameters();
-  std::vector<int> free;
-  const auto add = [&](const std::string& name, const Place& place) {
-    const int index = table.find(name);
-    if (index < 0) return;
-    if (have_samples && !std::binary_search(touched.begin(), touched.end(), index)) {
-      diagnostics.warning(place, fmt::format("no residual of these samples depends on '{}'; it "
-                                             "keeps its initial value {}",
-                                             name, table[index].value));
-      return;
-    }
-    free.push_back(index);
-  };
-  for (const FreeParamConfig& param : free_parameters(step)) add(param.name, param.place);
-  if (free.empty()) {
-    diagnostics.error(step.place, fmt::format("step '{}': nothing is free that these samples could "
-                                              "tell",
-                                              step.name));
-  }
-  return FreeSet(std::move(free), table.size());
-}
-
-/// The table as one step sees it: with its bounds.
-[[nodiscard]] inline ParameterTable with_bounds(ParameterTable table, const StepConfig& step,
-                                                Diagnostics& diagnostics) {
-  for (const BoundConfig& bound : step.bounds) {
-    const int index = table.find(bound.name);
-    if (index < 0) continue;
-    table[index].lower = bound.lower;
-    table[index].upper = bound.upper;
-    double value = table[index].initial;
-    for (const auto& [assigned, initial] : initial_assignments(step, table)) {
-      if (assigned == index) value = initial;
-    }
-    if (value < bound.lower || value > bound.upper) {
-      diagnostics.error(bound.place, fmt::format("bound: the initial value {} of '{}' is outside "
-                                                 "[{}, {}]",
-                                                 value, bound.name, bound.lower, bound.upper));
-    }
-  }
-  return table;
-}
-
-/// The sensors and error blocks of a step; false, after telling why, if they do not fit the robot.
-inline bool add_models(Problem& problem, const StepConfig& step,
-                       const std::set<std::string>& frames, Diagnostics& diagnostics) {
-  const std::size_t before = diagnostics.errors.size();
-  for (const ModelConfig& model : step.models) {
-    try {
-      problem.add_sensor(sensor_from(model));
-    } catch (const RobotError& e) {
-      diagnostics.error(model.place, fmt::format("model '{}': {}", model.name, e.what()));
-    }
-  }
-  if (diagnostics.errors.size() != before) return false;
-  for (const BlockConfig& block : step.error_blocks) {
-    check_prior(block, problem.table(), frames, diagnostics);
-    try {
-      add_block(problem, block);
-    } catch (const std::invalid_argument& e) {
-      diagnostics.error(block.place, e.what());
-    }
-  }
-  return diagnostics.errors.size() == before;
-}
-
-}  // namespace detail
-
 /// Builds the problems of all steps.
 /// @param samples  may be empty: then only the configuration and the robot are checked
-[[nodiscard]] inline Calibration assemble(const Config& config, const Robot& robot,
-                                          std::span<const Sample> samples,
-                                          Diagnostics& diagnostics) {
-  Calibration calibration;
-  if (!robot.has_link(config.base_link)) {
-    diagnostics.error(
-        config.base_link_place.value_or(config.place),
-        fmt::format("base_link{}: no link '{}' in robot '{}'{}",
-                    config.base_link_place ? "" : " is not given", config.base_link, robot.name(),
-                    did_you_mean(config.base_link, robot.link_names())));
-    return calibration;
-  }
-  const std::set<std::string> frames = frames_of(config);
-  calibration.table = parameters_from(config, robot, samples, diagnostics);
-  if (!config.steps.empty()) {  // those of later steps are set when the step starts
-    for (const auto& [index, value] :
-         initial_assignments(config.steps.front(), calibration.table)) {
-      calibration.table[index].initial = calibration.table[index].value = value;
-    }
-  }
-  detail::warn_of_unusable(samples, diagnostics);
-  detail::warn_of_far_points(config, samples, diagnostics);
-  detail::warn_of_changing_cameras(samples, diagnostics);
-  for (const StepConfig& step : config.steps) {
-    Problem problem(robot, config.base_link,
-                    detail::with_bounds(calibration.table, step, diagnostics), frames);
-    detail::warn_of_unknown_sensors(step, samples, diagnostics);
-    if (!detail::add_models(problem, step, frames, diagnostics)) continue;
-    detail::add_samples(problem, samples, diagnostics);
-    if (!diagnostics.errors.empty()) continue;
-    if (!samples.empty()) detail::check_terms(step, problem, diagnostics);
-    FreeSet free = detail::free_set(step, problem, !samples.empty(), diagnostics);
-    calibration.steps.push_back({step.name, step.max_num_iterations, std::move(problem),
-                                 std::move(free), initial_assignments(step, calibration.table)});
-  }
-  return calibration;
-}
+[[nodiscard]] Calibration assemble(const Config& config, const Robot& robot,
+                                   std::span<const Sample> samples, Diagnostics& diagnostics);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/assemble.ipp"
+#endif

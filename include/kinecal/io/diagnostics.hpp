@@ -1,5 +1,4 @@
-// What is wrong with the user's files: every mistake with its place, gathered, so that all are told
-// in one go.
+// Errors in the user's files, each with its place: all are collected and reported together.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,27 +9,32 @@
 
 namespace kinecal {
 
-/// A mistake in a file that makes it unusable: "file:line: what is wrong; what to do".
+/// An error that makes a file unusable: "file:line: what is wrong; what to do".
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A place in a file; line 0: the file as a whole.
+/// A line of a file, from 1; line 0 is the file as a whole.
 struct Place {
-  std::string file;
-  int line = 0;
+  std::string file;  ///< path, as the user gave it
+  int line = 0;      ///< from 1
 
+  /// "file:line", or "file" without a line.
   [[nodiscard]] std::string str() const {
     return line > 0 ? file + ":" + std::to_string(line) : file;
   }
 };
 
+/// What readers found: "file:line: message".  With errors, what was read is incomplete.
 struct Diagnostics {
-  std::vector<std::string> errors, warnings;
+  std::vector<std::string> errors;    ///< what makes the input unusable
+  std::vector<std::string> warnings;  ///< what looks wrong but can be used
 
+  /// Adds an error.
   void error(const Place& place, const std::string& message) {
     errors.push_back(place.str() + ": " + message);
   }
+  /// Adds a warning.
   void warning(const Place& place, const std::string& message) {
     warnings.push_back(place.str() + ": " + message);
   }

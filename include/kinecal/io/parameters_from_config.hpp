@@ -1,233 +1,45 @@
-// The parameter table that a configuration asks for, every name checked against the robot.
+// The parameter table of a configuration, with every name checked against the robot.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "kinecal/crate/camera_parameters.hpp"
-#include "kinecal/geometry/rpy.hpp"
 #include "kinecal/io/config/config.hpp"
+#include "kinecal/io/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/linkage.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
 
-/// A type that does not exist has been told of; it counts as the one with most parameters, so that
-/// they are not told of as well.
-[[nodiscard]] inline SensorType sensor_type(const std::string& name) {
-  if (name == "chain3d") return SensorType::chain3d;
-  return name == "camera2d" ? SensorType::camera2d : SensorType::camera3d;
-}
-
-[[nodiscard]] inline Sensor sensor_from(const ModelConfig& model) {
-  return {model.name, sensor_type(model.type), model.frame, model.param_name};
-}
-
-/// Names of the frames in which features were recorded.
-[[nodiscard]] inline std::set<std::string> feature_frames(std::span<const Sample> samples) {
-  std::set<std::string> frames;
-  for (const Sample& sample : samples) {
-    for (const Observation& observation : sample.observations) {
-      for (const Feature& feature : observation.features) frames.insert(feature.frame);
-    }
-  }
-  return frames;
-}
-
-namespace detail {
-
-inline void add_if_new(ParameterTable& table, const std::string& name, const std::string& unit) {
-  if (table.find(name) < 0) table.add({.name = name, .unit = unit});
-}
-
-inline void add_frame(ParameterTable& table, const std::string& frame) {
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    add_if_new(table, parameter_name(frame, kFrameAxes[axis]), axis < 3 ? "m" : "rad");
-  }
-}
-
-/// Adds the offset of a joint; false, after telling why, if it can have none.
-inline bool add_joint(ParameterTable& table, const Robot& robot, const std::string& name,
-                      const Place& place, Diagnostics& diagnostics) {
-  const Joint& joint = robot.joint(name);
-  if (!moves(joint.type)) {
-    diagnostics.error(place, fmt::format("joint '{}' is {} and has no offset; free its frame "
-                                         "instead (free_frames)",
-                                         name, to_string(joint.type)));
-    return false;
-  }
-  if (joint.mimic) {
-    diagnostics.error(place, fmt::format("joint '{}' mimics '{}'; free the offset of '{}' instead",
-                                         name, joint.mimic->joint, drive(robot, joint).joint));
-    return false;
-  }
-  add_if_new(table, name, turns(joint.type) ? "rad" : "m");
-  return true;
-}
-
-/// A free frame is a joint, or a virtual frame in which features were recorded.
-inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
-                        const std::set<std::string>& recorded, bool have_samples,
-                        Diagnostics& diagnostics) {
-  if (robot.has_joint(frame.name)) return;
-  if (robot.has_link(frame.name)) {
-    const Joint* joint = robot.parent_joint(frame.name);
-    diagnostics.error(frame.place,
-                      fmt::format("free frame '{}' is a link; frames are named by their joint{}",
-                                  frame.name, joint ? ": '" + joint->name + "'" : ""));
-    return;
-  }
-  if (recorded.contains(frame.name)) return;
-  const auto nearest = nearest_name(frame.name, robot.joint_names());
-  if (nearest) {
-    diagnostics.error(frame.place, fmt::format("free frame '{}' is no joint of the robot and no "
-                                               "frame of the samples; did you mean '{}'?",
-                                               frame.name, *nearest));
-  } else if (have_samples) {
-    diagnostics.warning(frame.place, fmt::format("free frame '{}' is no joint of the robot and no "
-                                                 "frame of the samples; it keeps its initial value",
-                                                 frame.name));
-  }
-}
-
-/// Names that may stand in free_params of a step.
-[[nodiscard]] inline std::vector<std::string> free_param_names(const Robot& robot,
-                                                               const StepConfig& step) {
-  std::vector<std::string> names;
-  for (const Joint& joint : robot.joints()) {
-    if (moves(joint.type) && !joint.mimic) names.push_back(joint.name);
-  }
-  for (const ModelConfig& model : step.models) {
-    const Sensor sensor = sensor_from(model);
-    for (int i = 0; i < sensor_parameters(sensor.type); ++i) {
-      names.push_back(parameter_name(sensor.parameter_prefix(),
-                                     kCameraParameters[static_cast<std::size_t>(i)]));
-    }
-  }
-  return names;
-}
-
-inline void add_params(ParameterTable& table, const Robot& robot, const StepConfig& step,
-                       Diagnostics& diagnostics) {
-  for (const FreeParamConfig& param : step.free_params) {
-    if (table.find(param.name) >= 0) continue;  // a camera's
-    if (robot.has_joint(param.name)) {
-      add_joint(table, robot, param.name, param.place, diagnostics);
-      continue;
-    }
-    diagnostics.error(
-        param.place,
-        fmt::format("free parameter '{}' is no joint of the robot and no parameter of "
-                    "a camera{}",
-                    param.name, did_you_mean(param.name, free_param_names(robot, step))));
-  }
-}
-
-inline void add_valued_joints(ParameterTable& table, const Robot& robot, const StepConfig& step,
-                              Diagnostics& diagnostics) {
-  const auto check = [&](const std::string& name, const Place& place, const char* what) {
-    if (table.find(name) >= 0) return;
-    if (robot.has_joint(name)) {
-      add_joint(table, robot, name, place, diagnostics);
-      return;
-    }
-    std::vector<std::string> names = free_param_names(robot, step);
-    for (const Parameter& parameter : table) names.push_back(parameter.name);
-    diagnostics.error(place, fmt::format("{} '{}' is no parameter of this calibration{}", what,
-                                         name, did_you_mean(name, names)));
-  };
-  for (const auto& value : step.initial_values) check(value.name, value.place, "initial value:");
-  for (const auto& bound : step.bounds) check(bound.name, bound.place, "bound:");
-}
-
-/// A parameter of a frame or camera that has the name of a joint: one name would mean two things.
-inline void check_collisions(const ParameterTable& table, const Robot& robot, const Config& config,
-                             Diagnostics& diagnostics) {
-  const auto check = [&](const std::string& name, const Place& place, const std::string& owner) {
-    if (table.find(name) < 0 || !robot.has_joint(name) || !moves(robot.joint(name).type)) return;
-    diagnostics.error(place, fmt::format("parameter '{}' of {} has the name of a joint of the "
-                                         "robot; rename one of them",
-                                         name, owner));
-  };
-  for (const StepConfig& step : config.steps) {
-    for (const FreeFrameConfig& frame : step.free_frames) {
-      for (auto axis : kFrameAxes) {
-        check(parameter_name(frame.name, axis), frame.place, "frame '" + frame.name + "'");
-      }
-    }
-    for (const ModelConfig& model : step.models) {
-      const Sensor sensor = sensor_from(model);
-      for (int i = 0; i < sensor_parameters(sensor.type); ++i) {
-        const auto part = kCameraParameters[static_cast<std::size_t>(i)];
-        check(parameter_name(sensor.parameter_prefix(), part), model.place,
-              "model '" + model.name + "'");
-      }
-    }
-  }
-}
-
-}  // namespace detail
+/// The sensor of a model.  A model of unknown type counts as a camera3d: this type has the most
+/// parameters, so a name among them is not reported as well.
+[[nodiscard]] Sensor sensor_from(const ModelConfig& model);
 
 /// Names of all frames that are free in some step.
-[[nodiscard]] inline std::set<std::string> frames_of(const Config& config) {
-  std::set<std::string> frames;
-  for (const StepConfig& step : config.steps) {
-    for (const FreeFrameConfig& frame : step.free_frames) frames.insert(frame.name);
-  }
-  return frames;
-}
+[[nodiscard]] std::set<std::string> frames_of(const Config& config);
 
-/// The table of all parameters that some step names, all six of a frame and all of a camera.
-[[nodiscard]] inline ParameterTable parameters_from(const Config& config, const Robot& robot,
-                                                    std::span<const Sample> samples,
-                                                    Diagnostics& diagnostics) {
-  ParameterTable table;
-  const std::set<std::string> recorded = feature_frames(samples);
-  for (const StepConfig& step : config.steps) {
-    for (const ModelConfig& model : step.models) {
-      add_camera_parameters(table, sensor_from(model), samples);
-    }
-    for (const FreeFrameConfig& frame : step.free_frames) {
-      detail::check_frame(frame, robot, recorded, !samples.empty(), diagnostics);
-      detail::add_frame(table, frame.name);
-    }
-    detail::add_params(table, robot, step, diagnostics);
-    detail::add_valued_joints(table, robot, step, diagnostics);
-  }
-  detail::check_collisions(table, robot, config, diagnostics);
-  return table;
-}
+/// The table of all parameters that some step names: all six of each frame, all of each camera.
+/// @param samples      may be empty; then frames of features are unknown and not checked
+/// @param diagnostics  receives errors and warnings, each with "file:line: "
+[[nodiscard]] ParameterTable parameters_from(const Config& config, const Robot& robot,
+                                             std::span<const Sample> samples,
+                                             Diagnostics& diagnostics);
 
-/// What a step sets before it starts: initial values of parameters and of the free axes of frames.
-[[nodiscard]] inline std::vector<std::pair<int, double>> initial_assignments(
-    const StepConfig& step, const ParameterTable& table) {
-  std::vector<std::pair<int, double>> assignments;
-  for (const FrameInitialValueConfig& value : step.frame_initial_values) {
-    const auto frame = std::find_if(step.free_frames.begin(), step.free_frames.end(),
-                                    [&](const auto& f) { return f.name == value.name; });
-    if (frame == step.free_frames.end()) continue;
-    Eigen::Matrix<double, 6, 1> all;
-    all << value.xyz, log(rotation_from_rpy(value.rpy));
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      if (!frame->axes[axis]) continue;  // upstream ignores it; the reader has warned
-      const int index = table.find(parameter_name(value.name, kFrameAxes[axis]));
-      assignments.emplace_back(index, all(static_cast<Eigen::Index>(axis)));
-    }
-  }
-  for (const InitialValueConfig& value : step.initial_values) {
-    if (const int index = table.find(value.name); index >= 0) {
-      assignments.emplace_back(index, value.value);
-    }
-  }
-  return assignments;
-}
+/// The values that a step sets before it starts: initial values of parameters and of the free axes
+/// of frames.
+/// @return  indices in the table, and values
+[[nodiscard]] std::vector<std::pair<int, double>> initial_assignments(const StepConfig& step,
+                                                                      const ParameterTable& table);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/parameters_from_config.ipp"
+#endif

@@ -7,7 +7,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -18,44 +17,48 @@
 namespace kinecal {
 
 /// "sensor_msgs/msg/JointState" of ROS 2 is "sensor_msgs/JointState" of ROS 1.
-[[nodiscard]] inline std::string plain_type(std::string_view type) {
-  const std::size_t at = type.find("/msg/");
-  if (at == std::string_view::npos) return std::string(type);
-  return std::string(type.substr(0, at)) + std::string(type.substr(at + 4));
-}
+[[nodiscard]] std::string plain_type(std::string_view type);
 
 /// "/joint_states" is "joint_states".
-[[nodiscard]] inline std::string plain_topic(std::string_view name) {
-  name.remove_prefix(std::min(name.find_first_not_of('/'), name.size()));
-  return std::string(name);
-}
+[[nodiscard]] std::string plain_topic(std::string_view name);
+
+namespace detail {
+
+/// "sensor_msgs/JointState" is "sensor_msgs/msg/JointState".
+[[nodiscard]] std::string ros2_type(std::string_view type);
+
+}  // namespace detail
 
 /// How messages are written as bytes.
 enum class Encoding { ros1, cdr };
 
-/// What a bag says of a topic; two connections of one name may differ.
+/// What a bag says about a topic; two connections of one name may differ.
 struct BagTopic {
   std::string name;  ///< without a leading slash
-  std::string
-      type;  ///< "sensor_msgs/JointState", also where ROS 2 says "sensor_msgs/msg/JointState"
-  std::string definition =
-      {};  ///< the .msg text with those that it needs, of ROS; empty if not told
-  Encoding encoding = Encoding::ros1;
-  std::string md5 = {};  ///< of the definition, of ROS 1; empty if not told
+  std::string type;  ///< "sensor_msgs/JointState", also for ROS 2's "sensor_msgs/msg/JointState"
+  std::string definition = {};  ///< the .msg text with those that it needs; empty if not in the bag
+  Encoding encoding = Encoding::ros1;  ///< of its messages
+  std::string md5 = {};                ///< of the definition, in ROS 1; empty if not in the bag
 };
 
+/// A message of a bag.
 struct BagMessage {
-  const BagTopic& topic;
+  const BagTopic& topic;  ///< valid while it is being handled
   std::int64_t time = 0;  ///< of recording, nanoseconds
   Bytes data;             ///< valid while it is being handled
 };
 
 /// What is done with a bag while it is read.
 struct BagReader {
-  /// Asked once for each topic, before its messages; those of others are skipped, unread where the
-  /// format allows.
+  /// Asked once for each topic, before its messages.  Messages of other topics are skipped, unread
+  /// where the format allows.
   std::function<bool(const BagTopic&)> wants;
+  /// Takes each wanted message.
   std::function<void(const BagMessage&)> handle;
 };
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/bags/bag.ipp"
+#endif

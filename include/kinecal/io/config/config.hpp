@@ -1,11 +1,12 @@
-// A calibration as its configuration file describes it: models, what is free, error blocks, steps.
+// A calibration as its configuration file describes it: models, free parameters, blocks, steps.
 //
-// Plain values with the place they came from; both dialects of robot_calibration are read into
-// this (read_config.hpp).  Names are checked against the robot and the samples in assemble.hpp.
+// Plain values with their places in the file.  read_config.hpp fills them from both dialects of
+// robot_calibration; assemble.hpp checks the names against the robot and the samples.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,93 +14,108 @@
 
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/io/diagnostics.hpp"
+#include "kinecal/parameters/parameter.hpp"
 
 namespace kinecal {
 
-/// `models:`  what observes features, and the link it is fixed to.
+/// `models:`  a sensor or arm that observes features, and the link that it is fixed to.
 struct ModelConfig {
-  std::string name;
+  std::string name;        ///< sensor_name in the samples
   std::string type;        ///< chain3d, camera3d or camera2d ("chain" is read as chain3d)
   std::string frame;       ///< link of the URDF
   std::string param_name;  ///< prefix of the camera's parameters; the model's name by default
-  Place place;
+  Place place;             ///< where the file defines it
 };
 
 /// `free_params:`  a joint offset or a camera parameter.
 struct FreeParamConfig {
-  std::string name;
-  Place place;
+  std::string name;  ///< of the parameter: "elbow_flex_joint", "head_camera_fx"
+  Place place;       ///< where the file frees it
 };
 
-/// `free_frames:`  a joint's frame or a virtual frame, and which axes of it are free.
+/// `free_frames:`  a joint's frame or a virtual frame, and its free axes.
 struct FreeFrameConfig {
-  std::string name;
+  std::string name;            ///< joint of the URDF or virtual frame
   std::array<bool, 6> axes{};  ///< x y z roll pitch yaw
-  Place place;
+  Place place;                 ///< where the file frees it
 };
 
-/// `free_frames_initial_values:`
+/// `free_frames_initial_values:`  where a free frame starts.
 struct FrameInitialValueConfig {
-  std::string name;
+  std::string name;                               ///< of the free frame
   Vector3<double> xyz = Vector3<double>::Zero();  ///< metres
   Vector3<double> rpy = Vector3<double>::Zero();  ///< radians
-  Place place;
+  Place place;                                    ///< where the file sets it
 };
 
-/// `initial_values:`  (kinecal's own) a value for any parameter, free or held.
+/// `initial_values:`  (kinecal only) a value of any parameter, free or not.
 struct InitialValueConfig {
-  std::string name;
-  double value = 0.0;
-  Place place;
+  std::string name;    ///< of the parameter
+  double value = 0.0;  ///< radians, metres, or a relative change of an intrinsic
+  Place place;         ///< where the file sets it
 };
 
-/// `bounds:`  (kinecal's own) lower and upper bound of a free parameter.
+/// `bounds:`  (kinecal only) lower and upper bound of a free parameter.
 struct BoundConfig {
-  std::string name;
-  double lower = 0.0, upper = 0.0;
-  Place place;
+  std::string name;    ///< of the parameter
+  double lower = 0.0;  ///< least value, in the unit of the parameter
+  double upper = 0.0;  ///< greatest value, in the unit of the parameter
+  Place place;         ///< where the file sets it
 };
 
 /// `loss: {type: none|huber|cauchy|tukey, scale: ...}`
 struct LossConfig {
-  std::string type = "none";
-  double scale = 1.0;  ///< units of the block's residual after division by sigma
+  std::string type = "none";  ///< none, huber, cauchy or tukey
+  double scale = 1.0;         ///< units of the block's residual after division by sigma
 };
 
-/// `error_blocks:`
+/// `error_blocks:`  what is compared, or a prior.
 struct BlockConfig {
-  std::string name;
+  std::string name;                 ///< for reports and messages
   std::string type;                 ///< chain3d_to_chain3d, chain3d_to_camera2d, chain3d_to_plane,
                                     ///< plane_to_plane or outrageous
-  std::vector<std::string> models;  ///< a, b | 3d, 2d | the one model; none for outrageous
+  std::vector<std::string> models;  ///< a, b | 3d, 2d | one model; empty for outrageous
   std::string param;                ///< outrageous: joint or frame
   std::map<std::string, double> numbers;  ///< a b c d scale normal_scale offset_scale joint_scale
                                           ///< position_scale rotation_scale; defaults filled in
-  bool alone = false;  ///< `samples: alone`: only samples in which no other model observes
+  bool alone = false;  ///< `samples: alone`: only samples without observations of other models
   double sigma = 1.0;  ///< standard deviation, units of the residual
-  LossConfig loss;
-  Place place;
+  LossConfig loss;     ///< of each feature
+  Place place;         ///< where the file defines it
 };
 
-/// One optimization; several follow one another, each starting where the last one ended.
+/// One optimization.  Each step starts from the result of the step before it.
 struct StepConfig {
-  std::string name;
-  int max_num_iterations = 1000;
-  std::vector<ModelConfig> models;
-  std::vector<FreeParamConfig> free_params;
-  std::vector<FreeFrameConfig> free_frames;
-  std::vector<FrameInitialValueConfig> frame_initial_values;
-  std::vector<InitialValueConfig> initial_values;
-  std::vector<BoundConfig> bounds;
-  std::vector<BlockConfig> error_blocks;
-  Place place;
+  std::string name;                                           ///< key of the step in the file
+  int max_num_iterations = 1000;                              ///< of the solver
+  std::vector<ModelConfig> models;                            ///< `models:`
+  std::vector<FreeParamConfig> free_params;                   ///< `free_params:`
+  std::vector<FreeFrameConfig> free_frames;                   ///< `free_frames:`
+  std::vector<FrameInitialValueConfig> frame_initial_values;  ///< `free_frames_initial_values:`
+  std::vector<InitialValueConfig> initial_values;             ///< `initial_values:`
+  std::vector<BoundConfig> bounds;                            ///< `bounds:`
+  std::vector<BlockConfig> error_blocks;                      ///< `error_blocks:`
+  Place place;                                                ///< where the step begins
 };
 
+/// Names of a step's free parameters, each with the place that frees it: first free_params, then
+/// the free axes of its frames.
+[[nodiscard]] inline std::vector<FreeParamConfig> free_parameters(const StepConfig& step) {
+  std::vector<FreeParamConfig> all = step.free_params;
+  for (const FreeFrameConfig& frame : step.free_frames) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (frame.axes[i]) all.push_back({parameter_name(frame.name, kFrameAxes[i]), frame.place});
+    }
+  }
+  return all;
+}
+
+/// A configuration file.
 struct Config {
-  std::string base_link = "base_link";
-  std::optional<Place> base_link_place = {};  ///< nothing where the default stands
-  std::vector<StepConfig> steps;
-  Place place;
+  std::string base_link = "base_link";        ///< link in which measurements are compared
+  std::optional<Place> base_link_place = {};  ///< empty if the file does not set base_link
+  std::vector<StepConfig> steps;              ///< in the order in which they are solved
+  Place place;                                ///< the file
 };
 
 }  // namespace kinecal

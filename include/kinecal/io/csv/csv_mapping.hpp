@@ -1,217 +1,81 @@
-// What the columns of a table mean: a small YAML file.
+// The meaning of a table's columns: a small YAML file.
 //
 //   separator: comma                # comma (default), semicolon, tab or space
-//   header: true                    # the first row has the names of the columns; default true
+//   header: true                    # the first row contains the columns' names; default true
 //   joints:
 //     unit: degrees                 # radians (default) or degrees; metres or millimetres for
-//     columns: {joint_1: q1, ...}   #   joints that slide: sliding: {unit: ..., columns: ...}
+//     columns: {joint_1: q1, ...}   #   prismatic joints: sliding: {unit: ..., columns: ...}
 //   observations:
 //    - sensor: arm
 //      frame: reflector
-//      constant: [0, 0, 0]          # the same point in every row; unit: as for points
+//      constant: [0, 0, 0]          # the same point in every row; unit as for points
 //    - sensor: tracker
 //      frame: tracker_frame
 //      unit: millimetres            # metres (default) or millimetres
-//      points: [[[tx, dx], [ty, dy], [tz, dz]]]   # a list of columns is their sum
+//      points: [[[tx, dx], [ty, dy], [tz, dz]]]   # a list of columns means their sum
 //    - sensor: camera
 //      frame: optical_frame
 //      pixels: [[u1, v1], [u2, v2]]
 //
-// A column is its name, or its number from 1.  Several points make several features.
+// A column is given by its name or by its number from 1.  Each point becomes a feature.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "kinecal/io/config/config_blocks.hpp"
-#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/geometry/rotation.hpp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
 /// A column as the user names it.
 struct CsvColumn {
-  std::string name;
-  Place place;
+  std::string name;  ///< as in the header, or its number from 1
+  Place place;       ///< where the mapping names it
 };
 
-/// Columns whose sum is meant; usually one.
+/// Columns to add up; usually one.
 using CsvSum = std::vector<CsvColumn>;
 
-/// What a number must be multiplied with to become radians or metres.
+/// The unit of a column; radians or metres if both are false.
 struct CsvUnit {
-  bool degrees = false, millimetres = false;
+  bool degrees = false;      ///< else radians
+  bool millimetres = false;  ///< else metres
 };
 
+/// The position of one joint in every sample.
 struct CsvJoint {
-  std::string name;
-  CsvSum columns;
-  CsvUnit unit;
+  std::string name;  ///< of the joint in the URDF
+  CsvSum columns;    ///< whose sum is its position
+  CsvUnit unit;      ///< of the columns
 };
 
 /// One observation of every sample.
 struct CsvObservation {
-  std::string sensor, frame;
-  CsvUnit unit;
-  std::vector<std::array<CsvSum, 3>> points;  ///< the third of a pixel is empty: zero
+  std::string sensor;                         ///< sensor_name of the observation
+  std::string frame;                          ///< in which its points are given
+  CsvUnit unit;                               ///< of the columns of its points
+  std::vector<std::array<CsvSum, 3>> points;  ///< the third sum of a pixel is empty: zero
   std::vector<Vector3<double>> constants;     ///< metres
 };
 
+/// What the columns of a table mean.
 struct CsvMapping {
-  char separator = ',';
-  bool header = true;
-  std::vector<CsvJoint> joints;
-  std::vector<CsvObservation> observations;
+  char separator = ',';                      ///< between cells; ' ' for one or more blanks
+  bool header = true;                        ///< the first row names the columns
+  std::vector<CsvJoint> joints;              ///< positions in every sample
+  std::vector<CsvObservation> observations;  ///< of every sample
 };
 
-namespace detail {
-
-/// A column, or a list of them.
-[[nodiscard]] inline CsvSum read_csv_sum(const ConfigMap& map, const YAML::Node& node,
-                                         const Place& place) {
-  CsvSum sum;
-  const auto add = [&](const YAML::Node& column) {
-    const auto name = config_text(column);
-    if (name) sum.push_back({*name, {place.file, column.Mark().line + 1}});
-    if (!name) map.error(place, describe_config(column) + " is not a column");
-  };
-  if (node.IsSequence()) {
-    for (const auto& column : node) add(column);
-    if (node.size() == 0) map.error(place, "a list of columns is empty");
-  } else {
-    add(node);
-  }
-  return sum;
-}
-
-/// A unit, which must be one of two.
-[[nodiscard]] inline CsvUnit read_csv_unit(ConfigMap& map, bool angle) {
-  const std::string unit = angle ? read_choice(map, "unit", "radians", {"radians", "degrees"})
-                                 : read_choice(map, "unit", "metres", {"metres", "millimetres"});
-  return {unit == "degrees", unit == "millimetres"};
-}
-
-/// `joints:` or `sliding:`
-inline void read_csv_joints(ConfigMap& map, const std::string& key, bool angle,
-                            CsvMapping& mapping) {
-  auto joints = map.map(key, key);
-  if (!joints) return;
-  const CsvUnit unit = read_csv_unit(*joints, angle);
-  auto columns = joints->map("columns", key + ": columns");
-  if (!columns)
-    joints->error(joints->place(), "columns is missing: {name of a joint: column, ...}");
-  if (columns) {
-    for (const ConfigEntry& entry : columns->entries()) {
-      for (const CsvJoint& known : mapping.joints) {
-        if (known.name == entry.key) {
-          columns->error(entry.place, "joint '" + entry.key + "' occurs twice");
-        }
-      }
-      mapping.joints.push_back({entry.key, read_csv_sum(*columns, entry.value, entry.place), unit});
-    }
-  }
-  joints->report_unknown();
-}
-
-/// `points:` (three columns each) or `pixels:` (two)
-inline void read_csv_points(ConfigMap& map, const std::string& key, std::size_t columns,
-                            CsvObservation& observation) {
-  for (const ConfigEntry& entry : map.list(key)) {
-    if (!entry.value.IsSequence() || entry.value.size() != columns) {
-      map.error(entry.place,
-                key + ": " + describe_config(entry.value) + " is not a list of " +
-                    (columns == 3 ? "three columns, [x, y, z]" : "two columns, [u, v]"));
-      continue;
-    }
-    std::array<CsvSum, 3> point;
-    for (std::size_t i = 0; i < columns; ++i) {
-      point[i] = read_csv_sum(map, entry.value[i], entry.place);
-    }
-    observation.points.push_back(std::move(point));
-  }
-}
-
-/// `constant: [x, y, z]`, in the observation's unit
-inline void read_csv_constant(ConfigMap& map, CsvObservation& observation) {
-  const ConfigEntry* entry = map.find("constant");
-  if (entry == nullptr) return;
-  Vector3<double> point = Vector3<double>::Zero();
-  bool good = entry->value.IsSequence() && entry->value.size() == 3;
-  for (std::size_t i = 0; good && i < 3; ++i) {
-    const auto number = config_number(entry->value[i]);
-    good = number && std::isfinite(*number);
-    if (good) point(static_cast<Eigen::Index>(i)) = *number;
-  }
-  if (!good) {
-    map.error(entry->place, "constant is not a list of three numbers, [x, y, z]");
-  }
-  observation.constants.push_back(observation.unit.millimetres ? point / 1000.0 : point);
-}
-
-inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
-  CsvObservation observation;
-  observation.sensor = map.required_text("sensor").value_or("");
-  if (!observation.sensor.empty()) map.set_subject("sensor '" + observation.sensor + "'");
-  observation.frame = map.required_text("frame").value_or("");
-  const bool has_pixels = map.peek("pixels") != nullptr;
-  if (!has_pixels) observation.unit = read_csv_unit(map, false);
-  read_csv_constant(map, observation);
-  read_csv_points(map, "points", 3, observation);
-  read_csv_points(map, "pixels", 2, observation);
-  const int kinds = (has_pixels ? 1 : 0) + (map.peek("points") != nullptr ? 1 : 0) +
-                    (map.peek("constant") != nullptr ? 1 : 0);
-  if (kinds != 1) {
-    map.error(map.place(), "has " + std::string(kinds == 0 ? "none" : "more than one") +
-                               " of points, pixels and constant; give one of them");
-  }
-  for (const CsvObservation& known : mapping.observations) {
-    if (known.sensor == observation.sensor) {
-      map.error(map.place(), "occurs twice; list all of its points in one");
-    }
-  }
-  map.report_unknown();
-  mapping.observations.push_back(std::move(observation));
-}
-
-[[nodiscard]] inline CsvMapping read_csv_mapping(ConfigMap& file) {
-  CsvMapping mapping;
-  const std::string separator =
-      read_choice(file, "separator", "comma", {"comma", "semicolon", "tab", "space"});
-  mapping.separator = separator == "comma" ? ',' : separator == "tab" ? '\t' : ' ';
-  if (separator == "semicolon") mapping.separator = ';';
-  mapping.header = file.flag("header", true);
-  read_csv_joints(file, "joints", true, mapping);
-  read_csv_joints(file, "sliding", false, mapping);
-  for (const ConfigEntry& entry : file.list("observations")) {
-    if (auto map = file.map(entry, "observation")) read_csv_observation(*map, mapping);
-  }
-  if (mapping.joints.empty()) file.error(file.place(), "no joint is given; list them under joints");
-  if (mapping.observations.empty()) {
-    file.error(file.place(), "no observation is given; list at least one under observations");
-  }
-  file.report_unknown();
-  return mapping;
-}
-
-}  // namespace detail
-
-/// Reads what columns mean.  All mistakes are gathered; a mapping with errors is incomplete.
+/// Reads the meaning of columns.  It collects all errors; with errors, the mapping is incomplete.
 /// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
-[[nodiscard]] inline CsvMapping read_csv_mapping(const std::string& path,
-                                                 Diagnostics& diagnostics) {
-  try {
-    const YAML::Node content = load_config(path, diagnostics);
-    if (!content.IsMap()) {
-      diagnostics.error({path, 0}, "the file is " + describe_config(content) + ", not a map");
-      return {};
-    }
-    ConfigMap file(content, {path, 0}, "", diagnostics);
-    return detail::read_csv_mapping(file);
-  } catch (const YAML::Exception& error) {
-    throw InputError(Place{path, error.mark.line + 1}.str() + ": " + error.msg);
-  }
-}
+[[nodiscard]] CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/csv/csv_mapping.ipp"
+#endif

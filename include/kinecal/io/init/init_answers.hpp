@@ -1,5 +1,5 @@
-// What somebody must know of a robot and its surroundings to write a first configuration: the
-// answers to the questions of `kinecal init`.
+// The answers to the questions of `kinecal init`: what a first configuration must know about a
+// robot and its surroundings.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,12 +13,14 @@ namespace kinecal {
 /// What the robot is measured against.
 enum class InitTarget { leds, checkerboard, world_checkerboard, tracker, ground };
 
-/// A target, the word for it on the command line, and a line that explains it.
+/// A target, its name on the command line, and a line that explains it.
 struct InitTargetWord {
-  InitTarget target;
-  std::string_view word, says;
+  InitTarget target;      ///< the target
+  std::string_view word;  ///< its name on the command line
+  std::string_view says;  ///< the explanation
 };
 
+/// All targets, in the order of InitTarget.
 inline constexpr std::array<InitTargetWord, 5> kInitTargets = {{
     {InitTarget::leds, "leds",
      "LEDs (or other points at known places) on the gripper, seen by a camera"},
@@ -29,11 +31,12 @@ inline constexpr std::array<InitTargetWord, 5> kInitTargets = {{
     {InitTarget::ground, "ground", "the floor, seen by a depth camera"},
 }};
 
+/// The name of a target on the command line.
 [[nodiscard]] inline std::string_view to_string(InitTarget target) {
   return kInitTargets[static_cast<std::size_t>(target)].word;
 }
 
-/// The target of a word of the command line; nothing if it is none.
+/// The target with this name on the command line; nothing if there is no such target.
 [[nodiscard]] inline std::optional<InitTarget> init_target(std::string_view word) {
   for (const InitTargetWord& known : kInitTargets) {
     if (known.word == word) return known.target;
@@ -41,27 +44,28 @@ inline constexpr std::array<InitTargetWord, 5> kInitTargets = {{
   return std::nullopt;
 }
 
-/// Whether an arm (a camera) has a part in it.
+/// Whether the target needs an arm.
 [[nodiscard]] constexpr bool needs_arm(InitTarget target) {
   return target == InitTarget::leds || target == InitTarget::checkerboard ||
          target == InitTarget::tracker;
 }
+/// Whether the target needs a camera.
 [[nodiscard]] constexpr bool needs_camera(InitTarget target) {
   return target != InitTarget::tracker;
 }
 
-/// Whether points are recorded in a frame of the target that is in no URDF.
+/// Whether points are recorded in a frame of the target, which the URDF does not contain.
 [[nodiscard]] constexpr bool needs_target_frame(InitTarget target) {
   return target != InitTarget::leds && target != InitTarget::ground;
 }
 
-/// Links are those of the URDF; what a target does not need stays empty.
+/// What the user answered.  Links are links of the URDF; what a target does not need stays empty.
 struct InitAnswers {
-  InitTarget target = InitTarget::leds;
-  bool with_ground = false;              ///< the camera also sees the floor, in samples of its own
-  std::string base;                      ///< link in which everything is compared
+  InitTarget target = InitTarget::leds;  ///< what the robot is measured against
+  bool with_ground = false;              ///< the camera also sees the floor, in separate samples
+  std::string base;                      ///< link in which all measurements are compared
   std::string arm;                       ///< link at the end of the arm
-  std::string camera;                    ///< link of the camera, z ahead: its optical frame
+  std::string camera;                    ///< link of the camera: its optical frame, z ahead
   std::string camera_type = "camera3d";  ///< camera3d (points in metres) or camera2d (pixels)
   std::string camera_name = "camera";    ///< sensor_name of the samples, prefix of its parameters
   std::string target_frame = {};   ///< of the board or the reflector, the frame_id of its points

@@ -1,161 +1,44 @@
-// Which links of a robot are likely to be the end of an arm, a camera, the base, and what frames
-// may be called that it does not have: proposals to choose from, the likeliest first.
+// Proposals for the questions of `kinecal init`: which links of a robot are likely to be the end of
+// an arm, a camera or the base, and names for frames that the URDF does not contain.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <map>
-#include <set>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "kinecal/io/init/init_answers.hpp"
-#include "kinecal/kinematics/chain.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
 
-namespace detail {
+/// Links at the ends of chains that have at least three moving joints of their own; the chains with
+/// most of them first.
+[[nodiscard]] std::vector<std::string> propose_arms(const Robot& robot);
 
-[[nodiscard]] inline bool contains_word(const std::string& name, std::string_view word) {
-  const auto lower = [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  const auto same = [&](char a, char b) { return lower(a) == b; };
-  return std::search(name.begin(), name.end(), word.begin(), word.end(), same) != name.end();
-}
-
-[[nodiscard]] inline bool looks_like_camera(const std::string& link) {
-  for (const char* word : {"optical", "camera", "kinect", "xtion", "realsense"}) {
-    if (contains_word(link, word)) return true;
-  }
-  return false;
-}
-
-/// A joint that is driven by itself.
-[[nodiscard]] inline bool is_driven(const Joint& joint) {
-  return moves(joint.type) && !joint.mimic;
-}
-
-/// Joints of the way to a link that are its own: below the last fork to other driven joints.
-[[nodiscard]] inline std::size_t own_joints(const Robot& robot, const std::string& link) {
-  const std::vector<const Joint*> way = joints_to_root(robot, link);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    if (is_driven(*way[i])) ++count;
-    for (const Joint& other : robot.joints()) {
-      // A head or a second arm, not a wheel: two driven joints in a row.
-      if (!is_driven(other)) continue;
-      const std::vector<const Joint*> beside = joints_to_root(robot, other.child);
-      const auto fork = std::find_if(beside.begin(), beside.end(),
-                                     [&](const Joint* j) { return j->parent == way[i]->parent; });
-      if (fork == beside.end() || *fork == way[i]) continue;
-      const auto driven =
-          std::count_if(beside.begin(), fork + 1, [](const Joint* j) { return is_driven(*j); });
-      if (driven >= 2) return count;
-    }
-  }
-  return count;
-}
-
-/// Leaves a gripper's fingers and cameras on the wrist out of the end of an arm.
-[[nodiscard]] inline std::string end_of_arm(const Robot& robot, std::string link) {
-  for (;;) {
-    const std::vector<const Joint*> way = joints_to_root(robot, link);
-    if (way.empty()) return link;
-    const Joint& last = *way.front();
-    const auto turning =
-        std::count_if(way.begin(), way.end(), [](const Joint* j) { return turns(j->type); });
-    const bool finger = last.mimic || (last.type == JointType::prismatic && turning >= 3 &&
-                                       contains_word(last.name, "finger"));
-    if (!finger && !looks_like_camera(link)) return link;
-    link = last.parent;
-  }
-}
-
-}  // namespace detail
-
-/// Links at the ends of chains with at least three moving joints of their own, the chains with most
-/// of them first.
-[[nodiscard]] inline std::vector<std::string> propose_arms(const Robot& robot) {
-  constexpr std::size_t kLeast = 3;  // a pan-tilt head has two
-  std::set<std::string> parents;
-  for (const Joint& joint : robot.joints()) parents.insert(joint.parent);
-  std::vector<std::pair<std::size_t, std::string>> ends;
-  for (const Joint& joint : robot.joints()) {
-    if (parents.contains(joint.child)) continue;
-    const std::string end = detail::end_of_arm(robot, joint.child);
-    const std::size_t own = detail::own_joints(robot, end);
-    const auto same = [&](const auto& known) { return known.second == end; };
-    if (own < kLeast || std::any_of(ends.begin(), ends.end(), same)) continue;
-    ends.emplace_back(own, end);
-  }
-  std::stable_sort(ends.begin(), ends.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<std::string> names;
-  for (auto& [own, name] : ends) names.push_back(std::move(name));
-  return names;
-}
-
-/// Links that are called optical, those of colour before those of depth; then links that are called
-/// camera.
-[[nodiscard]] inline std::vector<std::string> propose_cameras(const Robot& robot) {
-  const auto rank = [](const std::string& link) {
-    if (!detail::contains_word(link, "optical")) return 3;
-    if (detail::contains_word(link, "rgb") || detail::contains_word(link, "color")) return 0;
-    return detail::contains_word(link, "depth") || detail::contains_word(link, "infra") ? 2 : 1;
-  };
-  std::vector<std::string> names;
-  for (const Joint& joint : robot.joints()) {
-    if (detail::looks_like_camera(joint.child)) names.push_back(joint.child);
-  }
-  std::stable_sort(names.begin(), names.end(),
-                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
-  return names;
-}
+/// Links whose names contain "optical", colour before depth; then other links that look like
+/// cameras.
+[[nodiscard]] std::vector<std::string> propose_cameras(const Robot& robot);
 
 /// The highest link from which a chain leads to this one: the root, unless a floating or planar
 /// joint is in between.
 /// @throws RobotError  if there is no such link
-[[nodiscard]] inline std::string propose_base(const Robot& robot, const std::string& link) {
-  std::string base = link;
-  for (const Joint* joint : joints_to_root(robot, link)) {
-    if (joint->type == JointType::floating || joint->type == JointType::planar) break;
-    base = joint->parent;
-  }
-  return base;
-}
+[[nodiscard]] std::string propose_base(const Robot& robot, const std::string& link);
 
-/// Whether a frame that is in no URDF may have a name: no link has it, no joint has it or nearly.
-[[nodiscard]] inline bool is_free_frame_name(const Robot& robot, const std::string& name) {
-  return !robot.has_link(name) && !nearest_name(name, robot.joint_names());
-}
+/// Whether a frame that the URDF does not contain may have this name: no link has it, and no joint
+/// has it or a similar one.
+[[nodiscard]] bool is_free_frame_name(const Robot& robot, const std::string& name);
 
-/// A name for a frame that is in no URDF.
-/// @param names  the best first
-[[nodiscard]] inline std::string propose_frame(const Robot& robot, std::vector<std::string> names) {
-  for (std::size_t i = 0;; ++i) {
-    if (i == names.size()) names.push_back("virtual_frame_" + std::to_string(i));
-    if (is_free_frame_name(robot, names[i])) return names[i];
-  }
-}
+/// A name for a frame that the URDF does not contain.
+/// @param names  candidates, the best first
+[[nodiscard]] std::string propose_frame(const Robot& robot, std::vector<std::string> names);
 
-/// Answers with proposals where those are empty that need not be given: the base, names of frames.
-/// @throws RobotError  if the end of the chain is no link
-[[nodiscard]] inline InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
-  const auto propose = [](std::string& answer, const std::string& proposal) {
-    if (answer.empty()) answer = proposal;
-  };
-  const InitTarget target = answers.target;
-  const std::string& end = needs_arm(target) ? answers.arm : answers.camera;
-  if (robot.has_link(end)) propose(answers.base, propose_base(robot, end));
-  if (target == InitTarget::tracker) {
-    propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
-    propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
-  } else if (needs_target_frame(target)) {
-    propose(answers.target_frame, propose_frame(robot, {"checkerboard", "board_frame"}));
-  }
-  return answers;
-}
+/// The answers, completed with proposals for the base and the names of frames, which need not be
+/// given.
+/// @throws RobotError  if there is no link at the end of the chain
+[[nodiscard]] InitAnswers with_proposals(const Robot& robot, InitAnswers answers);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/init/robot_parts.ipp"
+#endif

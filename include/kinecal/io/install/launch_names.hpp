@@ -1,8 +1,8 @@
-// What a calibration sets in a launch file, by key, and how the launch file calls it.
+// The keys of what a calibration sets in a launch file, and their names there.
 //
-// The keys are fixed, the names differ from robot to robot; Fetch's are the default.  A key whose
-// name is empty is not set.  Of a second camera the keys begin with its name
-// (left_rgb_camera_info_url); nobody knows how a launch file calls those, so they have no default.
+// The keys are fixed; the names differ from robot to robot, with Fetch's as the default.  A key
+// with an empty name is not set.  The keys of a second camera begin with its name
+// (left_rgb_camera_info_url); their names in a launch file are unknown, so they have no default.
 // Source: Fetch paper, III-C; the launch file of the Fetch robot.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "kinecal/io/diagnostics.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
 
 namespace kinecal {
 
@@ -22,49 +21,28 @@ namespace kinecal {
 using LaunchNames = std::map<std::string, std::string>;
 
 namespace launch_key {
-inline constexpr std::string_view kDate = "calibration_date";
-inline constexpr std::string_view kRobot = "robot_description";
-inline constexpr std::string_view kDepthOffset = "z_offset_mm";
-inline constexpr std::string_view kDepthScaling = "z_scaling";
+inline constexpr std::string_view kDate = "calibration_date";    ///< date of the calibration
+inline constexpr std::string_view kRobot = "robot_description";  ///< file of the URDF
+inline constexpr std::string_view kDepthOffset = "z_offset_mm";  ///< depth offset, millimetres
+inline constexpr std::string_view kDepthScaling = "z_scaling";   ///< depth scale, a factor
+/// File of the depth camera.
 inline constexpr std::string_view kDepthInfo = "depth_camera_info_url";
-inline constexpr std::string_view kRgbInfo = "rgb_camera_info_url";
+inline constexpr std::string_view kRgbInfo = "rgb_camera_info_url";  ///< file of the color camera
+/// All keys.
 inline constexpr std::array kAll = {kDate,         kRobot,     kDepthOffset,
                                     kDepthScaling, kDepthInfo, kRgbInfo};
 }  // namespace launch_key
 
-[[nodiscard]] inline LaunchNames fetch_launch_names() {
-  LaunchNames names;
-  for (const std::string_view key : launch_key::kAll) names.emplace(key, key);
-  names["z_offset_mm"] = "head_camera/driver/z_offset_mm";
-  names["z_scaling"] = "head_camera/driver/z_scaling";
-  return names;
-}
+/// The names in the launch file of the Fetch robot, for every key.
+[[nodiscard]] LaunchNames fetch_launch_names();
 
-/// Fetch's names, but for those that the user gave.
-/// @param given        "KEY=NAME" each; "KEY=" for what is not to be set
-/// @throws InputError  for what has no '=', an unknown key or a key that is given twice
-[[nodiscard]] inline LaunchNames launch_names(const std::vector<std::string>& given) {
-  LaunchNames own;
-  for (const std::string& text : given) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) {
-      throw InputError("name '" + text + "': is not KEY=NAME; KEY= leaves a key out");
-    }
-    const std::string key = text.substr(0, equals);
-    bool known = false;
-    for (const std::string_view k : launch_key::kAll) {
-      known = known || key == k || key.ends_with("_" + std::string(k));
-    }
-    if (!known) {
-      throw InputError("name '" + text + "': '" + key + "' is not a key" +
-                       did_you_mean(key, launch_key::kAll));
-    }
-    if (!own.emplace(key, text.substr(equals + 1)).second) {
-      throw InputError("name '" + text + "': '" + key + "' is named twice");
-    }
-  }
-  own.merge(fetch_launch_names());  // keeps what is there
-  return own;
-}
+/// Fetch's names, except for those that the user gave.
+/// @param given        "KEY=NAME" each; "KEY=" for a key that is not to be set
+/// @throws InputError  for a text without '=', an unknown key, or a key that is given twice
+[[nodiscard]] LaunchNames launch_names(const std::vector<std::string>& given);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/install/launch_names.ipp"
+#endif

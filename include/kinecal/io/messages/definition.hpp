@@ -1,4 +1,4 @@
-// What a message consists of, read from the .msg text that a bag carries.
+// The fields of a message type, read from the .msg text that a bag carries.
 //
 //   # comment                        geometry_msgs/PointStamped[] features
 //   uint8 FLOAT32 = 7                float64[9] K
@@ -6,230 +6,75 @@
 //   MSG: geometry_msgs/PointStamped
 //   ...
 //
-// A type without a package is of the package that uses it; Header, where that has none, is
-// std_msgs/Header.  Of ROS 1, time and duration are two numbers.  ROS 2 adds bounds (string<=10)
-// and default values.
-//
+// A type without a package belongs to the package that uses it; Header, where that package does not
+// define one, is std_msgs/Header.  The time and duration of ROS 1 are two numbers.  ROS 2 adds
+// bounds (string<=10) and default values.
 // Source: ROS 1 wiki, msg; ROS 2 documentation, Interfaces.
-//
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <charconv>
+#include <cstddef>
 #include <cstdint>
-#include <map>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
-
-#include "kinecal/io/bags/bag.hpp"
-#include "kinecal/io/messages/message_type.hpp"
 
 namespace kinecal {
 
-inline constexpr std::size_t kMostOfADefinition = std::size_t{1} << 20;  ///< real ones: 0.01 of it
+/// The type of a field.  A time or duration of ROS 1 is a message.
+enum class FieldType : std::uint8_t {
+  boolean,
+  int8,
+  uint8,
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64,
+  text,
+  message
+};
+
+/// A field of a message type.
+struct MessageField {
+  /// A single value, a list of fixed size, or a list of any size.
+  enum class Count : std::uint8_t { one, fixed, any };
+
+  std::string name;                     ///< as in the definition
+  FieldType type = FieldType::message;  ///< of the value, or of each item
+  std::size_t message = 0;   ///< index of its type in the definition, if this is a message
+  Count count = Count::one;  ///< whether it is a list
+  std::uint32_t size = 1;    ///< items of a list of fixed size
+};
+
+/// A message type.
+struct MessageType {
+  std::string name;                  ///< "package/Type"
+  std::vector<MessageField> fields;  ///< in the order of the definition
+};
+
+/// A message type and all types that it uses; the message type itself is the first.
+using MessageDefinition = std::vector<MessageType>;
 
 /// A definition that cannot be read: what is wrong, with the line of the text.
 struct DefinitionError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-namespace detail {
+/// Bytes of a definition text, at most.  Real ones have about 1 % of that.
+inline constexpr std::size_t kMostOfADefinition = std::size_t{1} << 20;
 
-/// The lines of one type.
-struct DefinitionPart {
-  std::string name;
-  std::vector<std::pair<int, std::string_view>> lines;  ///< with their numbers, from 1
-};
-
-[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-[[nodiscard]] inline std::vector<DefinitionPart> definition_parts(const std::string& type,
-                                                                  std::string_view text) {
-  std::vector<DefinitionPart> parts = {{plain_type(type), {}}};
-  for (int number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    constexpr std::string_view kBegins = "MSG:";
-    if (line.starts_with("===")) continue;
-    if (line.starts_with(kBegins)) {
-      parts.push_back({plain_type(trimmed(line.substr(kBegins.size()))), {}});
-    } else if (!line.empty() && line.front() != '#') {
-      parts.back().lines.emplace_back(number, line);
-    }
-  }
-  return parts;
-}
-
-class DefinitionParser {
- public:
-  explicit DefinitionParser(std::vector<DefinitionPart> parts) : parts_(std::move(parts)) {
-    for (std::size_t i = 0; i < parts_.size(); ++i) by_name_.try_emplace(parts_[i].name, i);
-  }
-
-  [[nodiscard]] MessageDefinition parse() {
-    (void)add(parts_.front().name, 0);
-    return std::move(types_);
-  }
-
- private:
-  static constexpr int kMaxDepth = 32;
-
-  /// @return  where the type stands in the definition
-  std::size_t add(const std::string& name, int depth) {
-    const std::size_t here = types_.size();
-    if (const auto [at, is_new] = added_.try_emplace(name, here); !is_new) return at->second;
-    check_depth(name, depth);
-    types_.push_back({name, {}});
-    heights_.push_back(kUnfinished);
-    int height = 1;
-    const auto part = by_name_.find(name);
-    if (part == by_name_.end()) {
-      types_[here].fields = built_in(name);
-      heights_[here] = height;
-      return here;
-    }
-    for (const auto& [line, text] : parts_[part->second].lines) {
-      auto field = parse_field(name, line, text, depth);
-      if (!field) continue;
-      if (field->type == FieldType::message) {
-        height = std::max(height, heights_[field->message] + 1);
-      }
-      types_[here].fields.push_back(std::move(*field));
-    }
-    check_depth(name, height);
-    heights_[here] = height;
-    return here;
-  }
-
-  /// Two numbers; of ROS 2 its own types, which some who write bags leave out.
-  [[nodiscard]] static std::vector<MessageField> built_in(const std::string& name) {
-    if (name == kTime) return {{"secs", FieldType::uint32}, {"nsecs", FieldType::uint32}};
-    if (name == kDuration) return {{"secs", FieldType::int32}, {"nsecs", FieldType::int32}};
-    if (name == "builtin_interfaces/Time" || name == "builtin_interfaces/Duration") {
-      return {{"sec", FieldType::int32}, {"nanosec", FieldType::uint32}};
-    }
-    throw DefinitionError(fmt::format("type '{}' is used and not defined", name));
-  }
-
-  static void check_depth(const std::string& name, int depth) {
-    if (depth > kMaxDepth) throw DefinitionError(fmt::format("'{}' is nested too deeply", name));
-  }
-
-  /// @return  nothing for a constant
-  [[nodiscard]] std::optional<MessageField> parse_field(const std::string& owner, int line,
-                                                        std::string_view text, int depth) {
-    const std::size_t type_end = text.find_first_of(" \t");
-    if (type_end == std::string_view::npos) {
-      throw DefinitionError(fmt::format("line {}: '{}' has no name", line, text));
-    }
-    std::string_view rest = trimmed(text.substr(type_end));
-    const std::size_t name_end = std::min(rest.find_first_of(" \t=#"), rest.size());
-    MessageField field;
-    field.name = rest.substr(0, name_end);
-    if (field.name.empty()) {
-      throw DefinitionError(fmt::format("line {}: '{}' has no name", line, text));
-    }
-    if (trimmed(rest.substr(name_end)).starts_with('=')) return std::nullopt;
-    std::string_view type = text.substr(0, type_end);
-    if (const std::size_t bracket = type.find('['); bracket != std::string_view::npos) {
-      set_count(field, type.substr(bracket), line);
-      type = type.substr(0, bracket);
-    }
-    set_type(field, type.substr(0, type.find("<=")), owner, line, depth);
-    return field;
-  }
-
-  static void set_count(MessageField& field, std::string_view brackets, int line) {
-    if (!brackets.ends_with(']')) {
-      throw DefinitionError(fmt::format("line {}: '{}' is no size", line, brackets));
-    }
-    const std::string_view size = brackets.substr(1, brackets.size() - 2);
-    field.count = MessageField::Count::any;
-    if (size.empty() || size.starts_with("<=")) return;
-    field.count = MessageField::Count::fixed;
-    const auto [end, error] = std::from_chars(size.data(), size.data() + size.size(), field.size);
-    if (error != std::errc() || end != size.data() + size.size() || field.size == 0) {
-      throw DefinitionError(fmt::format("line {}: '{}' is no size", line, brackets));
-    }
-  }
-
-  void set_type(MessageField& field, std::string_view type, const std::string& owner, int line,
-                int depth) {
-    constexpr std::array<std::pair<std::string_view, FieldType>, 14> kPrimitives = {{
-        {"bool", FieldType::boolean},
-        {"int8", FieldType::int8},
-        {"byte", FieldType::uint8},
-        {"char", FieldType::uint8},
-        {"uint8", FieldType::uint8},
-        {"int16", FieldType::int16},
-        {"uint16", FieldType::uint16},
-        {"int32", FieldType::int32},
-        {"uint32", FieldType::uint32},
-        {"int64", FieldType::int64},
-        {"uint64", FieldType::uint64},
-        {"float32", FieldType::float32},
-        {"float64", FieldType::float64},
-        {"string", FieldType::text},
-    }};
-    for (const auto& [name, primitive] : kPrimitives) {
-      if (type == name) {
-        field.type = primitive;
-        return;
-      }
-    }
-    if (type == "wstring") {
-      throw DefinitionError(fmt::format("line {}: wide strings are not supported", line));
-    }
-    field.message = add(full_name(type, owner), depth + 1);
-    if (heights_[field.message] == kUnfinished) {  // would never end when it is read
-      throw DefinitionError(
-          fmt::format("line {}: '{}' contains itself", line, types_[field.message].name));
-    }
-  }
-
-  [[nodiscard]] std::string full_name(std::string_view type, const std::string& owner) const {
-    if (type == kTime || type == kDuration) return std::string(type);
-    if (type.find('/') != std::string_view::npos) return plain_type(type);
-    std::string name = owner.substr(0, owner.find('/') + 1) + std::string(type);
-    return type == "Header" && !by_name_.contains(name) ? "std_msgs/Header" : name;
-  }
-
-  static constexpr std::string_view kTime = "time", kDuration = "duration";
-  static constexpr int kUnfinished = 0;
-
-  std::vector<DefinitionPart> parts_;
-  std::map<std::string, std::size_t> by_name_;
-  MessageDefinition types_;
-  std::map<std::string, std::size_t> added_;  ///< the same, by name
-  std::vector<int> heights_;                  ///< of each: how deep its fields go
-};
-
-}  // namespace detail
-
-/// @param type  "package/Type" of the message, of ROS 1 or 2
+/// @param type  "package/Type" of the message, spelt as in ROS 1 or ROS 2
 /// @param text  its .msg text and those of all types that it uses
-/// @throws DefinitionError  naming the line of the text or the type that is missing
-[[nodiscard]] inline MessageDefinition parse_definition(const std::string& type,
-                                                        std::string_view text) {
-  if (text.size() > kMostOfADefinition) {
-    throw DefinitionError(fmt::format("it has {} bytes; {} are the most that is read", text.size(),
-                                      kMostOfADefinition));
-  }
-  return detail::DefinitionParser(detail::definition_parts(type, text)).parse();
-}
+/// @throws DefinitionError  naming the line of the text or the missing type
+[[nodiscard]] MessageDefinition parse_definition(const std::string& type, std::string_view text);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/messages/definition.ipp"
+#endif

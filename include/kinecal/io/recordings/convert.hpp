@@ -1,106 +1,38 @@
-// From one format of recordings to another.
+// Converts recordings from one format to another.
 //
-// Between bags of one encoding messages are copied as they are.  From ROS 1 to ROS 2 and back those
-// of known types are decoded and encoded; others are left out, which is told.
-// SPDX-License-Identifier: Apache-2.0
+// Between bags of the same encoding, messages are copied as they are.  From ROS 1 to ROS 2 and
+// back, messages of known types are decoded and encoded; a warning names the topics that are left
+// out. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <set>
-#include <stdexcept>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/recordings/bag_output.hpp"
-#include "kinecal/io/recordings/known_topics.hpp"
-#include "kinecal/io/recordings/read_bag.hpp"
-#include "kinecal/io/recordings/sample_message.hpp"
+#include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
-namespace detail {
 
-/// The same message without images and point clouds, which calibration does not use.
-[[nodiscard]] inline MessageFields without_clouds(const MessageFields& message) {
-  MessageFields kept = message;
-  for (auto& [name, value] : kept.fields) {
-    auto* seen = std::get_if<MessageValue::List>(static_cast<MessageValue::variant*>(&value));
-    if (name != "observations" || seen == nullptr) continue;
-    for (MessageValue& one : *seen) {
-      if (auto* fields = std::get_if<MessageFields>(static_cast<MessageValue::variant*>(&one))) {
-        std::erase_if(fields->fields, [](const auto& field) {
-          return field.first == "cloud" || field.first == "image";
-        });
-      }
-    }
-  }
-  return kept;
-}
-
-}  // namespace detail
-
-/// What becomes of the images and point clouds of observations.
+/// Whether images and point clouds of observations are written, too.  Calibration does not use
+/// them.
 enum class Clouds { keep, drop };
 
-/// Writes what is in a bag into another one.
+/// Writes the content of a bag into another one.
 /// @param diagnostics  receives what is wrong with the bag, and as warnings what is left out
 /// @return             messages written
-inline std::size_t convert_bag(const std::string& from, BagOutput& to, Clouds clouds,
-                               Diagnostics& diagnostics) {
-  MessageDecoder decoder(from, diagnostics);
-  std::set<std::string> left_out, refused;
-  std::size_t written = 0;
-  int number = 0;
-  const auto wants = [&](const BagTopic& topic) {
-    const bool known = !known_definition(topic.type, to.encoding()).empty();
-    const bool copied = topic.encoding == to.encoding() && !topic.definition.empty();
-    if (!known && !copied) left_out.insert(topic.name);
-    return known || copied;
-  };
-  const auto write = [&](const BagMessage& message) {
-    const BagTopic& topic = message.topic;
-    const bool drops = clouds == Clouds::drop && use_of(topic) == TopicUse::samples;
-    if (topic.encoding == to.encoding() && !drops && !topic.definition.empty()) {
-      to.copy(topic, message.time, message.data);
-    } else if (const auto content = decoder.decode(message, number)) {
-      to.write(topic, message.time, drops ? detail::without_clouds(*content) : *content);
-    } else {
-      return;
-    }
-    ++written;
-  };
-  const auto handle = [&](const BagMessage& message) {
-    ++number;
-    try {
-      write(message);
-    } catch (const std::invalid_argument& e) {  // once for each topic
-      if (!refused.insert(message.topic.name).second) return;
-      diagnostics.error({from, 0}, fmt::format("message {} of topic '{}' cannot be written: {}",
-                                               number, message.topic.name, e.what()));
-    }
-  };
-  read_bag(from, {wants, handle}, diagnostics);
-  for (const std::string& name : left_out) {
-    diagnostics.warning({from, 0}, fmt::format("topic '{}' is left out: its type is not known in "
-                                               "the other ROS",
-                                               name));
-  }
-  return written;
-}
+std::size_t convert_bag(const std::string& from, BagOutput& to, Clouds clouds,
+                        Diagnostics& diagnostics);
 
 /// Writes samples as messages on /calibration_data, one a second.
-inline void write_samples(BagOutput& to, const std::vector<Sample>& samples) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  const BagTopic topic{"calibration_data", "robot_calibration_msgs/CalibrationData", {}, {}, {}};
-  std::int64_t time = 0;
-  for (const Sample& sample : samples) to.write(topic, time += kSecond, sample_message(sample));
-}
+void write_samples(BagOutput& to, const std::vector<Sample>& samples);
 
-/// Writes a URDF as message on /robot_description.
-inline void write_urdf(BagOutput& to, const std::string& urdf) {
-  to.write({"robot_description", "std_msgs/String", {}, {}, {}}, 1,
-           detail::fields("data", std::string_view(urdf)));
-}
+/// Writes a URDF as a message on /robot_description.
+void write_urdf(BagOutput& to, const std::string& urdf);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/recordings/convert.ipp"
+#endif

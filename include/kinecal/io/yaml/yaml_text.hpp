@@ -1,126 +1,45 @@
-// Numbers and names as YAML text, so that what is written reads back as the same value.
-//
-// Numbers are the shortest text that reads back as the same double, and always have a decimal point
-// (1.0, 1.0e-05): without it some YAML readers take them for integers or strings.
+// Numbers and names as YAML text: what is written reads back as the same value.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
+
+#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
-/// The number that a text stands for: decimal, nan, inf, .nan, .inf, each with or without a sign;
-/// nothing if it is not a number as a whole or does not fit into a double.
-[[nodiscard]] inline std::optional<double> number_from_yaml(std::string_view text) {
-  const bool negative = text.starts_with('-');
-  if (negative || text.starts_with('+')) text.remove_prefix(1);
-  if (text.starts_with('-') || text.starts_with('+')) return std::nullopt;
-  if (text == ".inf" || text == ".Inf" || text == ".INF" || text == ".nan" || text == ".NaN" ||
-      text == ".NAN") {
-    text.remove_prefix(1);
-  }
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return negative ? -value : value;
-}
+/// The value of a number: decimal, nan, inf, .nan or .inf, each with or without a sign.
+/// @return  nothing if the whole text is not such a number or does not fit into a double
+[[nodiscard]] std::optional<double> number_from_yaml(std::string_view text);
 
-/// Shortest text that number_from_yaml() reads as the same double (any NaN as .nan).
-[[nodiscard]] inline std::string number_to_yaml(double value) {
-  if (std::isnan(value)) return ".nan";
-  if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
-  std::string text = fmt::format("{}", value);
-  if (text.find('.') == std::string::npos) text.insert(std::min(text.find('e'), text.size()), ".0");
-  return text;
-}
+/// Shortest text that number_from_yaml() reads as the same double (any NaN as .nan).  It has a
+/// decimal point (1.0, 1.0e-05); without it some YAML readers take it for an integer or a string.
+[[nodiscard]] std::string number_to_yaml(double value);
+
+/// "[1.0, 2.0]"
+[[nodiscard]] std::string numbers_to_yaml(std::span<const double> numbers);
 
 /// The text of a finite decimal number times 10^by, without rounding: "1.5" by -3 is "1.5e-3".
-[[nodiscard]] inline std::string times_power_of_ten(std::string_view number, int by) {
-  const std::size_t e = std::min(number.find_first_of("eE"), number.size());
-  std::string_view digits = number.substr(std::min(e + 1, number.size()));
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  int exponent = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
-  return fmt::format("{}e{:+}", number.substr(0, e), exponent + by);
-}
+[[nodiscard]] std::string times_power_of_ten(std::string_view number, int by);
 
-/// Metres from a text in millimetres, as if the decimal point were moved: no rounding error is
-/// added by a division.  Nothing if the text is not a number.
-[[nodiscard]] inline std::optional<double> metres_from_millimetres(std::string_view text) {
-  const std::optional<double> millimetres = number_from_yaml(text);
-  if (!millimetres || !std::isfinite(*millimetres)) return millimetres;
-  return number_from_yaml(times_power_of_ten(text, -3));
-}
+/// Metres from a text in millimetres.  The decimal point is moved; there is no division, whose
+/// result would be rounded.
+/// @return  nothing if the text is not a number
+[[nodiscard]] std::optional<double> metres_from_millimetres(std::string_view text);
 
 /// Text in millimetres that metres_from_millimetres() reads as the same double.
 /// @param metres  metres, below 1e305
-[[nodiscard]] inline std::string millimetres_from_metres(double metres) {
-  std::string text = number_to_yaml(metres * 1e3);
-  if (!std::isfinite(metres) || metres_from_millimetres(text) == metres) return text;
-  return times_power_of_ten(number_to_yaml(metres), 3);
-}
+[[nodiscard]] std::string millimetres_from_metres(double metres);
 
-namespace detail {
-
-/// True for a word that every YAML reader takes for a string: letters, digits and _ / . - after a
-/// letter, an underscore or a slash, and none of the words of YAML itself.
-[[nodiscard]] inline bool is_plain_yaml_word(std::string_view word) {
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const auto starts = [&](char c) { return is_letter(c) || c == '_' || c == '/'; };
-  const auto continues = [&](char c) {
-    return starts(c) || (c >= '0' && c <= '9') || c == '.' || c == '-';
-  };
-  if (word.empty() || !starts(word[0]) || !std::all_of(word.begin(), word.end(), continues)) {
-    return false;
-  }
-  std::string lower(word);
-  for (char& c : lower) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
-  constexpr std::array<std::string_view, 9> kReserved = {"null", "true", "false", "yes", "no",
-                                                         "on",   "off",  "y",     "n"};
-  return std::find(kReserved.begin(), kReserved.end(), lower) == kReserved.end();
-}
-
-/// How the first character of a text (UTF-8) is written in double quotes, if not as it is: what
-/// ends a quoted text, and what YAML takes for a line break or refuses.
-/// @return  its size in bytes and the escape; size 0 if it is written as it is
-[[nodiscard]] inline std::pair<std::size_t, std::string> yaml_escape(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (text[0] == '"' || text[0] == '\\') return {1, std::string("\\") + text[0]};
-  if (byte(0) < 0x20 || byte(0) == 0x7f) return {1, fmt::format("\\x{:02x}", byte(0))};
-  if (byte(0) == 0xc2 && text.size() > 1 && byte(1) < 0xa0) {  // U+0080 to U+009f
-    return {2, fmt::format("\\x{:02x}", byte(1))};
-  }
-  if (text.starts_with("\xe2\x80\xa8")) return {3, "\\u2028"};
-  if (text.starts_with("\xe2\x80\xa9")) return {3, "\\u2029"};
-  if (text.starts_with("\xef\xbb\xbf")) return {3, "\\ufeff"};
-  return {};
-}
-
-}  // namespace detail
-
-/// A name (UTF-8) as it is where that is safe, in double quotes with escapes elsewhere.
-[[nodiscard]] inline std::string name_to_yaml(std::string_view name) {
-  if (name.empty()) return "''";
-  if (detail::is_plain_yaml_word(name)) return std::string(name);
-  std::string quoted = "\"";
-  while (!name.empty()) {
-    const auto [size, escape] = detail::yaml_escape(name);
-    quoted += size > 0 ? escape : std::string(1, name[0]);
-    name.remove_prefix(size > 0 ? size : 1);
-  }
-  return quoted + '"';
-}
+/// A name (UTF-8): plain where every YAML reader takes it for this string, else in double quotes
+/// with escapes.
+[[nodiscard]] std::string name_to_yaml(std::string_view name);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/yaml/yaml_text.ipp"
+#endif

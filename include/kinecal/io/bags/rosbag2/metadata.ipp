@@ -1,0 +1,83 @@
+// metadata.yaml of a ROS 2 bag lists the files of which it consists.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinecal/io/bags/byte_file.ipp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/yaml/yaml_node.hpp"
+
+namespace kinecal::detail {
+
+struct Ros2Metadata {
+  std::vector<std::string> files;  ///< as listed, in the order of recording
+  std::string compression;         ///< "zstd", or empty
+};
+
+/// @throws InputError  "file:line: ..." if it cannot be read or is not such a file
+[[nodiscard]] inline Ros2Metadata read_ros2_metadata(const std::string& path) {
+  constexpr std::uint64_t kMost = 1 << 24;
+  constexpr const char* kTop = "rosbag2_bagfile_information";
+  try {
+    std::ifstream in = open_bytes(path);
+    ByteFile file(in);
+    if (file.size() > kMost) throw BytesError("has more bytes than the 16 MiB that it may have");
+    std::vector<std::byte> buffer;
+    const Bytes bytes = file.read(file.size(), buffer);
+    const std::string text(ByteReader(bytes).text(bytes.size()));
+    const std::vector<YamlNode> documents = parse_yaml(text, path);
+    const YamlNode* bag = documents.empty() ? nullptr : documents.front().find(kTop);
+    if (bag == nullptr || !bag->is_map())
+      throw BytesError(std::string("has no map '") + kTop + "'");
+    const YamlNode* paths = bag->find("relative_file_paths");
+    if (paths == nullptr || !paths->is_list()) {
+      throw BytesError("has no list 'relative_file_paths'");
+    }
+    Ros2Metadata metadata;
+    const YamlNode* compression = bag->find("compression_format");
+    if (compression != nullptr) metadata.compression = compression->text;
+    for (const YamlNode& listed : paths->items) {
+      if (!listed.is_scalar())
+        throw InputError(Place{path, listed.line}.str() + ": is not the name of a file");
+      metadata.files.push_back(listed.text);
+    }
+    return metadata;
+  } catch (const BytesError& e) {
+    throw InputError(path + ": " + e.what());
+  }
+}
+
+/// Whether one name comes before another as people count: "bag_2" before "bag_10".
+[[nodiscard]] inline bool naturally_before(std::string_view a, std::string_view b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto cut_number = [&](std::string_view& text) {
+    const auto end = std::find_if_not(text.begin(), text.end(), is_digit) - text.begin();
+    std::string_view digits = text.substr(0, static_cast<std::size_t>(end));
+    text.remove_prefix(digits.size());
+    digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
+    return digits;
+  };
+  std::string_view left = a, right = b;
+  while (!left.empty() && !right.empty()) {
+    if (is_digit(left[0]) && is_digit(right[0])) {
+      const std::string_view x = cut_number(left), y = cut_number(right);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+    } else if (left[0] != right[0]) {
+      return left[0] < right[0];
+    } else {
+      left.remove_prefix(1);
+      right.remove_prefix(1);
+    }
+  }
+  return left.size() != right.size() ? left.size() < right.size() : a < b;
+}
+
+}  // namespace kinecal::detail

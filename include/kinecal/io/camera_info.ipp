@@ -1,0 +1,71 @@
+// Definitions of camera_info.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/yaml/yaml_text.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+[[nodiscard]] inline std::string matrix_to_yaml(std::string_view name, std::size_t rows,
+                                                std::span<const double> row_major) {
+  return fmt::format("{}:\n  rows: {}\n  cols: {}\n  data: {}\n", name, rows,
+                     row_major.size() / rows, numbers_to_yaml(row_major));
+}
+
+}  // namespace detail
+
+KINECAL_INLINE bool is_blank(const CameraInfo& camera) {
+  const auto zero = [](const auto& values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; });
+  };
+  return camera.width == 0 && camera.height == 0 && camera.distortion_model.empty() &&
+         zero(camera.d) && zero(camera.k) && zero(camera.r) && zero(camera.p);
+}
+
+KINECAL_INLINE CameraInfo calibrated_camera_info(const CameraInfo& camera, double fx, double fy,
+                                                 double cx, double cy) {
+  CameraInfo calibrated = camera;
+  auto& k = calibrated.k;
+  k[0] *= 1.0 + fx;
+  k[2] *= 1.0 + cx;
+  k[4] *= 1.0 + fy;
+  k[5] *= 1.0 + cy;
+  auto& p = calibrated.p;
+  p[0] *= 1.0 + fx;
+  p[2] *= 1.0 + cx;
+  p[3] *= 1.0 + fx;
+  p[5] *= 1.0 + fy;
+  p[6] *= 1.0 + cy;
+  p[7] *= 1.0 + fy;
+  return calibrated;
+}
+
+KINECAL_INLINE std::string to_camera_info_yaml(const CameraInfo& camera,
+                                               const std::string& camera_name) {
+  std::string text = fmt::format("image_width: {}\nimage_height: {}\ncamera_name: {}\n",
+                                 camera.width, camera.height, name_to_yaml(camera_name));
+  text += detail::matrix_to_yaml("camera_matrix", 3, camera.k);
+  text += fmt::format("distortion_model: {}\n", name_to_yaml(camera.distortion_model));
+  text += detail::matrix_to_yaml("distortion_coefficients", 1, camera.d);
+  text += detail::matrix_to_yaml("rectification_matrix", 3, camera.r);
+  return text + detail::matrix_to_yaml("projection_matrix", 3, camera.p);
+}
+
+KINECAL_INLINE std::string to_camera_message_yaml(const CameraInfo& camera) {
+  return fmt::format("height: {}\nwidth: {}\ndistortion_model: {}\nd: {}\nk: {}\nr: {}\np: {}\n",
+                     camera.height, camera.width, name_to_yaml(camera.distortion_model),
+                     numbers_to_yaml(camera.d), numbers_to_yaml(camera.k),
+                     numbers_to_yaml(camera.r), numbers_to_yaml(camera.p));
+}
+
+}  // namespace kinecal

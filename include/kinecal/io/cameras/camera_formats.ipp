@@ -1,0 +1,180 @@
+// The formats of camera files.
+//
+// camera_info   image_width, image_height, camera_name, distortion_model, and matrices
+//               {rows, cols, data}: camera_matrix, distortion_coefficients, rectification_matrix,
+//               projection_matrix.  The message: width, height, distortion_model and the lists
+//               K D R P (ROS 1) or k d r p (ROS 2).
+//               Source: ROS wiki, camera_calibration_parsers; sensor_msgs/CameraInfo.
+// Kalibr        A map of cameras, cam0, cam1 and so on: camera_model: pinhole,
+//               intrinsics: [fu, fv, pu, pv], distortion_model: radtan,
+//               distortion_coeffs: [k1, k2, p1, p2], resolution: [width, height].
+//               radtan is plumb_bob with k3 = 0; ROS pinhole cameras do not have the other models.
+//               Source: Kalibr wiki, YAML formats and supported models.
+// OpenCV        %YAML:1.0, image_width, image_height, and !!opencv-matrix {rows, cols, dt, data}:
+//               camera_matrix, distortion_coefficients.  Case and underscores of keys vary.  Four
+//               coefficients are plumb_bob with k3 = 0, five plumb_bob, eight rational_polynomial.
+//               Source: OpenCV documentation, FileStorage; calib3d, distortion coefficients.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinecal/io/cameras/camera_fields.ipp"
+
+namespace kinecal {
+
+/// Reads a camera_info file or message.
+/// @param file  the top-level map
+[[nodiscard]] inline CameraInfo read_camera_info(ConfigMap& file) {
+  using namespace detail;
+  CameraInfo camera;
+  camera.width = read_camera_size(file, {"image_width", "width"});
+  camera.height = read_camera_size(file, {"image_height", "height"});
+  const ConfigEntry* model = file.find("distortion_model");
+  const bool is_empty = model != nullptr && model->value.is_scalar() && model->value.text.empty();
+  if (!is_empty) camera.distortion_model = file.text("distortion_model").value_or("plumb_bob");
+  if (const ConfigEntry* d = find_camera_key(file, {"distortion_coefficients", "D", "d"})) {
+    camera.d = camera_numbers(file, *d).value_or(std::vector<double>());
+  }
+  if (!read_camera_matrix(file, {"camera_matrix", "K", "k"}, camera.k)) {
+    file.error(file.place(), "camera_matrix is missing");
+  }
+  const bool has_r = read_camera_matrix(file, {"rectification_matrix", "R", "r"}, camera.r);
+  const bool has_p = read_camera_matrix(file, {"projection_matrix", "P", "p"}, camera.p);
+  file.ignore({"camera_name", "header", "binning_x", "binning_y", "roi"});
+  file.report_unknown();  // or camera_matrix would replace a misspelt projection_matrix
+  complete_camera(camera, has_r, has_p, file.place(), file.diagnostics());
+  return camera;
+}
+
+/// True for a camera of Kalibr's camchain: a map with its model.
+[[nodiscard]] inline bool is_kalibr_camera(const ConfigEntry& entry) {
+  return entry.value.find("camera_model") != nullptr;
+}
+
+namespace detail {
+
+/// `count` numbers; zeros, and an error, if they are missing or fewer or more.
+[[nodiscard]] inline std::vector<double> kalibr_numbers(ConfigMap& camera, const std::string& key,
+                                                        std::size_t count) {
+  const ConfigEntry* entry = camera.find(key);
+  if (entry == nullptr) {
+    camera.error(camera.place(), key + " is missing");
+    return std::vector<double>(count, 0.0);
+  }
+  auto numbers = camera_numbers(camera, *entry);
+  if (!numbers) return std::vector<double>(count, 0.0);
+  if (numbers->size() != count) {
+    camera.error(entry->place, fmt::format("{}, not {}", has_numbers(key, numbers->size()), count));
+    numbers->resize(count);
+  }
+  return *numbers;
+}
+
+/// Reports any model but the expected one.
+inline void expect_kalibr_model(ConfigMap& camera, const std::string& key,
+                                const std::string& expected) {
+  const auto model = camera.required_text(key);
+  if (!model || *model == expected) return;
+  camera.error(camera.find(key)->place,
+               key + " '" + *model + "' is not supported; it must be " + expected);
+}
+
+}  // namespace detail
+
+/// Reads one camera of Kalibr's camchain.
+/// @param camera  its map
+[[nodiscard]] inline CameraInfo read_kalibr_camera(ConfigMap& camera) {
+  using namespace detail;
+  const std::size_t errors = camera.diagnostics().errors.size();
+  expect_kalibr_model(camera, "camera_model", "pinhole");
+  expect_kalibr_model(camera, "distortion_model", "radtan");
+  CameraInfo info;
+  if (camera.diagnostics().errors.size() > errors) return info;  // numbers of another model
+  const std::vector<double> f = kalibr_numbers(camera, "intrinsics", 4);
+  info.distortion_model = "plumb_bob";
+  info.d = kalibr_numbers(camera, "distortion_coeffs", 4);
+  info.d.push_back(0.0);
+  info.k = {f[0], 0, f[2], 0, f[1], f[3], 0, 0, 1};
+  const std::vector<double> size = kalibr_numbers(camera, "resolution", 2);
+  for (const double pixels : size) {
+    if (pixels >= 0.0 && pixels <= 1e6 && pixels == std::floor(pixels)) continue;
+    camera.error(camera.place(), fmt::format("resolution: {} is not a number of pixels", pixels));
+    return info;
+  }
+  info.width = static_cast<int>(size[0]);
+  info.height = static_cast<int>(size[1]);
+  complete_camera(info, false, false, camera.place(), camera.diagnostics());
+  return info;
+}
+
+/// The text without OpenCV's first line %YAML:1.0, which is not YAML; lines keep their numbers.
+[[nodiscard]] inline std::string without_opencv_header(std::string text) {
+  const std::size_t begin = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  const std::string_view line = std::string_view(text).substr(begin);
+  if (!line.starts_with("%YAML:") && !line.starts_with("%YAML 1.0")) return text;
+  const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
+  return text.replace(begin, end - begin, "");
+}
+
+[[nodiscard]] inline bool is_opencv_matrix(const ConfigEntry& entry) {
+  return entry.value.is_map() && entry.value.tag.ends_with("opencv-matrix");
+}
+
+namespace detail {
+
+/// All keys of a file that equal a wanted one except for case and underscores.
+[[nodiscard]] inline CameraKeys opencv_keys(const ConfigMap& file, const CameraKeys& wanted) {
+  const auto letters = [](std::string key) {
+    std::erase(key, '_');
+    for (char& c : key) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    return key;
+  };
+  CameraKeys keys;
+  for (const std::string& key : wanted) {
+    for (const ConfigEntry& entry : file.entries()) {
+      if (letters(entry.key) == letters(key)) keys.push_back(entry.key);
+    }
+  }
+  return keys;
+}
+
+}  // namespace detail
+
+/// Reads a file of OpenCV's FileStorage.
+/// @param file  the top-level map
+[[nodiscard]] inline CameraInfo read_opencv_camera(ConfigMap& file) {
+  using namespace detail;
+  const auto keys = [&](const CameraKeys& wanted) { return opencv_keys(file, wanted); };
+  CameraInfo camera;
+  camera.width = read_camera_size(file, keys({"image_width"}));
+  camera.height = read_camera_size(file, keys({"image_height"}));
+  if (const ConfigEntry* fisheye = find_camera_key(file, keys({"fisheye_model"}))) {
+    if (file.number(fisheye->key, 0.0) != 0.0) {
+      file.error(fisheye->place,
+                 "fisheye_model: fisheye cameras are not supported, only pinhole cameras");
+    }
+  }
+  if (!read_camera_matrix(file, keys({"camera_matrix", "K"}), camera.k)) {
+    file.error(file.place(), "camera_matrix is missing");
+  }
+  const ConfigEntry* d =
+      find_camera_key(file, keys({"distortion_coefficients", "dist_coeffs", "D"}));
+  if (d != nullptr) camera.d = camera_numbers(file, *d).value_or(std::vector<double>());
+  const std::size_t n = camera.d.size();
+  if (n != 0 && n != 4 && n != 5 && n != 8) {
+    file.error(d->place,
+               has_numbers(d->key, n) + "; distortion models of camera_info have 4, 5 or 8");
+  }
+  if (n < 5) camera.d.resize(5, 0.0);
+  camera.distortion_model = n == 8 ? "rational_polynomial" : "plumb_bob";
+  const bool has_r = read_camera_matrix(file, keys({"rectification_matrix"}), camera.r);
+  const bool has_p = read_camera_matrix(file, keys({"projection_matrix"}), camera.p);
+  complete_camera(camera, has_r, has_p, file.place(), file.diagnostics());
+  return camera;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,56 @@
+// Definitions of read_config.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "kinecal/io/config/config_dialects.ipp"
+#include "kinecal/io/config/read_config.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// Appends messages, each once: steps that share a list report the same errors.
+inline void add_once(std::vector<std::string>& messages, const std::vector<std::string>& more) {
+  std::set<std::string> added;
+  for (const std::string& message : more) {
+    if (added.insert(message).second) messages.push_back(message);
+  }
+}
+
+}  // namespace detail
+
+KINECAL_INLINE YamlNode load_config(const std::string& path, Diagnostics& diagnostics) {
+  YamlNode content;
+  for (YamlNode& document : parse_yaml(read_yaml_text(path), path)) {
+    if (document.is_null()) continue;
+    if (content.is_null()) {
+      content = std::move(document);
+    } else {
+      diagnostics.error({path, document.line},
+                        "a second document begins here; a configuration is a single one");
+    }
+  }
+  return content;
+}
+
+KINECAL_INLINE Config read_config(const std::string& path, Diagnostics& diagnostics) {
+  ConfigProgress progress;
+  progress.config.place = {path, 0};
+  Diagnostics found;
+  const YamlNode content = load_config(path, found);
+  if (content.is_map()) {
+    ConfigMap file(content, {path, 0}, "", found);
+    read_dialect(file, progress);
+  } else {
+    found.error({path, 0}, "the file is " + describe_config(content) + ", not a map");
+  }
+  detail::add_once(diagnostics.errors, found.errors);
+  detail::add_once(diagnostics.warnings, found.warnings);
+  return progress.config;
+}
+
+}  // namespace kinecal

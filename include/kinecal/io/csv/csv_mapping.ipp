@@ -1,0 +1,155 @@
+// Definitions of csv_mapping.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "kinecal/io/config/config_blocks.ipp"
+#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/io/csv/csv_mapping.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// A column, or a list of them.
+[[nodiscard]] inline CsvSum read_csv_sum(const ConfigMap& map, const YamlNode& node,
+                                         const Place& place) {
+  CsvSum sum;
+  const auto add = [&](const YamlNode& column) {
+    const auto name = config_text(column);
+    if (name) sum.push_back({*name, {place.file, column.line}});
+    if (!name) map.error(place, describe_config(column) + " is not a column");
+  };
+  if (node.is_list()) {
+    for (const YamlNode& column : node.items) add(column);
+    if (node.items.empty()) map.error(place, "a list of columns is empty");
+  } else {
+    add(node);
+  }
+  return sum;
+}
+
+/// A unit of angle or length.
+[[nodiscard]] inline CsvUnit read_csv_unit(ConfigMap& map, bool angle) {
+  const std::string unit = angle ? read_choice(map, "unit", "radians", {"radians", "degrees"})
+                                 : read_choice(map, "unit", "metres", {"metres", "millimetres"});
+  return {unit == "degrees", unit == "millimetres"};
+}
+
+/// `joints:` or `sliding:`
+inline void read_csv_joints(ConfigMap& map, const std::string& key, bool angle,
+                            CsvMapping& mapping) {
+  auto joints = map.map(key, key);
+  if (!joints) return;
+  const CsvUnit unit = read_csv_unit(*joints, angle);
+  auto columns = joints->map("columns", key + ": columns");
+  if (!columns)
+    joints->error(joints->place(), "columns is missing: {name of a joint: column, ...}");
+  if (columns) {
+    for (const ConfigEntry& entry : columns->entries()) {
+      for (const CsvJoint& known : mapping.joints) {
+        if (known.name == entry.key) {
+          columns->error(entry.place, "joint '" + entry.key + "' occurs twice");
+        }
+      }
+      mapping.joints.push_back({entry.key, read_csv_sum(*columns, entry.value, entry.place), unit});
+    }
+  }
+  joints->report_unknown();
+}
+
+/// `points:` (three columns each) or `pixels:` (two)
+inline void read_csv_points(ConfigMap& map, const std::string& key, std::size_t columns,
+                            CsvObservation& observation) {
+  for (const ConfigEntry& entry : map.list(key)) {
+    if (!entry.value.is_list() || entry.value.items.size() != columns) {
+      map.error(entry.place,
+                key + ": " + describe_config(entry.value) + " is not a list of " +
+                    (columns == 3 ? "three columns, [x, y, z]" : "two columns, [u, v]"));
+      continue;
+    }
+    std::array<CsvSum, 3> point;
+    for (std::size_t i = 0; i < columns; ++i) {
+      point[i] = read_csv_sum(map, entry.value.items[i], entry.place);
+    }
+    observation.points.push_back(std::move(point));
+  }
+}
+
+/// `constant: [x, y, z]`, in the observation's unit
+inline void read_csv_constant(ConfigMap& map, CsvObservation& observation) {
+  const ConfigEntry* entry = map.find("constant");
+  if (entry == nullptr) return;
+  Vector3<double> point = Vector3<double>::Zero();
+  bool good = entry->value.is_list() && entry->value.items.size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const auto number = config_number(entry->value.items[i]);
+    good = number && std::isfinite(*number);
+    if (good) point(static_cast<Eigen::Index>(i)) = *number;
+  }
+  if (!good) {
+    map.error(entry->place, "constant is not a list of three numbers, [x, y, z]");
+  }
+  observation.constants.push_back(observation.unit.millimetres ? point / 1000.0 : point);
+}
+
+inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
+  CsvObservation observation;
+  observation.sensor = map.required_text("sensor").value_or("");
+  if (!observation.sensor.empty()) map.set_subject("sensor '" + observation.sensor + "'");
+  observation.frame = map.required_text("frame").value_or("");
+  const bool has_pixels = map.peek("pixels") != nullptr;
+  if (!has_pixels) observation.unit = read_csv_unit(map, false);
+  read_csv_constant(map, observation);
+  read_csv_points(map, "points", 3, observation);
+  read_csv_points(map, "pixels", 2, observation);
+  const int kinds = (has_pixels ? 1 : 0) + (map.peek("points") != nullptr ? 1 : 0) +
+                    (map.peek("constant") != nullptr ? 1 : 0);
+  if (kinds != 1) {
+    map.error(map.place(), "has " + std::string(kinds == 0 ? "none" : "more than one") +
+                               " of points, pixels and constant; give exactly one");
+  }
+  for (const CsvObservation& known : mapping.observations) {
+    if (known.sensor == observation.sensor) {
+      map.error(map.place(), "occurs twice; list all of its points in one");
+    }
+  }
+  map.report_unknown();
+  mapping.observations.push_back(std::move(observation));
+}
+
+[[nodiscard]] inline CsvMapping read_csv_mapping(ConfigMap& file) {
+  CsvMapping mapping;
+  const std::string separator =
+      read_choice(file, "separator", "comma", {"comma", "semicolon", "tab", "space"});
+  mapping.separator = separator == "comma" ? ',' : separator == "tab" ? '\t' : ' ';
+  if (separator == "semicolon") mapping.separator = ';';
+  mapping.header = file.flag("header", true);
+  read_csv_joints(file, "joints", true, mapping);
+  read_csv_joints(file, "sliding", false, mapping);
+  for (const ConfigEntry& entry : file.list("observations")) {
+    if (auto map = file.map(entry, "observation")) read_csv_observation(*map, mapping);
+  }
+  if (mapping.joints.empty()) file.error(file.place(), "no joint is given; list them under joints");
+  if (mapping.observations.empty()) {
+    file.error(file.place(), "no observation is given; list at least one under observations");
+  }
+  file.report_unknown();
+  return mapping;
+}
+
+}  // namespace detail
+
+KINECAL_INLINE CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics) {
+  const YamlNode content = load_config(path, diagnostics);
+  if (!content.is_map()) {
+    diagnostics.error({path, 0}, "the file is " + describe_config(content) + ", not a map");
+    return {};
+  }
+  ConfigMap file(content, {path, 0}, "", diagnostics);
+  return detail::read_csv_mapping(file);
+}
+
+}  // namespace kinecal

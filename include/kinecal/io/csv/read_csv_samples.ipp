@@ -1,0 +1,252 @@
+// Definitions of read_csv_samples.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "kinecal/io/csv/csv_table.hpp"
+#include "kinecal/io/csv/read_csv_samples.hpp"
+#include "kinecal/io/text_file.hpp"
+#include "kinecal/io/yaml/yaml_text.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// A table whose columns are found by name or number.
+class CsvColumns {
+ public:
+  /// @param header  names of the columns; empty if the table does not have them
+  CsvColumns(std::vector<std::string> header, std::size_t columns, Diagnostics& diagnostics)
+      : header_(std::move(header)), columns_(columns), diagnostics_(diagnostics) {}
+
+  /// The index of a column, from 0; nothing, and an error, if there is no such column.
+  [[nodiscard]] std::optional<std::size_t> find(const CsvColumn& column) {
+    const auto same = std::find(header_.begin(), header_.end(), column.name);
+    if (same != header_.end()) {
+      if (std::find(same + 1, header_.end(), column.name) != header_.end()) {
+        error(column, "occurs twice in the table; give its number, from 1");
+      }
+      return same - header_.begin();
+    }
+    std::size_t number = 0;
+    const char* const end = column.name.data() + column.name.size();
+    const auto [stop, failed] = std::from_chars(column.name.data(), end, number);
+    const bool is_number = failed == std::errc() && stop == end;
+    if (is_number && number >= 1 && number <= columns_) return number - 1;
+    if (is_number) {
+      error(column, columns_ == 1
+                        ? "does not exist; the table has 1 column: is the separator right?"
+                        : fmt::format("does not exist; the table has columns 1 to {}", columns_));
+    } else if (header_.empty()) {
+      error(column, "is a name, but the table has no header; give its number, from 1");
+    } else {
+      error(column,
+            fmt::format("is not in the table's header{}{}",
+                        columns_ == 1 ? ", which has one column: is the separator right?" : "",
+                        did_you_mean(column.name, header_)));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  void error(const CsvColumn& column, const std::string& what) {
+    diagnostics_.error(column.place, fmt::format("column '{}' {}", column.name, what));
+  }
+
+  std::vector<std::string> header_;
+  std::size_t columns_;
+  Diagnostics& diagnostics_;
+};
+
+/// The number in a cell, NaN if it is missing.
+/// @return  nothing if the cell contains something else
+[[nodiscard]] inline std::optional<double> csv_number(const std::string& cell) {
+  for (const char* missing : {"", "-", "NA", "N/A", "n/a", "null", "NULL", "None"}) {
+    if (cell == missing) return std::numeric_limits<double>::quiet_NaN();
+  }
+  return number_from_yaml(cell);
+}
+
+/// Makes samples of rows.  After a few bad cells it only counts the others.
+class CsvSamples {
+ public:
+  CsvSamples(const CsvMapping& mapping, CsvColumns columns, std::string file,
+             Diagnostics& diagnostics)
+      : mapping_(mapping),
+        columns_(std::move(columns)),
+        file_(std::move(file)),
+        diagnostics_(diagnostics) {
+    for (const CsvJoint& joint : mapping.joints) joints_.push_back(find(joint.columns));
+    for (const CsvObservation& observation : mapping.observations) {
+      for (const auto& point : observation.points) {
+        for (const CsvSum& sum : point) points_.push_back(find(sum));
+      }
+    }
+  }
+
+  /// The sample of a row; nothing, and a warning, if a joint's position is missing.
+  [[nodiscard]] std::optional<Sample> sample(const CsvRow& row) {
+    Sample sample;
+    sample.source = Place{file_, row.line}.str();
+    bool complete = true;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const CsvJoint& joint = mapping_.joints[i];
+      const double q = value(row, joints_[i], joint.unit);
+      if (std::isnan(q) && complete) {
+        diagnostics_.warning(
+            {file_, row.line},
+            fmt::format("joint '{}' has no position; the row is left out", joint.name));
+      }
+      complete = complete && !std::isnan(q);
+      if (!joint.unit.degrees && !joint.unit.millimetres) {
+        doubt(row, "joint '" + joint.name + "'", q, 4.0 * std::numbers::pi, "radians or metres");
+      }
+      sample.joint_names.push_back(joint.name);
+      sample.joint_positions.push_back(q);
+    }
+    std::size_t next = 0;
+    for (const CsvObservation& observation : mapping_.observations) {
+      Observation seen{observation.sensor, {}};
+      for (const auto& point : observation.constants) {
+        seen.features.push_back({observation.frame, point});
+      }
+      for (const auto& point : observation.points) {
+        Vector3<double> p;
+        for (Eigen::Index k = 0; k < 3; ++k) p(k) = value(row, points_[next++], observation.unit);
+        if (!observation.unit.millimetres && !point[2].empty()) {
+          doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0,
+                "metres");
+        }
+        seen.features.push_back({observation.frame, p});
+      }
+      sample.observations.push_back(std::move(seen));
+    }
+    if (!complete) return std::nullopt;
+    return sample;
+  }
+
+  /// Reports the number of bad cells that were only counted.
+  void finish() {
+    if (bad_cells_ <= kReported) return;
+    const std::size_t more = bad_cells_ - kReported;
+    diagnostics_.error({file_, 0}, fmt::format("{} more cell{} like these cannot be read", more,
+                                               more == 1 ? "" : "s"));
+  }
+
+ private:
+  static constexpr std::size_t kReported = 20;  ///< bad cells, one by one
+  using Indices = std::vector<std::pair<std::size_t, const CsvColumn*>>;
+
+  Indices find(const CsvSum& sum) {
+    Indices indices;
+    for (const CsvColumn& column : sum) {
+      if (const auto index = columns_.find(column)) indices.emplace_back(*index, &column);
+    }
+    return indices;
+  }
+
+  /// Warns once of a number so large that it is probably in another unit.
+  void doubt(const CsvRow& row, const std::string& what, double number, double most,
+             const char* unit) {
+    if (!(std::abs(number) > most) || !doubted_.insert(what).second) return;
+    diagnostics_.warning({file_, row.line}, fmt::format("{} is at {} {}; is a unit missing in the "
+                                                        "columns' file?",
+                                                        what, number, unit));
+  }
+
+  void bad_cell(const CsvRow& row, const CsvColumn& column, const std::string& what) {
+    if (++bad_cells_ > kReported) return;
+    diagnostics_.error({file_, row.line}, fmt::format("column '{}' {}", column.name, what));
+  }
+
+  /// Radians, metres or pixels; zero without columns, and for a bad cell, which is reported.
+  [[nodiscard]] double value(const CsvRow& row, const Indices& columns, const CsvUnit& unit) {
+    double sum = 0.0;
+    for (const auto& [index, column] : columns) {
+      if (index >= row.cells.size()) {
+        bad_cell(row, *column,
+                 fmt::format("is missing: the row has {} cell{}", row.cells.size(),
+                             row.cells.size() == 1 ? "" : "s"));
+        continue;
+      }
+      const std::string& cell = row.cells[index];
+      const std::optional<double> number = csv_number(cell);
+      if (!number || std::isinf(*number)) {
+        const bool comma = cell.find(',') != std::string::npos;
+        bad_cell(row, *column,
+                 fmt::format("is '{}', which is not a {}number{}", cell, number ? "finite " : "",
+                             comma ? "; write a decimal point, not a comma" : ""));
+        continue;
+      }
+      // Moving the decimal point of a single length avoids a second rounding.
+      if (unit.millimetres && columns.size() == 1 && std::isfinite(*number)) {
+        return metres_from_millimetres(cell).value_or(0.0);
+      }
+      sum += *number;
+    }
+    if (unit.degrees) return sum * (std::numbers::pi / 180.0);
+    return unit.millimetres ? sum / 1000.0 : sum;
+  }
+
+  const CsvMapping& mapping_;
+  CsvColumns columns_;
+  std::string file_;
+  Diagnostics& diagnostics_;
+  std::vector<Indices> joints_, points_;  ///< in the order of the mapping
+  std::size_t bad_cells_ = 0;
+  std::set<std::string> doubted_;  ///< joints and sensors with a warning
+};
+
+}  // namespace detail
+
+KINECAL_INLINE std::vector<Sample> csv_samples(std::string_view text, const CsvMapping& mapping,
+                                               const std::string& file, Diagnostics& diagnostics) {
+  std::vector<CsvRow> rows = csv_rows(text, mapping.separator, file, diagnostics);
+  std::vector<Sample> samples;
+  if (rows.size() < (mapping.header ? 2u : 1u)) {
+    diagnostics.error({file, 0}, "the table has no rows");
+    return samples;
+  }
+  std::size_t columns = 0;
+  for (const CsvRow& row : rows) columns = std::max(columns, row.cells.size());
+  std::vector<std::string> header;
+  if (mapping.header) {
+    header = rows.front().cells;
+    columns = header.size();
+    rows.erase(rows.begin());
+  }
+  const std::size_t before = diagnostics.errors.size();
+  detail::CsvSamples reader(mapping, {header, columns, diagnostics}, file, diagnostics);
+  if (diagnostics.errors.size() != before) return samples;  // they would repeat in every row
+  for (const CsvRow& row : rows) {
+    if (auto sample = reader.sample(row)) samples.push_back(std::move(*sample));
+  }
+  reader.finish();
+  if (samples.empty() && diagnostics.errors.size() == before) {
+    diagnostics.error({file, 0}, "no row has a position of every joint");
+  }
+  return samples;
+}
+
+KINECAL_INLINE std::vector<Sample> read_csv_samples(const std::string& csv,
+                                                    const std::string& mapping,
+                                                    Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.errors.size();
+  const CsvMapping columns = read_csv_mapping(mapping, diagnostics);
+  const std::string text = read_text_file(csv);
+  if (diagnostics.errors.size() != before) return {};
+  return csv_samples(text, columns, csv, diagnostics);
+}
+
+}  // namespace kinecal

@@ -1,0 +1,149 @@
+// How likely parts of a robot are recognized: definitions of robot_parts.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kinecal/io/init/robot_parts.hpp"
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+[[nodiscard]] inline bool contains_word(const std::string& name, std::string_view word) {
+  const auto lower = [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  const auto same = [&](char a, char b) { return lower(a) == b; };
+  return std::search(name.begin(), name.end(), word.begin(), word.end(), same) != name.end();
+}
+
+[[nodiscard]] inline bool looks_like_camera(const std::string& link) {
+  for (const char* word : {"optical", "camera", "kinect", "xtion", "realsense"}) {
+    if (contains_word(link, word)) return true;
+  }
+  return false;
+}
+
+/// True for a joint with a drive: it moves, and does not mimic another.
+[[nodiscard]] inline bool is_driven(const Joint& joint) {
+  return moves(joint.type) && !joint.mimic;
+}
+
+/// Number of driven joints that lead to a link only: below the last fork to other driven joints.
+[[nodiscard]] inline std::size_t own_joints(const Robot& robot, const std::string& link) {
+  const std::vector<const Joint*> way = joints_to_root(robot, link);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (is_driven(*way[i])) ++count;
+    for (const Joint& other : robot.joints()) {
+      // A head or a second arm, not a wheel: two driven joints in a row.
+      if (!is_driven(other)) continue;
+      const std::vector<const Joint*> beside = joints_to_root(robot, other.child);
+      const auto fork = std::find_if(beside.begin(), beside.end(),
+                                     [&](const Joint* j) { return j->parent == way[i]->parent; });
+      if (fork == beside.end() || *fork == way[i]) continue;
+      const auto driven =
+          std::count_if(beside.begin(), fork + 1, [](const Joint* j) { return is_driven(*j); });
+      if (driven >= 2) return count;
+    }
+  }
+  return count;
+}
+
+/// The end of an arm without the fingers of its gripper and the cameras on its wrist.
+[[nodiscard]] inline std::string end_of_arm(const Robot& robot, std::string link) {
+  for (;;) {
+    const std::vector<const Joint*> way = joints_to_root(robot, link);
+    if (way.empty()) return link;
+    const Joint& last = *way.front();
+    const auto turning =
+        std::count_if(way.begin(), way.end(), [](const Joint* j) { return turns(j->type); });
+    const bool finger = last.mimic || (last.type == JointType::prismatic && turning >= 3 &&
+                                       contains_word(last.name, "finger"));
+    if (!finger && !looks_like_camera(link)) return link;
+    link = last.parent;
+  }
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::vector<std::string> propose_arms(const Robot& robot) {
+  constexpr std::size_t kLeast = 3;  // a pan-tilt head has two
+  std::set<std::string> parents;
+  for (const Joint& joint : robot.joints()) parents.insert(joint.parent);
+  std::vector<std::pair<std::size_t, std::string>> ends;
+  for (const Joint& joint : robot.joints()) {
+    if (parents.contains(joint.child)) continue;
+    const std::string end = detail::end_of_arm(robot, joint.child);
+    const std::size_t own = detail::own_joints(robot, end);
+    const auto same = [&](const auto& known) { return known.second == end; };
+    if (own < kLeast || std::any_of(ends.begin(), ends.end(), same)) continue;
+    ends.emplace_back(own, end);
+  }
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> names;
+  for (auto& [own, name] : ends) names.push_back(std::move(name));
+  return names;
+}
+
+KINECAL_INLINE std::vector<std::string> propose_cameras(const Robot& robot) {
+  const auto rank = [](const std::string& link) {
+    if (!detail::contains_word(link, "optical")) return 3;
+    if (detail::contains_word(link, "rgb") || detail::contains_word(link, "color")) return 0;
+    return detail::contains_word(link, "depth") || detail::contains_word(link, "infra") ? 2 : 1;
+  };
+  std::vector<std::string> names;
+  for (const Joint& joint : robot.joints()) {
+    if (detail::looks_like_camera(joint.child)) names.push_back(joint.child);
+  }
+  std::stable_sort(names.begin(), names.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  return names;
+}
+
+KINECAL_INLINE std::string propose_base(const Robot& robot, const std::string& link) {
+  std::string base = link;
+  for (const Joint* joint : joints_to_root(robot, link)) {
+    if (joint->type == JointType::floating || joint->type == JointType::planar) break;
+    base = joint->parent;
+  }
+  return base;
+}
+
+KINECAL_INLINE bool is_free_frame_name(const Robot& robot, const std::string& name) {
+  return !robot.has_link(name) && !nearest_name(name, robot.joint_names());
+}
+
+KINECAL_INLINE std::string propose_frame(const Robot& robot, std::vector<std::string> names) {
+  for (std::size_t i = 0;; ++i) {
+    if (i == names.size()) names.push_back("virtual_frame_" + std::to_string(i));
+    if (is_free_frame_name(robot, names[i])) return names[i];
+  }
+}
+
+KINECAL_INLINE InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
+  const auto propose = [](std::string& answer, const std::string& proposal) {
+    if (answer.empty()) answer = proposal;
+  };
+  const InitTarget target = answers.target;
+  const std::string& end = needs_arm(target) ? answers.arm : answers.camera;
+  if (robot.has_link(end)) propose(answers.base, propose_base(robot, end));
+  if (target == InitTarget::tracker) {
+    propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
+    propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
+  } else if (needs_target_frame(target)) {
+    propose(answers.target_frame, propose_frame(robot, {"checkerboard", "board_frame"}));
+  }
+  return answers;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,106 @@
+// Warnings about samples that probably are not what the user wants.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "kinecal/io/config/config.hpp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal::detail {
+
+/// Warns of features that are not numbers, once for all steps.
+inline void warn_of_unusable(std::span<const Sample> samples, Diagnostics& diagnostics) {
+  std::size_t unusable = 0;
+  std::string first;
+  for (const Sample& sample : samples) {
+    for (const Observation& observation : sample.observations) {
+      for (const Feature& feature : observation.features) {
+        if (feature.point.allFinite()) continue;
+        if (unusable++ == 0) first = sample.source + ", sensor '" + observation.sensor + "'";
+      }
+    }
+  }
+  if (unusable == 0) return;
+  diagnostics.warnings.push_back(
+      fmt::format("{} {} and left out; the first is at {}", unusable,
+                  unusable == 1 ? "feature is not a number" : "features are not numbers", first));
+}
+
+/// Warns of points that are farther away than any calibration target: the unit or the capture is
+/// probably wrong.
+inline void warn_of_far_points(const Config& config, std::span<const Sample> samples,
+                               Diagnostics& diagnostics) {
+  constexpr double kFar = 100.0;
+  std::set<std::string> in_pixels;
+  for (const StepConfig& step : config.steps) {
+    for (const ModelConfig& model : step.models) {
+      if (model.type == "camera2d") in_pixels.insert(model.name);
+    }
+  }
+  std::size_t count = 0;
+  std::string first;
+  for (const Sample& sample : samples) {
+    for (const Observation& seen : sample.observations) {
+      if (in_pixels.contains(seen.sensor)) continue;
+      for (const Feature& feature : seen.features) {
+        const double distance = feature.point.norm();
+        if (!(std::isfinite(distance) && distance > kFar)) continue;
+        if (count++ > 0) continue;
+        first = fmt::format("{}, sensor '{}', {:.0f} m", sample.source, seen.sensor, distance);
+      }
+    }
+  }
+  if (count == 0) return;
+  diagnostics.warnings.push_back(
+      fmt::format("{} point{} more than {:.0f} m away from their frame; are they in metres?  "
+                  "The first is at {}",
+                  count, count == 1 ? " is" : "s are", kFar, first));
+}
+
+/// Warns of cameras whose camera_info changes: the written files start from the first one.
+inline void warn_of_changing_cameras(std::span<const Sample> samples, Diagnostics& diagnostics) {
+  std::map<std::string, std::pair<const CameraInfo*, bool>> first;  // and whether it was reported
+  for (const Sample& sample : samples) {
+    for (const Observation& seen : sample.observations) {
+      if (!seen.camera) continue;
+      auto& [info, reported] = first.try_emplace(seen.sensor, &*seen.camera, false).first->second;
+      const CameraInfo& now = *seen.camera;
+      const bool same = info->p == now.p && info->k == now.k && info->d == now.d &&
+                        info->z_offset == now.z_offset && info->z_scaling == now.z_scaling;
+      if (same || reported) continue;
+      reported = true;
+      diagnostics.warnings.push_back(
+          fmt::format("{}: the camera_info of sensor '{}' differs from that of the first sample, "
+                      "which the written camera files are made from",
+                      sample.source, seen.sensor));
+    }
+  }
+}
+
+/// Warns of models whose sensor is not in any sample: probably one of the names is misspelt.
+inline void warn_of_unknown_sensors(const StepConfig& step, std::span<const Sample> samples,
+                                    Diagnostics& diagnostics) {
+  std::set<std::string> recorded, models;
+  for (const Sample& sample : samples) {
+    for (const Observation& observation : sample.observations) recorded.insert(observation.sensor);
+  }
+  for (const ModelConfig& model : step.models) models.insert(model.name);
+  for (const ModelConfig& model : step.models) {
+    if (recorded.contains(model.name) || samples.empty()) continue;
+    diagnostics.warning(model.place,
+                        fmt::format("model '{}': no sample has a sensor of that name{}", model.name,
+                                    did_you_mean(model.name, recorded)));
+  }
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,77 @@
+// Definitions of write_samples.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/io/yaml/yaml_text.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+namespace detail {
+
+[[nodiscard]] inline std::string joint_states_to_yaml(const Sample& sample) {
+  std::string names;
+  for (const std::string& name : sample.joint_names) {
+    if (!names.empty()) names += ", ";
+    names += name_to_yaml(name);
+  }
+  return fmt::format("joint_states: {{name: [{}], position: {}}}\n", names,
+                     numbers_to_yaml(sample.joint_positions));
+}
+
+[[nodiscard]] inline std::string feature_to_yaml(const Feature& feature) {
+  const auto& p = feature.point;
+  return fmt::format("  - {{header: {{frame_id: {}}}, point: {{x: {}, y: {}, z: {}}}}}\n",
+                     name_to_yaml(feature.frame), number_to_yaml(p.x()), number_to_yaml(p.y()),
+                     number_to_yaml(p.z()));
+}
+
+[[nodiscard]] inline std::string camera_to_yaml(const CameraInfo& camera) {
+  std::string text = "  ext_camera_info:\n    camera_info: {";
+  text += fmt::format("height: {}, width: {}, distortion_model: {}, ", camera.height, camera.width,
+                      name_to_yaml(camera.distortion_model));
+  text +=
+      fmt::format("D: {}, K: {}, R: {}, P: {}}}\n", numbers_to_yaml(camera.d),
+                  numbers_to_yaml(camera.k), numbers_to_yaml(camera.r), numbers_to_yaml(camera.p));
+  text += fmt::format(
+      "    parameters: [{{name: z_offset_mm, value: {}}}, {{name: z_scaling, value: {}}}]\n",
+      millimetres_from_metres(camera.z_offset), number_to_yaml(camera.z_scaling));
+  return text;
+}
+
+[[nodiscard]] inline std::string observation_to_yaml(const Observation& observation) {
+  std::string text =
+      fmt::format("- sensor_name: {}\n  features:{}\n", name_to_yaml(observation.sensor),
+                  observation.features.empty() ? " []" : "");
+  for (const Feature& feature : observation.features) text += feature_to_yaml(feature);
+  if (observation.camera) text += camera_to_yaml(*observation.camera);
+  return text;
+}
+
+}  // namespace detail
+
+KINECAL_INLINE void write_samples(std::ostream& out, const std::vector<Sample>& samples) {
+  for (const Sample& sample : samples) {
+    const std::size_t names = sample.joint_names.size(), positions = sample.joint_positions.size();
+    if (names != positions) {
+      throw std::invalid_argument(fmt::format(
+          "sample {}: {} joint name{} but {} position{}; it cannot be written", sample.source,
+          names, names == 1 ? "" : "s", positions, positions == 1 ? "" : "s"));
+    }
+    out << detail::joint_states_to_yaml(sample)
+        << (sample.observations.empty() ? "observations: []\n" : "observations:\n");
+    for (const Observation& o : sample.observations) out << detail::observation_to_yaml(o);
+    out << "---\n";
+  }
+}
+
+}  // namespace kinecal
