@@ -1,4 +1,4 @@
-// Door of kinecal::core: from geometry to crate, all that needs Eigen alone.
+// Umbrella header of kinecal::core: geometry/ to crate/, which need only Eigen.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,7 +1,10 @@
-// A calibration problem: sensors on a robot, its samples packed for evaluation, terms of the cost.
+// Umbrella header of crate/: a calibration problem and its evaluation.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/crate/any_evaluator.hpp"
+#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/crate/any_term.hpp"
 #include "kinecal/crate/block_checks.hpp"
 #include "kinecal/crate/block_rows.hpp"
 #include "kinecal/crate/block_term.hpp"
@@ -12,8 +15,10 @@
 #include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/crate/difference_gram.hpp"
 #include "kinecal/crate/evaluate.hpp"
+#include "kinecal/crate/evaluator.hpp"
 #include "kinecal/crate/feature_gram.hpp"
 #include "kinecal/crate/feature_rows.hpp"
+#include "kinecal/crate/instances.hpp"
 #include "kinecal/crate/jacobian_rows.hpp"
 #include "kinecal/crate/local_sums.hpp"
 #include "kinecal/crate/normal_equations.hpp"
@@ -25,5 +30,6 @@
 #include "kinecal/crate/problem.hpp"
 #include "kinecal/crate/sensor_model.hpp"
 #include "kinecal/crate/sensor_view.hpp"
+#include "kinecal/crate/sized_block_term.hpp"
 #include "kinecal/crate/term.hpp"
 #include "kinecal/crate/type_list.hpp"

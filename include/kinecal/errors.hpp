@@ -1,4 +1,4 @@
-// Door of errors/: error blocks, priors and losses.
+// Umbrella header of errors/: error blocks, priors and losses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

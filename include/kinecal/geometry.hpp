@@ -1,4 +1,4 @@
-// Door of geometry/: jets, packets, rotations and poses.
+// Umbrella header of geometry/: jets, packets, rotations and poses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// The whole of kinecal.
+// Umbrella header of all of kinecal.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

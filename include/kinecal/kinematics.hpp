@@ -1,4 +1,4 @@
-// Door of kinematics/: robots, chains, the walk and its walkers.
+// Umbrella header of kinematics/: robots, chains, the walk and its walkers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

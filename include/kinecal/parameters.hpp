@@ -1,4 +1,4 @@
-// Door of parameters/: what may be wrong, by name.
+// Umbrella header of parameters/: named parameters, free and held.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

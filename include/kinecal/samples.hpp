@@ -1,4 +1,4 @@
-// Door of samples/: what was recorded.
+// Umbrella header of samples/: recorded samples.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

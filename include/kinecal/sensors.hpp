@@ -1,4 +1,4 @@
-// Door of sensors/: what observes, and with which parameters.
+// Umbrella header of sensors/: cameras and other sensors, with their parameters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,11 +1,10 @@
-// Door of solve/: Ceres.
+// Umbrella header of solve/: calibrating with Ceres.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/solve/calibrate_crate.hpp"
 #include "kinecal/solve/compressed_cost.hpp"
-#include "kinecal/solve/minimize.hpp"
 #include "kinecal/solve/solve.hpp"
 #include "kinecal/solve/stacked_cost.hpp"
 #include "kinecal/solve/statistics.hpp"

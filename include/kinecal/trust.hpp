@@ -1,4 +1,4 @@
-// Door of trust/: how far a result can be believed.
+// Umbrella header of trust/: how far a result can be believed.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

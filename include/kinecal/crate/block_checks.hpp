@@ -1,5 +1,4 @@
-// What must hold of a crate's error blocks, each told in a sentence while it is compiled: see
-// sentence.hpp.
+// Compile-time checks of a crate's error blocks; each fails with a sentence (sentence.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,7 +9,7 @@
 
 namespace kinecal::detail {
 
-/// The names of parts, to be looked up.
+/// The names of parts, for LookedUp.
 template <class List>
 struct PartNames;
 template <class... Parts>
@@ -20,7 +19,7 @@ struct PartNames<TypeList<Parts...>> {
   [[nodiscard]] static constexpr std::size_t index(std::string_view name) {
     return static_cast<std::size_t>(std::find(kNames.begin(), kNames.end(), name) - kNames.begin());
   }
-  /// True if no two are the same.
+  /// True if no name occurs twice.
   [[nodiscard]] static constexpr bool differ() {
     for (std::size_t i = 0; i < kNames.size(); ++i) {
       if (index(kNames[i]) != i) return false;
@@ -43,7 +42,7 @@ struct ResidualOfBlock {
                 "template <class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const");
 };
 
-/// @tparam Found  what LookedUp found
+/// @tparam Found  the result of LookedUp: Known or DidYouMean
 template <class Block, FixedString Sensor, class Found, bool kIsInCrate = false>
 struct SensorOfBlock {
   static_assert(kIsInCrate,
@@ -72,7 +71,7 @@ template <ErrorBlock Residual>
 }
 template <class Residual>
 [[nodiscard]] constexpr bool takes(std::size_t) {
-  return true;  // what is no residual is told before
+  return true;  // a Residual that is not an ErrorBlock fails an earlier check
 }
 
 template <class Block, class Sensors>
@@ -91,7 +90,7 @@ struct CheckSensorOfBlock {
   using type = Unless<Found::kExists, SensorOfBlock<Block, Sensor, Found>>;
 };
 
-/// That a block can compare its sensors.
+/// Checks that a block can compare its sensors.
 template <class Block, class Sensors>
 struct CheckBlock;
 template <FixedString Name, class Residual, FixedString... Of, class Sensors>

@@ -1,4 +1,4 @@
-// From an error block to the rows of a feature: jets differentiate the block by what it is given.
+// Residual and derivatives of one feature: jets differentiate the error block by its arguments.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,20 +10,21 @@
 
 namespace kinecal {
 
+/// Computes the rows of features of an error block of type B.
 template <ErrorBlock B, class S>
 class BlockRows {
  public:
-  static constexpr int kSize = kResiduals<B>;
-  static constexpr std::size_t kBodies = static_cast<std::size_t>(kSensors<B>);
-  using Views = std::span<const SensorView<S>* const>;
-  using Rows = FeatureRows<S, kSize, static_cast<int>(kBodies)>;
+  static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
+  static constexpr std::size_t kBodies = static_cast<std::size_t>(kSensors<B>);  ///< one per sensor
+  using Views = std::span<const SensorView<S>* const>;            ///< one view per sensor
+  using Rows = FeatureRows<S, kSize, static_cast<int>(kBodies)>;  ///< the result
 
-  /// Number of features that are compared; the planes through all features count as one.
+  /// Number of features that are compared; a plane through all features counts as one.
   [[nodiscard]] static std::size_t features(Views views) {
     return PlanePairBlock<B> ? 1 : views[0]->observation().measured.size();
   }
 
-  /// The chain of each body of feature i; a camera2d is seen as a whole.
+  /// The chain of each body of feature i.
   [[nodiscard]] static BodyChains<kBodies> chains(Views views, std::size_t i) {
     BodyChains<kBodies> result{};
     for (std::size_t s = 0; s < kBodies; ++s) result[s] = views[s]->observation().chain[i];
@@ -38,20 +39,20 @@ class BlockRows {
     return n;
   }
 
-  /// One where all sensors saw feature i, else zero.
+  /// One if all sensors observed feature i, else zero; lane by lane.
   [[nodiscard]] static S weight(Views views, std::size_t i) {
     if constexpr (kBodies == 1) return views[0]->observation().usable[i];
     return views[0]->observation().usable[i] * views[kBodies - 1]->observation().usable[i];
   }
 
-  /// Residual, and derivatives if they are wanted, of feature i.
+  /// Residual of feature i, with derivatives if kDerivatives is true.
   template <bool kDerivatives>
   [[nodiscard]] static Rows rows(const B& block, Views views, std::size_t i, Linearization at) {
     if constexpr (PlanePairBlock<B>) {
       return plane_rows<B, S>(block, views, kDerivatives);
     } else {
       Rows rows = defined_rows<kDerivatives>(block, views, i, at);
-      // What is missing counts nothing, whatever it would be.
+      // A missing feature may give NaN; it must not count.
       const auto missing = rows.weight == S(0.0);
       for (int m = 0; m < kSize; ++m) {
         rows.residual(m) = select(missing, S(0.0), rows.residual(m));
@@ -93,23 +94,23 @@ class BlockRows {
     return call(block, jets);
   }
 
-  /// The points with the one that was measured (a camera's, else the second) moved until there is
-  /// no residual.  One Newton step, exact where the block is linear.
+  /// Moves the measured point (a depth camera's, else the second one) so that the residual becomes
+  /// zero: one Newton step, exact if the block is linear.
   static void take_residual_away(const B& block, Views views, Points& p) {
     const std::size_t moved = kBodies == 1 || views[0]->sees_depth() ? 0 : 1;
     const auto r = call_jets(block, p);
     const ByPoint d = derivatives_by<3>(r, 3 * static_cast<int>(moved));
     const Residual residual = values_of(r);
     Vector3<S> step;
-    if constexpr (kSize <= 3) {  // the least step that takes the residual away
+    if constexpr (kSize <= 3) {  // the shortest step to a residual of zero
       const Eigen::Matrix<S, kSize, kSize> gram = d * d.transpose();
       const Residual scaled = gram.inverse() * residual;
       step = d.transpose() * scaled;
-    } else {  // the step that leaves the least residual
+    } else {  // the step to the least residual
       const Matrix3<S> gram = d.transpose() * d;
       step = gram.inverse() * Vector3<S>(d.transpose() * residual);
     }
-    const S zero = (step - step).sum();  // not a number where the residual does not change
+    const S zero = (step - step).sum();  // NaN where the residual does not depend on the point
     for (int k = 0; k < 3; ++k) p[moved](k) -= select(zero == S(0.0), step(k), S(0.0));
   }
 
@@ -135,7 +136,7 @@ class BlockRows {
     return rows;
   }
 
-  /// The point in front of the camera and the camera's parameters are the variables: 3 + 4.
+  /// The variables are the point in front of the camera and the camera's parameters: 3 + 4.
   template <bool kDerivatives>
   [[nodiscard]] static Rows sight_rows(const B& block, Views views, std::size_t i) {
     const SensorView<S>& camera = *views[1];
@@ -162,7 +163,7 @@ class BlockRows {
       const ByPoint by_camera_point = derivatives_by<3>(r, 0);
       const ByPoint by_base_point = by_camera_point * camera_T_base.rotation;
       rows.set_point(0, p_base, by_base_point);
-      rows.set_point(1, p_base, -by_base_point);  // moving the camera: the point, the other way
+      rows.set_point(1, p_base, -by_base_point);  // moving the camera moves the point the other way
       rows.add_camera(*views[0], i, by_base_point);
       for (const int k : camera.state().free_camera) {
         for (int m = 0; m < kSize; ++m) rows.by_camera[rows.cameras](m) = r(m).v(3 + k);

@@ -1,4 +1,4 @@
-// Terms made of error blocks.
+// The term of one error block: its cost, residuals, Jacobian and normal equations.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,14 +9,18 @@
 
 namespace kinecal {
 
-/// @tparam Expected  how many columns its bodies have where the compiler knows, or nothing
-template <ErrorBlock B, class S, class Expected = void>
-class BlockTerm final : public Term<S> {
+/// The term of an error block, for any number of columns.  Functions that are expensive to compile
+/// are defined outside of the class: they are not inline, so instances.hpp can compile them once.
+template <ErrorBlock B, class S>
+class BlockTerm : public Term<S> {
  public:
-  static constexpr int kSize = kResiduals<B>;
+  static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
+  /// The term's sensors as they see a pack of samples.
   using typename Term<S>::Views;
-  using typename Term<S>::Observations;
+  /// What the sensors of the term observed in one sample.
+  using Observations = AnyTerm::Observations;
 
+  /// @param sensors  indices of the sensors in the problem
   BlockTerm(std::string name, B block, std::vector<int> sensors, TermOptions options)
       : Term<S>(std::move(name), std::move(sensors), std::move(options)),
         block_(std::move(block)),
@@ -26,106 +30,47 @@ class BlockTerm final : public Term<S> {
 
   [[nodiscard]] bool pairs_features() const override { return PointPairBlock<B> || SightBlock<B>; }
 
-  [[nodiscard]] int count(Observations seen) const override {
-    if constexpr (PlanePairBlock<B>) return 1;
-    int n = 0;
-    for (std::size_t i = 0; i < seen[0]->usable.size(); ++i) {
-      n += std::all_of(seen.begin(), seen.end(), [i](auto* o) { return o->usable[i] > 0.0; });
-    }
-    return n;
-  }
+  [[nodiscard]] int count(Observations seen) const override;
 
-  [[nodiscard]] std::string why_not(Observations seen) const override {
-    if constexpr (PlanePairBlock<B>) {
-      for (const auto* observation : seen) {
-        if (std::string why = why_no_plane(*observation); !why.empty()) return why;
-      }
-    }
-    return {};
-  }
+  [[nodiscard]] std::string why_not(Observations seen) const override;
 
-  void add_cost(Views views, const Loss& loss, TermSums<S>& sums) const override {
-    for (std::size_t i = 0; i < Block::features(views); ++i) {
-      const Rows rows = Block::template rows<false>(block_, views, i, Linearization::measured);
-      (void)add_cost(rows.residual, rows.weight, loss, sums);
-    }
-  }
+  void add_cost(Views views, const Loss& loss, TermSums<S>& sums) const override;
 
-  void add_normal_equations(Views views, const Loss& loss, TermSums<S>& sums) const override {
-    for (std::size_t first = 0, end = 0; first < Block::features(views); first = end) {
-      end = end_of_run(views, first);
-      const Chains chains = Block::chains(views, first);
-      if (add_difference(views, first, end, loss, sums)) continue;
-      sums.gram.resize(kBodies, Block::cameras(views));
-      for (std::size_t i = first; i < end; ++i) {
-        const Rows rows = Block::template rows<true>(block_, views, i, Linearization::measured);
-        const S weight = add_cost(rows.residual, rows.weight, loss, sums);
-        if (i == first) {
-          sums.gram.set(rows, weight);
-        } else {
-          sums.gram.add(rows, weight);
-        }
-      }
-      sums.gram.complete();
-      sums_of(views, chains, sums).expand(sums.gram, twists(views, chains));
-    }
-  }
+  void add_normal_equations(Views views, const Loss& loss, TermSums<S>& sums) const override;
 
-  void evaluate(Views views, bool derivatives, Linearization at,
-                PackedRows<S>& out) const override {
-    const std::size_t features = Block::features(views);
-    out.num_runs = 0;
-    out.weight.resize(features);
-    out.residual.resize(features * kSize);
-    std::size_t values = 0;
-    for (std::size_t first = 0, end = 0; first < features; first = end) {
-      end = end_of_run(views, first);
-      auto& run = out.next_run();
-      run.features = end - first;
-      if (!derivatives) {
-        for (std::size_t i = first; i < end; ++i) {
-          const Rows rows = Block::template rows<false>(block_, views, i, at);
-          store(i, rows.residual, rows.weight, out);
-        }
-        continue;
-      }
-      const Chains chains = Block::chains(views, first);
-      const Twists of_run = twists(views, chains);
-      const auto sizes = sizes_of(views, chains);
-      run.chains = key(chains);
-      run.width = 0;
-      for (const BodySizes& of_body : sizes) run.width += of_body.columns();
-      run.jacobian = values;
-      values += run.features * kSize * run.width;
-      if (out.jacobian.size() < values) out.jacobian.resize(values);
-      S* jacobian = out.jacobian.data() + run.jacobian;
-      if (is_difference_ && at == Linearization::measured) {
-        write_differences(views, first, end, of_run, sizes, out, jacobian);
-      } else {
-        for (std::size_t i = first; i < end; ++i, jacobian += kSize * run.width) {
-          write_feature(views, i, at, of_run, out, jacobian, run.width);
-        }
-      }
-    }
-  }
+  void evaluate(Views views, bool derivatives, Linearization at, PackedRows<S>& out) const override;
 
-  void columns(Views views, const BodyChains<2>& chains, std::vector<int>& out) const override {
-    Chains of_bodies;
-    std::copy_n(chains.begin(), kBodies, of_bodies.begin());
-    local_columns(views, of_bodies, out);
+  void columns(Views views, const BodyChains<2>& chains, std::vector<int>& out) const override;
+
+ protected:
+  using Block = BlockRows<B, S>;                          ///< computes rows of one feature
+  static constexpr std::size_t kBodies = Block::kBodies;  ///< number of sensors
+  using Twists = std::array<BodyTwists<S>, kBodies>;      ///< of the columns of each sensor
+
+  /// Whether the residual may be the difference of two points, which is summed faster.
+  static constexpr bool kMayBeDifference = PointPairBlock<B> && kSize == 3;
+
+  /// Residuals and Jacobian of the features from `first` to `end`; the block is a difference.
+  /// @param sizes     how many columns each body has
+  /// @param jacobian  (kSize features x columns) where its rows go
+  KINECAL_FLATTEN virtual void write_differences(Views views, std::size_t first, std::size_t end,
+                                                 const Twists& twists,
+                                                 const std::array<BodySizes, kBodies>& sizes,
+                                                 PackedRows<S>& out, S* jacobian) const;
+
+  /// Stores the residual of a feature, given the two points: see write_differences().
+  [[nodiscard]] auto residuals_to(Views views, PackedRows<S>& out) const {
+    return [this, views, &out](std::size_t i, const auto& a, const auto& b) {
+      store(i, block_(a, b), Block::weight(views, i), out);
+    };
   }
 
  private:
-  using Block = BlockRows<B, S>;
   using Rows = typename Block::Rows;
-  static constexpr std::size_t kBodies = Block::kBodies;
   using Chains = BodyChains<kBodies>;
-  using Twists = std::array<BodyTwists<S>, kBodies>;
 
-  static constexpr bool kMayBeDifference = PointPairBlock<B> && kSize == 3;
-
-  /// The features from `first` to `end` by their moments.
-  /// @returns  false if the block is not a difference
+  /// Adds the features from `first` to `end` by their moments.
+  /// @returns  false, without adding anything, if the block is not a difference
   bool add_difference(Views views, std::size_t first, std::size_t end, const Loss& loss,
                       TermSums<S>& sums) const {
     if constexpr (kMayBeDifference) {
@@ -145,7 +90,7 @@ class BlockTerm final : public Term<S> {
     return kMayBeDifference;
   }
 
-  /// The first feature after `first` that hangs on other chains.
+  /// The first feature after `first` on other chains.
   [[nodiscard]] static std::size_t end_of_run(Views views, std::size_t first) {
     std::size_t end = Block::features(views);
     for (std::size_t s = 0; s < kBodies; ++s) {
@@ -163,7 +108,7 @@ class BlockTerm final : public Term<S> {
     return result;
   }
 
-  /// How many columns features on these chains touch.
+  /// Number of columns on which features of these chains depend.
   [[nodiscard]] static std::array<BodySizes, kBodies> sizes_of(Views views, const Chains& chains) {
     std::array<BodySizes, kBodies> sizes;
     for (std::size_t s = 0; s < kBodies; ++s) {
@@ -174,8 +119,8 @@ class BlockTerm final : public Term<S> {
     return sizes;
   }
 
-  /// Adds what a feature costs.
-  /// @returns  the weight of its normal equations
+  /// Adds the cost of a feature.
+  /// @returns  the feature's weight in the normal equations
   S add_cost(const Eigen::Matrix<S, kSize, 1>& residual, const S& weight, const Loss& loss,
              TermSums<S>& sums) const {
     const S w2(this->options().weight * this->options().weight);
@@ -183,7 +128,7 @@ class BlockTerm final : public Term<S> {
     for (int m = 0; m < kSize; ++m) squared += residual(m) * residual(m);
     squared *= w2;
     const auto value = loss(squared);
-    sums.twice_cost += weight * value.rho + S(0.0) * squared;  // infinite: not a number
+    sums.twice_cost += weight * value.rho + S(0.0) * squared;  // NaN where infinite
     return weight * w2 * value.derivative;
   }
 
@@ -197,7 +142,7 @@ class BlockTerm final : public Term<S> {
 
   [[nodiscard]] static LocalSums<S>& sums_of(Views views, const Chains& chains, TermSums<S>& sums) {
     const BodyChains<2> of_chains = key(chains);
-    // In the order of the chains, whichever was met first: sums are added up in it.
+    // Sorted by chains, so that sums are added in the same order whichever chains came first.
     const auto place = std::find_if(sums.by_chains.begin(), sums.by_chains.end(),
                                     [&](const auto& known) { return !(known.first < of_chains); });
     if (place != sums.by_chains.end() && place->first == of_chains) return place->second;
@@ -206,29 +151,8 @@ class BlockTerm final : public Term<S> {
     return sums.by_chains.emplace(place, of_chains, LocalSums<S>(std::move(columns)))->second;
   }
 
-  /// Residuals and Jacobian of the features from `first` to `end`, of a block that is a difference.
-  KINECAL_FLATTEN void write_differences(Views views, std::size_t first, std::size_t end,
-                                         const Twists& twists,
-                                         const std::array<BodySizes, kBodies>& sizes,
-                                         PackedRows<S>& out, S* jacobian) const {
-    if constexpr (kMayBeDifference) {
-      const auto store_residual = [&](std::size_t i, const Vector3<S>& a, const Vector3<S>& b) {
-        store(i, block_(a, b), Block::weight(views, i), out);
-      };
-      if constexpr (!std::is_void_v<Expected>) {
-        if (sizes[0] == Expected::a && sizes[1] == Expected::b) {
-          kinecal::write_differences(views, first, end, twists, Expected{}, jacobian,
-                                     store_residual);
-          return;
-        }
-      }
-      kinecal::write_differences(views, first, end, twists, Sizes{sizes[0], sizes[1]}, jacobian,
-                                 store_residual);
-    }
-  }
-
   /// Residual and Jacobian of a feature.
-  /// @param jacobian  (kSize x width) where its rows go
+  /// @param jacobian  (kSize x width), row-major, out
   KINECAL_FLATTEN void write_feature(Views views, std::size_t i, Linearization at,
                                      const Twists& twists, PackedRows<S>& out, S* jacobian,
                                      std::size_t width) const {
@@ -246,5 +170,112 @@ class BlockTerm final : public Term<S> {
   B block_;
   bool is_difference_;
 };
+
+template <ErrorBlock B, class S>
+int BlockTerm<B, S>::count(Observations seen) const {
+  if constexpr (PlanePairBlock<B>) return 1;
+  int n = 0;
+  for (std::size_t i = 0; i < seen[0]->usable.size(); ++i) {
+    n += std::all_of(seen.begin(), seen.end(), [i](auto* o) { return o->usable[i] > 0.0; });
+  }
+  return n;
+}
+
+template <ErrorBlock B, class S>
+std::string BlockTerm<B, S>::why_not(Observations seen) const {
+  if constexpr (PlanePairBlock<B>) {
+    for (const auto* observation : seen) {
+      if (std::string why = why_no_plane(*observation); !why.empty()) return why;
+    }
+  }
+  return {};
+}
+
+template <ErrorBlock B, class S>
+void BlockTerm<B, S>::add_cost(Views views, const Loss& loss, TermSums<S>& sums) const {
+  for (std::size_t i = 0; i < Block::features(views); ++i) {
+    const Rows rows = Block::template rows<false>(block_, views, i, Linearization::measured);
+    (void)add_cost(rows.residual, rows.weight, loss, sums);
+  }
+}
+
+template <ErrorBlock B, class S>
+void BlockTerm<B, S>::add_normal_equations(Views views, const Loss& loss, TermSums<S>& sums) const {
+  for (std::size_t first = 0, end = 0; first < Block::features(views); first = end) {
+    end = end_of_run(views, first);
+    const Chains chains = Block::chains(views, first);
+    if (add_difference(views, first, end, loss, sums)) continue;
+    sums.gram.resize(kBodies, Block::cameras(views));
+    for (std::size_t i = first; i < end; ++i) {
+      const Rows rows = Block::template rows<true>(block_, views, i, Linearization::measured);
+      const S weight = add_cost(rows.residual, rows.weight, loss, sums);
+      if (i == first) {
+        sums.gram.set(rows, weight);
+      } else {
+        sums.gram.add(rows, weight);
+      }
+    }
+    sums.gram.complete();
+    sums_of(views, chains, sums).expand(sums.gram, twists(views, chains));
+  }
+}
+
+template <ErrorBlock B, class S>
+void BlockTerm<B, S>::evaluate(Views views, bool derivatives, Linearization at,
+                               PackedRows<S>& out) const {
+  const std::size_t features = Block::features(views);
+  out.num_runs = 0;
+  out.weight.resize(features);
+  out.residual.resize(features * kSize);
+  std::size_t values = 0;
+  for (std::size_t first = 0, end = 0; first < features; first = end) {
+    end = end_of_run(views, first);
+    auto& run = out.next_run();
+    run.features = end - first;
+    if (!derivatives) {
+      for (std::size_t i = first; i < end; ++i) {
+        const Rows rows = Block::template rows<false>(block_, views, i, at);
+        store(i, rows.residual, rows.weight, out);
+      }
+      continue;
+    }
+    const Chains chains = Block::chains(views, first);
+    const Twists of_run = twists(views, chains);
+    const auto sizes = sizes_of(views, chains);
+    run.chains = key(chains);
+    run.width = 0;
+    for (const BodySizes& of_body : sizes) run.width += of_body.columns();
+    run.jacobian = values;
+    values += run.features * kSize * run.width;
+    if (out.jacobian.size() < values) out.jacobian.resize(values);
+    S* jacobian = out.jacobian.data() + run.jacobian;
+    if (is_difference_ && at == Linearization::measured) {
+      write_differences(views, first, end, of_run, sizes, out, jacobian);
+    } else {
+      for (std::size_t i = first; i < end; ++i, jacobian += kSize * run.width) {
+        write_feature(views, i, at, of_run, out, jacobian, run.width);
+      }
+    }
+  }
+}
+
+template <ErrorBlock B, class S>
+void BlockTerm<B, S>::columns(Views views, const BodyChains<2>& chains,
+                              std::vector<int>& out) const {
+  Chains of_bodies;
+  std::copy_n(chains.begin(), kBodies, of_bodies.begin());
+  local_columns(views, of_bodies, out);
+}
+
+template <ErrorBlock B, class S>
+KINECAL_FLATTEN void BlockTerm<B, S>::write_differences(Views views, std::size_t first,
+                                                        std::size_t end, const Twists& twists,
+                                                        const std::array<BodySizes, kBodies>& sizes,
+                                                        PackedRows<S>& out, S* jacobian) const {
+  if constexpr (kMayBeDifference) {
+    kinecal::write_differences(views, first, end, twists, Sizes{sizes[0], sizes[1]}, jacobian,
+                               residuals_to(views, out));
+  }
+}
 
 }  // namespace kinecal

@@ -1,4 +1,4 @@
-// A camera's own parameters and where they start.
+// A camera's own parameters and their initial values.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace kinecal {
 
-/// Adds the parameters of a sensor, if it is a camera.  They start from what its driver had been
-/// told when the samples were recorded.
+/// Adds the parameters of a sensor, if it is a camera.  Depth offset and scaling start from the
+/// driver's settings when the samples were recorded.
 inline void add_camera_parameters(ParameterTable& table, const Sensor& sensor,
                                   std::span<const Sample> samples) {
   double initial[6] = {};

@@ -1,7 +1,7 @@
-// The walk of one chain, compiled for that chain and for what is free.
+// The walk of one chain, compiled for that chain and its free parameters.
 //
-// A crate knows its chains while compiling; a problem that is filled from one goes this way instead
-// of that of a RuntimeChain.  Both give the same.
+// The compiler knows the chains of a crate.  A problem that a crate fills uses these walks in place
+// of those of a RuntimeChain; both give the same result.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,30 +10,32 @@
 
 namespace kinecal {
 
-/// Where a chain's walk goes on after what is the same for all samples of an evaluation.
+/// The state of a walk before the first moving joint: the same for all samples of an evaluation.
 template <class S>
 struct WalkStart {
-  Pose<S> pose;                                          ///< in front of the first motion
-  std::size_t joint = 0;                                 ///< that moves so
+  Pose<S> pose;                                          ///< before the first moving joint
+  std::size_t joint = 0;                                 ///< index of that joint
   const JointCorrection<double>* corrections = nullptr;  ///< of all joints
-  Twist<S>* turn = nullptr;     ///< where the twists go that are found from here on, if they
-  Vector3<S>* shift = nullptr;  ///< are wanted
+  Twist<S>* turn = nullptr;     ///< where the next rotational twist is written, if any
+  Vector3<S>* shift = nullptr;  ///< where the next translational twist is written, if any
 };
 
+/// The walk of one chain as functions.
 template <class S>
 struct CompiledWalk {
-  /// From there on; gives the tip's pose.
+  /// Walks from the first moving joint on and sets the tip's pose.
   /// @param motions  of all joints
   using Walk = void (*)(const WalkStart<S>&, const Motion<S>* motions, Pose<S>& tip);
 
   std::string tip;                    ///< of the chain
   std::vector<JointIndices> columns;  ///< for which with_twists is compiled
-  Walk pose_only, with_twists;
+  Walk pose_only;                     ///< computes the pose
+  Walk with_twists;                   ///< computes the pose and the twists of free parameters
 };
 
 namespace detail {
 
-/// Slots as constants.
+/// The columns of each joint as constants.
 template <class C, class F>
 struct StaticColumns {
   [[nodiscard]] constexpr const JointIndices& operator[](std::size_t joint) const {
@@ -66,8 +68,9 @@ struct WalkOf {
 
 }  // namespace detail
 
-/// @tparam C  a chain
-/// @tparam F  the FreeParameters
+/// Compiles the walk of a chain.
+/// @tparam C  a Chain
+/// @tparam F  a FreeParameters
 template <class S, StaticChain C, class F>
 [[nodiscard]] CompiledWalk<S> compiled_walk() {
   const auto& columns = kColumnsOf<C, F>;

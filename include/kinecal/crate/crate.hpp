@@ -6,12 +6,12 @@
 //                         JointOffset<"elbow_flex_joint">, DepthIntrinsics<"camera">,
 //                         Block<"hand_eye", PointToPoint, "camera", "arm">>;
 //
-// The order of the parts does not matter but for that of the parameters.  Crates are parts, too:
-// Crate<HandEye, Ground> has the parameters of both, each once, and the blocks of both; a list of
-// parameters that several crates share is one, too.  Names are checked against the robot while
-// compiling (crate_checks.hpp).  A crate fills the same Problem as a configuration does, with walks
-// that are compiled for its chains.
-// Source: the design of kinecal, idea 7.
+// Parts may stand in any order; parameters keep theirs.  A crate is a part, too: Crate<HandEye,
+// Ground> has the parameters and blocks of both, each once.  So a list of parameters that several
+// crates share can be a crate of its own.  The compiler checks the names against the robot
+// (crate_checks.hpp).  A crate fills the same Problem as a configuration does, with walks that are
+// compiled for its chains.
+// Source: ARCHITECTURE.md, idea 7: one problem, two ways to fill it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -26,7 +26,7 @@ class Crate;
 
 namespace detail {
 
-/// The lists of a part, of which most are empty.
+/// A part as four lists, of which most are empty.
 template <class P>
 struct ListsOf {
   using Sensors = OnlyIf<SensorPart<P>, P>;
@@ -65,39 +65,45 @@ struct Frames<TypeList<Ps...>> {
 
 }  // namespace detail
 
+/// A calibration as a type.
+/// @tparam Parts  sensors, free parameters, Blocks, PriorOns and other crates
 template <class... Parts>
 class Crate {
   using Lists = detail::ListsOf<Crate>;
 
  public:
-  using Sensors = typename Lists::Sensors;
-  using Parameters = typename Lists::Parameters;
-  using Blocks = typename Lists::Blocks;
-  using Priors = typename Lists::Priors;
+  using Sensors = typename Lists::Sensors;        ///< type list
+  using Parameters = typename Lists::Parameters;  ///< type list
+  using Blocks = typename Lists::Blocks;          ///< type list
+  using Priors = typename Lists::Priors;          ///< type list
+  /// The parameters' slots.
   using Free = typename Parameters::template As<FreeParameters>;
 
-  /// Checked here and not before: a part of another crate needs no sensor or block of its own.
+  /// The compiler checks the crate here and not earlier, because a crate that is only a part of
+  /// another may lack sensors or blocks.
   Crate() {
     [[maybe_unused]] constexpr
         typename detail::CheckCrate<Sensors, Parameters, Blocks, Priors>::type kCheck = {};
   }
 
-  /// The error block of a name, with its options.
+  /// The error block with this name, and its options.
   template <FixedString Name>
   [[nodiscard]] auto& block() {
     return part_of<Name>(blocks_);
   }
-  /// The prior of a name.
+  /// The prior with this name, and its options.
   template <FixedString Name>
   [[nodiscard]] auto& prior() {
     return part_of<Name>(priors_);
   }
 
+  /// The robot of the chains, at run time.
   [[nodiscard]] static Robot robot() { return robot_from<RobotOf>(); }
+  /// The link at which all chains start and in which the sensors are compared.
   [[nodiscard]] static std::string base() { return std::string(BaseChain::kBase); }
 
-  /// All parameters: those of the depth cameras, and those that are free with their whole frames.
-  /// @param samples  a camera's settings start from what its driver had when they were recorded
+  /// All parameters: those of the cameras, the joint offsets, and all six of each free frame.
+  /// @param samples  a camera's parameters start from the settings its driver had while recording
   [[nodiscard]] static ParameterTable table(std::span<const Sample> samples) {
     ParameterTable table;
     for_each(Sensors{}, [&]<class P>(P*) { add_camera_parameters(table, P::sensor(), samples); });
@@ -105,7 +111,7 @@ class Crate {
     return table;
   }
 
-  /// The columns of the Jacobian: all free parameters.
+  /// The free parameters, as columns of the Jacobian.
   [[nodiscard]] static FreeSet free(const ParameterTable& table) {
     std::vector<int> indices;
     for (const ParameterId& id : Free::kIds) indices.push_back(table.index(id.name()));
@@ -160,7 +166,7 @@ class Crate {
     }
   }
 
-  /// The walks to a sensor and to the virtual frames beyond it.
+  /// The compiled walks to a sensor and to the virtual frames beyond it.
   template <class S, class Sensor>
   [[nodiscard]] static std::vector<CompiledWalk<S>> walks() {
     std::vector<CompiledWalk<S>> walks = {
@@ -175,11 +181,11 @@ class Crate {
     return walks;
   }
 
-  /// A sensor's chain with the corrections that are free here.
+  /// A sensor's chain with the frame corrections of this crate.
   template <class C, class VirtualFrame = void>
   using ChainWithFrames = detail::CorrectedChain<C, FramesHere, VirtualFrame>;
 
-  /// How many columns the bodies of a block's sensors have, seen in the sensors' own frames.
+  /// Number of columns of a sensor's body, for features in the sensor's own frame.
   template <class Sensor>
   [[nodiscard]] static constexpr BodySizes sizes() {
     BodySizes size;

@@ -1,5 +1,4 @@
-// What must hold of a crate as a whole, each told in a sentence while it is compiled: see
-// sentence.hpp.
+// Compile-time checks of a crate as a whole; each fails with a sentence (sentence.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +13,7 @@ struct NoRobot {
 struct NoChain {
   using Robot = NoRobot;
 };
-/// The chain of the first sensor: its robot and base are those of the crate.
+/// The chain of the first sensor; the crate has its robot and base.
 template <class Sensors>
 struct FirstChain {
   using type = NoChain;
@@ -27,8 +26,8 @@ struct FirstChain<TypeList<S, Ss...>> {
 template <class Part, bool kIsPart = false>
 struct PartOfCrate {
   static_assert(kIsPart,
-                "kinecal: a part of this Crate is none; parts are sensors, free parameters, Block, "
-                "PriorOn and other crates");
+                "kinecal: this template argument is not a Crate part; parts are sensors, free "
+                "parameters, Block, PriorOn and other crates");
 };
 template <class Blocks, bool kHasSensors = false>
 struct SensorsOfCrate {
@@ -61,8 +60,8 @@ struct NamesOfParameters {
 template <class Sensors, bool kIsShared = false>
 struct BaseOfCrate {
   static_assert(kIsShared,
-                "kinecal: the chains of this Crate start at different links or are of different "
-                "robots; features are compared in one base, give all chains the same");
+                "kinecal: the chains of this Crate start at different links or belong to different "
+                "robots; features are compared in one base, so give all chains the same one");
 };
 
 template <class A, class B>
@@ -97,7 +96,7 @@ struct CheckCrate<TypeList<Ss...>, TypeList<Ps...>, TypeList<Bs...>, TypeList<Qs
       typename CheckPrior<Qs, Ps...>::type...>;
 };
 
-/// @tparam Found  what LookedUp found
+/// @tparam Found  the result of LookedUp: Known or DidYouMean
 template <FixedString Name, class Found, bool kExists = false>
 struct PartOfName {
   static_assert(kExists, "kinecal: the crate has no part of this name; correct the name");

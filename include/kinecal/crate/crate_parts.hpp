@@ -1,4 +1,4 @@
-// What a crate is made of, besides free parameters: sensors and error blocks as types.
+// The parts of a crate besides free parameters: sensors, error blocks and priors as types.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,16 +11,17 @@ namespace kinecal {
 /// A sensor at the tip of a chain.
 template <FixedString Name, StaticChain C, SensorType Type>
 struct SensorOn {
-  using Chain = C;
-  static constexpr std::string_view kName = Name;
-  static constexpr SensorType kType = Type;
+  using Chain = C;                                 ///< from the base to the sensor
+  static constexpr std::string_view kName = Name;  ///< as in the samples
+  static constexpr SensorType kType = Type;        ///< what it observes
 
+  /// The sensor as a Problem takes it.
   [[nodiscard]] static Sensor sensor() {
     return {std::string(kName), kType, std::string(C::kTip), ""};
   }
 };
 
-/// Points at known places of the chain's tip.
+/// Points at known positions in the chain's tip.
 template <FixedString Name, StaticChain C>
 struct Chain3d : SensorOn<Name, C, SensorType::chain3d> {};
 /// A depth camera; its optical frame is the chain's tip.
@@ -30,21 +31,22 @@ struct Camera3d : SensorOn<Name, C, SensorType::camera3d> {};
 template <FixedString Name, StaticChain C>
 struct Camera2d : SensorOn<Name, C, SensorType::camera2d> {};
 
-/// An error block between sensors, named, with its weight and loss; both may be set later:
+/// An error block between sensors, with a name, a weight and a loss.  Both can be set later:
 ///
-///   crate.block<"hand_eye">().options.loss = {LossType::huber, 0.01};
+///     crate.block<"hand_eye">().options.loss = {LossType::huber, 0.01};
 ///
-/// @tparam B        the block: one of errors/, or a struct of your own
+/// @tparam B        the block: one of errors/, or your own struct
 /// @tparam Sensors  names of the sensors that it compares
 template <FixedString Name, class B, FixedString... Sensors>
 struct Block {
-  using Plain = Block;  ///< also of what is derived from it to set its options
-  using Error = B;
-  static constexpr std::string_view kName = Name;
+  using Plain = Block;  ///< the same type in a class that derives from this one to set options
+  using Error = B;      ///< the error block
+  static constexpr std::string_view kName = Name;  ///< of the block, for reports
+  /// Names of the sensors, in the order of the block's arguments.
   static constexpr std::array<std::string_view, sizeof...(Sensors)> kSensorNames = {Sensors...};
 
-  B error = {};
-  TermOptions options = default_options();
+  B error = {};                             ///< the error block
+  TermOptions options = default_options();  ///< weight, loss, names
 
  private:
   [[nodiscard]] static TermOptions default_options() {
@@ -58,22 +60,28 @@ struct Block {
 /// A prior on a joint's offset or a frame's correction: see Prior.
 template <FixedString Name, FixedString Of>
 struct PriorOn {
-  static constexpr std::string_view kName = Name, kOf = Of;
+  static constexpr std::string_view kName = Name;  ///< of the prior, for reports
+  static constexpr std::string_view kOf = Of;      ///< name of the joint or frame
 
-  double joint_scale = 1.0, position_scale = 1.0, rotation_scale = 1.0;
-  TermOptions options = {.type = "outrageous", .unit = "1"};
+  double joint_scale = 1.0;                                   ///< 1 / rad or 1 / m
+  double position_scale = 1.0;                                ///< 1 / m
+  double rotation_scale = 1.0;                                ///< 1 / rad
+  TermOptions options = {.type = "outrageous", .unit = "1"};  ///< weight, loss, names
 };
 
+/// A part of a crate that is a sensor.
 template <class P>
 concept SensorPart = requires {
   typename P::Chain;
   { P::kType } -> std::convertible_to<SensorType>;
 };
+/// A part of a crate that is an error block.
 template <class P>
 concept BlockPart = requires {
   typename P::Error;
   P::kSensorNames;
 };
+/// A part of a crate that is a prior.
 template <class P>
 concept PriorPart = requires {
   P::kOf;

@@ -1,14 +1,15 @@
 // The matrix K of local_sums.hpp for points that are only subtracted: r = p_a - p_b.
 //
-// With derivatives I and -I the sums over the features are moments of the points.  Taken about the
-// centers c of either side's points, a shift turns nothing and a turn shifts nothing:
+// With derivatives I and -I, the sums over the features are moments of the points.  Taken about the
+// center of each side's points, translation and rotation decouple:
 //
 //   force   sum w v = W v,  the same on both sides
 //   moment  sum w q x (u x p) = (tr C - C) u      C = sum w p q^T
 //
-// for a twist (v, u) whose linear part v is that of the center.  The second side's twists are
-// negated, so that both sides add up.  fetch_calibration_bench prints what this saves against
-// multiplying rows out.  Source: Euler's equations of a rigid body.
+// for a twist (v, u) whose linear part v is the velocity of the center.  The twists of the second
+// side are negated, so that both sides add up.  fetch_calibration_bench prints how much this saves
+// compared with multiplying rows.
+// Source: Euler's equations of a rigid body.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,24 +21,30 @@
 
 namespace kinecal {
 
+/// The matrix K of features that are only subtracted; the interface is that of FeatureGram.
 template <class S>
 class DifferenceGram {
  public:
-  using Views = std::span<const SensorView<S>* const>;
+  using Views = std::span<const SensorView<S>* const>;  ///< of the two sensors
 
-  static constexpr bool kShiftsFeltAsForces = true;
+  static constexpr bool kShiftsFeltAsForces = true;  ///< a translation has no moment
+  /// Where effects() puts the force, the same for both bodies.
   [[nodiscard]] static constexpr std::size_t force(std::size_t) { return 0; }
+  /// Where effects() puts the moment on a body.
   [[nodiscard]] static constexpr std::size_t moment(std::size_t body) { return 3 + 3 * body; }
+  /// Where effects() puts the products with the cameras' columns and with the residual.
   [[nodiscard]] static constexpr std::size_t rest() { return 9; }
+  /// Number of rows that effects() writes.
   [[nodiscard]] std::size_t width() const { return rest() + columns_.size(); }
+  /// Products of the column of camera parameter c with those from it on, and with the residual.
   [[nodiscard]] const S* camera_row(std::size_t c) const {
     return &products_[c * columns_.size() + c];
   }
 
-  /// Sums over features that hang on the same chains.
-  /// @param first      the first of them
-  /// @param weights    of each
-  /// @param residuals  (3) of each
+  /// Sums consecutive features on the same chains.
+  /// @param first      index of the first feature
+  /// @param weights    of each feature
+  /// @param residuals  (3) of each feature, metres
   void set(Views views, std::size_t first, std::span<const S> weights,
            std::span<const Vector3<S>> residuals) {
     set_points({views[0]->points().data() + first, views[1]->points().data() + first}, weights);
@@ -63,9 +70,9 @@ class DifferenceGram {
     }
   }
 
-  /// The twists of both sides as K takes them: linear parts at the centers, the second side's
+  /// The twists of both sides as K takes them: linear parts at the centers, the second side
   /// negated.
-  /// @returns  views of what is kept here
+  /// @returns  views into this object
   [[nodiscard]] std::array<BodyTwists<S>, 2> centered(const std::array<BodyTwists<S>, 2>& twists) {
     for (std::size_t s = 0; s < 2; ++s) {
       std::vector<Twist<S>>& turns = centered_[s].turns;
@@ -83,7 +90,7 @@ class DifferenceGram {
     return {BodyTwists<S>{centered_[0].turns, twists[0].shifts}, BodyTwists<S>(centered_[1])};
   }
 
-  /// K xi of R twists of a body: see FeatureGram.  With D = 3 moments are left out.
+  /// K xi of R twists of a body: see FeatureGram.  With D = 3 it does not write moments.
   template <int D, int R>
   void effects(std::size_t body, const S* xi, S* __restrict effects) const {
     const S weight = weight_;
@@ -111,7 +118,7 @@ class DifferenceGram {
   }
 
  private:
-  /// What a camera parameter, or the residual, exerts on both sides.
+  /// Force and moments of a camera parameter, or of the residual, on both sides.
   struct Column {
     Vector3<S> force;
     std::array<Vector3<S>, 2> moment;  ///< about the centers
@@ -136,8 +143,8 @@ class DifferenceGram {
     set_inertia<true>(inertia_[2], from_center_[1].data(), from_center_[1].data(), weights);
   }
 
-  /// sum w (p^T q I - p q^T)
-  /// @tparam Same  p and q are the same points: only one triangle is summed
+  /// sum w (p^T q I - p q^T).
+  /// @tparam Same  true if p and q are the same points: only one triangle is summed
   template <bool Same>
   static void set_inertia(Matrix3<S>& inertia, const Vector3<S>* p, const Vector3<S>* q,
                           std::span<const S> weights) {
@@ -159,8 +166,8 @@ class DifferenceGram {
     }
   }
 
-  /// @param x     (3) of each feature: the motion by a parameter, or the residual
-  /// @param sign  of it
+  /// @param x     (3) of each feature: its motion by a parameter, or its residual
+  /// @param sign  factor of x
   void set_column(std::size_t c, const Vector3<S>* x, std::size_t stride,
                   std::span<const S> weights, double sign) {
     const Vector3<S>*p_a = from_center_[0].data(), *p_b = from_center_[1].data();
@@ -204,12 +211,12 @@ class DifferenceGram {
            sum.y() + p.z() * f.x() - p.x() * f.z(), sum.z() + p.x() * f.y() - p.y() * f.x()};
   }
 
-  S weight_;                           ///< of all features
+  S weight_;                           ///< sum over all features
   std::array<Vector3<S>, 2> centers_;  ///< of the points of both sides, in the base
   std::array<Matrix3<S>, 3> inertia_;  ///< first, mixed, second
   std::vector<Column> columns_;        ///< of each camera parameter and the residual
-  std::vector<S> products_;            ///< of each with each: the upper triangle
-  std::array<std::vector<Vector3<S>>, 2> from_center_;  ///< each point
+  std::vector<S> products_;            ///< of all pairs of columns: the upper triangle
+  std::array<std::vector<Vector3<S>>, 2> from_center_;  ///< each point, relative
   std::vector<Vector3<S>> motions_;  ///< of each feature by each camera parameter
   std::vector<Vector3<S>> forces_;   ///< weight times motion, column by column
   std::array<ChainTwists<S>, 2> centered_;

@@ -1,12 +1,13 @@
-// Normal equations from features: first one small matrix for each sample, of whatever they compare.
+// Normal equations of features, first step: one small matrix per sample, for any error block.
 //
-// The columns of a body's parameters are by_body xi_k with the twists xi_k of its chain, the same
-// for all features.  So per sample a small matrix is summed over the features,
+// The columns of a body's parameters are by_body xi_k, with the twists xi_k of its chain, which are
+// the same for all features.  So each sample sums a small matrix over its features,
 //
 //   K = sum of  w L^T L      L = [ by_body of each body | by_camera | residual ]
 //
-// whose size depends neither on the number of features nor on that of parameters; the twists enter
-// once: see local_sums.hpp.  Source: the design of kinecal, ideas 2 and 6.
+// whose size depends neither on the number of features nor on that of parameters.  The twists enter
+// once, afterwards: see local_sums.hpp.
+// Source: ARCHITECTURE.md, ideas 2 (twists) and 6 (the compressed cost).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,38 +21,40 @@ namespace kinecal {
 template <class S>
 class FeatureGram {
  public:
-  /// A shift may also turn: what it does is felt as a force and as a moment.
+  /// False: a translation may have a force and a moment.
   static constexpr bool kShiftsFeltAsForces = false;
-  /// Where effects() puts the force and the moment that a body feels.
+  /// Where effects() puts the force on a body.
   [[nodiscard]] static constexpr std::size_t force(std::size_t body) { return 6 * body; }
+  /// Where effects() puts the moment on a body.
   [[nodiscard]] static constexpr std::size_t moment(std::size_t body) { return 6 * body + 3; }
-  /// Where it puts the products with the columns of the cameras and with the residual.
+  /// Where effects() puts the products with the cameras' columns and with the residual.
   [[nodiscard]] std::size_t rest() const { return 6 * bodies_; }
+  /// Number of rows and columns of K.
   [[nodiscard]] std::size_t width() const { return width_; }
 
-  /// Its contents are not defined.
+  /// Sets the size; the contents are undefined afterwards.
   /// @param bodies, cameras  number of bodies and of free camera parameters
   void resize(std::size_t bodies, std::size_t cameras) {
     bodies_ = bodies;
     width_ = 6 * bodies + cameras + 1;
     k_.resize(width_ * width_);
   }
-  [[nodiscard]] S* row(std::size_t i) { return &k_[i * width_]; }
-  [[nodiscard]] const S* row(std::size_t i) const { return &k_[i * width_]; }
-  /// The products of the column of camera parameter c with those from it on.
+  [[nodiscard]] S* row(std::size_t i) { return &k_[i * width_]; }              ///< row i of K
+  [[nodiscard]] const S* row(std::size_t i) const { return &k_[i * width_]; }  ///< row i of K
+  /// Products of the column of camera parameter c with those from it on, and with the residual.
   [[nodiscard]] const S* camera_row(std::size_t c) const { return row(rest() + c) + rest() + c; }
 
-  /// K = w L^T L of the first feature.
+  /// Sets K = w L^T L of the first feature.
   template <int M, int Bodies>
   void set(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
     sum<true>(rows, weight);
   }
-  /// Adds that of a further one.
+  /// Adds w L^T L of a further feature.
   template <int M, int Bodies>
   void add(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
     sum<false>(rows, weight);
   }
-  /// Completes each body's own block, which is read as a whole.
+  /// Mirrors the upper triangle of each body's own block, which is read as a whole.
   void complete() {
     for (std::size_t s = 0; s < bodies_; ++s) {
       for (std::size_t i = 6 * s; i < 6 * s + 6; ++i) {
@@ -60,7 +63,7 @@ class FeatureGram {
     }
   }
 
-  /// K xi of R twists of a body, for that body and what stands to the right of it.
+  /// K xi of R twists of a body: the rows of that body and all further rows.
   /// @param xi       (R x D) D = 6: linear and angular; D = 3: linear only
   /// @param effects  (width x R)
   template <int D, int R>

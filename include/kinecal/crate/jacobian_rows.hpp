@@ -1,6 +1,6 @@
-// Rows of the Jacobian of one feature, from what changes its residual and the twists of its chains.
+// Rows of the Jacobian of one feature, from its derivatives and the twists of its chains.
 //
-// Columns are those of local_columns(): the twists of each body, then the cameras.
+// The columns are those of local_columns(): the twists of each body, then the cameras.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace kinecal {
 
-/// by_body xi for all twists.
+/// Writes by_body xi for all twists, and by_camera.
 /// @param out  (M x width), row-major
 template <class S, int M, int Bodies, class Twists>
 void write_rows(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, S* out,
@@ -29,28 +29,33 @@ void write_rows(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, S* 
   }
 }
 
-/// How many columns a body and its camera have.
+/// Number of columns of a body and its camera.
 struct BodySizes {
-  std::size_t turns = 0, shifts = 0, cameras = 0;
+  std::size_t turns = 0;    ///< rotational twists
+  std::size_t shifts = 0;   ///< translational twists
+  std::size_t cameras = 0;  ///< free parameters of the camera
 
+  /// Number of all columns.
   [[nodiscard]] constexpr std::size_t columns() const { return turns + shifts + cameras; }
-  bool operator==(const BodySizes&) const = default;
+  bool operator==(const BodySizes&) const = default;  ///< all members are equal
 };
 
-/// Sizes of two bodies that the compiler knows: loops over them unroll.
+/// Sizes of two bodies that the compiler knows, so that loops over them unroll.
 template <BodySizes A, BodySizes B>
 struct KnownSizes {
-  static constexpr BodySizes a = A, b = B;
+  static constexpr BodySizes a = A;  ///< of the first body
+  static constexpr BodySizes b = B;  ///< of the second body
 };
-/// Sizes that are known when it runs.
+/// Sizes of two bodies that are known at run time.
 struct Sizes {
-  BodySizes a, b;
+  BodySizes a;  ///< of the first body
+  BodySizes b;  ///< of the second body
 };
 
-/// The same for r = p_a - p_b of some features: the columns are the velocities of the points.
-/// @param sizes  Sizes or KnownSizes, which must be right
+/// Writes the rows of consecutive features of r = p_a - p_b: columns are velocities of the points.
+/// @param sizes  Sizes or KnownSizes; must be the number of twists and camera motions
 /// @param out    (3 features x columns), row-major
-/// @param visit  callable (feature, p_a, p_b), called for each
+/// @param visit  callable (feature, p_a, p_b), called for each feature
 template <class S, class AnySizes, class Visit>
 void write_differences(std::span<const SensorView<S>* const> views, std::size_t first,
                        std::size_t end, const std::array<BodyTwists<S>, 2>& twists,

@@ -1,12 +1,13 @@
-// Normal equations of features, without forming their Jacobian.
+// Normal equations of features, second step: the twists of the parameters, without a Jacobian.
 //
-// A pack's features have been summed to a small matrix K over [ twist of each body | cameras |
-// residual ] (feature_gram.hpp, difference_gram.hpp).  Here the twists of the parameters enter:
+// The first step has summed the features of a pack to a small matrix K over [ twist of each body |
+// cameras | residual ] (feature_gram.hpp, difference_gram.hpp).  Then
 //
 //   J^T J = E^T K E      J^T r = E^T K e_r
 //
-// with E the twists of each body, and the identity for cameras.  Everything is of a pack: one
-// sample in each lane.
+// with E the twists of each body, and the identity for cameras.  All numbers are packets: one
+// sample per lane.
+// Source: ARCHITECTURE.md, idea 6: the compressed cost.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,20 +21,22 @@
 
 namespace kinecal {
 
-/// Normal equations of features that hang on the same chains, summed over samples lane by lane.
+/// Normal equations of features on the same chains, summed over samples lane by lane.
 template <class S>
 class LocalSums {
  public:
-  using Twists = std::span<const BodyTwists<S>>;
+  using Twists = std::span<const BodyTwists<S>>;  ///< of each body
 
+  /// @param columns  of the whole Jacobian: local_columns()
   explicit LocalSums(std::vector<int> columns)
       : columns_(std::move(columns)), stride_(columns_.size() + 1) {
     set_zero();
   }
 
+  /// Starts a new sum.
   void set_zero() { sums_.assign(stride_ * columns_.size(), S(0.0)); }
 
-  /// Adds the twists' share: E^T K E.
+  /// Adds E^T K E of one pack.
   /// @param gram    K
   /// @param twists  of each body, as K takes them
   template <class Gram>
@@ -54,7 +57,7 @@ class LocalSums {
     }
   }
 
-  /// Adds all lanes to the sums over the whole Jacobian's columns.
+  /// Adds the sum of all lanes to normal equations over the columns of the whole Jacobian.
   void add_to(NormalEquations& total) const {
     const std::size_t n = columns_.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -73,15 +76,15 @@ class LocalSums {
  private:
   static constexpr std::size_t kMostAtOnce = 3;
 
-  /// Row i: for each local column j >= i the sum of their products, then that with the residual.
+  /// Row i: sums of products with each local column j >= i, then with the residual.
   [[nodiscard]] S* row(std::size_t i) { return &sums_[i * stride_]; }
   [[nodiscard]] const S* row(std::size_t i) const { return &sums_[i * stride_]; }
 
-  /// Adds the rows of some local columns of body s, up to three at a time: each number that is read
-  /// then serves as often.  Eight lanes wide, one at a time was measured to be as quick.
+  /// Adds the rows of some local columns of body s, up to three at a time, which reads each number
+  /// once for three columns.  With eight lanes, one at a time was measured to be as fast.
   /// @param first  local column at which body s starts
-  /// @param i      local column of the first of them
-  /// @returns      the local column after them
+  /// @param i      the first of the local columns
+  /// @returns      the local column after the last one
   template <int D, class Gram>
   std::size_t add_columns(const Gram& gram, Twists twists, std::size_t s, std::size_t first,
                           std::size_t i, const S* xi, std::size_t count) {
@@ -100,13 +103,14 @@ class LocalSums {
     return i;
   }
 
-  /// Adds xi_j^T effects for the columns j of body s after the first `skip`, and all further ones.
-  /// @tparam D     of the columns whose effects they are
-  /// @param  sums  of the first of these columns with the first of those j
+  /// Adds xi_j^T effects for the columns j of body s after the first `skip`, and for all further
+  /// columns.
+  /// @tparam D     numbers per twist of the columns that have these effects
+  /// @param  sums  of the first of these columns with the first column j
   template <int D, int R, class Gram>
   void add_products(const Gram& gram, Twists twists, std::size_t s, std::size_t skip, S* sums) {
     constexpr int kFelt = D == 3 && Gram::kShiftsFeltAsForces ? 3 : 6;
-    // Packets may alias anything: what is not in a variable of its own is read again and again.
+    // Packets may alias anything: the compiler rereads whatever is not a local variable.
     const std::size_t stride = stride_;
     const S* effects = effects_.data();
     for (std::size_t b = s; b < twists.size(); ++b, skip = 0) {
@@ -124,9 +128,9 @@ class LocalSums {
     }
   }
 
-  /// @tparam D     numbers of each xi
-  /// @tparam Felt  how many of them meet an effect
-  /// @returns      the sums after them
+  /// @tparam D     numbers per xi
+  /// @tparam Felt  how many of them have an effect
+  /// @returns      the sums after the last one
   template <int D, int Felt, int R>
   static S* add_dots(const S* force, const S* moment, const S* xi, std::size_t count, S* sums,
                      std::size_t stride) {

@@ -1,10 +1,11 @@
-// Samples in the form in which they are evaluated: as many at once as a packet has lanes.
+// Samples as they are evaluated: as many at once as a packet has lanes.
 //
-// What a sample says is taken apart once: sine and cosine of its joints, measurements as the sensor
-// models need them.  Samples of one shape (the same sensors observed the same number of features in
-// the same frames) then share a pack, one lane each: a structure of arrays.  A lane without a
-// sample and a feature that is no number repeat what stands beside them with weight zero, so there
-// is one way to evaluate and no second one for what is left over.
+// A sample is prepared once: sine and cosine of its joints, measurements as the sensor models need
+// them.  Samples of one shape (the same sensors observed the same number of features in the same
+// frames) then share a pack, one lane each: a structure of arrays.  A lane without a sample repeats
+// the pack's first sample with weight zero; a feature that is NaN repeats another one with weight
+// zero.  So one code path evaluates everything, without a remainder loop.
+// Source: ARCHITECTURE.md, ideas 4 (no trigonometry in the loop) and 5 (packets over samples).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,33 +20,33 @@
 
 namespace kinecal {
 
-/// What one sensor observed in one sample (S: double) or in a pack of samples.
+/// What one sensor observed, in one sample (S = double) or in a pack of samples.
 template <class S>
 struct PackedObservation {
   std::vector<Vector3<S>> measured;  ///< chain3d: point, metres; camera3d: (u, v, z0);
                                      ///< camera2d: (u, v, 0)
-  std::vector<S> usable;             ///< one; zero for a feature that is not a number
-  std::vector<std::size_t> chain;    ///< on which chain of the sensor each feature hangs
-  std::vector<std::optional<std::vector<Motion<S>>>> motions;  ///< of each chain's joints, where a
-                                                               ///< feature hangs on it
-  std::unique_ptr<DepthCamera<S>> depth_camera = {};           ///< as recorded, camera3d only
-  std::unique_ptr<PinholeCamera<S>> pinhole_camera = {};       ///< as recorded, camera2d only
+  std::vector<S> usable;             ///< of each feature: one, or zero if it is NaN
+  std::vector<std::size_t> chain;    ///< of each feature: the chain of the sensor that leads to it
+  /// Of the joints of each chain that leads to a feature.
+  std::vector<std::optional<std::vector<Motion<S>>>> motions;
+  std::unique_ptr<DepthCamera<S>> depth_camera = {};      ///< as recorded, camera3d only
+  std::unique_ptr<PinholeCamera<S>> pinhole_camera = {};  ///< as recorded, camera2d only
 };
 
-/// What samples must have in common to be evaluated together.
+/// What samples must have in common to share a pack.
 struct SampleShape {
   std::vector<std::optional<std::vector<std::size_t>>> chains;  ///< of each feature, by sensor
-  std::vector<int> terms;                                       ///< that apply
+  std::vector<int> terms;                                       ///< indices of the terms that apply
 
-  auto operator<=>(const SampleShape&) const = default;
+  auto operator<=>(const SampleShape&) const = default;  ///< any strict order, for a map
 };
 
-/// Samples of one shape, one for each lane.
+/// Samples of one shape, one per lane.
 template <class S>
 struct PackedSample {
-  const SampleShape* shape = nullptr;
-  std::vector<int> samples;                               ///< their indices, by lane
-  std::vector<std::optional<PackedObservation<S>>> seen;  ///< by each sensor
+  const SampleShape* shape = nullptr;                     ///< that of all its samples
+  std::vector<int> samples;                               ///< indices in the problem, by lane
+  std::vector<std::optional<PackedObservation<S>>> seen;  ///< by sensor
 };
 
 namespace detail {
@@ -115,7 +116,7 @@ template <class S>
 }  // namespace detail
 
 /// Starts a pack with its first sample.
-/// @param seen  by each sensor
+/// @param seen  what each sensor observed
 template <class S>
 [[nodiscard]] PackedSample<S> make_pack(
     const SampleShape& shape, int sample,
@@ -133,7 +134,8 @@ template <class S>
 }
 
 /// Adds a sample of the same shape to a pack.
-/// @returns  false if the pack is full
+/// @param seen  what each sensor observed
+/// @returns  false, without adding the sample, if the pack is full
 template <class S>
 [[nodiscard]] bool add_to_pack(PackedSample<S>& pack, int sample,
                                const std::vector<std::optional<PackedObservation<double>>>& seen) {

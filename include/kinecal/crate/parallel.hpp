@@ -1,4 +1,4 @@
-// Work in pieces on several threads.
+// Runs pieces of work on several threads.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace kinecal {
 
-/// Number of threads for `wanted`; zero: as many as the machine has cores.
+/// The wanted number of threads; for zero, the number of cores.
 [[nodiscard]] inline int number_of_threads(int wanted) {
   return wanted > 0 ? wanted : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
-/// Calls work(piece, thread) once for each piece, on up to so many threads, in any order.
-/// @throws what `work` throws, the first of them
+/// Calls work(piece, thread) once for each piece, on up to `threads` threads, in any order.
+/// @throws the first exception that `work` throws, after all threads have stopped
 template <class Work>
 void for_each_piece(int pieces, int threads, Work&& work) {
   std::atomic<int> next = 0;

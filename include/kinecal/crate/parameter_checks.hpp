@@ -1,5 +1,5 @@
-// What must hold of a crate's free parameters and priors, each told in a sentence while it is
-// compiled: see sentence.hpp.
+// Compile-time checks of a crate's free parameters and priors; each fails with a sentence
+// (sentence.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,12 +8,11 @@
 
 namespace kinecal::detail {
 
-/// @tparam Found  what LookedUp found
+/// @tparam Found  the result of LookedUp: Known or DidYouMean
 template <class Parameter, class Found, bool kIsKnown = false>
 struct JointOfOffset {
-  static_assert(
-      kIsKnown,
-      "kinecal: the robot has no joint of the name in this JointOffset; correct the name");
+  static_assert(kIsKnown,
+                "kinecal: the robot does not have the joint in this JointOffset; correct its name");
 };
 template <class Parameter, bool kJointMoves = false>
 struct MotionOfOffset {
@@ -30,36 +29,36 @@ template <class Parameter, class Found, bool kIsKnown = false>
 struct JointOfFrame {
   static_assert(
       kIsKnown,
-      "kinecal: the robot has no joint of the name in this FrameOffset; correct the name, "
-      "or write VirtualFrame for a frame that is in no URDF");
+      "kinecal: the robot does not have the joint in this FrameOffset; correct its name, or write "
+      "VirtualFrame for a frame that is not in the URDF");
 };
 template <class Parameter, bool kIsNoJoint = false>
 struct NameOfVirtualFrame {
   static_assert(
       kIsNoJoint,
       "kinecal: this VirtualFrame has the name of a joint of the robot; write FrameOffset "
-      "for the joint, or name the frame otherwise");
+      "for the joint, or rename the frame");
 };
 template <class Parameter, class Found, bool kIsKnown = false>
 struct CameraOfParameter {
   static_assert(kIsKnown,
-                "kinecal: the crate has no camera of the name in this parameter; add the camera or "
-                "correct the name");
+                "kinecal: the crate does not have the camera in this parameter; add the camera or "
+                "correct its name");
 };
 template <class Parameter, bool kSensorHasThem = false>
 struct SettingsOfCamera {
   static_assert(
       kSensorHasThem,
-      "kinecal: the sensor in this parameter has no such settings; intrinsics are those of "
-      "a Camera3d or Camera2d, a depth offset and scaling those of a Camera3d");
+      "kinecal: the sensor in this parameter does not have these settings; a Camera3d or Camera2d "
+      "has intrinsics, a Camera3d also has depth offset and scaling");
 };
 template <class Parameter, bool kFreesSome = false>
 struct AxesOfFrame {
   static_assert(kFreesSome,
-                "kinecal: this frame offset frees none of its axes; choose some or leave it out");
+                "kinecal: this frame offset does not free any axis; choose axes or leave it out");
 };
 
-/// That a free parameter is one of the robot or of a sensor.
+/// Checks that the robot, or a sensor, has the free parameter.
 template <class P, RobotData R, class Sensors, ParameterKind = P::kKind>
 struct CheckParameter;
 
@@ -113,7 +112,7 @@ template <class P, class Sensor>
   if (P::kKind == ParameterKind::virtual_frame) return Sensor::kType == SensorType::chain3d;
   for (std::string_view link = Sensor::Chain::kTip; link != Sensor::Chain::kBase;) {
     const std::size_t joint = joint_above<Robot>(link);
-    if (joint == kNowhere) return true;  // the chain is wrong, which is told there
+    if (joint == kNowhere) return true;  // the chain is wrong; its own check reports that
     const bool is_it = P::kKind == ParameterKind::frame_offset
                            ? Robot::kJoints[joint].name == owner
                            : static_drive<Robot>(joint).joint == owner;
@@ -123,7 +122,7 @@ template <class P, class Sensor>
   return false;
 }
 
-/// True if it moves one of those that a block compares.
+/// True if a parameter moves what one of a block's sensors observes.
 template <class P, class Block, class... Sensors>
 [[nodiscard]] constexpr bool moves_block(TypeList<Sensors...>) {
   const auto& names = Block::kSensorNames;
@@ -135,11 +134,11 @@ template <class P, class Block, class... Sensors>
 template <class Parameter, bool kResidualsDepend = false>
 struct UseOfParameter {
   static_assert(kResidualsDepend,
-                "kinecal: nothing depends on this free parameter; no error block has a sensor that "
-                "it moves: leave it out or add such a block");
+                "kinecal: no residual depends on this free parameter, because no error block has a "
+                "sensor that it moves; leave it out or add such a block");
 };
 
-/// The joints and frames that are free, to be looked up.
+/// The joints and frames that are free, for LookedUp.
 template <class... Ps>
 struct JointsAndFrames {
   [[nodiscard]] static constexpr bool is_one(ParameterKind kind) {
@@ -153,15 +152,15 @@ struct JointsAndFrames {
   }();
 };
 
-/// @tparam Found  what LookedUp found
+/// @tparam Found  the result of LookedUp: Known or DidYouMean
 template <class Prior, class Found, bool kIsFree = false>
 struct ParameterOfPrior {
   static_assert(kIsFree,
-                "kinecal: no joint or frame of the name in this PriorOn is free in the crate; "
-                "correct the name or leave it out");
+                "kinecal: the joint or frame in this PriorOn is not free in the crate; correct its "
+                "name or leave the prior out");
 };
 
-/// That a prior is one on a joint or frame that is free.
+/// Checks that the joint or frame of a prior is free.
 template <class Prior, class... Ps>
 struct CheckPrior {
   using Found = LookedUp<Prior::kOf, JointsAndFrames<Ps...>>;

@@ -1,6 +1,7 @@
-// Planes through the points of two sensors: residual and rows, one lane after the other.
+// Planes through the points of two sensors: residual and derivatives, one lane after the other.
 //
-// The normal of a plane is an eigenvector, found by iteration: packets cannot.
+// The normal of a plane is an eigenvector.  Its iteration stops at a different step for each
+// sample, so it does not run in packets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +14,7 @@
 
 namespace kinecal {
 
-/// Why there is no plane through what a sensor observed in one sample; empty if there is.
+/// Why the features of a sensor in one sample do not determine a plane; empty if they do.
 template <class S>
 [[nodiscard]] std::string why_no_plane(const PackedObservation<S>& seen) {
   static_assert(kLanes<S> == 1, "one sample");
@@ -40,11 +41,11 @@ template <class S>
   return {lane(p.x(), i), lane(p.y(), i), lane(p.z(), i)};
 }
 
-/// The planes of one lane.
+/// The planes of one lane and their derivatives.
 template <PlanePairBlock B, class S>
 class PlaneLane {
  public:
-  static constexpr int kSize = kResiduals<B>;
+  static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
   using Rows = FeatureRows<double, kSize, 2>;
 
   PlaneLane(const B& block, std::span<const SensorView<S>* const> views, int lane)
@@ -119,7 +120,7 @@ class PlaneLane {
 
 }  // namespace detail
 
-/// Residual and rows of the planes through all features of two sensors.
+/// Residual and derivatives of the planes through all features of two sensors.
 template <PlanePairBlock B, class S>
 [[nodiscard]] FeatureRows<S, kResiduals<B>, 2> plane_rows(
     const B& block, std::span<const SensorView<S>* const> views, bool derivatives) {

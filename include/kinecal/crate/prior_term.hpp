@@ -1,23 +1,24 @@
-// A term of the cost that depends on parameters alone: a prior with its weight and loss.
+// A term of the cost that depends on parameters only: a prior with its weight and loss.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
 #include <string>
 
-#include "kinecal/crate/term.hpp"
+#include "kinecal/crate/any_term.hpp"
 #include "kinecal/errors/prior.hpp"
 
 namespace kinecal {
 
+/// A prior with its weight and loss.
 struct PriorTerm {
-  std::string name;
-  Prior prior;
-  TermOptions options;
+  std::string name;     ///< of the prior, for reports
+  Prior prior;          ///< which parameters should stay small
+  TermOptions options;  ///< weight, loss, names
 
-  /// Its residuals as they count for one sample; unweighted.
+  /// Its unweighted residuals; they count once for each sample.
   /// @param values  of all parameters of the table
-  /// @param free    the Jacobian's columns; nullptr: residuals only
+  /// @param free    the columns of the Jacobian; nullptr: residuals only
   void evaluate(const ParameterTable& table, std::span<const double> values, const FreeSet* free,
                 TermResiduals& out) const {
     out.resize(Prior::kRows, free != nullptr ? free->size() : -1);
@@ -32,8 +33,8 @@ struct PriorTerm {
     }
   }
 
-  /// Adds its residuals, weighted, to normal equations; it counts once for each sample.  Each
-  /// residual depends on one parameter, so J^T J has a diagonal only.
+  /// Adds its weighted residuals to normal equations, once for each sample.  Each residual depends
+  /// on one parameter, so J^T J is diagonal.
   void add_to(NormalEquations& total, const TermResiduals& residuals, int samples,
               Losses losses) const {
     const double w2 = options.weight * options.weight;

@@ -1,8 +1,8 @@
-// A sensor on its robot: the chains from the base to everything it observes, and its parameters.
+// A sensor on its robot: its parameters and the chains from the base to what it observes.
 //
-// A feature is observed in the sensor's own frame or in a virtual frame (a checkerboard, a tracker)
-// that hangs on it; each such frame has its own chain.  What a sample says of the sensor is packed
-// once: trigonometry of its joints, measurements in the form in which the sensor model needs them.
+// A feature is given in the sensor's own frame or in a virtual frame (a checkerboard, a tracker)
+// beyond it; each of these frames has its own chain.  An observation is packed once: sine and
+// cosine of the joints, measurements as the sensor needs them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -27,11 +27,12 @@ struct SampleError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// A sensor with its chains and the table indices of its parameters.
 class SensorModel {
  public:
-  /// @param frames  names of all free frames: those that are joints of the robot correct them, the
-  ///                others are virtual frames
-  /// @throws RobotError  if there is no chain from the base to the sensor's frame
+  /// @param frames  names of all free frames: names of joints correct these joints, the others are
+  ///                virtual frames
+  /// @throws RobotError  if no chain leads from the base to the sensor's frame
   SensorModel(const Robot& robot, const std::string& base, Sensor sensor,
               const ParameterTable& table, const std::set<std::string>& frames)
       : sensor_(std::move(sensor)), camera_parameters_(sensor_parameters(sensor_.type), -1) {
@@ -46,16 +47,19 @@ class SensorModel {
     }
   }
 
+  /// The sensor itself.
   [[nodiscard]] const Sensor& sensor() const { return sensor_; }
+  /// The chain to the sensor's frame, then those to virtual frames.
   [[nodiscard]] const std::vector<RuntimeChain>& chains() const { return chains_; }
   /// Table indices of each chain's parameters.
   [[nodiscard]] const std::vector<std::vector<JointIndices>>& parameters() const {
     return parameters_;
   }
-  /// Table indices of the sensor's own parameters, -1 where the table has none.
+  /// Table indices of the sensor's own parameters; -1 if the table does not have them.
   [[nodiscard]] const std::vector<int>& camera_parameters() const { return camera_parameters_; }
 
-  /// @throws SampleError  naming what is missing or wrong
+  /// Prepares what the sensor observed in a sample.
+  /// @throws SampleError  with what is missing or wrong
   [[nodiscard]] PackedObservation<double> pack(const Sample& sample,
                                                const Observation& observation) const {
     PackedObservation<double> packed;
@@ -108,10 +112,10 @@ class SensorModel {
     });
   }
 
-  /// What is no number has weight zero; it must be a number for that.
+  /// Replaces NaN features, whose weight is zero, by another one: zero times NaN is NaN.
   static void replace_unusable(PackedObservation<double>& packed) {
     const auto first = std::find(packed.usable.begin(), packed.usable.end(), 1.0);
-    if (first == packed.usable.end()) return;  // no error block takes it then
+    if (first == packed.usable.end()) return;  // no error block uses the observation then
     const auto stand_in = packed.measured[static_cast<std::size_t>(first - packed.usable.begin())];
     for (std::size_t i = 0; i < packed.usable.size(); ++i) {
       if (packed.usable[i] == 0.0) packed.measured[i] = stand_in;
@@ -140,7 +144,7 @@ class SensorModel {
     for (const double number : numbers) {
       if (!std::isfinite(number)) {
         throw SampleError("sensor '" + sensor_.name +
-                          "': camera_info has a value that is no number");
+                          "': camera_info has a value that is not a number");
       }
     }
     if (!(numbers[0] > 0.0 && numbers[1] > 0.0)) {
@@ -179,7 +183,8 @@ class SensorModel {
 
   Sensor sensor_;
   std::vector<int> camera_parameters_;
-  std::vector<RuntimeChain> chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames
+  std::vector<RuntimeChain>
+      chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames
   std::vector<std::vector<JointIndices>> parameters_;
   std::map<std::string, std::size_t> chain_by_frame_;
 };

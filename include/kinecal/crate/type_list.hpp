@@ -1,4 +1,4 @@
-// Lists of types: what a crate is put together with.
+// Lists of types, for the parts of a crate.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -24,7 +24,7 @@ struct TypeList {
   }
 };
 
-/// The types of both lists, each once, in this order.
+/// The types of both lists, each once: first those of A, then the others of B.
 template <class A, class B>
 struct Joined;
 template <class A>
@@ -34,7 +34,7 @@ struct Joined<A, TypeList<>> {
 template <class A, class T, class... Ts>
 struct Joined<A, TypeList<T, Ts...>> : Joined<typename A::template With<T>, TypeList<Ts...>> {};
 
-/// All lists as one.
+/// The types of all lists, each once.
 template <class... Lists>
 struct AllOf {
   using type = TypeList<>;

@@ -1,7 +1,8 @@
-// Error blocks that subtract their two points and do nothing else with them: r = p_a - p_b + c.
+// Detects error blocks that only subtract their two points: r = p_a - p_b + c.
 //
-// Their derivatives are I and -I wherever the points are, so nothing needs to be differentiated or
-// multiplied with.  A traced jet finds out once, when a block is added; its author need not tell.
+// Their derivatives are I and -I wherever the points are, so evaluation neither differentiates nor
+// multiplies.  A traced jet detects this when the block is added; the block's author does not
+// declare anything.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,7 +11,7 @@
 
 namespace kinecal {
 
-/// True for blocks of that form.
+/// True if r = p_a - p_b + c with a constant c, wherever the points are.
 template <ErrorBlock B>
 [[nodiscard]] bool is_difference(const B& block) {
   if constexpr (PointPairBlock<B> && kResiduals<B> == 3) {

@@ -1,4 +1,4 @@
-// Robust losses: how much a feature's squared residual s = |r|^2 costs.  cost = rho(s) / 2
+// Robust losses: the cost of a feature with squared residual s = |r|^2 is rho(s) / 2.
 //
 //   none    s
 //   huber   s up to c^2, then 2 c sqrt(s) - c^2
@@ -17,17 +17,27 @@
 
 namespace kinecal {
 
-enum class LossType { none, huber, cauchy, tukey };
+/// Robust losses, named as in configurations.
+enum class LossType {
+  none,    ///< least squares
+  huber,   ///< linear beyond the scale
+  cauchy,  ///< logarithmic beyond the scale
+  tukey    ///< constant beyond the scale
+};
 
+/// A robust loss of one feature.
 struct Loss {
-  LossType type = LossType::none;
-  double scale = 1.0;  ///< c, in units of the weighted residual
+  LossType type = LossType::none;  ///< which function rho is
+  double scale = 1.0;              ///< c, in units of the weighted residual
 
+  /// rho at some s.
   template <class S>
   struct Value {
-    S rho, derivative;
+    S rho;         ///< rho(s)
+    S derivative;  ///< rho'(s)
   };
 
+  /// rho and its derivative.
   /// @param s  squared norm of one feature's weighted residual
   template <class S>
   [[nodiscard]] Value<S> operator()(const S& s) const {
@@ -35,7 +45,7 @@ struct Loss {
     const S c(scale), c2(scale * scale), one(1.0);
     switch (type) {
       case LossType::huber: {
-        const S root = sqrt(select(s <= c2, c2, s));  // c where the loss is quadratic
+        const S root = sqrt(select(s <= c2, c2, s));  // c in the quadratic part
         return {select(s <= c2, s, S(2.0) * c * root - c2), c / root};
       }
       case LossType::cauchy:
@@ -50,11 +60,12 @@ struct Loss {
     return {s, one};
   }
 
-  /// A loss with a single minimum that treats outliers alike: huber in place of cauchy and tukey,
-  /// which no longer see what is far away.  From it the loss itself is started.
+  /// The loss for a first solve: huber in place of cauchy and tukey, which ignore what is far away
+  /// and so have several minima.  Its solution is the start for the loss itself.
   [[nodiscard]] Loss convex() const {
     return {type == LossType::none ? LossType::none : LossType::huber, scale};
   }
+  /// True for none and huber.
   [[nodiscard]] bool is_convex() const { return type == LossType::none || type == LossType::huber; }
 };
 

@@ -1,12 +1,12 @@
-// The plane through points that leaves the least squares of their distances, with derivatives.
+// The plane through points with the least sum of squared distances, and its derivatives.
 //
 // The normal n is the eigenvector of M = sum q q^T (q = p - centroid) with the least eigenvalue l0;
 // u_k, l_k are the two others.  A change dp of one point changes M n by q (n . dp) + dp (q . n), so
 //
 //   dn/dp = sum over k of  u_k ((q . n) u_k + (q . u_k) n)^T / (l0 - l_k)
 //
-// Eigenvectors are found by Jacobi's rotations: for three by three as fast as Eigen's solver for any
-// size, and a tenth of the whole library less to include.
+// Jacobi rotations find the eigenvectors.  For 3 x 3 they are as fast as Eigen's general solver,
+// and they save a tenth of the time to include the library.
 // Source: Magnus, On differentiating eigenvalues and eigenvectors, 1985; Golub and Van Loan, Matrix
 // Computations, 8.5.
 // SPDX-License-Identifier: Apache-2.0
@@ -21,11 +21,11 @@
 
 namespace kinecal {
 
-/// A template so that only those who fit planes compile it.
+/// The least-squares plane through points.  (A template, so that only those who use it compile it.)
 template <class S>
 class PlaneFit {
  public:
-  /// @param points  at least three, not on one line, metres
+  /// @param points  at least three, not on one line; metres, in any frame
   explicit PlaneFit(std::span<const Vector3<S>> points) : count_(points.size()) {
     Vector3<S> sum = Vector3<S>::Zero();
     for (const auto& p : points) sum += p;
@@ -35,13 +35,14 @@ class PlaneFit {
     find_eigenvectors(scatter);
   }
 
-  /// False for fewer than three points, points on one line, or a cloud without a flattest side:
-  /// the normal is then not determined.
+  /// True if the points determine the normal.  Fewer than three points, points on one line and a
+  /// cloud that is equally thick in its two thinnest directions do not.
   [[nodiscard]] bool determined() const {
     constexpr double kLeastRatio = 1e-9;  // of squared extents
     return count_ >= 3 && eigenvalues_(1) - eigenvalues_(0) > kLeastRatio * eigenvalues_(2);
   }
 
+  /// The plane, in the frame of the points.
   [[nodiscard]] Plane<S> plane() const { return {centroid_, eigenvectors_.col(0)}; }
 
   /// (3 x 3) derivative of the centroid with respect to one point.
@@ -49,7 +50,7 @@ class PlaneFit {
     return Matrix3<S>::Identity() / static_cast<S>(count_);
   }
 
-  /// (3 x 3) derivative of the normal with respect to the point p.
+  /// (3 x 3) derivative of the normal with respect to the point p, 1 / metre.
   [[nodiscard]] Matrix3<S> normal_by_point(const Vector3<S>& p) const {
     const Vector3<S> q = p - centroid_, n = eigenvectors_.col(0);
     Matrix3<S> derivative = Matrix3<S>::Zero();
@@ -62,9 +63,9 @@ class PlaneFit {
   }
 
  private:
-  /// Turns a symmetric matrix until it is diagonal; eigenvalues ascend.
+  /// Rotates a symmetric matrix until it is diagonal; eigenvalues ascend.
   void find_eigenvectors(Matrix3<S> m) {
-    constexpr int kMaxSweeps = 20;  // five are many: they converge quadratically
+    constexpr int kMaxSweeps = 20;  // convergence is quadratic: five are usually enough
     constexpr std::array<std::array<int, 2>, 3> kOffDiagonal = {{{0, 1}, {0, 2}, {1, 2}}};
     Matrix3<S> turned = Matrix3<S>::Identity();
     bool diagonal = false;

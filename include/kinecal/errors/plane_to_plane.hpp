@@ -1,10 +1,10 @@
-// Two sensors see the same plane (plane_to_plane).
+// Two sensors observe the same plane (plane_to_plane).
 //
 //   r = ( (n_a - n_b) normal_scale,  n_b . (c_a - c_b) offset_scale )
 //
-// with normals n and centroids c of the two sets of points; n_b has been turned to the side of n_a,
-// so that no sign flips where a plane passes through the origin.
-// Source: Fetch paper, III-B
+// with normals n and centroids c of the two sets of points.  n_b is flipped to the side of n_a, so
+// no sign jumps where a plane passes through the origin.
+// Source: Fetch paper, III-B.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,13 +12,16 @@
 
 namespace kinecal {
 
+/// Difference of two planes.
 struct PlaneToPlane {
-  static constexpr const char *kType = "plane_to_plane", *kUnit = "1";
+  static constexpr const char* kType = "plane_to_plane";  ///< name in configurations
+  static constexpr const char* kUnit = "1";               ///< of the residual
 
-  double normal_scale = 1.0;
+  double normal_scale = 1.0;  ///< factor of the difference of normals
   double offset_scale = 1.0;  ///< 1 / metre
 
-  /// @returns  (4) difference of the normals, distance of centroid a to plane b; scaled
+  /// The difference of two planes in the base.
+  /// @returns  (4) scaled: difference of the normals (3), distance of centroid a to plane b (1)
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 4, 1> operator()(const Plane<S>& a, const Plane<S>& b) const {
     const S side = a.normal.dot(b.normal) < S(0.0) ? S(-1.0) : S(1.0);

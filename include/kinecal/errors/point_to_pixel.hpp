@@ -1,8 +1,8 @@
-// Re-projection (chain3d_to_camera2d): where a camera should see a point, less where it saw it.
+// Re-projection error (chain3d_to_camera2d): predicted pixel minus observed pixel.
 //
 //   r = project(p_camera) - pixel
 //
-// Source: Fetch paper, III-B; sensors/pinhole_camera.hpp for the projection
+// Source: Fetch paper, III-B.  sensors/pinhole_camera.hpp has the projection.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,9 +10,12 @@
 
 namespace kinecal {
 
+/// Re-projection error of a point.
 struct PointToPixel {
-  static constexpr const char *kType = "chain3d_to_camera2d", *kUnit = "px";
+  static constexpr const char* kType = "chain3d_to_camera2d";  ///< name in configurations
+  static constexpr const char* kUnit = "px";                   ///< of the residual
 
+  /// The re-projection error.
   /// @returns  (2) pixels
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 2, 1> operator()(const Sight<S>& sight) const {

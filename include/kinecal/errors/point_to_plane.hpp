@@ -1,7 +1,8 @@
 // Distance of a point to a known plane (chain3d_to_plane).  r = (n . p + d) / |n|
 //
-// Signed: the absolute value has a kink exactly at the solution, the cost is the same.
-// Source: Fetch paper, III-B, the ground plane
+// The distance is signed: the cost is the same as with an absolute value, which would have a kink
+// exactly at the solution.
+// Source: Fetch paper, III-B, the ground plane.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,9 +12,11 @@
 
 namespace kinecal {
 
+/// Distance of a point to a known plane.
 class PointToPlane {
  public:
-  static constexpr const char *kType = "chain3d_to_plane", *kUnit = "m";
+  static constexpr const char* kType = "chain3d_to_plane";  ///< name in configurations
+  static constexpr const char* kUnit = "m";                 ///< of the residual
 
   /// The floor: z = 0.
   PointToPlane() : PointToPlane(0.0, 0.0, 1.0, 0.0) {}
@@ -26,6 +29,7 @@ class PointToPlane {
     d_ /= length;
   }
 
+  /// The distance of a point.
   /// @param p_base  (3) feature, metres, in the base
   /// @returns       (1) signed distance, metres
   template <class S>

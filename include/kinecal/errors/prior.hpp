@@ -1,8 +1,8 @@
-// A prior on a joint or a frame (outrageous): its parameters should stay small.
+// A prior on a joint or a frame (outrageous): keeps its parameters small.
 //
 //   r = ( joint_scale offset,  position_scale (x, y, z),  rotation_scale (a, b, c) )
 //
-// Source: Fetch paper, III-B, restricting the camera frame
+// Source: Fetch paper, III-B, restricting the camera frame.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,15 +13,17 @@
 
 namespace kinecal {
 
+/// Keeps the parameters of a joint or a frame small.
 struct Prior {
-  std::string param;            ///< joint or frame
+  std::string param;            ///< name of the joint or frame
   double joint_scale = 1.0;     ///< 1 / rad or 1 / m
   double position_scale = 1.0;  ///< 1 / m
   double rotation_scale = 1.0;  ///< 1 / rad
 
-  static constexpr int kRows = 7;
+  static constexpr int kRows = 7;  ///< residuals: offset x y z a b c
 
-  /// The parameter of each row; -1 where the table has none: that row is zero.
+  /// Table index of the parameter of each residual; -1 if the table does not have it, and then the
+  /// residual is zero.
   [[nodiscard]] std::array<int, kRows> parameters(const ParameterTable& table) const {
     std::array<int, kRows> rows{table.find(param)};
     for (std::size_t axis = 0; axis < 6; ++axis) {
@@ -30,6 +32,7 @@ struct Prior {
     return rows;
   }
 
+  /// (7) factor of each residual.
   [[nodiscard]] std::array<double, kRows> scales() const {
     return {joint_scale,    position_scale, position_scale, position_scale,
             rotation_scale, rotation_scale, rotation_scale};

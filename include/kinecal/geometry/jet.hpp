@@ -2,7 +2,7 @@
 //
 //   f(x + dx) = f(x) + f'(x) dx      Jet<S, 1> x{3.0, 0};  (x * x).v(0) == 6
 //
-// Used small (3 to 9 wide) to differentiate what a sensor or an error block does with a point;
+// Small jets (3 to 12 wide) differentiate what a sensor or an error block does with a point;
 // kinematics has its own derivatives (kinematics/twist_walker.hpp).  S is double or a packet.
 // Comparisons look at the value only.
 // Source: Griewank, Walther, Evaluating Derivatives, 3.1.
@@ -18,21 +18,27 @@
 
 namespace kinecal {
 
+/// A value with its N first derivatives, each of type S.
 template <class S, int N>
 struct Jet {
-  using Gradient = Eigen::Matrix<S, N, 1>;
+  using Gradient = Eigen::Matrix<S, N, 1>;  ///< (N) derivatives
 
   S a{0.0};                       ///< value
   Gradient v = Gradient::Zero();  ///< derivatives
 
   Jet() = default;
+  /// A constant: all derivatives are zero.
   Jet(const S& value) : a(value) {}  // NOLINT: a number is a jet without derivatives
+  /// A constant: all derivatives are zero.
   template <class A>
   requires std::is_arithmetic_v<A> Jet(A value) : a(static_cast<double>(value)) {}  // NOLINT
-  /// The k-th variable: its derivative with respect to itself is one.
+  /// The k-th variable: its derivative with respect to itself is one, all others are zero.
   Jet(const S& value, int k) : a(value) { v(k) = S(1.0); }
+  /// A value with given derivatives.
   Jet(const S& value, const Gradient& gradient) : a(value), v(gradient) {}
 
+  /// Arithmetic: the sum, product and quotient rules.
+  /// @{
   Jet operator-() const { return {-a, -v}; }
   Jet& operator+=(const Jet& y) { return *this = *this + y; }
   Jet& operator-=(const Jet& y) { return *this = *this - y; }
@@ -53,10 +59,13 @@ struct Jet {
   friend Jet operator*(const Jet& x, const S& s) { return {x.a * s, x.v * s}; }
   friend Jet operator*(const S& s, const Jet& x) { return x * s; }
   friend Jet operator/(const Jet& x, const S& s) { return x * (S(1.0) / s); }
+  /// @}
 
-  // Jets of packets with numbers, as jets of doubles have them.
+  /// True for jets of packets, which need operators of their own with double.
   static constexpr bool kOfPackets = !std::same_as<S, double>;
   // clang-format off
+  /// Arithmetic of a jet of packets with a number.
+  /// @{
   friend Jet operator+(const Jet& x, double s) requires kOfPackets { return x + S(s); }
   friend Jet operator+(double s, const Jet& x) requires kOfPackets { return S(s) + x; }
   friend Jet operator-(const Jet& x, double s) requires kOfPackets { return x - S(s); }
@@ -65,22 +74,20 @@ struct Jet {
   friend Jet operator*(double s, const Jet& x) requires kOfPackets { return S(s) * x; }
   friend Jet operator/(const Jet& x, double s) requires kOfPackets { return x / S(s); }
   friend Jet operator/(double s, const Jet& x) requires kOfPackets { return Jet(S(s)) / x; }
+  /// @}
   // clang-format on
 
-  // Of packets, a mask: one answer for each lane; see select() in geometry/packet.hpp.
+  /// Comparison of the values.  Packets give a mask, one answer per lane: see select() in
+  /// geometry/packet.hpp.
+  /// @{
   friend auto operator==(const Jet& x, const Jet& y) { return x.a == y.a; }
   friend auto operator<(const Jet& x, const Jet& y) { return x.a < y.a; }
   friend auto operator>(const Jet& x, const Jet& y) { return x.a > y.a; }
   friend auto operator<=(const Jet& x, const Jet& y) { return x.a <= y.a; }
   friend auto operator>=(const Jet& x, const Jet& y) { return x.a >= y.a; }
+  /// @}
 
-  friend Jet sqrt(const Jet& x) {
-    using std::sqrt;
-    const S root = sqrt(x.a);
-    return {root, x.v * (S(0.5) / root)};
-  }
-  friend Jet abs(const Jet& x) { return select(x < Jet(S(0.0)), -x, x); }
-  /// a where the condition holds, else b; lane by lane.
+  /// x where the condition holds, else y; lane by lane.
   template <class Mask>
   friend Jet select(const Mask& condition, const Jet& x, const Jet& y) {
     Jet result;
@@ -88,6 +95,14 @@ struct Jet {
     for (int k = 0; k < N; ++k) result.v(k) = kinecal::select(condition, x.v(k), y.v(k));
     return result;
   }
+  /// Functions: the chain rule.
+  /// @{
+  friend Jet sqrt(const Jet& x) {
+    using std::sqrt;
+    const S root = sqrt(x.a);
+    return {root, x.v * (S(0.5) / root)};
+  }
+  friend Jet abs(const Jet& x) { return select(x < Jet(S(0.0)), -x, x); }
   friend Jet sin(const Jet& x) {
     using std::cos, std::sin;
     return {sin(x.a), x.v * cos(x.a)};
@@ -110,29 +125,31 @@ struct Jet {
     const S scale = S(1.0) / (x.a * x.a + y.a * y.a);
     return {atan2(y.a, x.a), y.v * (x.a * scale) - x.v * (y.a * scale)};
   }
+  /// @}
 };
 
-/// The number itself, or a jet's value.
+/// The number itself.
 template <class S>
 [[nodiscard]] S value_of(const S& x) {
   return x;
 }
+/// The value of a jet.
 template <class S, int N>
 [[nodiscard]] S value_of(const Jet<S, N>& x) {
   return x.a;
 }
 
-/// The scalar of measurements beside a residual in S: S itself, or what a jet holds.
+/// The scalar of the measurements in a residual of scalar S: S itself, or the value type of a jet.
 template <class S>
 using ValueOf = decltype(value_of(std::declval<const S&>()));
 
-/// Three jets for a point, whose variables start at `first`.
+/// A point as three jets: variables `first`, `first` + 1 and `first` + 2.
 template <class J, class S>
 [[nodiscard]] Eigen::Matrix<J, 3, 1> point_jets(const Eigen::Matrix<S, 3, 1>& p, int first) {
   return {J(p.x(), first), J(p.y(), first + 1), J(p.z(), first + 2)};
 }
 
-/// Values of a residual.
+/// (M) values of a residual.
 template <class S, int M>
 [[nodiscard]] auto values_of(const Eigen::Matrix<S, M, 1>& r) {
   Eigen::Matrix<ValueOf<S>, M, 1> result;
@@ -140,7 +157,7 @@ template <class S, int M>
   return result;
 }
 
-/// Derivatives of a residual's rows with respect to `Width` variables from `first`.
+/// (M x Width) derivatives of a residual with respect to the variables from `first` on.
 template <int Width, int M, class J>
 [[nodiscard]] auto derivatives_by(const Eigen::Matrix<J, M, 1>& r, int first) {
   Eigen::Matrix<ValueOf<J>, M, Width> result;

@@ -1,10 +1,10 @@
 // Packets: several doubles in one processor register, as a scalar.
 //
-// The templates of geometry/, kinematics/ and crate/ take a packet in place of a double and then
-// evaluate as many samples at once as it has lanes; its width follows the instruction set compiled
-// for.  A double is a packet of one lane: what is written with the functions below works for both.
+// With a packet in place of a double, the templates of geometry/, kinematics/ and crate/ evaluate
+// one sample per lane at once.  The width follows the instruction set that is compiled for.  The
+// functions below treat a double as a packet of one lane.
 //
-// std::experimental::simd does the same and more; to include it takes longer than all of Eigen.
+// std::experimental::simd does the same and more, but takes longer to include than all of Eigen.
 // Source: GCC manual, Using Vector Instructions through Built-in Functions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -15,14 +15,16 @@
 #include <type_traits>
 #include <utility>
 
+#include "kinecal/linkage.hpp"
+
 #if defined(__AVX__)
 #include <immintrin.h>
 #elif defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
-/// For functions that compose many small ones and run once for each pack of samples: all of them
-/// become one.  Sanitizers make such functions huge, and nobody measures there.
+/// Inlines everything that a function calls.  For functions that compose many small ones and run
+/// once per pack of samples.  Off with sanitizers, which would make such functions huge.
 #if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)
 #define KINECAL_FLATTEN [[gnu::flatten]]
 #else
@@ -38,22 +40,27 @@ struct RegisterOf {
 };
 }  // namespace detail
 
-/// N doubles in one register, with the arithmetic of one.
+inline namespace KINECAL_INSTRUCTION_SET {
+
+/// N doubles in one register, with the arithmetic of one double.
 template <int N>
 class PacketOf {
  public:
-  using Register = typename detail::RegisterOf<double, N>::Type;
-  using Mask = decltype(Register{} < Register{});  ///< of each lane: all bits or none
+  using Register = typename detail::RegisterOf<double, N>::Type;  ///< the compiler's vector type
+  using Mask = decltype(Register{} < Register{});                 ///< per lane: all bits or none
 
-  PacketOf() = default;
+  PacketOf() = default;  ///< lanes are not initialized
+  /// The same number in all lanes.
   PacketOf(double x) : x_(x - Register{}) {}  // NOLINT: a number is a packet of it
-  explicit PacketOf(Register x) : x_(x) {}
+  explicit PacketOf(Register x) : x_(x) {}    ///< takes over all lanes
 
-  [[nodiscard]] static constexpr std::size_t size() { return N; }
-  [[nodiscard]] Register lanes() const { return x_; }
-  [[nodiscard]] double operator[](std::size_t i) const { return x_[i]; }
-  void set(std::size_t i, double x) { x_[i] = x; }
+  [[nodiscard]] static constexpr std::size_t size() { return N; }         ///< number of lanes
+  [[nodiscard]] Register lanes() const { return x_; }                     ///< all lanes
+  [[nodiscard]] double operator[](std::size_t i) const { return x_[i]; }  ///< lane i
+  void set(std::size_t i, double x) { x_[i] = x; }                        ///< sets lane i
 
+  /// Arithmetic, lane by lane.
+  /// @{
   PacketOf operator-() const { return PacketOf(-x_); }
   PacketOf& operator+=(PacketOf b) { return *this = *this + b; }
   PacketOf& operator-=(PacketOf b) { return *this = *this - b; }
@@ -64,14 +71,20 @@ class PacketOf {
   friend PacketOf operator-(PacketOf a, PacketOf b) { return PacketOf(a.x_ - b.x_); }
   friend PacketOf operator*(PacketOf a, PacketOf b) { return PacketOf(a.x_ * b.x_); }
   friend PacketOf operator/(PacketOf a, PacketOf b) { return PacketOf(a.x_ / b.x_); }
+  /// @}
 
+  /// Comparison, lane by lane: see select().
+  /// @{
   friend Mask operator==(PacketOf a, PacketOf b) { return a.x_ == b.x_; }
   friend Mask operator!=(PacketOf a, PacketOf b) { return a.x_ != b.x_; }
   friend Mask operator<(PacketOf a, PacketOf b) { return a.x_ < b.x_; }
   friend Mask operator>(PacketOf a, PacketOf b) { return a.x_ > b.x_; }
   friend Mask operator<=(PacketOf a, PacketOf b) { return a.x_ <= b.x_; }
   friend Mask operator>=(PacketOf a, PacketOf b) { return a.x_ >= b.x_; }
+  /// @}
 
+  /// Functions.  abs and sqrt compute all lanes at once, the others one lane after the other.
+  /// @{
   friend PacketOf abs(PacketOf a) { return PacketOf(a.x_ < 0.0 ? -a.x_ : a.x_); }
   friend PacketOf sqrt(PacketOf a) {
 #if defined(__AVX512F__)
@@ -85,8 +98,6 @@ class PacketOf {
 #endif
     return a.each([](double x) { return std::sqrt(x); });
   }
-
-  // One lane after the other.
   friend PacketOf sin(PacketOf a) {
     return a.each([](double x) { return std::sin(x); });
   }
@@ -106,6 +117,7 @@ class PacketOf {
     for (std::size_t i = 0; i < size(); ++i) a.set(i, std::atan2(a[i], b[i]));
     return a;
   }
+  /// @}
 
  private:
   template <class F>
@@ -118,7 +130,7 @@ class PacketOf {
   Register x_;
 };
 
-/// As many as the widest register has.
+/// A packet as wide as the widest register of the instruction set that is compiled for.
 #if defined(__AVX512F__)
 using Packet = PacketOf<8>;
 #elif defined(__AVX__)
@@ -127,20 +139,13 @@ using Packet = PacketOf<4>;
 using Packet = PacketOf<2>;
 #endif
 
-/// The x86-64 level that the including source is compiled for, and so packets: x86-64, x86-64-v3 or
-/// x86-64-v4; "other" on other processors.
+}  // namespace KINECAL_INSTRUCTION_SET
+
+/// The x86-64 level for which the including source, and so its packets, are compiled: "x86-64",
+/// "x86-64-v3" or "x86-64-v4"; with a part of a level, the level below; "other" on other processors.
 /// Source: x86-64 psABI, micro-architecture levels.
 [[nodiscard]] constexpr std::string_view instruction_set() {
-#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && \
-    defined(__AVX512DQ__) && defined(__AVX512VL__)
-  return "x86-64-v4";
-#elif defined(__AVX2__) && defined(__FMA__) && defined(__BMI2__) && defined(__F16C__)
-  return "x86-64-v3";
-#elif defined(__x86_64__)
-  return "x86-64";
-#else
-  return "other";
-#endif
+  return KINECAL_X86_64_LEVEL;
 }
 
 namespace detail {
@@ -154,11 +159,11 @@ struct PacketTraits<PacketOf<N>> {
 };
 }  // namespace detail
 
-/// Number of samples that a scalar holds: one, but for packets.
+/// Number of samples in a scalar: the lanes of a packet, one for everything else.
 template <class S>
 inline constexpr int kLanes = detail::PacketTraits<S>::kLanes;
 
-/// One lane of a packet.
+/// Lane i of a packet.
 template <class S>
 [[nodiscard]] double lane(const S& x, [[maybe_unused]] int i) {
   if constexpr (kLanes<S> == 1) {
@@ -168,10 +173,11 @@ template <class S>
   }
 }
 
-/// What a lane holds: double, and for templates a name that depends on S.
+/// The type of a lane: double, as a name that depends on S.
 template <class S>
 using LaneOf = decltype(lane(std::declval<const S&>(), 0));
 
+/// Sets lane i of a packet.
 template <class S>
 void set_lane(S& x, [[maybe_unused]] int i, double value) {
   if constexpr (kLanes<S> == 1) {
@@ -193,12 +199,12 @@ template <class S>
   }
 }
 
-/// x in a register.  With SSE2 alone g++ reads from memory again what is multiplied more than once;
-/// loops over twists then take a tenth longer.
+/// Keeps x in a register.  With SSE2 only, g++ otherwise reloads a number for each multiplication,
+/// and loops over twists take a tenth longer.
 template <class S>
 [[nodiscard]] S in_register(const S& x) {
-  constexpr int n = kLanes<S>, widest = kLanes<Packet>;
-  if constexpr (n > 1 && n <= widest) {
+  constexpr int kN = kLanes<S>, kWidest = kLanes<Packet>;
+  if constexpr (kN > 1 && kN <= kWidest) {
     auto lanes = x.lanes();
 #if defined(__AVX512F__)
     asm("" : "+v"(lanes));
@@ -211,12 +217,14 @@ template <class S>
   }
 }
 
-/// a where the condition holds, else b; lane by lane.
+/// a where the condition holds, else b; lane by lane.  Error blocks write it in place of `?:`.
 template <class Mask, class S>
 [[nodiscard]] S select(const Mask& condition, const S& a, const S& b) {
   if constexpr (std::is_same_v<Mask, bool>) {
     return condition ? a : b;
-  } else if constexpr (requires { condition(a, b); }) {  // of a scalar of its own kind
+  } else if constexpr (requires {
+                         condition(a, b);
+                       }) {  // a mask that chooses by itself, as that of Traced
     return condition(a, b);
   } else {
     return S(condition ? a.lanes() : b.lanes());

@@ -1,8 +1,7 @@
 // A rigid-body pose: rotation and translation, in any scalar.
 //
-// base_T_tip maps coordinates in tip to base: p_base = base_T_tip * p_tip.  The products are
-// written out over both scalars, so that a pose of doubles multiplies one of Jets or packets
-// without being converted first.
+// base_T_tip maps coordinates in tip to base: p_base = base_T_tip * p_tip.  Products take two
+// scalars, so a pose of doubles multiplies one of jets or packets without conversion.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,11 +18,13 @@ template <class S, class U>
                     m(2, 0) * v(0) + m(2, 1) * v(1) + m(2, 2) * v(2));
 }
 
+/// A rotation followed by a translation: p -> rotation p + translation.
 template <class S>
 struct Pose {
-  Matrix3<S> rotation = Matrix3<S>::Identity();
-  Vector3<S> translation = Vector3<S>::Zero();
+  Matrix3<S> rotation = Matrix3<S>::Identity();  ///< (3 x 3)
+  Vector3<S> translation = Vector3<S>::Zero();   ///< (3) metres
 
+  /// tip_T_base of base_T_tip.
   [[nodiscard]] Pose inverse() const {
     Pose other;
     for (int r = 0; r < 3; ++r) {
@@ -34,6 +35,7 @@ struct Pose {
     return other;
   }
 
+  /// p_base = base_T_tip * p_tip, metres.
   template <class U>
   [[nodiscard]] auto operator*(const Vector3<U>& p) const {
     auto moved = rotated(rotation, p);
@@ -41,6 +43,7 @@ struct Pose {
     return moved;
   }
 
+  /// a_T_c = a_T_b * b_T_c.
   template <class U>
   [[nodiscard]] auto operator*(const Pose<U>& other) const {
     using R = decltype(rotation(0, 0) * other.rotation(0, 0));

@@ -1,14 +1,14 @@
 // Rotations as rotation vectors: exponential, logarithm and left Jacobian.
 //
-// A rotation vector w has the direction of the axis and the length of the angle (radians).  With
-// t = |w| and K = [w]x :
+// A rotation vector w points along the axis; its length is the angle in radians.  With t = |w| and
+// K = [w]x :
 //
 //   exp(w) = I + a K + b K^2      a = sin t / t      b = (1 - cos t) / t^2
 //   J(w)   = I + b K + c K^2      c = (t - sin t) / t^3
 //
 // J is the left Jacobian: exp(w + dw) = exp(J(w) dw) exp(w) to first order.  The coefficients are
-// even in t, hence smooth functions of t^2; below t = 0.5 their series are used, so values and
-// derivatives (automatic or by hand) are exact at zero.
+// even in t, so they are smooth functions of t^2.  Below t = 0.5 they are computed from their
+// series, which makes values and derivatives (automatic or by hand) exact at zero.
 // Source: Chirikjian, Stochastic Models, Information Theory, and Lie Groups, vol. 2, 10.8.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -18,12 +18,14 @@
 
 namespace kinecal {
 
+/// (3) column vector of any scalar.
 template <class S>
 using Vector3 = Eigen::Matrix<S, 3, 1>;
+/// (3 x 3) matrix of any scalar.
 template <class S>
 using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
-/// a x b.  Eigen's takes a module that is longer to include than all of geometry/.
+/// a x b.  Eigen's own needs a module that takes longer to include than all of geometry/.
 template <class S>
 [[nodiscard]] Vector3<S> cross(const Vector3<S>& a, const Vector3<S>& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
@@ -38,7 +40,7 @@ template <class S>
   return k;
 }
 
-/// I + a K + b K^2 with K = [w]x, and so K^2 = w w^T - |w|^2 I.
+/// I + a K + b K^2 with K = [w]x, hence K^2 = w w^T - |w|^2 I.
 template <class S>
 [[nodiscard]] Matrix3<S> cross_polynomial(const Vector3<S>& w, const S& a, const S& b) {
   const S x = w.x(), y = w.y(), z = w.z();
@@ -50,11 +52,14 @@ template <class S>
   return m;
 }
 
-/// The three coefficients a, b, c above, for the square of the angle.
+/// The coefficients a, b and c of the formulas at the top of this file.
 template <class S>
 struct RotationCoefficients {
-  S a, b, c;
+  S a;  ///< sin t / t
+  S b;  ///< (1 - cos t) / t^2
+  S c;  ///< (t - sin t) / t^3
 
+  /// @param t2  square of the angle, radians^2
   [[nodiscard]] static RotationCoefficients from_squared_angle(const S& t2) {
     using std::cos, std::sin, std::sqrt;
     if (t2 < S(0.25)) return {series(t2, 1), series(t2, 2), series(t2, 3)};
@@ -64,7 +69,7 @@ struct RotationCoefficients {
   }
 
  private:
-  /// sum over n of (-t2)^n / (2n + k)!, nine terms: the first one left out is below 1e-22.
+  /// Sum over n of (-t2)^n / (2n + k)!, nine terms: the first omitted one is below 1e-22.
   [[nodiscard]] static S series(const S& t2, int k) {
     S sum(0);
     for (int n = 8; n >= 0; --n) {
@@ -83,7 +88,7 @@ template <class S>
   return cross_polynomial(w, k.a, k.b);
 }
 
-/// Left Jacobian of exp at w: how a change of the rotation vector turns the rotated body.
+/// Left Jacobian of exp at w: a change dw of the rotation vector turns the body by J dw.
 /// @param w  (3) rotation vector, radians
 template <class S>
 [[nodiscard]] Matrix3<S> left_jacobian(const Vector3<S>& w) {
@@ -93,8 +98,8 @@ template <class S>
 
 namespace detail {
 
-/// Quaternion (x y z w) of a rotation matrix, not normalized: the largest of its four components
-/// is found first, so nothing is divided by a small number at any angle.
+/// Quaternion (x y z w) of a rotation matrix, not normalized.  The largest of the four components
+/// is found first, so that no angle divides by a small number.
 template <class S>
 [[nodiscard]] Eigen::Matrix<S, 4, 1> quaternion(const Matrix3<S>& r) {
   const S trace = r(0, 0) + r(1, 1) + r(2, 2);
@@ -118,8 +123,8 @@ template <class S>
 
 }  // namespace detail
 
-/// Rotation vector of a rotation matrix, angle in [0, pi]; exact at zero and at pi.
-/// At exactly pi the axis is determined up to its sign only; one of the two is returned.
+/// Rotation vector of a rotation matrix, angle in [0, pi]; exact at zero and at pi.  At exactly pi
+/// the matrix determines the axis only up to its sign; one of the two is returned.
 template <class S>
 [[nodiscard]] Vector3<S> log(const Matrix3<S>& r) {
   using std::atan2, std::sqrt;

@@ -1,6 +1,6 @@
-// Roll, pitch, yaw: the URDF's way to write a rotation.  R = Rz(yaw) Ry(pitch) Rx(roll).
+// Roll, pitch, yaw: how a URDF writes a rotation.  R = Rz(yaw) Ry(pitch) Rx(roll).
 //
-// Only files and reports speak it; inside, rotations are matrices and rotation vectors.
+// Only files and reports use it; everything else works on matrices and rotation vectors.
 // Source: URDF specification, <origin rpy>: fixed-axis rotations about x, then y, then z.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -9,6 +9,7 @@
 
 namespace kinecal {
 
+/// Rotation matrix from roll, pitch, yaw.
 /// @param rpy  (3) roll, pitch, yaw, radians
 [[nodiscard]] inline Matrix3<double> rotation_from_rpy(const Vector3<double>& rpy) {
   const double cr = std::cos(rpy.x()), sr = std::sin(rpy.x());
@@ -21,15 +22,17 @@ namespace kinecal {
   return r;
 }
 
-/// @returns  (3) roll, pitch, yaw, radians; pitch in [-pi/2, pi/2].  At pitch = +-pi/2 only
-///           yaw -+ roll is determined: roll is set to zero there.
+/// Roll, pitch, yaw of a rotation matrix.
+/// @returns  (3) roll, pitch, yaw, radians; pitch in [-pi/2, pi/2].  At pitch = +-pi/2 the matrix
+///           determines only yaw -+ roll; roll is then zero.
 [[nodiscard]] inline Vector3<double> rpy_from_rotation(const Matrix3<double>& r) {
   const double cos_pitch = std::hypot(r(0, 0), r(1, 0));
   const double pitch = std::atan2(-r(2, 0), cos_pitch);
-  // Below this cosine the angles that it scales drown in rounding.
+  // Below this cosine, yaw and roll drown in rounding errors.
   constexpr double kGimbalLock = 1e-12;
   if (cos_pitch < kGimbalLock) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
-  // With yaw taken out first, roll is found from entries of size one, accurate near gimbal lock.
+  // Roll is computed after yaw has been taken out, from entries of size one: accurate near gimbal
+  // lock.
   const double yaw = std::atan2(r(1, 0), r(0, 0));
   const double cy = std::cos(yaw), sy = std::sin(yaw);
   const double roll = std::atan2(sy * r(0, 2) - cy * r(1, 2), cy * r(1, 1) - sy * r(0, 1));

@@ -1,13 +1,14 @@
-// A traced number: it knows whether it depends on anything that varies.
+// A traced number: a double that knows whether it depends on a variable.
 //
-// In place of double in a jet it tells which derivatives of a function are constants, whatever the
-// function is given:
+// A jet of traced numbers finds which derivatives of a function are constants, whatever the
+// function's arguments are:
 //
 //   Jet<Traced, 1> x{Traced{3.0, true}, 0};
 //   (2.0 * x + 1.0).v(0)   2, constant            (x * x).v(0)   6, varies
 //
-// A comparison of what varies varies, too, and with it what select() chooses: a function in pieces
-// is not taken for the piece that it happens to be on.  A product with a constant zero is zero.
+// The result of comparing variables is variable, too, and so is what select() chooses by it: a
+// piecewise function is not mistaken for the piece at hand.  A product with the constant zero is
+// the constant zero.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,26 +17,34 @@
 
 namespace kinecal {
 
+/// A double that knows whether it depends on a variable.
 struct Traced {
-  double value = 0.0;
-  bool varies = false;
+  double value = 0.0;   ///< the number
+  bool varies = false;  ///< true if it depends on a variable
 
   Traced() = default;
+  /// A constant.
   Traced(double constant) : value(constant) {}  // NOLINT: a number is a constant
+  /// A constant or a variable.
   Traced(double number, bool does_vary) : value(number), varies(does_vary) {}
-  explicit operator double() const { return value; }
+  explicit operator double() const { return value; }  ///< the number
 
-  /// The answer to a comparison; as a function, it chooses.
+  /// The result of a comparison.
   struct Mask {
-    bool value, varies;
+    bool value;   ///< the result for these numbers
+    bool varies;  ///< true if it depends on a variable
 
+    /// a if the comparison holds, else b: see select().
     [[nodiscard]] Traced operator()(const Traced& a, const Traced& b) const {
       return {value ? a.value : b.value, varies || a.varies || b.varies};
     }
   };
 
+  /// True for the constant zero.
   [[nodiscard]] bool is_zero() const { return !varies && value == 0.0; }
 
+  /// Arithmetic: a result varies if an operand does.
+  /// @{
   Traced operator-() const { return {-value, varies}; }
   Traced& operator+=(const Traced& y) { return *this = *this + y; }
   Traced& operator-=(const Traced& y) { return *this = *this - y; }
@@ -56,15 +65,21 @@ struct Traced {
     if (x.is_zero()) return {};
     return {x.value / y.value, x.varies || y.varies};
   }
+  /// @}
 
   // clang-format off
+  /// Comparison of the numbers.
+  /// @{
   friend Mask operator==(const Traced& x, const Traced& y) { return {x.value == y.value, x.varies || y.varies}; }
   friend Mask operator<(const Traced& x, const Traced& y) { return {x.value < y.value, x.varies || y.varies}; }
   friend Mask operator>(const Traced& x, const Traced& y) { return y < x; }
   friend Mask operator<=(const Traced& x, const Traced& y) { return {x.value <= y.value, x.varies || y.varies}; }
   friend Mask operator>=(const Traced& x, const Traced& y) { return y <= x; }
+  /// @}
   // clang-format on
 
+  /// Functions: a result varies if an argument does.
+  /// @{
   friend Traced sqrt(const Traced& x) { return {std::sqrt(x.value), x.varies}; }
   friend Traced sin(const Traced& x) { return {std::sin(x.value), x.varies}; }
   friend Traced cos(const Traced& x) { return {std::cos(x.value), x.varies}; }
@@ -73,6 +88,7 @@ struct Traced {
   friend Traced atan2(const Traced& y, const Traced& x) {
     return {std::atan2(y.value, x.value), x.varies || y.varies};
   }
+  /// @}
 };
 
 }  // namespace kinecal

@@ -1,17 +1,17 @@
-// A kinematic chain: the joints met on the way from one link of a robot to another.
+// A kinematic chain: the joints between two links of a robot.
 //
-// Base and tip are any two links: the way leads up from the base to the lowest common ancestor and
-// down to the tip.  A joint that is passed from child to parent is `reversed`:
+// Base and tip are any two links: the chain goes up from the base to the lowest common ancestor and
+// down to the tip.  A joint that it passes from child to parent is `reversed`:
 //
 //   base_T_tip = prod over joints of  fixed * (correction * motion)   passed parent to child
 //                                     fixed * (motion^-1 * correction^-1)   passed child to parent
 //                * tail
 //
-// `fixed` gathers everything constant before the joint: its own origin and the fixed joints that
-// nobody corrects, so the walk meets only joints that move or are corrected.
+// `fixed` gathers everything constant before the joint: its own origin and the fixed joints without
+// a correction.  So the walk visits only joints that move or are corrected.
 //
-// This chain is put together at run time; one that the compiler knows is in static_chain.hpp.  The
-// walk is the same for both.
+// This chain is built at run time; static_chain.hpp has one that the compiler knows.  Both are
+// walked by the same code.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,11 +25,13 @@
 
 namespace kinecal {
 
-/// A constant pose that knows whether it turns: most origins only shift, a quarter of the work.
+/// A constant pose that knows whether it rotates.  Most origins of a URDF only translate, which is
+/// a quarter of the work.
 struct ConstantPose : Pose<double> {
-  bool turns = false;
+  bool turns = false;  ///< false if the rotation is the identity
 
   ConstantPose() = default;
+  /// Compares the rotation with the identity, exactly.
   ConstantPose(const Pose<double>& pose)  // NOLINT: any pose may be constant
       : Pose(pose) {
     for (int i = 0; i < 3; ++i) {
@@ -38,7 +40,7 @@ struct ConstantPose : Pose<double> {
   }
 };
 
-/// The axis of a frame with which a unit vector is parallel: 0, 1, 2 for x, y, z; -1 for none.
+/// The axis of its frame to which a unit vector is parallel: 0, 1, 2 for x, y, z; -1 if to none.
 [[nodiscard]] inline int principal_axis(const Vector3<double>& axis) {
   for (int i = 0; i < 3; ++i) {
     const bool others_are_zero = axis((i + 1) % 3) == 0.0 && axis((i + 2) % 3) == 0.0;
@@ -47,25 +49,28 @@ struct ConstantPose : Pose<double> {
   return -1;
 }
 
-/// One joint on the way, as the walk needs it.
+/// One joint of a chain, as the walk needs it.
 struct ChainJoint {
-  std::string name;
-  JointType type = JointType::fixed;
+  std::string name;                   ///< of the joint, or of a virtual frame
+  JointType type = JointType::fixed;  ///< fixed only if it is corrected
   ConstantPose fixed;  ///< constant transform from the previous joint (or the base) to this one
-  Vector3<double> axis{1.0, 0.0, 0.0};
-  bool corrected = false;  ///< has a frame correction
-  bool reversed = false;   ///< passed from child to parent
-  Mimic drive;             ///< whose measured position moves it; itself, unless it mimics
-  int principal = principal_axis(axis);  ///< most axes are: about them only two columns turn
+  Vector3<double> axis{1.0, 0.0, 0.0};  ///< unit vector, in the joint's frame
+  bool corrected = false;               ///< has a frame correction
+  bool reversed = false;                ///< passed from child to parent
+  Mimic drive;  ///< the joint whose measured position moves this one: itself, unless it mimics
+  int principal = principal_axis(axis);  ///< a principal axis rotates only two columns
 };
 
+/// A chain that is built at run time: see make_chain().
 struct RuntimeChain {
-  std::string base, tip;
-  std::vector<ChainJoint> joints;
-  ConstantPose tail;  ///< constant transform from the last joint to the tip
+  std::string base;                ///< link at which it starts
+  std::string tip;                 ///< link or virtual frame at which it ends
+  std::vector<ChainJoint> joints;  ///< from base to tip
+  ConstantPose tail;               ///< constant transform from the last joint to the tip
 };
 
-/// Joints from `link` up to the root, the link's own parent joint first.
+/// The joints from a link up to the root, the link's parent joint first.
+/// @throws RobotError  if the link does not exist or is below itself
 [[nodiscard]] inline std::vector<const Joint*> joints_to_root(const Robot& robot,
                                                               const std::string& link) {
   std::vector<const Joint*> way;
@@ -79,13 +84,13 @@ struct RuntimeChain {
   return way;
 }
 
-/// The chain from `base` to `tip`.
-/// @param corrected  names of the joints with a frame correction; they are kept even when fixed
-/// @throws RobotError  if a link does not exist (with the nearest name), the two are not connected,
-///                     or a joint between them is floating or planar
+/// The chain from `base` to `tip`, any two links of the robot.
+/// @param corrected  names of the joints with a frame correction; fixed ones among them are kept
+/// @throws RobotError  if a link does not exist (with the nearest name), if the two links are not
+///                     connected, or if a joint between them is floating or planar
 [[nodiscard]] inline RuntimeChain make_chain(const Robot& robot, const std::string& base,
-                                        const std::string& tip,
-                                        const std::set<std::string>& corrected = {}) {
+                                             const std::string& tip,
+                                             const std::set<std::string>& corrected = {}) {
   std::vector<const Joint*> up = joints_to_root(robot, base);
   std::vector<const Joint*> down = joints_to_root(robot, tip);
   const auto root = [](const std::vector<const Joint*>& way, const std::string& link) {
@@ -124,8 +129,9 @@ struct RuntimeChain {
   return chain;
 }
 
-/// The same chain with a virtual frame beyond its tip: a corrected, fixed joint of that name with
-/// an origin of identity.  Such frames (a checkerboard, a marker, a tracker) are in no URDF.
+/// The same chain with a virtual frame beyond its tip: a fixed joint of that name with a correction
+/// and an identity origin.  It stands for a frame that no URDF has: a checkerboard, a marker, a
+/// tracker.
 [[nodiscard]] inline RuntimeChain with_virtual_frame(RuntimeChain chain, const std::string& frame) {
   chain.joints.push_back({frame, JointType::fixed, chain.tail, Vector3<double>(1.0, 0.0, 0.0), true,
                           false, Mimic{frame, 1.0, 0.0}});

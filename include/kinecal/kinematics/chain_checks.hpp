@@ -1,4 +1,4 @@
-// What must hold of a Chain, each told in a sentence while it is compiled: see sentence.hpp.
+// Compile-time checks of a Chain; each fails with a sentence (sentence.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal::detail {
 
-/// @tparam Found  what LookedUp found
+/// @tparam Found  the result of LookedUp: Known or DidYouMean
 template <FixedString Base, class Found, bool kIsLink = false>
 struct BaseOfChain {
   static_assert(kIsLink,
@@ -42,7 +42,7 @@ struct FrameOfChain {
                 "kinecal: the robot has no joint of a name in the Names of this Chain; correct it");
 };
 
-/// That the joints with a frame correction exist, where they are named.
+/// Checks that the joints with a frame correction exist, if they are given as Names.
 template <class R, class Frames>
 struct CheckFrames {
   using type = Holds;

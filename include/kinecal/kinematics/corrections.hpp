@@ -1,8 +1,8 @@
 // Corrections: what calibration adds to the joints of a chain, as plain values.
 //
-// One per joint of the chain, in its order.  They do not know what is free: a forward-kinematics
-// user fills them by hand, a calibration from its parameters, once per evaluation and not once per
-// sample.
+// A chain has one correction per joint, in its order.  Corrections do not know which parameters are
+// free: for forward kinematics you fill them by hand; a calibration fills them from its parameters,
+// once per evaluation and not once per sample.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,12 +14,16 @@
 
 namespace kinecal {
 
+/// The correction of one joint: an offset of its position and a correction of its frame.
 template <class S>
 struct JointCorrection {
   Motion<S> offset;                                   ///< added to the measured position
   Pose<S> frame;                                      ///< between the joint's origin and its motion
   Matrix3<S> left_jacobian = Matrix3<S>::Identity();  ///< of the frame's rotation vector
 
+  /// Sets the frame correction.
+  /// @param translation      (3) metres, in the joint's frame
+  /// @param rotation_vector  (3) radians, in the joint's frame
   void set_frame(const Vector3<S>& translation, const Vector3<S>& rotation_vector) {
     frame = {exp(rotation_vector), translation};
     left_jacobian = kinecal::left_jacobian(rotation_vector);
@@ -30,7 +34,7 @@ struct JointCorrection {
 template <class S>
 using Corrections = std::vector<JointCorrection<S>>;
 
-/// The measured motions of a chain's joints for one sample.
+/// The measured motion of each joint of a chain in one sample.
 /// @param position_of  callable: name of a joint -> its measured position, radians or metres
 template <class PositionOf>
 [[nodiscard]] std::vector<Motion<double>> measured_motions(const RuntimeChain& chain,
@@ -47,6 +51,7 @@ template <class PositionOf>
 }
 
 /// The same for a chain that the compiler knows.
+/// @param position_of  callable: name of a joint -> its measured position, radians or metres
 template <StaticChain C, class PositionOf>
 [[nodiscard]] std::vector<Motion<double>> measured_motions(const C&, PositionOf&& position_of) {
   std::vector<Motion<double>> motions;
@@ -61,9 +66,11 @@ template <StaticChain C, class PositionOf>
   return motions;
 }
 
+/// Number of joints of a chain, and so of its motions and corrections.
 [[nodiscard]] inline std::size_t num_joints(const RuntimeChain& chain) {
   return chain.joints.size();
 }
+/// Number of joints of a chain that the compiler knows.
 template <StaticChain C>
 [[nodiscard]] std::size_t num_joints(const C&) {
   return C::kSize;

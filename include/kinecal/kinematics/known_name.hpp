@@ -1,7 +1,7 @@
-// Names that are looked up while compiling.
+// Names that the compiler looks up.
 //
-// What is found is a type.  As an argument of a sentence (see sentence.hpp) it stands right beside
-// it in the compiler's output, letter by letter, as clang 14 writes texts as numbers:
+// The result is a type.  As an argument of a sentence (sentence.hpp) it appears next to it in the
+// compiler's output.  It lists letters because clang 14 prints strings as numbers:
 //
 //   JointOfOffset<JointOffset<"elbow_flx_joint">, DidYouMean<'e', 'l', 'b', 'o', 'w', '_', 'f', …>>
 // SPDX-License-Identifier: Apache-2.0
@@ -15,14 +15,15 @@
 
 namespace kinecal {
 
-/// What was looked up exists.
+/// The name exists.
 struct Known {
-  static constexpr bool kExists = true;
+  static constexpr bool kExists = true;  ///< the name exists
 };
-/// It does not; what was probably meant, or no letters if nothing is near.
+/// The name does not exist.
+/// @tparam Letters  the likely intended name; none if no name is near
 template <char... Letters>
 struct DidYouMean {
-  static constexpr bool kExists = false;
+  static constexpr bool kExists = false;  ///< the name does not exist
 };
 
 namespace detail {
@@ -30,7 +31,7 @@ namespace detail {
 template <const std::string_view& Name, class List>
 inline constexpr bool kExists = std::ranges::find(List::kNames, Name) != List::kNames.end();
 
-/// Of the first N of the list.  Each is a constant of its own, as compilers limit the work in one.
+/// The nearest of the first N names.  One constant per N, because compilers limit the work in one.
 template <const std::string_view& Name, class List, std::size_t N>
 inline constexpr NearestName kNearest = kNearest<Name, List, N - 1>.or_nearer(List::kNames[N - 1],
                                                                               Name);
@@ -52,9 +53,9 @@ struct LookUp<Name, List, false> {
 
 }  // namespace detail
 
-/// Known or DidYouMean.
+/// Looks up a name in a list: Known or DidYouMean.
 /// @tparam Name  a constant with static storage
-/// @tparam List  a type with kNames, an array of texts
+/// @tparam List  a type with kNames, an array of std::string_view
 template <const std::string_view& Name, class List>
 using LookedUp = typename detail::LookUp<Name, List>::type;
 

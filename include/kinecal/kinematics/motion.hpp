@@ -1,7 +1,7 @@
-// How far a joint has moved, with its trigonometry: no sine or cosine is taken inside the walk.
+// How far a joint has moved, with its sine and cosine, so that the walk needs no trigonometry.
 //
-// The sine and cosine of a measured position are found once per sample, those of an offset once per
-// evaluation; the walk adds the two by
+// The sine and cosine of a measured position are computed once per sample, those of an offset once
+// per evaluation.  The walk combines the two by angle addition:
 //
 //   cos(q + d) = cos q cos d - sin q sin d      sin(q + d) = sin q cos d + cos q sin d
 // SPDX-License-Identifier: Apache-2.0
@@ -13,21 +13,25 @@
 
 namespace kinecal {
 
+/// A joint's position with its cosine and sine.
 template <class S>
 struct Motion {
   S position{0.0};  ///< radians or metres
-  S cos{1.0};
-  S sin{0.0};
+  S cos{1.0};       ///< of the position; unused by prismatic joints
+  S sin{0.0};       ///< of the position; unused by prismatic joints
 
+  /// The same way back.
   [[nodiscard]] Motion inverse() const { return {-position, cos, -sin}; }
 };
 
+/// The motion to a position, radians or metres.
 template <class S>
 [[nodiscard]] Motion<S> make_motion(const S& position) {
   using std::cos, std::sin;
   return {position, cos(position), sin(position)};
 }
 
+/// One motion after the other: positions add up.
 template <class S, class U>
 [[nodiscard]] auto operator+(const Motion<S>& a, const Motion<U>& b) {
   using R = decltype(a.cos * b.cos);
@@ -35,7 +39,7 @@ template <class S, class U>
                    a.sin * b.cos + a.cos * b.sin};
 }
 
-/// Rotation by a motion about a unit axis: cos I + sin [a]x + (1 - cos) a a^T.
+/// (3 x 3) rotation by a motion about a unit axis a: cos I + sin [a]x + (1 - cos) a a^T.
 template <class S>
 [[nodiscard]] Matrix3<S> axis_rotation(const Vector3<double>& a, const Motion<S>& motion) {
   const S& c = motion.cos;
@@ -48,7 +52,8 @@ template <class S>
   return r;
 }
 
-/// Pose of a moved joint: a turn about its axis or a shift along it.
+/// Pose of a joint that has moved: rotated about its axis or shifted along it.
+/// @param axis  (3) unit vector, in the joint's frame
 template <class S>
 [[nodiscard]] Pose<S> joint_pose(JointType type, const Vector3<double>& axis,
                                  const Motion<S>& motion) {
@@ -60,7 +65,8 @@ template <class S>
   return pose;
 }
 
-/// rotation = rotation * turn by a motion about any unit axis of its frame.
+/// rotation = rotation * axis_rotation(axis, motion).
+/// @param axis  (3) any unit vector, in the rotated frame
 template <class S, class U>
 void turn_about(Matrix3<S>& rotation, const Vector3<double>& axis, const Motion<U>& motion) {
   const Matrix3<U> turn = axis_rotation(axis, motion);
@@ -73,7 +79,7 @@ void turn_about(Matrix3<S>& rotation, const Vector3<double>& axis, const Motion<
 }
 
 namespace detail {
-/// About axis K the two other columns turn into each other.
+/// A rotation about axis K mixes the two other columns.
 template <int K, class S, class U>
 void turn_columns(Matrix3<S>& rotation, const Motion<U>& motion) {
   constexpr int kI = (K + 1) % 3, kJ = (K + 2) % 3;
@@ -85,7 +91,8 @@ void turn_columns(Matrix3<S>& rotation, const Motion<U>& motion) {
 }
 }  // namespace detail
 
-/// The same about one of the axes of its frame: 0, 1, 2 for x, y, z.
+/// The same about a principal axis of the rotated frame.
+/// @param principal  0, 1, 2 for x, y, z
 template <class S, class U>
 void turn_about(Matrix3<S>& rotation, int principal, const Motion<U>& motion) {
   switch (principal) {

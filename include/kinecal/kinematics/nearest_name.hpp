@@ -10,8 +10,8 @@
 
 namespace kinecal {
 
-/// Number of insertions, deletions, replacements and swaps of neighbours between two names; letters
-/// of different case count as equal.  Source: Damerau-Levenshtein, restricted.
+/// Number of insertions, deletions, replacements and swaps of neighbours between two names; case
+/// does not count.  Source: Damerau-Levenshtein distance, restricted.
 [[nodiscard]] constexpr std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; };
   const auto same = [&](char x, char y) { return x == y || lower(x) == lower(y); };
@@ -36,23 +36,24 @@ namespace kinecal {
 
 /// The nearest of the candidates seen so far.
 struct NearestName {
-  std::string_view name = {};  ///< empty if none is near enough
-  std::size_t distance = 0;    ///< of the next one, less than this
+  std::string_view name = {};  ///< empty if no candidate is near enough
+  std::size_t distance = 0;    ///< a nearer candidate has a smaller edit distance than this
 
-  /// Near enough to be a misspelling: at most a third of the name's letters differ.
+  /// Before the first candidate.  A misspelling differs in at most a third of its letters.
   [[nodiscard]] static constexpr NearestName none(std::string_view misspelt) {
     return {{}, misspelt.size() / 3 + 1};
   }
+  /// The candidate if it is nearer than this one, else this one.
   [[nodiscard]] constexpr NearestName or_nearer(std::string_view candidate,
                                                 std::string_view misspelt) const {
     const std::size_t n = misspelt.size(), m = candidate.size();
-    if (std::max(n, m) - std::min(n, m) >= distance) return *this;  // so many insertions at least
+    if (std::max(n, m) - std::min(n, m) >= distance) return *this;  // at least as many insertions
     const std::size_t d = edit_distance(misspelt, candidate);
     return d < distance ? NearestName{candidate, d} : *this;
   }
 };
 
-/// The candidate nearest to `name`, if one is near enough.
+/// The candidate nearest to `name`; nullopt if none is near enough.
 template <class Names>
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view name, const Names& names) {
   NearestName nearest = NearestName::none(name);
@@ -61,7 +62,7 @@ template <class Names>
   return std::string(nearest.name);
 }
 
-/// "; did you mean 'x'?" for the nearest candidate, or nothing.
+/// The end of an error message: "; did you mean 'x'?", or nothing if no candidate is near enough.
 template <class Names>
 [[nodiscard]] std::string did_you_mean(std::string_view name, const Names& names) {
   const auto nearest = nearest_name(name, names);

@@ -6,10 +6,12 @@
 
 namespace kinecal {
 
+/// A Walker: composes base_T_tip.
 template <class S>
 struct PoseWalker {
   Pose<S> pose;  ///< of the frame reached so far, in the base
 
+  /// Passes a constant transform.
   void fixed(const ConstantPose& transform) {
     if (transform.turns) {
       pose = pose * static_cast<const Pose<double>&>(transform);
@@ -18,17 +20,19 @@ struct PoseWalker {
     }
   }
 
-  /// A constant that the compiler knows.
+  /// Passes a constant transform that the compiler knows.
   template <class C, std::size_t I>
   void fixed(const detail::FixedOf<C, I>&) {
     multiply_by_constant<detail::FixedOf<C, I>>(pose);
   }
 
+  /// Passes a frame correction.
   template <class Joint, class U>
   void correct(std::size_t, const Joint& joint, const JointCorrection<U>& correction) {
     pose = joint.reversed ? pose * correction.frame.inverse() : pose * correction.frame;
   }
 
+  /// Passes a joint's motion.
   template <class Joint, class U>
   void move(std::size_t, const Joint& joint, const Motion<U>& motion) {
     if (!turns(joint.type)) {
@@ -41,7 +45,7 @@ struct PoseWalker {
     }
   }
 
-  /// A joint's axis in the base, while the walk is in its frame.
+  /// (3) axis of a joint in the base, while the walk is in the joint's frame.
   template <class Joint>
   [[nodiscard]] Vector3<S> axis(const Joint& joint) const {
     if (joint.principal < 0) return rotated(pose.rotation, Vector3<double>(joint.axis));
@@ -52,7 +56,7 @@ struct PoseWalker {
   }
 };
 
-/// Forward kinematics: the pose of the chain's tip in its base.
+/// Forward kinematics: base_T_tip of a chain.
 /// @param chain        a RuntimeChain or a Chain
 /// @param position_of  callable: name of a joint -> its measured position, radians or metres
 /// @param corrections  one per joint of the chain
@@ -66,7 +70,8 @@ template <class Chain, class PositionOf, class S>
   return walker.pose;
 }
 
-/// Forward kinematics of the robot as it is, without corrections.
+/// Forward kinematics without corrections.
+/// @param position_of  callable: name of a joint -> its measured position, radians or metres
 template <class Chain, class PositionOf>
 [[nodiscard]] Pose<double> forward_kinematics(const Chain& chain, PositionOf&& position_of) {
   return forward_kinematics(chain, position_of, Corrections<double>(num_joints(chain)));

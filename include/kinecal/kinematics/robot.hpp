@@ -1,4 +1,4 @@
-// A robot as kinematics sees it: a tree of links connected by joints, found by name.
+// A robot for kinematics: a tree of links connected by joints, found by name.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,30 +15,35 @@
 
 namespace kinecal {
 
-/// Thrown where a name does not exist in the robot or two links are not connected.
+/// A robot cannot be used: a name does not exist in it, or links are not connected.
 struct RobotError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// A robot: its joints, indexed by name.
 class Robot {
  public:
   Robot() = default;
 
-  /// @throws RobotError  on a joint name or child link that occurs twice, a mimic joint without its
-  ///                     source or in a circle, a moving joint with an axis of length zero
+  /// Indexes and checks the joints; axes become unit vectors.
+  /// @throws RobotError  if a joint name or child link occurs twice, a joint mimics one that does
+  ///                     not exist or itself, or a moving joint has an axis of length zero
   Robot(std::string name, std::vector<Joint> joints)
       : name_(std::move(name)), joints_(std::move(joints)) {
     for (std::size_t i = 0; i < joints_.size(); ++i) add_to_indices(i);
     for (const Joint& joint : joints_) check_mimic(joint);
   }
 
-  [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] const std::vector<Joint>& joints() const { return joints_; }
+  [[nodiscard]] const std::string& name() const { return name_; }             ///< of the robot
+  [[nodiscard]] const std::vector<Joint>& joints() const { return joints_; }  ///< in given order
 
+  /// True if the robot has a joint of this name.
   [[nodiscard]] bool has_joint(const std::string& name) const { return by_name_.contains(name); }
+  /// True if the robot has a link of this name.
   [[nodiscard]] bool has_link(const std::string& name) const { return links_.contains(name); }
 
-  /// @throws RobotError  with the nearest name, if there is no such joint
+  /// The joint with this name.
+  /// @throws RobotError  if it does not exist, with the nearest name
   [[nodiscard]] const Joint& joint(const std::string& name) const {
     const auto it = by_name_.find(name);
     if (it == by_name_.end()) {
@@ -48,8 +53,8 @@ class Robot {
     return joints_[it->second];
   }
 
-  /// The joint whose child is this link, or nullptr for the root.
-  /// @throws RobotError  with the nearest name, if there is no such link
+  /// The joint whose child is this link; nullptr for the root.
+  /// @throws RobotError  if the link does not exist, with the nearest name
   [[nodiscard]] const Joint* parent_joint(const std::string& link) const {
     const auto it = links_.find(link);
     if (it == links_.end()) {
@@ -59,12 +64,14 @@ class Robot {
     return it->second < 0 ? nullptr : &joints_[static_cast<std::size_t>(it->second)];
   }
 
+  /// Names of all joints, in their order.
   [[nodiscard]] std::vector<std::string> joint_names() const {
     std::vector<std::string> names;
     for (const Joint& joint : joints_) names.push_back(joint.name);
     return names;
   }
 
+  /// Names of all links, sorted.
   [[nodiscard]] std::vector<std::string> link_names() const {
     std::vector<std::string> names;
     for (const auto& [link, joint] : links_) names.push_back(link);
@@ -106,8 +113,8 @@ class Robot {
     }
   }
 
-  /// A vector divided by its length is that near to 1.  It is not divided again, so that a joint of
-  /// one robot is the same in another, bit by bit.
+  /// A vector divided by its length is this close to length 1.  It is not divided a second time, so
+  /// that a joint copied to another robot stays the same, bit for bit.
   static constexpr double kUnitLength = 4.0 * std::numeric_limits<double>::epsilon();
 
   std::string name_;
@@ -116,8 +123,8 @@ class Robot {
   std::map<std::string, int> links_;  ///< link -> index of its parent joint, -1 for the root
 };
 
-/// The joint that finally drives a mimic joint, with the factors in between multiplied out.
-/// A joint that mimics nothing is driven by itself.
+/// The joint that drives a mimic joint, through all mimic joints in between, with their multipliers
+/// and offsets combined.  A joint that does not mimic drives itself.
 [[nodiscard]] inline Mimic drive(const Robot& robot, const Joint& joint) {
   Mimic total{joint.name, 1.0, 0.0};
   for (const Joint* j = &joint; j->mimic; j = &robot.joint(j->mimic->joint)) {

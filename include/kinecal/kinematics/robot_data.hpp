@@ -1,7 +1,7 @@
-// A robot as constant data: what kinecal_add_robot() makes of a URDF when a project is built.
+// A robot as constant data: kinecal_add_robot() generates it from a URDF when a project is built.
 //
-// The numbers are those that read_urdf() finds at run time, bit by bit; the compiler knows them, so
-// that chains can be put together and checked before anything runs.
+// The numbers are those that read_urdf() reads at run time, bit for bit.  Because the compiler
+// knows them, it builds chains and checks names before anything runs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,27 +28,31 @@ struct PoseData {
 
 /// The position of a mimic joint: multiplier * position(joint) + offset.
 struct MimicData {
-  std::string_view joint = {};
-  double multiplier = 1.0;
-  double offset = 0.0;  ///< radians or metres
+  std::string_view joint = {};  ///< the joint that it follows
+  double multiplier = 1.0;      ///< of that joint's position
+  double offset = 0.0;          ///< radians or metres
 };
 
+/// Range of a joint's position.
 struct LimitsData {
-  double lower = 0.0, upper = 0.0;  ///< radians or metres
+  double lower = 0.0;  ///< radians or metres
+  double upper = 0.0;  ///< radians or metres
 };
 
+/// A Joint as constant data.
 struct JointData {
-  std::string_view name = {};
-  JointType type = JointType::fixed;
-  std::string_view parent = {}, child = {};      ///< links
+  std::string_view name = {};                    ///< unique in the robot
+  JointType type = JointType::fixed;             ///< how it moves
+  std::string_view parent = {};                  ///< link
+  std::string_view child = {};                   ///< link
   PoseData origin = {};                          ///< of the joint in the parent link
   std::array<double, 3> axis = {1.0, 0.0, 0.0};  ///< unit vector, in the joint's frame
-  std::optional<MimicData> mimic = {};
-  std::optional<LimitsData> limits = {};
+  std::optional<MimicData> mimic = {};           ///< if it follows another joint
+  std::optional<LimitsData> limits = {};         ///< if it has any
 };
 
-/// True if the joints are a tree in which each stands behind the one that moves its parent link;
-/// the first joint's parent is the root.
+/// True if the joints are a tree in which each joint comes after the one that moves its parent
+/// link.  The parent of the first joint is the root.
 [[nodiscard]] constexpr bool parents_first(std::span<const JointData> joints) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const std::string_view root = joints.front().parent, parent = joints[i].parent;
@@ -70,12 +74,14 @@ concept RobotData = requires {
   requires parents_first(R::kJoints);
 };
 
+/// The pose as matrix and vector.
 [[nodiscard]] inline Pose<double> pose_from(const PoseData& data) {
   using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   return {Eigen::Map<const RowMajor>(data.rotation.data()),
           Eigen::Map<const Vector3<double>>(data.translation.data())};
 }
 
+/// The joint as Robot takes it.
 [[nodiscard]] inline Joint joint_from(const JointData& data) {
   Joint joint{std::string(data.name),   data.type,
               std::string(data.parent), std::string(data.child),
@@ -87,8 +93,8 @@ concept RobotData = requires {
   return joint;
 }
 
-/// The same robot at run time, where names are looked up.
-/// @throws RobotError  as the constructor of Robot
+/// The same robot at run time.
+/// @throws RobotError  as the constructor of Robot does
 template <RobotData R>
 [[nodiscard]] Robot robot_from() {
   std::vector<Joint> joints;

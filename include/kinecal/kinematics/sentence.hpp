@@ -1,9 +1,9 @@
-// Sentences that a compiler says about what is wrong.
+// Sentences: compile errors that say in one line what is wrong and what to do.
 //
-// A sentence is a template with a static_assert that fails, and with what it is about among its
-// arguments, as the compiler writes these right beside it.  A check is a type: Holds, or the
-// sentence, named and not yet instantiated.  What is checked keeps an object of that type as its
-// last member; so exactly one sentence is said, the first, and nothing follows from what is wrong.
+// A sentence is a template with a static_assert that fails.  Its arguments name what it is about,
+// because compilers print them next to the message.  A check is a type: Holds, or the sentence,
+// named but not yet instantiated.  The type that is checked keeps an object of the check as its
+// last member.  So the compiler prints exactly one sentence, the first, and no further errors.
 //
 //   template <class Joint, bool kMoves = false>
 //   struct JointMoves {
@@ -17,7 +17,7 @@
 
 namespace kinecal::detail {
 
-/// The check that has nothing to say.
+/// The result of a check that passed.
 struct Holds {};
 
 template <bool kHolds, class Sentence>
@@ -34,7 +34,7 @@ struct First<Sentence, Checks...> {
 template <class... Checks>
 struct First<Holds, Checks...> : First<Checks...> {};
 
-/// The first sentence of some checks; Holds if all hold.
+/// The first sentence among some checks; Holds if all passed.
 template <class... Checks>
 using FirstOf = typename First<Checks...>::type;
 

@@ -1,12 +1,12 @@
-// A chain that the compiler knows: its joints, constants and way are found before anything runs.
+// A chain that the compiler knows: its joints and constants are found while compiling.
 //
 //   using Arm = Chain<fetch::Robot, "torso_lift_link", "wrist_roll_link">;
 //   const Pose<double> tip = forward_kinematics(Arm{}, position_of);
 //
-// The robot is a RobotData, usually made by kinecal_add_robot() from a URDF.  The walk of such a
-// chain is that of a RuntimeChain with every joint in a place of its own in the code: fixed joints
-// are folded, origins that do not turn and principal axes cost what they must and no table is read.
-// It leads from a link down to one below it; any other two links take a RuntimeChain.
+// The robot is a RobotData, usually generated from a URDF by kinecal_add_robot().  The walk is that
+// of a RuntimeChain, unrolled: each joint has its own code, fixed joints are folded, identity
+// rotations and principal axes cost nothing extra, and no table is read.  The tip must be below the
+// base; between any other two links use a RuntimeChain.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -36,7 +36,7 @@ struct StaticAxis {
   }
 };
 
-/// What a Chain keeps of a joint.
+/// A joint of a Chain.
 struct StaticJointData {
   std::string_view name;
   JointType type = JointType::fixed;
@@ -46,35 +46,40 @@ struct StaticJointData {
   MimicData drive;
 };
 
-/// The pose in front of joint I of a chain, or behind its last one.
+/// The constant pose before joint I of a chain, or after its last joint.
 template <class C, std::size_t I>
 struct FixedOf {
   static constexpr PoseData kPose = I < C::kSize ? C::kJoints[I].fixed : C::kTail;
 };
 
-/// Joint I of a chain, as walkers see a ChainJoint.
+/// Joint I of a chain, with the members of a ChainJoint.
 template <class C, std::size_t I>
 struct StaticJoint {
+  // NOLINTBEGIN(readability-identifier-naming): they are called as there
   static constexpr JointType type = C::kJoints[I].type;
   static constexpr StaticAxis axis = C::kJoints[I].axis;
   static constexpr int principal = axis.principal();
   static constexpr bool corrected = C::kJoints[I].corrected, reversed = false;
   static constexpr FixedOf<C, I> fixed = {};
+  // NOLINTEND(readability-identifier-naming)
 };
 
 }  // namespace detail
 
+/// A chain that the compiler knows.
 /// @tparam R        the robot
 /// @tparam Base     the link at which it starts
 /// @tparam Tip      the link at which it ends, below the base
 /// @tparam Frames   Names of the joints with a frame correction
-/// @tparam Virtual  a frame beyond the tip that is in no URDF (a checkerboard): see
-///                  with_virtual_frame(); "" for none
+/// @tparam Virtual  name of a virtual frame beyond the tip, such as a checkerboard, or "": see
+///                  with_virtual_frame()
 template <RobotData R, FixedString Base, FixedString Tip, class Frames = Names<>,
           FixedString Virtual = "">
 struct Chain {
-  using Robot = R;
-  static constexpr std::string_view kBase = Base, kTip = Tip, kVirtual = Virtual;
+  using Robot = R;                                       ///< a RobotData
+  static constexpr std::string_view kBase = Base;        ///< link
+  static constexpr std::string_view kTip = Tip;          ///< link
+  static constexpr std::string_view kVirtual = Virtual;  ///< frame beyond the tip, or ""
 
  private:
   using BaseLink = LookedUp<kBase, detail::LinkNames<R>>;
@@ -95,7 +100,7 @@ struct Chain {
   }
 
  public:
-  static constexpr std::size_t kSize = count();
+  static constexpr std::size_t kSize = count();  ///< number of joints that move or are corrected
 
  private:
   struct Folding {
@@ -129,9 +134,11 @@ struct Chain {
   static constexpr Folding kFolding = fold();
 
  public:
+  /// The joints that move or are corrected, from base to tip.
   static constexpr const std::array<detail::StaticJointData, kSize>& kJoints = kFolding.joints;
+  /// Constant transform from the last of them to the tip.
   static constexpr const PoseData& kTail = kFolding.tail;
-  /// The first joint that moves; kSize if none does.
+  /// Index of the first joint that moves; kSize if all are fixed.
   static constexpr std::size_t kFirstMotion = [] {
     std::size_t i = 0;
     while (i < kSize && !moves(kFolding.joints[i].type)) ++i;
@@ -156,8 +163,8 @@ struct Chain {
 
 namespace detail {
 
-/// The same chain with corrections of the frames given, and a virtual frame beyond it.
-/// @tparam FrameNames    anything with contains(name)
+/// The same chain with corrections of the given frames, and with a virtual frame beyond it.
+/// @tparam FrameNames    a type with contains(name)
 /// @tparam VirtualFrame  a type with kName, or void
 template <class C, class FrameNames, class VirtualFrame>
 struct Corrected;
@@ -176,6 +183,7 @@ using CorrectedChain = typename Corrected<C, FrameNames, VirtualFrame>::type;
 
 }  // namespace detail
 
+/// A chain that the compiler knows.
 template <class C>
 concept StaticChain = requires {
   { C::kFirstMotion } -> std::convertible_to<std::size_t>;

@@ -1,7 +1,7 @@
-// Poses that the compiler knows: what is zero or one in them costs nothing.
+// Poses that the compiler knows: zeros and ones in them cost nothing.
 //
-// A type P with P::kPose (a PoseData) stands for the pose.  Most origins of a URDF only shift, and
-// along one axis; a turn of 90 degrees exchanges columns.
+// A type P with P::kPose (a PoseData) stands for the pose.  Most origins of a URDF only translate,
+// and along one axis; a rotation by 90 degrees only swaps columns.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal {
 
-/// a * b
+/// a_T_c = a_T_b * b_T_c.
 [[nodiscard]] constexpr PoseData operator*(const PoseData& a, const PoseData& b) {
   PoseData product;
   for (std::size_t r = 0; r < 3; ++r) {
@@ -74,7 +74,7 @@ inline constexpr bool kTurns =
 
 }  // namespace detail
 
-/// pose = pose * P::kPose
+/// pose = pose * P::kPose.
 template <class P, class S>
 void multiply_by_constant(Pose<S>& pose) {
   if constexpr (detail::ConstantColumn<P, 3>::kFirst < 3) {

@@ -1,4 +1,4 @@
-// Joints and links of a robot that the compiler knows, looked up by name.
+// Lookup of joints and links by name, in a robot that the compiler knows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,7 +10,7 @@ namespace kinecal::detail {
 
 inline constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
-/// Index of a joint by name, or kNowhere.
+/// Index of the joint with this name, or kNowhere.
 template <RobotData R>
 [[nodiscard]] constexpr std::size_t joint_index(std::string_view name) {
   for (std::size_t i = 0; i < R::kJoints.size(); ++i) {
@@ -28,7 +28,7 @@ template <RobotData R>
   return kNowhere;
 }
 
-/// Number of joints from `base` down to `tip`; kNowhere if it is not below.
+/// Number of joints from `base` down to `tip`; kNowhere if `tip` is not below `base`.
 template <RobotData R>
 [[nodiscard]] constexpr std::size_t depth_below(std::string_view base, std::string_view tip) {
   std::size_t depth = 0;
@@ -40,7 +40,7 @@ template <RobotData R>
   return depth;
 }
 
-/// The joints from `base` down to `tip`, in this order.
+/// Indices of the last `Depth` joints down to `tip`, from top to bottom.
 template <RobotData R, std::size_t Depth>
 [[nodiscard]] constexpr std::array<std::size_t, Depth> way_down(std::string_view tip) {
   std::array<std::size_t, Depth> way{};
@@ -51,7 +51,7 @@ template <RobotData R, std::size_t Depth>
   return way;
 }
 
-/// The joint whose position moves it, with the law of all mimics on the way: see drive().
+/// The joint that drives a joint, through all mimic joints in between: see drive().
 template <RobotData R>
 [[nodiscard]] constexpr MimicData static_drive(std::size_t joint) {
   MimicData result{R::kJoints[joint].name, 1.0, 0.0};
@@ -64,7 +64,7 @@ template <RobotData R>
   return result;
 }
 
-/// The names of a robot's joints and links, to be looked up.
+/// The names of a robot's joints or links, for LookedUp.
 template <RobotData R>
 struct JointNames {
   static constexpr auto kNames = [] {

@@ -1,21 +1,23 @@
-// The walker that also notes, for each parameter it meets, the twist by which that parameter moves
-// everything after it.
+// The walker that also computes a twist for each free parameter: how the parameter moves all that
+// comes after its joint.
 //
 // A change of one joint offset or frame component moves the rest of the chain as a rigid body:
 //
 //   dp/dparameter = linear + angular x p          for every point p after the joint, in the base
 //
-// found once per sample and joint, for all points.  With R, o the rotation and origin of the frame
-// in front of the joint, J the left Jacobian of its correction:
+// So one twist per sample and parameter serves all points.  With R, o the rotation and origin of
+// the frame before the joint, t and J the translation and left Jacobian of its correction, and a
+// its axis:
 //
 //   translation k    linear = R e_k                    angular = 0
 //   rotation k       angular = R J e_k                 linear = o' x angular,  o' = o + R t
 //   turning joint    angular = R a                     linear = o x angular
 //   sliding joint    linear = R a                      angular = 0
 //
-// A joint passed from child to parent moves what comes after it the other way: the same formulas
-// at the frame behind it, negated.  Source: Murray, Li, Sastry, A Mathematical Introduction to
-// Robotic Manipulation, 3.4 (spatial Jacobian).
+// A joint passed from child to parent moves what comes after it the other way: the same formulas at
+// the frame after the joint, negated.
+// Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, 3.4 (spatial
+// Jacobian); ARCHITECTURE.md, idea 2: twists instead of Jacobian columns.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,21 +31,25 @@
 
 namespace kinecal {
 
-/// Where the parameters of a joint stand in a vector of parameters (or which columns of a Jacobian
-/// are theirs); -1: nowhere.
+/// Indices of a joint's parameters, in a table of parameters or among the columns of a Jacobian; -1
+/// for a parameter that is not there.
 struct JointIndices {
-  int offset = -1;
+  int offset = -1;    ///< of the offset
   double gain = 1.0;  ///< of the offset: the multiplier of a mimic joint
-  std::array<int, 6> frame = {-1, -1, -1, -1, -1, -1};  ///< x y z a b c
+  std::array<int, 6> frame = {-1, -1, -1, -1, -1, -1};  ///< of the frame correction: x y z a b c
 
-  bool operator==(const JointIndices&) const = default;
+  bool operator==(const JointIndices&) const = default;  ///< all members are equal
 };
 
-/// How one parameter moves all points behind its joint; in the base, per unit of the parameter.
+/// How one parameter moves all points after its joint; in the base, per unit of the parameter.
 template <class S>
 struct Twist {
-  Vector3<S> linear, angular;
+  Vector3<S> linear;   ///< (3) velocity of the point at the base's origin, metres per unit
+  Vector3<S> angular;  ///< (3) radians per unit
 
+  /// dp/dparameter = linear + angular x p.
+  /// @param p_base  (3) point, metres, in the base
+  /// @returns       (3) metres per unit of the parameter, in the base
   [[nodiscard]] Vector3<S> velocity(const Vector3<S>& p_base) const {
     const Vector3<S>&v = linear, &p = p_base;
     const S x = in_register(angular.x()), y = in_register(angular.y()),
@@ -51,7 +57,7 @@ struct Twist {
     return {v.x() + y * p.z() - z * p.y(),  // two fused multiply-adds each
             v.y() + z * p.x() - x * p.z(), v.z() + x * p.y() - y * p.x()};
   }
-  /// -velocity(p_base), at the same price
+  /// -velocity(p_base), at the same cost.
   [[nodiscard]] Vector3<S> opposite_velocity(const Vector3<S>& p_base) const {
     const Vector3<S>&v = linear, &p = p_base;
     const S x = in_register(angular.x()), y = in_register(angular.y()),
@@ -61,39 +67,44 @@ struct Twist {
   }
 };
 
-/// The twists of a chain.  Those that only shift move all points alike and are kept apart.
+/// The twists of a chain.  Translational ones move all points alike and are kept apart.
 template <class S>
 struct ChainTwists {
-  std::vector<Twist<S>> turns;
-  std::vector<Vector3<S>> shifts;
+  std::vector<Twist<S>> turns;     ///< rotational twists
+  std::vector<Vector3<S>> shifts;  ///< (3) linear parts of translational twists
 };
 
-/// A chain's twists, where they are.
+/// A view of a chain's twists.
 template <class S>
 struct BodyTwists {
-  std::span<const Twist<S>> turns;
-  std::span<const Vector3<S>> shifts;
+  std::span<const Twist<S>> turns;     ///< rotational twists
+  std::span<const Vector3<S>> shifts;  ///< (3) linear parts of translational twists
 
   BodyTwists() = default;
-  BodyTwists(std::span<const Twist<S>> those_that_turn, std::span<const Vector3<S>> the_others)
-      : turns(those_that_turn), shifts(the_others) {}
+  /// Views two lists.
+  BodyTwists(std::span<const Twist<S>> rotational, std::span<const Vector3<S>> translational)
+      : turns(rotational), shifts(translational) {}
+  /// Views all twists of a chain.
   explicit BodyTwists(const ChainTwists<S>& twists) : BodyTwists(twists.turns, twists.shifts) {}
 
-  /// As numbers, 6 or 3 of each.
+  /// The rotational twists as an array, 6 numbers each: linear, angular.
   [[nodiscard]] const S* turn_numbers() const {
     static_assert(sizeof(Twist<S>) == 6 * sizeof(S));
     return turns.empty() ? nullptr : turns[0].linear.data();
   }
+  /// The translational twists as an array, 3 numbers each.
   [[nodiscard]] const S* shift_numbers() const {
     static_assert(sizeof(Vector3<S>) == 3 * sizeof(S));
     return shifts.empty() ? nullptr : shifts[0].data();
   }
 };
 
-/// The Jacobian's columns of a chain's twists, in the order in which the walker finds them.
+/// The Jacobian's columns of a chain's twists, in the order in which the walker computes them.
 struct TwistColumns {
-  std::vector<int> turns, shifts;
+  std::vector<int> turns;   ///< of the rotational twists
+  std::vector<int> shifts;  ///< of the translational twists
 
+  /// Makes room for one twist per column.
   template <class S>
   void resize(ChainTwists<S>& twists) const {
     twists.turns.resize(turns.size());
@@ -101,6 +112,8 @@ struct TwistColumns {
   }
 };
 
+/// The columns of the twists that a TwistWalker will compute.
+/// @param columns  of the free parameters, by joint of the chain
 [[nodiscard]] inline TwistColumns twist_columns(const RuntimeChain& chain,
                                                 std::span<const JointIndices> columns) {
   TwistColumns result;
@@ -121,28 +134,31 @@ struct TwistColumns {
   return result;
 }
 
-/// Fills the twists of a chain.
-/// @tparam Columns  the columns of the free parameters, by joint of the chain; of a chain that the
-///                  compiler knows, constants
+/// A Walker: composes base_T_tip and fills the twists of a chain.
+/// @tparam Columns  type of the free parameters' columns, by joint of the chain; constants for a
+///                  chain that the compiler knows
 template <class S, class Columns = std::span<const JointIndices>>
 struct TwistWalker {
-  Columns columns;
-  Twist<S>* turn;     ///< where the next twist goes that turns;
-  Vector3<S>* shift;  ///< the next that only shifts
-  PoseWalker<S> walker = {};
+  Columns columns;            ///< of the free parameters, by joint of the chain
+  Twist<S>* turn;             ///< where the next rotational twist is written
+  Vector3<S>* shift;          ///< where the next translational twist is written
+  PoseWalker<S> walker = {};  ///< composes the pose
 
-  /// @param twists  as many as twist_columns() lists
+  /// Starts at the base.
+  /// @param twists  with the size that TwistColumns::resize() gives
   TwistWalker(const Columns& free, ChainTwists<S>& twists)
       : columns(free), turn(twists.turns.data()), shift(twists.shifts.data()) {}
-  /// Goes on in the middle of a chain.
+  /// Continues in the middle of a chain.
   TwistWalker(const Columns& free, Twist<S>* next_turn, Vector3<S>* next_shift, const Pose<S>& pose)
       : columns(free), turn(next_turn), shift(next_shift), walker{pose} {}
 
+  /// Passes a constant transform.
   template <class ConstantPose>
   void fixed(const ConstantPose& transform) {
     walker.fixed(transform);
   }
 
+  /// Passes a frame correction: up to six twists.
   template <class I, class Joint, class U>
   void correct(I i, const Joint& joint, const JointCorrection<U>& correction) {
     if (joint.reversed) walker.correct(i, joint, correction);
@@ -164,6 +180,7 @@ struct TwistWalker {
     if (!joint.reversed) walker.correct(i, joint, correction);
   }
 
+  /// Passes a joint's motion: one twist if its offset is free.
   template <class I, class Joint, class U>
   void move(I i, const Joint& joint, const Motion<U>& motion) {
     walker.move(i, joint, motion);  // a joint's axis is the same before and after it
@@ -179,7 +196,7 @@ struct TwistWalker {
   }
 
  private:
-  /// The twist of a turn about an axis through a point.
+  /// Writes the twist of a rotation about an axis through a point.
   void add_turn(const Vector3<S>& point, const Vector3<S>& axis) {
     turn->linear = cross(point, axis);
     turn->angular = axis;
@@ -187,7 +204,7 @@ struct TwistWalker {
   }
 };
 
-/// All twists of a chain with their columns, those that only shift as twists without a turn.
+/// All twists of a chain, each with its column; translational ones have an angular part of zero.
 template <class S>
 [[nodiscard]] std::vector<std::pair<int, Twist<S>>> by_column(const ChainTwists<S>& twists,
                                                               const TwistColumns& columns) {

@@ -1,10 +1,11 @@
 // The walk: forward kinematics, written once.
 //
-// It visits the joints of a chain from base to tip and tells a walker what it meets: a constant
-// transform, a corrected origin, a moving joint.  What comes of it is the walker's business: a
-// PoseWalker composes base_T_tip, a TwistWalker also notes how each parameter moves the tip.
+// The walk visits the joints of a chain from base to tip and calls a visitor, the walker, for each
+// constant transform, frame correction and joint motion.  A PoseWalker composes base_T_tip; a
+// TwistWalker also computes how each parameter moves the tip.
 //
 // A joint passed from child to parent is undone: its motion first, then its correction.
+// Source: ARCHITECTURE.md, idea 1: one walk.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +18,7 @@
 
 namespace kinecal {
 
-/// What a walk reports to.  `i` is the joint's index in the chain.
+/// The visitor of a walk.  `i` is the joint's index in the chain.
 template <class W, class S>
 concept Walker = requires(W& w, std::size_t i, const ChainJoint& joint, const Motion<S>& motion,
                           const JointCorrection<S>& correction) {
@@ -28,14 +29,15 @@ concept Walker = requires(W& w, std::size_t i, const ChainJoint& joint, const Mo
 
 namespace detail {
 
-/// Calls visit(index, joint) for the joints from `first` on, until it returns false.
+/// Calls visit(index, joint) for the joints from `first` on, until a call returns false.
 template <class F>
 void for_joints(const RuntimeChain& chain, std::size_t first, F&& visit) {
   for (std::size_t i = first; i < chain.joints.size(); ++i) {
     if (!visit(i, chain.joints[i])) return;
   }
 }
-/// The same with indices and joints that the compiler knows; `first` is the first or kFirstMotion.
+/// The same with indices and joints that the compiler knows.
+/// @param first  0 or kFirstMotion
 template <StaticChain C, class F>
 void for_joints(const C&, std::size_t first, F&& visit) {
   const auto from = [&]<std::size_t First>(std::integral_constant<std::size_t, First>) {
@@ -62,8 +64,8 @@ template <StaticChain C>
 
 }  // namespace detail
 
-/// The part of a walk before anything moves: the same for all positions of the joints.
-/// @returns  the joint at whose motion walk_on() goes on; the number of joints if none moves
+/// The part of a walk before the first moving joint: the same for all joint positions.
+/// @returns  index of that joint, for walk_on(); the number of joints if all are fixed
 template <class Chain, class S, class W>
 [[nodiscard]] std::size_t walk_to_first_motion(const Chain& chain,
                                                std::span<const JointCorrection<S>> corrections,
@@ -80,8 +82,10 @@ template <class Chain, class S, class W>
   return passed;
 }
 
-/// The rest of it.
-/// @param first  what walk_to_first_motion() returned
+/// The rest of the walk.
+/// @param first        the result of walk_to_first_motion()
+/// @param motions      measured motion of each joint of the chain (any scalar)
+/// @param corrections  correction of each joint of the chain (any scalar)
 template <class Chain, class Q, class S, class W>
 void walk_on(const Chain& chain, std::size_t first, std::span<const Motion<Q>> motions,
              std::span<const JointCorrection<S>> corrections, W& walker) {

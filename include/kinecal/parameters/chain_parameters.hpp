@@ -1,4 +1,4 @@
-// Which parameters act on the joints of a chain, and the corrections that follow from their values.
+// Which parameters act on the joints of a chain, and the corrections from their values.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace kinecal {
 
-/// Indices of the parameters of each joint of a chain, by name.  A mimic joint is moved by the
-/// offset of the joint that drives it.
+/// Table indices of the parameters of each joint of a chain.  A mimic joint has the offset of the
+/// joint that drives it.
 [[nodiscard]] inline std::vector<JointIndices> chain_parameters(const RuntimeChain& chain,
-                                                         const ParameterTable& table) {
+                                                                const ParameterTable& table) {
   std::vector<JointIndices> indices;
   for (const ChainJoint& joint : chain.joints) {
     JointIndices& of_joint = indices.emplace_back();
@@ -29,7 +29,7 @@ namespace kinecal {
   return indices;
 }
 
-/// The Jacobian's columns in place of the parameters' indices.
+/// The columns of the Jacobian in place of the table indices.
 [[nodiscard]] inline std::vector<JointIndices> columns_of(const std::vector<JointIndices>& indices,
                                                           const FreeSet& free) {
   std::vector<JointIndices> columns = indices;
@@ -40,9 +40,9 @@ namespace kinecal {
   return columns;
 }
 
-/// Corrections of a chain's joints for the values of all parameters.
-/// @param values  of the whole table, in its order; any scalar
-/// @param corrections  out; keeps its memory from one call to the next
+/// Computes the corrections of a chain's joints.
+/// @param values       of all parameters of the table; any scalar
+/// @param corrections  out, one per joint; keeps its memory from one call to the next
 template <class S>
 void set_corrections(const std::vector<JointIndices>& indices, std::span<const S> values,
                      Corrections<S>& corrections) {
@@ -60,7 +60,8 @@ void set_corrections(const std::vector<JointIndices>& indices, std::span<const S
   }
 }
 
-/// The same as a new list.
+/// The corrections of a chain's joints.
+/// @param values  of all parameters of the table; any scalar
 template <class S>
 [[nodiscard]] Corrections<S> corrections_for(const std::vector<JointIndices>& indices,
                                              std::span<const S> values) {

@@ -1,13 +1,14 @@
-// What may be wrong, as types: free parameters with slots that the compiler knows.
+// Free parameters as types, with slots (indices) that the compiler knows.
 //
-//   JointOffset<"elbow_flex_joint">                  one number, added to the measured position
-//   FrameOffset<"head_pan_joint">                    six: x y z a b c; or FrameOffset<"…",
-//   Axes::xyz> VirtualFrame<"checkerboard">                     six of a frame that is in no URDF
-//   CameraIntrinsics<"camera">                       four: fx fy cx cy
-//   DepthCorrection<"camera">                        two: z_offset z_scaling
-//   DepthIntrinsics<"camera">                        all six of a depth camera
+//   JointOffset<"elbow_flex_joint">           one number, added to the measured position
+//   FrameOffset<"head_pan_joint">             six: x y z a b c
+//   FrameOffset<"head_pan_joint", Axes::xyz>  three of them
+//   VirtualFrame<"checkerboard">              six, of a frame that no URDF has
+//   CameraIntrinsics<"camera">                four: fx fy cx cy
+//   DepthCorrection<"camera">                 two: z_offset z_scaling
+//   DepthIntrinsics<"camera">                 all six of a depth camera
 //
-// Their names are those of parameter.hpp.
+// parameter.hpp defines the names of the single numbers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,28 +20,39 @@ namespace kinecal {
 
 /// Axes of a frame correction: x y z of the translation, a b c of the rotation vector.
 struct Axes {
-  bool x = false, y = false, z = false, a = false, b = false, c = false;
+  bool x = false;  ///< translation along x
+  bool y = false;  ///< translation along y
+  bool z = false;  ///< translation along z
+  bool a = false;  ///< rotation vector, x component
+  bool b = false;  ///< rotation vector, y component
+  bool c = false;  ///< rotation vector, z component
 
-  static const Axes all, xyz, abc;
+  static const Axes all;  ///< all six
+  static const Axes xyz;  ///< the translation
+  static const Axes abc;  ///< the rotation vector
 
+  /// As a list: x y z a b c.
   [[nodiscard]] constexpr std::array<bool, 6> flags() const { return {x, y, z, a, b, c}; }
+  /// The axes of both.
   [[nodiscard]] constexpr Axes operator|(const Axes& o) const {
     return {x || o.x, y || o.y, z || o.z, a || o.a, b || o.b, c || o.c};
   }
-  bool operator==(const Axes&) const = default;
+  bool operator==(const Axes&) const = default;  ///< the same axes
 };
 inline constexpr Axes Axes::all = {true, true, true, true, true, true};
 inline constexpr Axes Axes::xyz = {true, true, true, false, false, false};
 inline constexpr Axes Axes::abc = {false, false, false, true, true, true};
 
-/// One number: whose, and which of it ("" for a joint's offset).
+/// One number of a free parameter.
 struct ParameterId {
-  std::string_view owner, part;
+  std::string_view owner;  ///< joint, frame or camera
+  std::string_view part;   ///< "x", "fx", ...; "" for a joint's offset
 
+  /// As in parameter.hpp: "head_pan_joint_x".
   [[nodiscard]] std::string name() const {
     return part.empty() ? std::string(owner) : parameter_name(owner, part);
   }
-  /// Equal names, however they are put together.
+  /// True for equal names, even if owner and part are split differently.
   [[nodiscard]] constexpr bool same_name(const ParameterId& other) const {
     if (length() != other.length()) return false;
     for (std::size_t i = 0; i < length(); ++i) {
@@ -59,18 +71,26 @@ struct ParameterId {
   }
 };
 
-enum class ParameterKind { joint_offset, frame_offset, virtual_frame, camera, depth };
+/// What a free parameter corrects.
+enum class ParameterKind {
+  joint_offset,   ///< the position of a joint
+  frame_offset,   ///< the origin of a joint
+  virtual_frame,  ///< a frame that no URDF has
+  camera,         ///< intrinsics
+  depth           ///< depth offset and scaling, with or without intrinsics
+};
 
+/// Offset of a joint: one number, radians or metres.
 template <FixedString Joint>
 struct JointOffset {
-  static constexpr ParameterKind kKind = ParameterKind::joint_offset;
-  static constexpr std::string_view kOwner = Joint;
-  static constexpr std::array<ParameterId, 1> kIds = {{{Joint, ""}}};
+  static constexpr ParameterKind kKind = ParameterKind::joint_offset;  ///< what it corrects
+  static constexpr std::string_view kOwner = Joint;                    ///< name of the joint
+  static constexpr std::array<ParameterId, 1> kIds = {{{Joint, ""}}};  ///< its numbers
 };
 
 namespace detail {
 
-/// Some of an owner's parts.
+/// The chosen parts of an owner.
 template <FixedString Owner, std::size_t Count, std::size_t N>
 [[nodiscard]] consteval std::array<ParameterId, Count> ids_of(
     const std::array<std::string_view, N>& parts, const std::array<bool, N>& chosen) {
@@ -95,42 +115,49 @@ inline constexpr auto kCameraIds = ids_of<Owner, (Intrinsics ? 4 : 0) + (Depth ?
 
 }  // namespace detail
 
+/// Correction of a joint's origin: up to six numbers, metres and radians, in the joint's frame.
 template <FixedString Joint, Axes Chosen = Axes::all>
 struct FrameOffset {
-  static constexpr ParameterKind kKind = ParameterKind::frame_offset;
-  static constexpr std::string_view kOwner = Joint;
-  static constexpr auto kIds = detail::kFrameIds<Joint, Chosen>;
+  static constexpr ParameterKind kKind = ParameterKind::frame_offset;  ///< what it corrects
+  static constexpr std::string_view kOwner = Joint;                    ///< name of the joint
+  static constexpr auto kIds = detail::kFrameIds<Joint, Chosen>;       ///< its numbers
 };
 
+/// A frame that no URDF has (a checkerboard, a tracker): up to six numbers, metres and radians, in
+/// the sensor's frame.
 template <FixedString Frame, Axes Chosen = Axes::all>
 struct VirtualFrame {
-  static constexpr FixedString kName = Frame;
-  static constexpr ParameterKind kKind = ParameterKind::virtual_frame;
-  static constexpr std::string_view kOwner = Frame;
-  static constexpr auto kIds = detail::kFrameIds<Frame, Chosen>;
+  static constexpr FixedString kName = Frame;                           ///< name of the frame
+  static constexpr ParameterKind kKind = ParameterKind::virtual_frame;  ///< what it corrects
+  static constexpr std::string_view kOwner = Frame;                     ///< name of the frame
+  static constexpr auto kIds = detail::kFrameIds<Frame, Chosen>;        ///< its numbers
 };
 
+/// Intrinsics of a camera: fx fy cx cy, relative.
 template <FixedString Camera>
 struct CameraIntrinsics {
-  static constexpr ParameterKind kKind = ParameterKind::camera;
-  static constexpr std::string_view kOwner = Camera;
-  static constexpr auto kIds = detail::kCameraIds<Camera, true, false>;
+  static constexpr ParameterKind kKind = ParameterKind::camera;          ///< what it corrects
+  static constexpr std::string_view kOwner = Camera;                     ///< name of the sensor
+  static constexpr auto kIds = detail::kCameraIds<Camera, true, false>;  ///< its numbers
 };
 
+/// Depth correction of a depth camera: z_offset (metres) and z_scaling (relative).
 template <FixedString Camera>
 struct DepthCorrection {
-  static constexpr ParameterKind kKind = ParameterKind::depth;
-  static constexpr std::string_view kOwner = Camera;
-  static constexpr auto kIds = detail::kCameraIds<Camera, false, true>;
+  static constexpr ParameterKind kKind = ParameterKind::depth;           ///< what it corrects
+  static constexpr std::string_view kOwner = Camera;                     ///< name of the sensor
+  static constexpr auto kIds = detail::kCameraIds<Camera, false, true>;  ///< its numbers
 };
 
+/// Intrinsics and depth correction of a depth camera: six numbers.
 template <FixedString Camera>
 struct DepthIntrinsics {
-  static constexpr ParameterKind kKind = ParameterKind::depth;
-  static constexpr std::string_view kOwner = Camera;
-  static constexpr auto kIds = detail::kCameraIds<Camera, true, true>;
+  static constexpr ParameterKind kKind = ParameterKind::depth;          ///< what it corrects
+  static constexpr std::string_view kOwner = Camera;                    ///< name of the sensor
+  static constexpr auto kIds = detail::kCameraIds<Camera, true, true>;  ///< its numbers
 };
 
+/// A part of a crate that frees numbers.
 template <class P>
 concept FreeParameter = requires {
   { P::kKind } -> std::convertible_to<ParameterKind>;
@@ -138,11 +165,12 @@ concept FreeParameter = requires {
   P::kIds[0].owner;
 };
 
-/// Free parameters in this order; the numbers of each follow each other.
+/// A list of free parameters.  Slots follow the order of the list.
 template <FreeParameter... Ps>
 struct FreeParameters {
+  /// Number of slots.
   static constexpr std::size_t kSize = (std::size_t(0) + ... + Ps::kIds.size());
-  /// Of each number.
+  /// The number in each slot.
   static constexpr std::array<ParameterId, kSize> kIds = [] {
     std::array<ParameterId, kSize> ids{};
     std::size_t n = 0;
@@ -178,7 +206,7 @@ struct FreeParameters {
     return std::all_of(P::kIds.begin(), P::kIds.end(), is_one);
   }
 
-  /// Whose they are, to be looked up.
+  /// The owners, for LookedUp.
   static constexpr std::array<std::string_view, sizeof...(Ps)> kNames = {Ps::kOwner...};
 
   /// The slot of the first number of a parameter.
@@ -186,9 +214,9 @@ struct FreeParameters {
   static constexpr int kSlot = find(P::kIds[0].owner, P::kIds[0].part);
 };
 
-/// The slots of each joint of a chain: chain_parameters() while compiling.
-/// @tparam C  a chain
-/// @tparam F  FreeParameters
+/// The slots of each joint's parameters in a chain: chain_parameters() at compile time.
+/// @tparam C  a Chain
+/// @tparam F  a FreeParameters
 template <StaticChain C, class F>
 inline constexpr std::array<JointIndices, C::kSize> kColumnsOf = [] {
   std::array<JointIndices, C::kSize> columns{};

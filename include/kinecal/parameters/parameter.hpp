@@ -1,6 +1,6 @@
-// A parameter: one number that may be wrong, known by its name.
+// A parameter: one number that may be wrong, identified by its name.
 //
-// The names are robot_calibration's, the same in configuration, results and reports:
+// Names are those of robot_calibration, the same in types, configurations, results and reports:
 //
 //   <joint>                  offset added to the measured position            rad or m
 //   <frame>_x _y _z          translation of a frame correction                m
@@ -18,7 +18,9 @@
 
 namespace kinecal {
 
+/// The parts of a frame correction: translation, rotation vector.
 inline constexpr std::array<std::string_view, 6> kFrameAxes = {"x", "y", "z", "a", "b", "c"};
+/// The parameters of a depth camera; a pinhole camera has the first four.
 inline constexpr std::array<std::string_view, 6> kCameraParameters = {
     "fx", "fy", "cx", "cy", "z_offset", "z_scaling"};
 
@@ -27,13 +29,14 @@ inline constexpr std::array<std::string_view, 6> kCameraParameters = {
   return std::string(owner) + "_" + std::string(part);
 }
 
+/// A parameter of a calibration with its value and bounds.
 struct Parameter {
-  std::string name;
-  std::string unit = "rad";  ///< "rad", "m" or "1"
-  double initial = 0.0;
-  double value = 0.0;
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
+  std::string name;                                         ///< unique in a table
+  std::string unit = "rad";                                 ///< "rad", "m" or "1"
+  double initial = 0.0;                                     ///< value before the first step
+  double value = 0.0;                                       ///< current value
+  double lower = -std::numeric_limits<double>::infinity();  ///< lower bound of the value
+  double upper = std::numeric_limits<double>::infinity();   ///< upper bound of the value
 };
 
 }  // namespace kinecal

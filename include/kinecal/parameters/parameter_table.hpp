@@ -1,7 +1,7 @@
 // The parameters of a calibration, found by name, and which of them are free in a step.
 //
-// A parameter's index is its place in the table; it never changes.  A free set gives some of them a
-// column of the Jacobian; the others are held at their value.
+// A parameter's index is its place in the table and never changes.  A free set gives some
+// parameters a column of the Jacobian; the others are held at their value.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,10 +16,12 @@
 
 namespace kinecal {
 
+/// All parameters of a calibration, in the order in which they were added.
 class ParameterTable {
  public:
   /// Adds a parameter.
-  /// @throws std::invalid_argument  if the name is taken
+  /// @returns  its index
+  /// @throws std::invalid_argument  if the table has the name already
   int add(const Parameter& parameter) {
     const int index = size();
     if (!indices_.emplace(parameter.name, index).second) {
@@ -29,15 +31,17 @@ class ParameterTable {
     return index;
   }
 
+  /// Number of parameters.
   [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
 
-  /// Index of a parameter, or -1.
+  /// Index of a parameter; -1 if the table does not have it.
   [[nodiscard]] int find(const std::string& name) const {
     const auto it = indices_.find(name);
     return it == indices_.end() ? -1 : it->second;
   }
 
-  /// @throws std::invalid_argument  with the nearest name, if there is no such parameter
+  /// Index of a parameter.
+  /// @throws std::invalid_argument  if the table does not have it, with the nearest name
   [[nodiscard]] int index(const std::string& name) const {
     const int found = find(name);
     if (found >= 0) return found;
@@ -46,6 +50,9 @@ class ParameterTable {
     throw std::invalid_argument("no parameter '" + name + "'" + did_you_mean(name, names));
   }
 
+  /// A parameter by index or by name.
+  /// @throws std::invalid_argument  if the table does not have the name, with the nearest name
+  /// @{
   [[nodiscard]] Parameter& operator[](int i) { return parameters_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const Parameter& operator[](int i) const {
     return parameters_[static_cast<std::size_t>(i)];
@@ -54,10 +61,12 @@ class ParameterTable {
   [[nodiscard]] const Parameter& operator[](const std::string& name) const {
     return (*this)[index(name)];
   }
+  /// @}
 
-  [[nodiscard]] auto begin() const { return parameters_.begin(); }
-  [[nodiscard]] auto end() const { return parameters_.end(); }
+  [[nodiscard]] auto begin() const { return parameters_.begin(); }  ///< first parameter
+  [[nodiscard]] auto end() const { return parameters_.end(); }      ///< behind the last one
 
+  /// (size) current values.
   [[nodiscard]] Eigen::VectorXd values() const {
     Eigen::VectorXd all(size());
     for (int i = 0; i < size(); ++i) all(i) = (*this)[i].value;
@@ -81,10 +90,12 @@ class FreeSet {
     }
   }
 
+  /// Number of columns.
   [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
+  /// Table index of the parameter of each column.
   [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
 
-  /// Column of a parameter; -1 if it is held or is none (index -1).
+  /// Column of a parameter; -1 if it is held, or if the index is -1.
   [[nodiscard]] int column(int parameter) const {
     return parameter < 0 ? -1 : columns_[static_cast<std::size_t>(parameter)];
   }

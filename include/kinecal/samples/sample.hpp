@@ -1,6 +1,6 @@
-// A sample: one pose of the robot with what its sensors saw there.
+// A sample: one pose of the robot and what its sensors observed there.
 //
-// The same content as robot_calibration_msgs/CalibrationData, in metres, radians and pixels.
+// The content is that of robot_calibration_msgs/CalibrationData, in metres, radians and pixels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,36 +13,40 @@
 
 namespace kinecal {
 
-/// One observed point: metres in `frame`; a pixel is (u, v, 0).
+/// One observed point.
 struct Feature {
-  std::string frame;
-  Vector3<double> point = Vector3<double>::Zero();
+  std::string frame;                                ///< in which the point is given
+  Vector3<double> point = Vector3<double>::Zero();  ///< (3) metres; a pixel is (u, v, 0)
 };
 
-/// What a camera was set to while it recorded (sensor_msgs/CameraInfo and its driver).
+/// The settings of a camera while it recorded: sensor_msgs/CameraInfo and the depth driver's.
 struct CameraInfo {
-  int width = 0, height = 0;  ///< pixels
-  std::string distortion_model;
-  std::vector<double> d;       ///< k1 k2 p1 p2 k3 of plumb_bob
-  std::array<double, 9> k{};   ///< 3x3, row-major, pixels
-  std::array<double, 9> r{};   ///< 3x3, row-major
-  std::array<double, 12> p{};  ///< 3x4, row-major, pixels
-  double z_offset = 0.0;       ///< of the depth driver, metres (z_offset_mm in files)
-  double z_scaling = 1.0;      ///< of the depth driver: z = (z0 + z_offset) * z_scaling
+  int width = 0;                 ///< pixels
+  int height = 0;                ///< pixels
+  std::string distortion_model;  ///< such as "plumb_bob"
+  std::vector<double> d;         ///< k1 k2 p1 p2 k3 of plumb_bob
+  std::array<double, 9> k{};     ///< 3x3, row-major, pixels
+  std::array<double, 9> r{};     ///< 3x3, row-major
+  std::array<double, 12> p{};    ///< 3x4, row-major, pixels
+  double z_offset = 0.0;         ///< of the depth driver, metres (z_offset_mm in files)
+  double z_scaling = 1.0;        ///< of the depth driver: z = (z0 + z_offset) * z_scaling
 };
 
+/// What one sensor observed in a sample.
 struct Observation {
-  std::string sensor;
-  std::vector<Feature> features;
-  std::optional<CameraInfo> camera = {};
+  std::string sensor;                     ///< name of the sensor
+  std::vector<Feature> features;          ///< in an order that all sensors share
+  std::optional<CameraInfo> camera = {};  ///< of cameras only
 };
 
+/// One pose of the robot and what its sensors observed there.
 struct Sample {
-  std::vector<std::string> joint_names;
-  std::vector<double> joint_positions;  ///< radians or metres, in the order of the names
-  std::vector<Observation> observations;
-  std::string source;  ///< where it came from, for messages: "samples.yaml:37"
+  std::vector<std::string> joint_names;   ///< of the joints whose positions were measured
+  std::vector<double> joint_positions;    ///< radians or metres, in the order of the names
+  std::vector<Observation> observations;  ///< at most one of each sensor
+  std::string source;                     ///< source location, for messages: "samples.yaml:37"
 
+  /// Measured position of a joint, radians or metres; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {
     for (std::size_t i = 0; i < joint_names.size(); ++i) {
       if (joint_names[i] == joint) return joint_positions[i];
@@ -50,6 +54,7 @@ struct Sample {
     return std::nullopt;
   }
 
+  /// What a sensor observed; nullptr if it did not observe anything.
   [[nodiscard]] const Observation* observation(const std::string& sensor) const {
     for (const Observation& o : observations) {
       if (o.sensor == sensor) return &o;

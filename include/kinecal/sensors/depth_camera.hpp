@@ -1,15 +1,15 @@
 // A depth camera (camera3d): points re-projected with corrected intrinsics and depth.
 //
-// A recorded point (x, y, z) was made from a pixel and a raw depth by the settings of that moment.
-// Both are found again, then turned into a point with the corrected settings:
+// The driver computed a recorded point (x, y, z) from a pixel and a raw depth, with the settings of
+// that moment.  We recover pixel and raw depth, and compute the point with the corrected settings:
 //
 //   u = fx0 x / z + cx0      v = fy0 y / z + cy0      z0 = z / s0 - o0
 //   z' = (z0 + z_offset) (1 + z_scaling)
 //   x' = (u - cx0 (1 + cx)) z' / (fx0 (1 + fx))      y' likewise
 //
 // Parameters, in this order: fx fy cx cy (relative), z_offset (metres), z_scaling (relative).
-// Defined for z > 0.  Source: Fetch paper, III-B; the depth correction is that of the camera
-// driver.
+// Defined for z > 0.
+// Source: Fetch paper, III-B; the depth correction is that of the camera driver.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,25 +19,32 @@
 
 namespace kinecal {
 
+/// A depth camera as it was recorded.
 template <class Q = double>
 struct DepthCamera {
-  static constexpr int kParameters = 6;
+  static constexpr int kParameters = 6;  ///< fx fy cx cy z_offset z_scaling
 
-  Q fx, fy, cx, cy;                 ///< recorded intrinsics, pixels
-  Q z_offset{0.0}, z_scaling{1.0};  ///< recorded depth correction, metres and factor
+  Q fx;              ///< recorded focal length, pixels
+  Q fy;              ///< recorded focal length, pixels
+  Q cx;              ///< recorded principal point, pixels
+  Q cy;              ///< recorded principal point, pixels
+  Q z_offset{0.0};   ///< recorded depth offset, metres
+  Q z_scaling{1.0};  ///< recorded depth scale, a factor
 
+  /// The camera of a rectified image, from P.
   [[nodiscard]] static DepthCamera from(const CameraInfo& info) {
     return {info.p[0], info.p[5], info.p[2], info.p[6], info.z_offset, info.z_scaling};
   }
 
-  /// The pixel and raw depth (u, v, z0) from which a point was recorded; pixels and metres.
+  /// The pixel and raw depth from which the driver computed a point.
   /// @param p  (3) recorded point, metres, in the camera's optical frame
+  /// @returns  (3) u, v, z0; pixels and metres
   [[nodiscard]] Vector3<Q> measurement(const Vector3<Q>& p) const {
     return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy, p.z() / z_scaling - z_offset};
   }
 
-  /// The point that a measurement means under corrected settings.
-  /// @param m  (3) pixel and raw depth
+  /// The point of a measurement with corrected settings.
+  /// @param m  (3) pixel and raw depth: measurement()
   /// @param v  (6) parameters in the order above
   /// @returns  (3) metres, in the camera's optical frame
   template <class S>
@@ -48,20 +55,25 @@ struct DepthCamera {
   }
 };
 
-/// A depth camera under corrected settings: what is the same for all points of a sample is found
-/// once.
+/// A depth camera with corrected settings; what all points of a sample share is computed once.
 template <class Q>
 class CorrectedDepthCamera {
  public:
-  /// A point depth (s, t, 1) in the optical frame and how the parameters change it: focal lengths
-  /// and center move x or y alone, offset and scaling change the depth alone.
+  /// A point depth (s, t, 1) in the optical frame and its derivatives.  Focal lengths and principal
+  /// point move x or y only; offset and scaling change the depth only.
   struct Seen {
-    Q s, t, depth;
-    Q x_by_fx, y_by_fy, x_by_cx, y_by_cy;
-    Q depth_by_offset, depth_by_scaling;
+    Q s;                 ///< x / depth
+    Q t;                 ///< y / depth
+    Q depth;             ///< z, metres
+    Q x_by_fx;           ///< dx / dfx, metres
+    Q y_by_fy;           ///< dy / dfy, metres
+    Q x_by_cx;           ///< dx / dcx, metres
+    Q y_by_cy;           ///< dy / dcy, metres
+    Q depth_by_offset;   ///< ddepth / dz_offset
+    Q depth_by_scaling;  ///< ddepth / dz_scaling, metres
   };
 
-  /// @param v  (6) parameters in the order above
+  /// @param v  (6) fx fy cx cy z_offset z_scaling: corrections of the recorded settings
   CorrectedDepthCamera(const DepthCamera<Q>& recorded, const std::array<double, 6>& v)
       : per_fx_(Q(1.0) / (recorded.fx * Q(1.0 + v[0]))),
         per_fy_(Q(1.0) / (recorded.fy * Q(1.0 + v[1]))),
@@ -74,7 +86,8 @@ class CorrectedDepthCamera {
         offset_(v[4]),
         factor_(1.0 + v[5]) {}
 
-  /// @param m  (3) pixel and raw depth
+  /// The point of a measurement.
+  /// @param m  (3) pixel and raw depth: DepthCamera::measurement()
   [[nodiscard]] Seen see(const Vector3<Q>& m) const {
     const Q s = (m.x() - cx_) * per_fx_, t = (m.y() - cy_) * per_fy_;
     const Q raw = m.z() + offset_, depth = raw * factor_;

@@ -6,7 +6,8 @@
 //   u = fx0 (1 + fx) x' + cx0 (1 + cx)      v = fy0 (1 + fy) y' + cy0 (1 + cy)
 //
 // Parameters, in this order: fx fy cx cy (relative).  The distortion (plumb_bob: k1 k2 p1 p2 k3) is
-// held.  Defined for Z > 0.  Source: sensor_msgs/CameraInfo; Brown, Decentering Distortion, 1966.
+// not calibrated.  Defined for Z > 0.
+// Source: sensor_msgs/CameraInfo; Brown, Decentering Distortion of Lenses, 1966.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,14 +18,18 @@
 
 namespace kinecal {
 
+/// A pinhole camera as it was recorded.
 template <class Q = double>
 struct PinholeCamera {
-  static constexpr int kParameters = 4;
+  static constexpr int kParameters = 4;  ///< fx fy cx cy
 
-  Q fx, fy, cx, cy;         ///< pixels
-  std::array<Q, 5> d = {};  ///< k1 k2 p1 p2 k3
+  Q fx;                     ///< focal length, pixels
+  Q fy;                     ///< focal length, pixels
+  Q cx;                     ///< principal point, pixels
+  Q cy;                     ///< principal point, pixels
+  std::array<Q, 5> d = {};  ///< distortion: k1 k2 p1 p2 k3
 
-  /// A distorted image is described by K and D, a rectified one by P alone.
+  /// The camera of a CameraInfo: from K and D if the image is distorted, else from P.
   [[nodiscard]] static PinholeCamera from(const CameraInfo& info) {
     const bool distorted =
         std::any_of(info.d.begin(), info.d.end(), [](double v) { return v != 0.0; });
@@ -34,8 +39,9 @@ struct PinholeCamera {
     return camera;
   }
 
+  /// The pixel at which a point appears.
   /// @param p  (3) point, metres, in the camera's optical frame
-  /// @param v  (4) parameters in the order above
+  /// @param v  (4) fx fy cx cy: relative corrections of the recorded intrinsics
   /// @returns  (2) pixel
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 2, 1> project(const Vector3<S>& p,

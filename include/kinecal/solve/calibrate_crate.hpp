@@ -3,8 +3,8 @@
 //   const CrateResult<HandEye> result = calibrate(HandEye(), samples);
 //   const double elbow = result.value<JointOffset<"elbow_flex_joint">>();
 //
-//   ParameterTable table = HandEye::table(samples);     // initial values and bounds, where zero
-//   table["elbow_flex_joint"].upper = 0.05;             // and none do not do
+//   ParameterTable table = HandEye::table(samples);     // for other initial values, or bounds
+//   table["elbow_flex_joint"].upper = 0.05;
 //   const CrateResult<HandEye> bounded = calibrate(HandEye(), table, samples);
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -14,9 +14,11 @@
 
 namespace kinecal {
 
+/// The result of calibrating a crate.
+/// @tparam C  the crate
 template <class C>
 struct CrateResult : CalibrationResult {
-  /// What was found for a free parameter: a number, or (N) in the order of its names.
+  /// The calibrated value of a free parameter: a number, or (N) in the order of its names.
   template <FreeParameter P>
   [[nodiscard]] auto value() const {
     using Owner = LookedUp<P::kOwner, typename C::Free>;
@@ -36,40 +38,19 @@ struct CrateResult : CalibrationResult {
   }
 };
 
-/// The calibration of one step that solves a problem with these samples.  Free parameters on which
-/// no residual of them depends keep their initial values.
-/// @param problem  without samples
-/// @throws SampleError  naming the sample and what is missing or wrong in it
-/// @throws std::invalid_argument  if there are no samples that a block could take
-[[nodiscard]] inline Calibration make_calibration(Problem problem, const FreeSet& free,
-                                                  std::span<const Sample> samples,
-                                                  const std::string& step = "calibration") {
-  for (const Sample& sample : samples) problem.add_sample(sample);
-  const std::vector<int> touched = problem.touched_parameters();
-  if (touched.empty()) {
-    throw std::invalid_argument("no sample has usable features of all sensors of an error block");
-  }
-  std::vector<int> told = free.parameters();
-  std::erase_if(told,
-                [&](int p) { return !std::binary_search(touched.begin(), touched.end(), p); });
-  Calibration calibration{problem.table(), {}};
-  FreeSet columns(std::move(told), calibration.table.size());
-  calibration.steps.push_back(
-      {step, SolveOptions{}.max_num_iterations, std::move(problem), std::move(columns), {}});
-  return calibration;
-}
-
-/// The calibration that a crate stands for; with it, reports and result files are made as those of
-/// the program.
-/// @param table  C::table(samples), perhaps with other initial values or bounds
-/// @throws  as above
+/// The calibration that a crate describes.  Reports and result files can be made from it, as the
+/// program makes them.
+/// @param table  Crate::table(samples), perhaps with other initial values or bounds
+/// @throws SampleError, std::invalid_argument  as make_calibration() of a problem
 template <class... Parts>
 [[nodiscard]] Calibration make_calibration(const Crate<Parts...>& crate,
                                            const ParameterTable& table,
                                            std::span<const Sample> samples,
                                            const std::string& step = "calibration") {
-  return make_calibration(crate.problem(table), Crate<Parts...>::free(table), samples, step);
+  return make_calibration(std::make_unique<Problem>(crate.problem(table)),
+                          Crate<Parts...>::free(table), samples, step);
 }
+/// The same with the initial values and bounds of Crate::table(samples).
 template <class... Parts>
 [[nodiscard]] Calibration make_calibration(const Crate<Parts...>& crate,
                                            std::span<const Sample> samples,
@@ -78,8 +59,8 @@ template <class... Parts>
 }
 
 /// Makes the calibration of a crate and solves it.
-/// @param table  as above
-/// @throws  as make_calibration()
+/// @param table  Crate::table(samples), perhaps with other initial values or bounds
+/// @throws SampleError, std::invalid_argument  as make_calibration()
 template <class... Parts>
 [[nodiscard]] CrateResult<Crate<Parts...>> calibrate(const Crate<Parts...>& crate,
                                                      const ParameterTable& table,
@@ -89,6 +70,7 @@ template <class... Parts>
   calibration.steps.front().max_num_iterations = options.max_num_iterations;
   return {calibrate(calibration, {}, options)};
 }
+/// The same with the initial values and bounds of Crate::table(samples).
 template <class... Parts>
 [[nodiscard]] CrateResult<Crate<Parts...>> calibrate(const Crate<Parts...>& crate,
                                                      std::span<const Sample> samples,

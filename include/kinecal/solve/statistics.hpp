@@ -2,88 +2,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
+/// Sizes of residuals.
 struct Statistics {
-  double rms = 0.0;   ///< of the residual's components
-  double mean = 0.0;  ///< of the features' norms, as median and max
-  double median = 0.0;
-  double max = 0.0;
+  double rms = 0.0;     ///< of the residual's components
+  double mean = 0.0;    ///< of the features' norms
+  double median = 0.0;  ///< of the features' norms
+  double max = 0.0;     ///< of the features' norms
 };
 
 /// One error block before and after a calibration.
 struct BlockStatistics {
-  std::string name, type;
-  std::string unit;  ///< "m", "px" or "1"
-  int count = 0;     ///< features
-  Statistics before, after;
+  std::string name;   ///< of the error block or prior
+  std::string type;   ///< "chain3d_to_chain3d"
+  std::string unit;   ///< of the residual: "m", "px" or "1"
+  int count = 0;      ///< number of features
+  Statistics before;  ///< at the initial values
+  Statistics after;   ///< at the final values
 };
 
-/// @param norms       of each feature's residual
-/// @param components  number of residuals of one feature
-[[nodiscard]] inline Statistics statistics_of(std::vector<double> norms, int components) {
-  if (norms.empty()) return {};
-  Statistics s;
-  double squares = 0.0;
-  for (double norm : norms) {
-    squares += norm * norm;
-    s.mean += norm;
-  }
-  const auto n = static_cast<double>(norms.size());
-  s.rms = std::sqrt(squares / (n * components));
-  s.mean /= n;
-  std::sort(norms.begin(), norms.end());
-  const std::size_t half = norms.size() / 2;
-  s.median = norms.size() % 2 == 1 ? norms[half] : 0.5 * (norms[half - 1] + norms[half]);
-  s.max = norms.back();
-  return s;
-}
+/// Statistics of the residuals of one error block.
+/// @param norms       norm of each feature's residual
+/// @param components  number of components of a residual
+[[nodiscard]] Statistics statistics_of(std::vector<double> norms, int components);
 
 /// Norms of the unweighted residuals of every feature, for each term of a problem.
-template <class S>
-[[nodiscard]] std::vector<std::vector<double>> feature_norms(const BasicProblem<S>& problem,
-                                                             std::span<const double> values) {
-  std::vector<std::vector<double>> norms(problem.terms().size());
-  (void)evaluate(problem, values, nullptr, [&](int t, int, const TermResiduals& residuals) {
-    const int size = problem.terms()[static_cast<std::size_t>(t)]->feature_size();
-    for (Eigen::Index row = 0; row < residuals.residual.size(); row += size) {
-      norms[static_cast<std::size_t>(t)].push_back(residuals.residual.segment(row, size).norm());
-    }
-  });
-  return norms;
-}
+[[nodiscard]] std::vector<std::vector<double>> feature_norms(const AnyProblem& problem,
+                                                             std::span<const double> values);
 
 /// Statistics of all error blocks and priors of a problem, for two sets of parameter values.
-template <class S>
-[[nodiscard]] std::vector<BlockStatistics> block_statistics(const BasicProblem<S>& problem,
+[[nodiscard]] std::vector<BlockStatistics> block_statistics(const AnyProblem& problem,
                                                             std::span<const double> before,
-                                                            std::span<const double> after) {
-  std::vector<BlockStatistics> all;
-  const auto norms_before = feature_norms(problem, before);
-  const auto norms_after = feature_norms(problem, after);
-  for (std::size_t t = 0; t < problem.terms().size(); ++t) {
-    const Term<S>& term = *problem.terms()[t];
-    all.push_back({term.name(), term.options().type, term.options().unit,
-                   static_cast<int>(norms_after[t].size()),
-                   statistics_of(norms_before[t], term.feature_size()),
-                   statistics_of(norms_after[t], term.feature_size())});
-  }
-  TermResiduals residuals;
-  for (const PriorTerm& prior : problem.priors()) {
-    BlockStatistics& block = all.emplace_back();
-    block = {prior.name, prior.options.type, prior.options.unit, problem.num_samples(), {}, {}};
-    prior.evaluate(problem.table(), before, nullptr, residuals);
-    block.before = statistics_of({residuals.residual.norm()}, Prior::kRows);
-    prior.evaluate(problem.table(), after, nullptr, residuals);
-    block.after = statistics_of({residuals.residual.norm()}, Prior::kRows);
-  }
-  return all;
-}
+                                                            std::span<const double> after);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/solve/statistics.ipp"
+#endif

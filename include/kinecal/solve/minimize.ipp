@@ -1,8 +1,8 @@
 // Minimizing the cost of a problem with Ceres, bounds included.
 //
-// Ceres keeps within bounds by projecting its steps, and crawls where one is active.  So what ends
-// at a bound, with the cost still falling beyond it, is held there and the rest is minimized again,
-// until the set of what is held no longer changes: an active set.
+// Ceres keeps within bounds by projecting its steps, and converges slowly where a bound is active.
+// So an active set is used: parameters that end at a bound, with the cost still falling beyond it,
+// are held there, and the others are minimized again, until the set of held parameters is stable.
 // Source: Nocedal, Wright, Numerical Optimization, 16.5.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -12,33 +12,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "kinecal/solve/compressed_cost.hpp"
+#include "kinecal/solve/solve.hpp"
 #include "kinecal/solve/stacked_cost.hpp"
 
 namespace kinecal {
-
-/// How the samples are given to Ceres: summed (compressed_cost.hpp) or one by one
-/// (stacked_cost.hpp).
-enum class CostForm { compressed, stacked };
-
-[[nodiscard]] constexpr std::string_view to_string(CostForm form) {
-  return form == CostForm::compressed ? "compressed" : "stacked";
-}
-
-struct SolveOptions {
-  int max_num_iterations = 1000;
-  /// An iteration that lowers the cost by less than this part of it is the last.  Costs are
-  /// compared with reference figures to many digits, and an iteration costs little.
-  double function_tolerance = 1e-14;
-  CostForm form = CostForm::compressed;
-  int threads = 0;  ///< zero: one for each core; the result does not depend on it
-  /// Called after each iteration with its number and cost.
-  std::function<void(int iteration, double cost)> progress = {};
-};
 
 namespace detail {
 
@@ -61,10 +43,10 @@ class ProgressCallback final : public ceres::IterationCallback {
   ceres_options.function_tolerance = options.function_tolerance;
   ceres_options.gradient_tolerance = 1e-16;
   ceres_options.parameter_tolerance = 1e-12;
-  // Calibrations have directions that the data hardly see, at the bottom of curved valleys: steps
-  // along them are long, and now and then lead uphill first.  On a robot with 51 parameters of
-  // which 25 can be seen this takes 30 to 130 iterations; monotonic steps from the default radius
-  // stop short of the minimum.
+  // Calibrations have directions that are barely observable, at the bottom of curved valleys: steps
+  // along them are long and sometimes lead uphill first.  On a robot with 51 parameters, 25 of them
+  // observable, this takes 30 to 130 iterations; monotonic steps from the default radius stop short
+  // of the minimum.
   ceres_options.use_nonmonotonic_steps = true;
   ceres_options.initial_trust_region_radius = 1e6;
   ceres_options.logging_type = ceres::SILENT;
@@ -72,7 +54,7 @@ class ProgressCallback final : public ceres::IterationCallback {
   return ceres_options;
 }
 
-/// What several runs of Ceres came to.
+/// The outcome of several runs of Ceres.
 struct Minimum {
   bool usable = false, converged = false;
   std::string message;  ///< of the last run
@@ -93,15 +75,14 @@ inline void set_bounds(ceres::Problem& problem, const ParameterTable& table, con
 
 /// One run of Ceres over the evaluator's free parameters.
 /// @param values  in: where to start; out: where it ended, if that is usable
-template <class S>
-void run_ceres(Evaluator<S>& evaluator, Eigen::VectorXd& values, const SolveOptions& options,
-               Losses losses, Minimum& minimum) {
-  const BasicProblem<S>& problem = evaluator.problem();
+inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const SolveOptions& options,
+                      Losses losses, Minimum& minimum) {
+  const AnyProblem& problem = evaluator.problem();
   const FreeSet& free = evaluator.free();
   std::vector<double> x;
   for (int p : free.parameters()) x.push_back(values(p));
   ceres::Problem::Options problem_options;
-  std::optional<StackedResiduals<S>> stack;
+  std::optional<StackedResiduals> stack;
   if (options.form == CostForm::stacked) {
     problem_options.evaluation_callback = &stack.emplace(problem, free, values, x.data(), losses);
   }
@@ -109,7 +90,7 @@ void run_ceres(Evaluator<S>& evaluator, Eigen::VectorXd& values, const SolveOpti
   if (stack) {
     stack->add_to(ceres_problem, x.data());
   } else {
-    ceres_problem.AddResidualBlock(new CompressedCost<S>(evaluator, values, losses), nullptr,
+    ceres_problem.AddResidualBlock(new CompressedCost(evaluator, values, losses), nullptr,
                                    x.data());
   }
   set_bounds(ceres_problem, problem.table(), free, x.data());
@@ -138,10 +119,9 @@ void run_ceres(Evaluator<S>& evaluator, Eigen::VectorXd& values, const SolveOpti
   return std::any_of(free.parameters().begin(), free.parameters().end(), is_bounded);
 }
 
-/// The free parameters that are not held by a bound beyond which the cost would fall.
-template <class S>
-[[nodiscard]] std::vector<int> within_bounds(Evaluator<S>& evaluator, const Eigen::VectorXd& values,
-                                             Losses losses) {
+/// The free parameters, without those at a bound beyond which the cost would fall.
+[[nodiscard]] inline std::vector<int> within_bounds(AnyEvaluator& evaluator,
+                                                    const Eigen::VectorXd& values, Losses losses) {
   const FreeSet& free = evaluator.free();
   const NormalEquations normal = evaluator.normal_equations(
       {values.data(), static_cast<std::size_t>(values.size())}, true, losses);
@@ -161,10 +141,9 @@ template <class S>
 
 /// Minimizes over the evaluator's free parameters, within their bounds.
 /// @param values  in: where to start; out: where it ended, if that is usable
-template <class S>
-[[nodiscard]] Minimum minimize(Evaluator<S>& evaluator, Eigen::VectorXd& values,
-                               const SolveOptions& options, Losses losses) {
-  const BasicProblem<S>& problem = evaluator.problem();
+[[nodiscard]] inline Minimum minimize(AnyEvaluator& evaluator, Eigen::VectorXd& values,
+                                      const SolveOptions& options, Losses losses) {
+  const AnyProblem& problem = evaluator.problem();
   const FreeSet& free = evaluator.free();
   Minimum minimum;
   const Eigen::VectorXd start = values;
@@ -178,8 +157,9 @@ template <class S>
     inside = std::move(next);
     // From the start again: crawling along a bound also drifts along what cannot be observed.
     for (const int p : inside) values(p) = start(p);
-    Evaluator<S> of_inside(problem, FreeSet(inside, problem.table().size()), options.threads);
-    run_ceres(of_inside, values, options, losses, minimum);
+    const auto of_inside =
+        problem.evaluator(FreeSet(inside, problem.table().size()), options.threads);
+    run_ceres(*of_inside, values, options, losses, minimum);
   }
   return minimum;
 }

@@ -1,0 +1,124 @@
+// Solving one step.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/solve/minimize.ipp"
+#include "kinecal/solve/solve.hpp"
+#include "kinecal/solve/statistics.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+[[nodiscard]] inline bool all_losses_convex(const AnyProblem& problem) {
+  bool convex = true;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    convex = convex && problem.term(t).options().loss.is_convex();
+  }
+  for (const PriorTerm& prior : problem.priors()) {
+    convex = convex && prior.options.loss.is_convex();
+  }
+  return convex;
+}
+
+/// The name of a term whose loss leaves out half of its features or more; empty if there is none.
+/// Such a "minimum" is a plateau.
+[[nodiscard]] inline std::string mostly_left_out(const AnyProblem& problem,
+                                                 std::span<const double> values) {
+  if (all_losses_convex(problem)) return {};
+  const auto norms = feature_norms(problem, values);
+  for (std::size_t t = 0; t < norms.size(); ++t) {
+    const AnyTerm& term = problem.term(static_cast<int>(t));
+    const TermOptions& options = term.options();
+    const auto left_out = std::count_if(norms[t].begin(), norms[t].end(), [&](double norm) {
+      const double weighted = options.weight * norm;
+      return options.loss(weighted * weighted).derivative == 0.0;
+    });
+    if (left_out > 0 && 2 * left_out >= static_cast<std::ptrdiff_t>(norms[t].size())) {
+      return term.name();
+    }
+  }
+  return {};
+}
+
+/// A value from an earlier step may lie outside of this step's bounds: takes the nearest one inside.
+inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
+                            Eigen::VectorXd& values) {
+  for (const int p : free.parameters()) {
+    values(p) = std::clamp(values(p), table[p].lower, table[p].upper);
+  }
+}
+
+/// Costs and counts at the start; false, with the reason, if there is nothing to solve.
+inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepResult& result) {
+  result.initial_cost = evaluator.normal_equations(values, false).cost;
+  result.final_cost = result.initial_cost;
+  std::optional<UndefinedResidual> undefined;
+  if (!std::isfinite(result.initial_cost)) {
+    undefined = undefined_residual(evaluator.problem(), values);
+  }
+  if (undefined) {
+    result.termination = "failed: the residual of '" + undefined->term +
+                         "' is not defined at the start for the sample at " + undefined->source +
+                         " (a point behind a camera, or points that span no plane)";
+    return false;
+  }
+  if (!std::isfinite(result.initial_cost)) {
+    result.termination = "failed: the cost at the start is not finite";
+  } else if (result.num_residuals < result.num_parameters) {
+    result.termination = "failed: " + std::to_string(result.num_residuals) +
+                         (result.num_residuals == 1 ? " residual" : " residuals") +
+                         " cannot determine " + std::to_string(result.num_parameters) +
+                         (result.num_parameters == 1 ? " parameter" : " parameters");
+  }
+  return result.termination.empty();
+}
+
+}  // namespace detail
+
+KINECAL_INLINE StepResult solve(const AnyProblem& problem, const FreeSet& free,
+                                Eigen::VectorXd& values, const SolveOptions& options) {
+  StepResult result;
+  result.num_parameters = free.size();
+  // Priors count once for each sample.
+  result.num_residuals = problem.num_residuals() + static_cast<int>(problem.priors().size()) *
+                                                       Prior::kRows * (problem.num_samples() - 1);
+  result.form = options.form;
+  result.samples = problem.num_samples();
+  Eigen::VectorXd x = values;
+  detail::clamp_to_bounds(problem.table(), free, x);
+  const std::span<const double> all(x.data(), static_cast<std::size_t>(x.size()));
+  const auto evaluator = problem.evaluator(free, options.threads);
+  if (!detail::start(*evaluator, all, result)) return result;
+  detail::Minimum first;
+  if (!detail::all_losses_convex(problem)) {
+    first = detail::minimize(*evaluator, x, options, Losses::convex);
+  }
+  const detail::Minimum last = detail::minimize(*evaluator, x, options, Losses::as_given);
+  result.iterations = first.iterations + last.iterations;
+  result.seconds = first.seconds + last.seconds;
+  result.evaluations = first.evaluations + last.evaluations;
+  constexpr double kRounding = 1e-9;  // a start at the minimum may end slightly above it
+  if (!last.usable) {
+    result.termination = "failed: " + last.message;
+  } else if (!std::isfinite(last.cost)) {
+    result.termination = "failed: the cost is not finite";
+  } else if (last.cost > result.initial_cost * (1.0 + kRounding)) {
+    result.termination = "failed: the cost did not decrease";
+  } else if (const std::string term = detail::mostly_left_out(problem, all); !term.empty()) {
+    result.termination = "failed: the loss of '" + term +
+                         "' leaves out half of its features or more; is its scale too small?";
+  } else {
+    result.converged = last.converged;
+    result.termination = (last.converged ? "converged: " : "did not converge: ") + last.message;
+    result.final_cost = last.cost;
+    values = x;
+  }
+  return result;
+}
+
+}  // namespace kinecal

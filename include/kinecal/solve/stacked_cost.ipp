@@ -1,0 +1,98 @@
+// Stacking residuals for Ceres.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/solve/stacked_cost.hpp"
+
+namespace kinecal {
+
+KINECAL_INLINE void CeresLoss::Evaluate(double squared, double* rho) const {
+  const auto value = loss_(squared);
+  rho[0] = value.rho;
+  rho[1] = value.derivative;
+  rho[2] = 0.0;
+}
+
+/// Some rows of the stack.
+class StackedResiduals::Rows final : public ceres::CostFunction {
+ public:
+  Rows(const StackedResiduals& stack, Eigen::Index row, int size) : stack_(stack), row_(row) {
+    set_num_residuals(size);
+    mutable_parameter_block_sizes()->push_back(stack.free_.size());
+  }
+  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+    if (!stack_.defined_) return false;
+    const int size = num_residuals();
+    Eigen::Map<Eigen::VectorXd>(residuals, size) = stack_.residual_.segment(row_, size);
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<RowMajor>(jacobians[0], size, stack_.free_.size()) =
+          stack_.jacobian_.middleRows(row_, size);
+    }
+    return true;
+  }
+
+ private:
+  const StackedResiduals& stack_;
+  Eigen::Index row_;
+};
+
+KINECAL_INLINE StackedResiduals::StackedResiduals(const AnyProblem& problem, const FreeSet& free,
+                                                  Eigen::VectorXd values, const double* x,
+                                                  Losses losses)
+    : problem_(problem),
+      free_(free),
+      values_(std::move(values)),
+      x_(x),
+      losses_(losses),
+      evaluator_(problem.evaluator(free)) {
+  residual_.resize(problem.num_residuals());
+  jacobian_.resize(problem.num_residuals(), free.size());
+}
+
+KINECAL_INLINE void StackedResiduals::PrepareForEvaluation(bool jacobians, bool) {
+  for (int c = 0; c < free_.size(); ++c) {
+    values_(free_.parameters()[static_cast<std::size_t>(c)]) = x_[c];
+  }
+  const std::span<const double> values(values_.data(), static_cast<std::size_t>(values_.size()));
+  Eigen::Index row = 0;
+  const auto stack = [&](double weight, const TermResiduals& of_term) {
+    const Eigen::Index rows = of_term.residual.size();
+    residual_.segment(row, rows) = weight * of_term.residual;
+    if (jacobians) jacobian_.middleRows(row, rows) = weight * of_term.jacobian;
+    row += rows;
+  };
+  const FreeSet* free = jacobians ? &free_ : nullptr;
+  defined_ = !evaluator_->evaluate(values, jacobians, [&](int t, int, const auto& of_term) {
+    stack(problem_.term(t).options().weight, of_term);
+  });
+  TermResiduals of_prior;
+  for (const PriorTerm& prior : problem_.priors()) {
+    prior.evaluate(problem_.table(), values, free, of_prior);
+    stack(prior.options.weight, of_prior);
+  }
+}
+
+KINECAL_INLINE void StackedResiduals::add_to(ceres::Problem& problem, double* x) {
+  Eigen::Index row = 0;
+  const auto add = [&](int size, const TermOptions& options, double repeats) {
+    const Loss loss = options.loss_for(losses_);
+    ceres::LossFunction* robust =
+        loss.type == LossType::none ? nullptr : new CeresLoss(loss);  // Ceres takes it
+    if (repeats != 1.0) {
+      robust = new ceres::ScaledLoss(robust, repeats, ceres::TAKE_OWNERSHIP);
+    }
+    problem.AddResidualBlock(new Rows(*this, row, size), robust, x);
+    row += size;
+  };
+  const std::span<const double> values(values_.data(), static_cast<std::size_t>(values_.size()));
+  (void)evaluator_->evaluate(values, false, [&](int t, int, const TermResiduals& of_term) {
+    const AnyTerm& term = problem_.term(t);
+    const int features = static_cast<int>(of_term.residual.size()) / term.feature_size();
+    for (int i = 0; i < features; ++i) add(term.feature_size(), term.options(), 1.0);
+  });
+  for (const PriorTerm& prior : problem_.priors()) {
+    add(Prior::kRows, prior.options, problem_.num_samples());
+  }
+}
+
+}  // namespace kinecal
