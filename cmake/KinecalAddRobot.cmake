@@ -1,7 +1,7 @@
 # kinecal_add_robot(<target> URDF <file> [NAMESPACE <name>])
 #
-# Makes a library of the robot that a URDF describes: when the project is built, a header with the
-# robot as constant data, and again whenever the URDF changes.
+# Adds a library with the robot of a URDF: the build generates a header with the robot as constant
+# data, again whenever the URDF changes.
 #
 #   kinecal_add_robot(fetch URDF urdf/fetch.urdf)
 #   target_link_libraries(my_program PRIVATE fetch)
@@ -9,12 +9,12 @@
 #   #include "robots/fetch.hpp"                       // robots/<target>.hpp
 #   constexpr auto& joints = fetch::Robot::kJoints;   // <namespace>::Robot, a kinecal::RobotData
 #
-# URDF       relative to the current source directory; may be made by the build itself
-# NAMESPACE  such as `fetch` or `robots::fetch`; by default the robot's name, in which everything
-#            but letters and digits becomes `_`
+# URDF       relative to the current source directory; the build itself may generate it
+# NAMESPACE  such as `fetch` or `robots::fetch`; by default the robot's name, with `_` in place of
+#            everything but letters and digits
 #
-# The header is written by kinecal::robot_header, which is built or installed with kinecal.
-# Cross-compiling, set KINECAL_ROBOT_HEADER to a kinecal_robot_header that runs on this machine.
+# kinecal::robot_header, which is built or installed with kinecal, writes the header.  When you
+# cross-compile, set KINECAL_ROBOT_HEADER to a kinecal_robot_header that runs on this machine.
 function(kinecal_add_robot target)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "URDF;NAMESPACE" "")
   set(call "kinecal_add_robot(${target})")
@@ -24,7 +24,7 @@ function(kinecal_add_robot target)
   cmake_path(ABSOLUTE_PATH ARG_URDF BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
   get_source_file_property(is_generated ${ARG_URDF} GENERATED)
   if(NOT is_generated AND NOT EXISTS ${ARG_URDF})
-    message(FATAL_ERROR "${call}: there is no file ${ARG_URDF}")
+    message(FATAL_ERROR "${call}: the file ${ARG_URDF} does not exist")
   endif()
 
   set(program kinecal::robot_header)

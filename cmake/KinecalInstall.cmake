@@ -1,28 +1,48 @@
-# Installation: headers, targets and the package files that find_package(kinecal) and pkg-config read.
+# Installation: libraries, headers, and the package files for find_package(kinecal) and pkg-config.
+#
+#   cmake --install <build> --component headers     the headers alone, without building anything
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kinecal)
+install(TARGETS kinecal_headers EXPORT kinecal-headers COMPONENT headers)
+install(EXPORT kinecal-headers NAMESPACE kinecal:: DESTINATION ${package_dir} COMPONENT headers)
 foreach(component core solve io kinecal)
   install(EXPORT kinecal-${component} NAMESPACE kinecal:: DESTINATION ${package_dir})
 endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/kinecal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        COMPONENT headers FILES_MATCHING PATTERN "*.ipp")
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/kinecalConfig.cmake.in
   ${PROJECT_BINARY_DIR}/kinecalConfig.cmake INSTALL_DESTINATION ${package_dir})
-# Not ARCH_INDEPENDENT: the headers are, but the programs beside them are of one architecture.
+# Not ARCH_INDEPENDENT: the headers are, but the libraries and programs are of one architecture.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/kinecalConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/kinecalConfig.cmake
               ${PROJECT_BINARY_DIR}/kinecalConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/KinecalAddRobot.cmake
-        DESTINATION ${package_dir})
+        DESTINATION ${package_dir} COMPONENT headers)
 
-# For those who build without CMake.  Its paths are relative to itself, so that the folder may move.
+# For builds without CMake.  Paths are relative to the file, so you can move the folder.
 set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 file(RELATIVE_PATH prefix_from_pc /${pkgconfig_dir} /)
-configure_file(${PROJECT_SOURCE_DIR}/cmake/package/kinecal-core.pc.in
-  ${PROJECT_BINARY_DIR}/kinecal-core.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/kinecal-core.pc DESTINATION ${pkgconfig_dir})
+set(sanitizers "")
+if(KINECAL_SANITIZE)
+  set(sanitizers " -fsanitize=address,undefined")
+endif()
+set(native "")
+if(KINECAL_NATIVE)
+  set(native " -march=native")
+endif()
+foreach(component core solve io)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/package/kinecal-${component}.pc.in
+    ${PROJECT_BINARY_DIR}/kinecal-${component}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/kinecal-${component}.pc DESTINATION ${pkgconfig_dir})
+endforeach()
 
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/cmake/package/copyright
-        DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES ${PROJECT_SOURCE_DIR}/package.xml  # by which ROS knows what is installed
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal)
+              ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CONCEPTS.md
+              ${PROJECT_SOURCE_DIR}/ARCHITECTURE.md
+        DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT headers)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        COMPONENT headers PATTERN "demo.sh" EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/package.xml  # ROS reads it to see what is installed
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal COMPONENT headers)

@@ -1,18 +1,21 @@
 # One program for every x86-64 processor, each at its best.
 #
 # The evaluation holds as many samples at once as the instruction set it is compiled for has lanes.
-# So what evaluates is compiled once for each level, into shared libraries of one name:
-#   lib/kinecal/lib<library>.so                            any x86-64
-#   lib/kinecal/glibc-hwcaps/x86-64-v3/lib<library>.so     AVX2
-#   lib/kinecal/glibc-hwcaps/x86-64-v4/lib<library>.so     AVX-512
+# So what evaluates and solves (kinecal::core and kinecal::solve, not the files of kinecal::io) is
+# compiled once for each level, into shared libraries of one name:
+#   lib/kinecal/libkinecal_evaluation.so                            any x86-64
+#   lib/kinecal/glibc-hwcaps/x86-64-v3/libkinecal_evaluation.so     AVX2
+#   lib/kinecal/glibc-hwcaps/x86-64-v4/libkinecal_evaluation.so     AVX-512
 # and the dynamic loader takes the best that the processor has (glibc 2.33; older ones the first).
-# Objects for different levels must not meet in one file: their inline functions bear the same
-# names, and the linker would take one of them for all.  That holds for a static Ceres, too, which is
-# compiled for the baseline: its shared library is taken instead.
+# Objects for different levels must not meet in one file: their inline functions have the same names,
+# and the linker would take one of them for all.  The same holds for a static Ceres, which is compiled
+# for the baseline: its shared library is taken instead.  What crosses the border between program and
+# library is virtual functions and plain data; Eigen's matrices of variable size do not, as their
+# alignment differs.
 # Source: ld.so(8), glibc-hwcaps; x86-64 psABI, micro-architecture levels.
 
-# The shared library of Ceres, empty if there is none: Debian's package has both, and names the
-# static one.
+# The shared library of Ceres, or empty.  Debian's package has both libraries, but names the static
+# one.
 function(kinecal_shared_ceres result)
   get_target_property(ceres Ceres::ceres LOCATION)
   string(REGEX REPLACE "\\.a$" ".so" ceres "${ceres}")
@@ -40,36 +43,69 @@ if(KINECAL_X86_64_LEVELS)
   endif()
 endif()
 
-# Links a program with a library of sources (an INTERFACE library), once for each level or directly.
-function(kinecal_link_levels program library)
+# Links a program with the evaluation at each level, or with kinecal::solve.
+function(kinecal_link_levels program)
   if(NOT KINECAL_LEVELS)
-    target_link_libraries(${program} PRIVATE ${library})
+    target_link_libraries(${program} PRIVATE kinecal::solve)
     return()
   endif()
   foreach(level IN LISTS KINECAL_LEVELS)
-    set(folder ${CMAKE_INSTALL_LIBDIR}/kinecal)
-    if(NOT level STREQUAL x86-64)
-      string(APPEND folder /glibc-hwcaps/${level})
-    endif()
-    set(target ${library}_${level})
-    add_library(${target} SHARED)
-    target_link_libraries(${target} PRIVATE ${KINECAL_CERES} ${library})
-    # g++ 12 takes what AVX-512's own headers leave undefined for a mistake (GCC bug 105593).
-    target_compile_options(${target} PRIVATE -march=${level}
-      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
-    target_link_options(${target} PRIVATE -Wl,-Bsymbolic)  # never another object's inline functions
-    set_target_properties(${target} PROPERTIES
-      OUTPUT_NAME ${library}
-      LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${folder}
-      CXX_VISIBILITY_PRESET hidden
-      VISIBILITY_INLINES_HIDDEN ON
-      INSTALL_RPATH_USE_LINK_PATH ON)
-    install(TARGETS ${target} LIBRARY DESTINATION ${folder})
-    add_dependencies(${program} ${target})
+    add_dependencies(${program} kinecal_evaluation_${level})
   endforeach()
-  target_link_libraries(${program} PRIVATE ${library}_x86-64)
+  # Before kinecal::io, whose references the static kinecal::solve would resolve otherwise.
+  target_link_libraries(${program} PRIVATE kinecal_evaluation_x86-64)
   file(RELATIVE_PATH from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/kinecal)
   set_target_properties(${program} PROPERTIES
     BUILD_RPATH_USE_ORIGIN ON
     INSTALL_RPATH "$ORIGIN/${from_bin}")
 endfunction()
+
+function(kinecal_add_level level)
+  set(folder ${CMAKE_INSTALL_LIBDIR}/kinecal)
+  if(NOT level STREQUAL x86-64)
+    string(APPEND folder /glibc-hwcaps/${level})
+  endif()
+  set(target kinecal_evaluation_${level})
+  if(level STREQUAL x86-64)
+    add_library(${target} SHARED $<TARGET_OBJECTS:kinecal_core> $<TARGET_OBJECTS:kinecal_solve>)
+    set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)
+  else()
+    add_library(${target} SHARED ${KINECAL_UNITS_core} ${KINECAL_UNITS_solve}
+                                 ${KINECAL_PACKET_INSTANCES})
+    # The program is compiled for the baseline and refers to the baseline's check: see linkage.hpp.
+    set(check ${CMAKE_CURRENT_BINARY_DIR}/kinecal_level_check.cpp)
+    file(CONFIGURE OUTPUT ${check} CONTENT
+      "namespace kinecal { namespace x86_64 { extern const bool kLibraryIsCompiledForThis; \
+const bool kLibraryIsCompiledForThis = true; } }\n")
+    target_sources(${target} PRIVATE ${check})
+  endif()
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/include)
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_link_libraries(${target} PRIVATE ${KINECAL_CERES} Eigen3::Eigen Threads::Threads
+                        kinecal_warnings)
+  target_include_directories(${target} SYSTEM PRIVATE
+    $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_INCLUDE_DIRECTORIES>)
+  target_compile_definitions(${target} PRIVATE
+    $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_COMPILE_DEFINITIONS>)
+  # g++ 12 takes what AVX-512's own headers leave undefined for a mistake (GCC bug 105593).
+  target_compile_options(${target} PRIVATE -march=${level}
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  target_link_options(${target} PRIVATE
+    -Wl,-Bsymbolic  # never another object's inline functions
+    -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/evaluation.map)
+  set_target_properties(${target} PROPERTIES
+    LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/evaluation.map
+    OUTPUT_NAME kinecal_evaluation
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${folder}
+    UNITY_BUILD ON UNITY_BUILD_MODE GROUP
+    INSTALL_RPATH_USE_LINK_PATH ON)
+  if(KINECAL_INSTALL)
+    install(TARGETS ${target} LIBRARY DESTINATION ${folder})
+  endif()
+endfunction()
+
+if(KINECAL_BUILD_EXAMPLES)
+  foreach(level IN LISTS KINECAL_LEVELS)
+    kinecal_add_level(${level})
+  endforeach()
+endif()

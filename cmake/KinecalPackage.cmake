@@ -1,5 +1,5 @@
-# `cpack` in a build tree makes kinecal_<version>_<architecture>.deb: the programs, the headers and all
-# that is needed to build against them.
+# `cpack` in a build tree makes kinecal_<version>_<architecture>.deb: programs, libraries, headers
+# and what you need to build against them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "kinecal developers")
 set(CPACK_PACKAGE_CONTACT "kinecal developers <kinecal@example.org>")
@@ -9,7 +9,7 @@ intrinsics, depth offset and scale) and recorded samples, and gives back the
 corrected URDF and camera files, with figures that say how good they are.
 It reads the configurations and samples of robot_calibration and needs no ROS.
 
-The package holds the program, kinecal, and the header-only C++20 library.")
+The package holds the program, kinecal, and the C++20 libraries.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
@@ -17,8 +17,8 @@ set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS  # what the headers include and kinecalConfig.cmake looks for
-  "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), liburdfdom-dev, libyaml-cpp-dev, libyaml-dev, \
-libpugixml-dev, libfmt-dev, pkg-config")
+  "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), liburdfdom-dev, libyaml-dev, \
+libpugixml-dev, libfmt-dev, zlib1g-dev, pkg-config")
 foreach(package IN LISTS KINECAL_BAG_PACKAGES)
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", ${package}")
 endforeach()

@@ -1,73 +1,151 @@
-# The libraries, all header-only, one for each set of dependencies:
-#   kinecal::core   geometry ... crate           Eigen, threads
-#   kinecal::solve  solve, trust                 + Ceres
-#   kinecal::io     io, report                   + urdfdom, yaml-cpp, libyaml, pugixml, fmt;
-#                                                  what bags need, where it is here: KinecalBags.cmake
+# The libraries, one for each set of dependencies:
+#   kinecal::core     geometry ... crate           Eigen, threads
+#   kinecal::solve    solve, trust                 + Ceres
+#   kinecal::io       io, report                   + urdfdom, libyaml, pugixml, fmt, zlib; optional
+#                                                    libraries for bags: KinecalBags.cmake
 #   kinecal::kinecal  all of them
+#   kinecal::headers  no library: every source compiles what it includes
 include(GNUInstallDirs)
 
-set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that fetches kinecal links them, too
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that fetches kinecal links them as well
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Ceres 2.1 REQUIRED)
 find_package(urdfdom REQUIRED)
-find_package(yaml-cpp REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(fmt REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET GLOBAL yaml-0.1)
 
-function(kinecal_add_library name)
-  cmake_parse_arguments(ARG "" "" "FOLDERS;LINK" ${ARGN})
-  add_library(kinecal_${name} INTERFACE)
-  add_library(kinecal::${name} ALIAS kinecal_${name})
-  set_target_properties(kinecal_${name} PROPERTIES EXPORT_NAME ${name})
-  target_compile_features(kinecal_${name} INTERFACE cxx_std_20)
-  set(headers "")
-  foreach(folder IN LISTS ARG_FOLDERS)
-    file(GLOB_RECURSE found CONFIGURE_DEPENDS
-         ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}/*.hpp)
-    list(APPEND headers ${found} ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}.hpp)
+# Files of one folder are one translation unit: their headers are parsed once.
+function(kinecal_group_units)
+  foreach(unit IN LISTS ARGV)
+    cmake_path(GET unit PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/include/kinecal)
+    string(REPLACE "/" "_" group ${folder})
+    if(unit MATCHES "/instances/.*_(packet|double)\\.ipp$")
+      string(APPEND group _${CMAKE_MATCH_1})
+    elseif(group STREQUAL trust)
+      set(group solve)
+    endif()
+    set_source_files_properties(${unit} PROPERTIES LANGUAGE CXX UNITY_GROUP ${group})
   endforeach()
-  target_sources(kinecal_${name} INTERFACE FILE_SET HEADERS
-                 BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})
-  target_link_libraries(kinecal_${name} INTERFACE ${ARG_LINK})
-  install(TARGETS kinecal_${name} EXPORT kinecal-${name}
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
+# kinecal_add_library(<name> FOLDERS <folder>... LINK <target>...
+#                     [PRIVATE_LINK <target>...] [INSTANCES <file>...])
+#
+# INSTANCES     files of explicit template instances
+# FOLDERS       of include/kinecal: their headers, and the .ipp beside a header of the same name, which
+#               are compiled once: those of one folder as one translation unit
+# LINK          what the headers include
+# PRIVATE_LINK  what only the .ipp files include
+function(kinecal_add_library name)
+  cmake_parse_arguments(ARG "" "" "FOLDERS;INSTANCES;LINK;PRIVATE_LINK" ${ARGN})
+  set(target kinecal_${name})
+  set(include ${PROJECT_SOURCE_DIR}/include/kinecal)
+  set(headers "")
+  set(units "")
+  foreach(folder IN LISTS ARG_FOLDERS)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${include}/${folder}/*.hpp)
+    list(APPEND headers ${found} ${include}/${folder}.hpp)
+    file(GLOB_RECURSE definitions CONFIGURE_DEPENDS ${include}/${folder}/*.ipp)
+    foreach(file IN LISTS definitions)
+      cmake_path(REPLACE_EXTENSION file hpp OUTPUT_VARIABLE header)
+      if(EXISTS ${header})
+        list(APPEND units ${file})
+      endif()
+    endforeach()
+  endforeach()
+
+  if(KINECAL_HEADER_ONLY OR NOT units)
+    set(scope INTERFACE)
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE ${ARG_LINK} ${ARG_PRIVATE_LINK})
+    if(KINECAL_HEADER_ONLY)
+      target_compile_definitions(${target} INTERFACE KINECAL_HEADER_ONLY)
+    endif()
+  else()
+    set(scope PUBLIC)
+    add_library(${target} STATIC ${units} ${ARG_INSTANCES})
+    target_link_libraries(${target} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK}
+                          $<BUILD_INTERFACE:kinecal_build_options>)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
+                          UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    kinecal_group_units(${ARG_INSTANCES} ${units})
+  endif()
+  set(KINECAL_UNITS_${name} ${units} PARENT_SCOPE)
+  add_library(kinecal::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_sources(${target} ${scope} FILE_SET HEADERS
+                 BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})
+  if(KINECAL_INSTALL)
+    install(TARGETS ${target} EXPORT kinecal-${name}
+            FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT headers)
+  endif()
+  if(NOT PROJECT_IS_TOP_LEVEL AND NOT KINECAL_INSTALL)
+    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)  # built where it is linked
+  endif()
+endfunction()
+
+add_library(kinecal_headers INTERFACE)
+add_library(kinecal::headers ALIAS kinecal_headers)
+set_target_properties(kinecal_headers PROPERTIES EXPORT_NAME headers)
+target_include_directories(kinecal_headers INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_compile_features(kinecal_headers INTERFACE cxx_std_20)
+target_compile_definitions(kinecal_headers INTERFACE KINECAL_HEADER_ONLY)
+target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
+
+# Explicit instances, in packets and in double; a level of KinecalLevels.cmake has packets only.
+file(GLOB KINECAL_PACKET_INSTANCES CONFIGURE_DEPENDS
+     ${PROJECT_SOURCE_DIR}/include/kinecal/crate/instances/*_packet.ipp)
+file(GLOB KINECAL_DOUBLE_INSTANCES CONFIGURE_DEPENDS
+     ${PROJECT_SOURCE_DIR}/include/kinecal/crate/instances/*_double.ipp)
+
 kinecal_add_library(core
-  FOLDERS geometry kinematics parameters samples sensors errors crate core
+  INSTANCES ${KINECAL_PACKET_INSTANCES} ${KINECAL_DOUBLE_INSTANCES}
+  FOLDERS geometry kinematics parameters samples sensors errors crate core linkage
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(solve
   FOLDERS solve trust
   LINK kinecal_core Ceres::ceres)
 kinecal_add_library(io
   FOLDERS io report
-  LINK kinecal_solve urdfdom::urdfdom_model yaml-cpp PkgConfig::libyaml
-       pugixml::pugixml fmt::fmt)
+  LINK kinecal_solve
+  PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB)
 include(KinecalBags)
+if(NOT KINECAL_HEADER_ONLY)
+  # What links the libraries is compiled and linked as they are.
+  target_compile_options(kinecal_core PUBLIC $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)
+  target_compile_options(kinecal_core INTERFACE $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address>)
+  target_link_options(kinecal_core INTERFACE
+    $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined>)
+  target_compile_options(kinecal_io PRIVATE $<$<BOOL:${KINECAL_FUZZ}>:-fsanitize=fuzzer-no-link>)
+endif()
 kinecal_add_library(kinecal
   FOLDERS kinecal
   LINK kinecal_io)
 
-# What kinecal's own programs and tests are built with; never seen by its users.
+# Options for kinecal's own programs and tests; users do not get them.
 add_library(kinecal_warnings INTERFACE)
 target_compile_options(kinecal_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-  # g++ 12 takes "text" + std::string for an overlapping copy when it inlines (GCC bug 105651).
+  # When it inlines, g++ 12 mistakes "text" + std::string for an overlapping copy (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<BOOL:${KINECAL_WARNINGS_AS_ERRORS}>:-Werror>
   $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)
 
-# The same with sanitizers: not for examples, which run what the tests run and would take twice as
-# long to compile.
+# The same with sanitizers.
 add_library(kinecal_build_options INTERFACE)
 target_link_libraries(kinecal_build_options INTERFACE kinecal_warnings)
 target_compile_options(kinecal_build_options INTERFACE
   $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=all>
-  # What the address sanitizer and the processor find as well would double the time to compile.
+  # These checks double the time to compile; the address sanitizer and the processor find the same.
   $<$<BOOL:${KINECAL_SANITIZE}>:-fno-sanitize=null,alignment,object-size,vptr>
   $<$<BOOL:${KINECAL_SANITIZE}>:-fno-omit-frame-pointer>)
 target_link_options(kinecal_build_options INTERFACE
