@@ -1,8 +1,9 @@
 // Forward kinematics: where is the gripper, and how does each joint move it?
 //
-// A chain is the way from one link to another, known to the compiler or looked up at run time.  One
-// walk along it gives the pose of its tip and each joint's twist, the exact derivative of that
-// pose. SPDX-License-Identifier: Apache-2.0
+// A chain leads from one link to another; the compiler knows it, or it is built at run time.  One
+// walk along it gives the pose of its tip, and a twist per joint: the exact derivative of that
+// pose.
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -25,7 +26,8 @@ constexpr auto kAt = [](double x, double y, double z) {
   return PoseData{.translation = {x, y, z}};
 };
 
-/// A lift, three turning joints, a gripper.  (kinecal_add_robot() makes such a type of a URDF.)
+/// A lift, three revolute joints, a gripper.  (kinecal_add_robot() generates such a type from a
+/// URDF.)
 struct LittleArm {
   static constexpr std::string_view kName = "little_arm";
   static constexpr std::array<JointData, 5> kJoints = {{
@@ -39,13 +41,13 @@ struct LittleArm {
 using Arm = Chain<LittleArm, "base", "gripper">;  // a wrong name does not compile
 static_assert(Arm::kSize == 4, "what does not move is folded");
 
-/// Where the gripper's origin is at these positions.
+/// The gripper's origin at these joint positions: metres, in the base.
 Vector3<double> gripper(const RuntimeChain& chain, const Positions& positions) {
   return forward_kinematics(chain, [&](const std::string& joint) { return positions.at(joint); })
       .translation;
 }
 
-/// The twist of each joint: a walk with a walker that notes how each joint's offset moves the tip.
+/// The twist of each joint: a TwistWalker computes how each joint's offset moves the tip.
 std::vector<std::pair<int, Twist<double>>> twists(const RuntimeChain& chain,
                                                   const Positions& positions) {
   std::vector<JointIndices> columns(chain.joints.size());
@@ -82,7 +84,7 @@ int main() {
   bool agree = apart < 1e-15;
   for (const auto& [column, twist] : twists(chain, positions)) {
     const ChainJoint& joint = chain.joints[static_cast<std::size_t>(column)];
-    // The same by brute force: the positions a little to either side.
+    // The same by brute force: central differences.
     constexpr double kStep = 1e-6;
     Positions up = positions, down = positions;
     up[joint.name] += kStep;
@@ -92,7 +94,7 @@ int main() {
     const Vector3<double> mm = twist.velocity(p) * (turns(joint.type) ? kDegree * 1e3 : 1.0);
     std::printf("  %-10s %8.3f %8.3f %8.3f   %.0e\n", joint.name.c_str(), mm.x(), mm.y(), mm.z(),
                 error);
-    agree = agree && error < 1e-8;  // what central differences can show
+    agree = agree && error < 1e-8;  // the accuracy of central differences
   }
   std::printf("\nChains, twists and differences %s.\n", agree ? "agree" : "DO NOT AGREE");
   return agree ? 0 : 1;

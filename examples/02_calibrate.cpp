@@ -1,7 +1,7 @@
-// A first calibration: an arm, a tracker that sees where its gripper really is, 25 samples.
+// A first calibration: an arm, a tracker that measures its gripper, 25 samples.
 //
-// A crate says what observes what and what may be wrong; the compiler checks its names against the
-// robot, which is made from the URDF when this is built (kinecal_add_robot in CMakeLists.txt).
+// A crate lists what observes what, and what may be wrong.  The compiler checks its names against
+// the robot, which the build generates from the URDF (kinecal_add_robot in CMakeLists.txt).
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
@@ -23,7 +23,7 @@ using Gripper = FrameOffset<"gripper_axis", Axes{.x = true}>;  // along the wris
 using Tracked = Crate<Arm, Tracker, Shoulder, Elbow, Gripper,
                       Block<"tracking", PointToPoint, "arm", "tracker">>;
 
-/// A real robot would record this: the joints, the gripper's origin, where the tracker sees it.
+/// What a real robot records: joint positions, and the gripper's origin as the tracker measures it.
 Sample measure(const ParameterTable& truth, SeededRandom& random) {
   static const Robot robot = Tracked::robot();
   Sample sample = random_pose(robot, random);

@@ -1,8 +1,8 @@
-// An error block of one's own: a ball bar.
+// Your own error block: a ball bar.
 //
-// One end of a bar of known length turns in a socket on the table, the gripper holds the other end:
-// wherever the arm goes, its tip is on a sphere.  Joint positions are all that is recorded.  All it
-// takes is the struct PointToSphere below; the library differentiates it.
+// One end of a bar of known length turns in a socket on the table; the gripper holds the other end.
+// So the arm's tip is always on a sphere, and joint positions are all that is recorded.  You write
+// the struct PointToSphere below; the library differentiates it.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
@@ -49,7 +49,7 @@ Problem make_problem() {
   return problem;
 }
 
-/// How far the true arm, with wrong zeros, is from the sphere.
+/// Distance of the true arm's tip, with its wrong zeros, from the sphere: metres.
 double miss(const Problem& problem, const Sample& sample, const Eigen::VectorXd& truth) {
   const auto position = [&](const std::string& joint) {
     return *sample.position(joint) + truth(problem.table().index(joint));
@@ -57,7 +57,7 @@ double miss(const Problem& problem, const Sample& sample, const Eigen::VectorXd&
   return kBar(forward_kinematics(problem.sensors()[0].chains()[0], position).translation)(0);
 }
 
-/// A pose in which the bar fits: the other joints at random, the elbow bent until it does.
+/// A pose in which the bar fits: the elbow bends until it does, the other joints are random.
 Sample hold_bar(const Problem& problem, const Eigen::VectorXd& truth, SeededRandom& random) {
   Sample sample{kJoints, {0, 0, 0, 0}, {{"arm", {{"tip", Vector3<double>::Zero()}}}}, "bar"};
   std::vector<double>& q = sample.joint_positions;

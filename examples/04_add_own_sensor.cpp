@@ -1,10 +1,9 @@
-// A sensor of one's own: a draw-wire encoder.
+// Your own sensor: a draw-wire encoder.
 //
-// A wire runs from an eyelet on the table to the gripper; the encoder on its drum reads how much of
-// it is out, from a zero that nobody knows.  A reading is no point, but a sensor may carry it as
-// one: here in x, with the zero as the x of a virtual frame in which readings are recorded.  What
-// the reading means is said by the error block.  (A sensor's own parameters are otherwise those of
-// cameras; what shifts or turns a reading can always be such a frame, a factor cannot.)
+// A wire runs from an eyelet on the table to the gripper.  The encoder on its drum reads how much
+// wire is out, from an unknown zero.  A reading is a length; we record it as a point with that x,
+// in a virtual frame whose own x is the zero.  The error block interprets it.  (Only cameras have
+// parameters of their own.  A virtual frame can shift or rotate a reading, but not scale it.)
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
@@ -20,11 +19,11 @@ using namespace kinecal::examples;
 
 const Vector3<double> kEyelet(0.9, 0.3, 0.2);  // metres, in base_link
 
-/// The way from the eyelet to where the wire is fastened, minus the length that was read.
+/// Distance from the eyelet to the end of the wire, minus the length that the encoder reads.
 struct WireLength {
   static constexpr const char *kType = "wire", *kUnit = "m";
 
-  /// @param p_base   (3) where the wire is fastened, metres, in the base
+  /// @param p_base   (3) end of the wire, metres, in the base
   /// @param reading  (3) x: length of the wire, metres
   template <class S>
   Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p_base, const Vector3<S>& reading) const {
@@ -39,11 +38,11 @@ using Wire = Chain3d<"wire", Chain<mobile_manipulator::Robot, "base_link", "base
 using Pan = JointOffset<"shoulder_pan_joint">;
 using Lift = JointOffset<"shoulder_lift_joint">;
 using Elbow = JointOffset<"elbow_flex_joint">;
-using Zero = VirtualFrame<"wire_zero", Axes{.x = true}>;  // what is out when the encoder says 0
+using Zero = VirtualFrame<"wire_zero", Axes{.x = true}>;  // wire that is out at reading 0
 using Measured =
     Crate<Arm, Wire, Pan, Lift, Elbow, Zero, Block<"length", WireLength, "arm", "wire">>;
 
-/// The arm anywhere, the wire read to 0.2 mm.
+/// A sample at a random pose; the encoder's noise is 0.2 mm.
 Sample measure(const ParameterTable& truth, SeededRandom& random) {
   static const Robot robot = Measured::robot();
   Sample sample = random_pose(robot, random);

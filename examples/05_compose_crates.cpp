@@ -1,8 +1,9 @@
-// Composing crates: what one calibration cannot see, two can see together.
+// Composing crates: two calibrations together determine what neither does alone.
 //
-// LEDs in the gripper tell the head's camera how head and arm stand to each other, but not how both
-// lean on the base; the floor tells how the camera stands on the base, but not whether head or
-// torso leans.  A crate of both crates has the parameters of either, each once, and sees them all.
+// LEDs in the gripper determine how head and arm are placed relative to each other, but not how
+// both lean on the base.  The floor determines how the camera is placed on the base, but not
+// whether the head or the torso leans.  A crate of both crates has the parameters of each, once,
+// and determines them all.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
@@ -23,9 +24,10 @@ using Arm = Chain3d<"arm", FromBase<"gripper_link">>;
 using Camera = Camera3d<"camera", FromBase<"head_camera_rgb_optical_frame">>;
 using Elbow = JointOffset<"elbow_flex_joint">;
 using Tilt = JointOffset<"head_tilt_joint">;
-using Head = FrameOffset<"head_pan_joint">;  // how it stands on the torso
+using Head = FrameOffset<"head_pan_joint">;  // how the head is mounted on the torso
 using Torso =
-    FrameOffset<"torso_lift_joint", Axes{.z = true, .a = true, .b = true}>;  // on the base
+    FrameOffset<"torso_lift_joint",
+                Axes{.z = true, .a = true, .b = true}>;  // how the torso leans on the base
 
 using HandEye =
     Crate<Arm, Camera, Elbow, Head, Torso, Block<"hand_eye", PointToPoint, "camera", "arm">>;
@@ -33,7 +35,7 @@ using Ground = Crate<Camera, Tilt, Head, Torso, Block<"ground", PointToPlane, "c
 using Both = Crate<HandEye, Ground>;
 static_assert(Both::Free::kSize == 1 + 6 + 3 + 1, "each once");
 
-/// A pose in which the camera sees at least four of these points of a link, as it reports them.
+/// A sample of a pose in which the camera sees at least four of these points of a link.
 Sample see(const std::string& link, const std::vector<Vector3<double>>& points,
            const ParameterTable& truth, SeededRandom& random) {
   static const Robot robot = Both::robot();
@@ -49,7 +51,8 @@ Sample see(const std::string& link, const std::vector<Vector3<double>>& points,
   }
 }
 
-/// How many combinations of a crate's parameters these samples tell; prints what they do not tell.
+/// Number of parameter combinations of a crate that are observable from these samples; prints it,
+/// and those that are not.
 template <class C>
 int rank_of(const char* name, const std::vector<Sample>& samples) {
   C crate;
@@ -59,7 +62,7 @@ int rank_of(const char* name, const std::vector<Sample>& samples) {
   for (const Sample& sample : samples) problem.add_sample(sample);
   const std::vector<double> drawn(static_cast<std::size_t>(table.size()), 0.0);
   const Observability seen = observability(problem, C::free(table), drawn);
-  std::printf("%-8s tells %d of %zu\n", name, seen.rank, C::Free::kSize);
+  std::printf("%-8s %d of %zu observable\n", name, seen.rank, C::Free::kSize);
   for (const Combination& combination : seen.unobservable) {
     std::printf("   not");
     for (const auto& [i, factor] : combination) {

@@ -1,9 +1,9 @@
-// One bad capture and one wrong belief: robust losses and bounds.
+// A bad capture and a wrong belief: robust losses and bounds.
 //
-// In one of 30 samples the arm was still swinging, and the tracker is 5 cm off.  Squares let it
-// pull the zeros away; huber lets it pull no harder than a point at its scale, cauchy forgets it.
-// Bounds say what is believed of a parameter.  One that ends at its bound is a message: the belief
-// is wrong, or something else is.
+// In one of 30 samples the arm was still swinging, and the tracker is 5 cm off.  With squares this
+// sample pulls the zeros away.  With huber it pulls at most as hard as a point at the loss's scale,
+// and cauchy nearly ignores it.  Bounds state what you believe about a parameter.  If it ends at
+// its bound, the belief is wrong, or something else is.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
@@ -35,8 +35,8 @@ Sample measure(const ParameterTable& truth, SeededRandom& random) {
   return sample;
 }
 
-/// Calibrates with a loss, in sigmas, and the gripper's length between bounds.
-/// @returns  the table at the values found
+/// Calibrates with a loss, whose scale is in sigmas, and with bounds on the gripper's length.
+/// @returns  the table with the resulting values
 ParameterTable calibrate_with(const Loss& loss, double bound, const std::vector<Sample>& samples) {
   Tracked crate;
   crate.block<"tracking">().options.weight = 1.0 / kSigma;

@@ -1,8 +1,9 @@
 // Evaluation in bulk: residuals, Jacobian and normal equations of 10 000 samples.
 //
-// An Evaluator takes as many samples at once as a register of the processor has lanes, on several
-// threads.  It gives all that a solver of your own needs, without Ceres; and sums of samples add
-// up. SPDX-License-Identifier: Apache-2.0
+// An Evaluator evaluates as many samples at once as a register of the processor has lanes, on
+// several threads.  It computes all that your own solver needs, without Ceres, and sums over parts
+// of the samples add up to the whole.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -26,7 +27,7 @@ using Tracked = Crate<Arm, Tracker, JointOffset<"shoulder_pan_joint">,
 
 constexpr int kSamples = 10000;
 
-/// The arm anywhere, and where a tracker sees it, to 1 mm.
+/// A sample at a random pose; the tracker's noise is 1 mm.
 Sample measure(SeededRandom& random) {
   static const Robot robot = Tracked::robot();
   Sample sample = random_pose(robot, random);
@@ -44,7 +45,7 @@ BasicProblem<S> problem_of(std::span<const Sample> samples) {
   return problem;
 }
 
-/// Runs it five times and prints how many samples it took a second at best.
+/// Runs an evaluation five times and prints the best rate, samples per second.
 template <class F>
 void time_of(const char* name, F&& run) {
   std::chrono::duration<double> best = std::chrono::hours(1);
@@ -93,7 +94,7 @@ int main() {
     halves += normal_equations(problem_of<Packet>(half), values, &free);
   }
   const bool agree = same(all, by_rows) && same(all, slow) && same(all, halves) &&
-                     shared.hessian == all.hessian;  // bit by bit
+                     shared.hessian == all.hessian;  // bit for bit
   std::printf("All of them, and the sums of two halves, %s.\n", agree ? "agree" : "DO NOT AGREE");
   return agree ? 0 : 1;
 }

@@ -1,11 +1,12 @@
-// A calibration whose names come at run time, as from a file: an arm, a tracker, 25 samples.
+// A calibration with names at run time, as from a file: an arm, a tracker, 25 samples.
 //
-// What a crate says in types is said here in strings, one after the other: a Problem holds the
-// robot, its sensors, the error block that compares them and the samples; solve() finds what makes
-// them agree.  The arm's three zeros are wrong and its upper arm is longer than its drawing says.
+// A crate gives the parts as types; here they are strings.  A Problem holds the robot, its sensors,
+// the error block that compares them, and the samples; solve() finds the values that make the
+// sensors agree.  The arm's three zeros are wrong, and its upper arm is longer than drawn.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
+#include "kinecal/crate/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "kinecal/solve.hpp"
 #include "simulation.hpp"
@@ -29,7 +30,7 @@ Robot make_robot() {
                 {"flange", fixed, "forearm", "tip", at(0.40, 0)}});
 }
 
-/// The arm says where it is by its joints, the tracker measures in the base.
+/// The tip as the joints predict it, and as the tracker measures it in the base.
 Problem make_problem() {
   ParameterTable table;
   for (const char* joint : {"shoulder_pan", "shoulder_lift", "elbow"}) table.add({.name = joint});
@@ -41,7 +42,7 @@ Problem make_problem() {
   return problem;
 }
 
-/// The joints anywhere, the tracker's view of the tip of the true arm, to 0.1 mm.
+/// A sample at a random pose of the true arm; the tracker's noise is 0.1 mm.
 Sample measure(const Problem& problem, const Eigen::VectorXd& truth, SeededRandom& random) {
   Sample sample;
   sample.joint_names = {"shoulder_pan", "shoulder_lift", "elbow"};
@@ -75,7 +76,7 @@ int main() {
   SeededRandom random(1);
   for (int n = 0; n < 25; ++n) problem.add_sample(measure(problem, truth, random));
 
-  Eigen::VectorXd values = problem.table().values();  // what the drawing says: all zero
+  Eigen::VectorXd values = problem.table().values();  // as drawn: all zero
   const double before = rms_mm(problem, values);
   const FreeSet free({0, 1, 2, 3}, problem.table().size());
   const StepResult result = solve(problem, free, values);

@@ -1,11 +1,11 @@
-// Makes a calibration of the example robot out of nothing: samples as a real one records them, and
-// the truth to compare a result with.
+// Simulates a calibration of the example robot: samples as a real robot records them, and the true
+// values to compare a result with.
 //
 //   generate_example_samples URDF OUTPUT_FOLDER [--samples 100] [--seed 1]
 //
-// The true robot differs from the URDF: zeros of the joints, the frames of head and camera, the
-// camera's intrinsics and depth.  The head looks at four LEDs in the gripper, then at the floor;
-// one capture of the LEDs is bad.  Everything follows from the seed.
+// The true robot differs from the URDF in the zeros of joints, the frames of head and camera, and
+// the camera's intrinsics and depth.  The head looks at four LEDs in the gripper, then at the
+// floor.  One capture of the LEDs is bad.  The same seed gives the same files.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +13,7 @@
 
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/io/yaml/yaml_text.hpp"
 #include "true_robot.hpp"
 
 namespace {
@@ -70,7 +71,7 @@ Options read_options(int argc, char** argv) {
   return options;
 }
 
-/// What is wrong with the true robot, by the names of the parameters.
+/// Errors of the URDF, by parameter name.
 ParameterTable random_truth(SeededRandom& random) {
   ParameterTable truth;
   const auto add = [&](const std::string& name, double value) {
@@ -92,7 +93,7 @@ ParameterTable random_truth(SeededRandom& random) {
   return truth;
 }
 
-/// The robot of this example: what moves and what sees.
+/// The robot of this example with its sensors.
 struct Simulated {
   TrueRobot robot;
   TrueCamera camera;
@@ -106,7 +107,7 @@ bool within_limits(const Robot& robot, const Positions& positions) {
   return true;
 }
 
-/// All joints that have a position of their own, at zero.
+/// All joints with a position of their own, at zero.
 Positions zero_positions(const Robot& robot) {
   Positions positions;
   for (const Joint& joint : robot.joints()) {
@@ -115,7 +116,7 @@ Positions zero_positions(const Robot& robot) {
   return positions;
 }
 
-/// Turns the head towards the gripper, not quite: LEDs should be seen all over the image.
+/// Turns the head roughly towards the gripper, so that LEDs appear all over the image.
 void look_at_gripper(const TrueRobot& robot, Positions& positions, SeededRandom& random) {
   const auto from = [&](const char* link) {
     return robot.pose(link, kGripper, positions).translation;
@@ -132,7 +133,7 @@ bool is_clear(const TrueRobot& robot, const Positions& positions) {
   return p_base.x() > 0.35 && p_base.z() > 0.35;
 }
 
-/// The LEDs in the optical frame if the camera sees them all; otherwise none.
+/// The LEDs in the optical frame if the camera sees all of them; otherwise empty.
 std::vector<Vector3<double>> visible_leds(const Simulated& simulated, const Positions& positions) {
   if (!within_limits(simulated.robot.robot(), positions)) return {};
   const Pose<double> camera_T_gripper = simulated.robot.pose(kOpticalFrame, kGripper, positions);
@@ -148,13 +149,13 @@ std::vector<Vector3<double>> visible_leds(const Simulated& simulated, const Posi
   return leds;
 }
 
-/// The arm at random where the camera sees the LEDs.
-/// @throws std::runtime_error  if such a pose is not found
+/// A random pose of the arm in which the camera sees the LEDs.
+/// @throws std::runtime_error  if it does not find such a pose
 Sample led_sample(const Simulated& simulated, SeededRandom& random) {
   const TrueRobot& robot = simulated.robot;
   Positions positions = zero_positions(robot.robot());
   std::vector<Vector3<double>> leds;
-  constexpr int kTries = 100000;  // one in a few hundred will do
+  constexpr int kTries = 100000;  // one in a few hundred succeeds
   for (int n = 0; n < kTries && leds.empty(); ++n) {
     positions["torso_lift_joint"] = random.uniform(0.0, 0.3);
     for (const std::string& joint : kArmJoints) {
@@ -177,7 +178,7 @@ Sample led_sample(const Simulated& simulated, SeededRandom& random) {
   return sample;
 }
 
-/// The arm tucked, the head over the floor: a grid of pixels with the points they show.
+/// The arm tucked, the head towards the floor: a grid of pixels and the floor points they show.
 Sample ground_sample(const Simulated& simulated, SeededRandom& random) {
   const TrueRobot& robot = simulated.robot;
   Positions positions = zero_positions(robot.robot());
@@ -194,7 +195,7 @@ Sample ground_sample(const Simulated& simulated, SeededRandom& random) {
       const Vector3<double> ray(u * c.cx / c.fx, v * c.cy / c.fy, 1.0);
       const double down = -(base_T_camera.rotation.row(2) * ray).value();
       const double depth = base_T_camera.translation.z() / down;
-      if (depth < 0.0 || depth > 3.0) continue;  // the sky, or too far to be measured well
+      if (depth < 0.0 || depth > 3.0) continue;  // the sky, or too far for a good measurement
       camera.features.push_back(simulated.camera.record(ray * depth, random));
     }
   }
@@ -203,7 +204,7 @@ Sample ground_sample(const Simulated& simulated, SeededRandom& random) {
   return sample;
 }
 
-/// The arm was still swinging: what the camera saw is 5 cm away from where it came to rest.
+/// A bad capture: the arm was still swinging, and the LEDs were 5 cm from where it came to rest.
 void spoil(Sample& sample, SeededRandom& random) {
   const Vector3<double> away = 0.05 * random.direction();
   for (Feature& feature : sample.observations[0].features) feature.point += away;

@@ -2,11 +2,11 @@
 //
 //   random_starts_study [COUNT=1000] [SEED=1]
 //
-// COUNT random robots, an arm of 5 to 8 joints and a pan-tilt head with an RGB-D camera, each with
-// true errors of its own and 50 noisy samples of four LEDs.  Each is calibrated twice: from the
-// truth, and from 4 degrees off in every joint and 3 cm and 5 degrees off in every frame, as a
-// technician aligns by eye, with the camera as its driver has it.  Both must end at the same cost.
-// (Not at the same parameters: some directions cannot be observed, along them the cost is level.)
+// Each of COUNT random robots has an arm of 5 to 8 joints and a pan-tilt head with an RGB-D camera,
+// its own true errors, and 50 noisy samples of four LEDs.  It is calibrated twice: from the truth,
+// and from a start as a technician aligns by eye, 4 degrees off in every joint and 3 cm and 5
+// degrees off in every frame, with the camera as its driver reports it.  Both must end at the same
+// cost.  (Not at the same parameters: the cost is flat along unobservable combinations.)
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
@@ -27,10 +27,10 @@ constexpr int kSamples = 50;
 constexpr double kJointError = 4.0 * kDegree;
 constexpr double kFrameShift = 0.03;  // metres
 constexpr double kFrameTurn = 5.0 * kDegree;
-/// Costs that differ by less, relatively, are the same.
+/// Costs with a smaller relative difference count as equal.
 constexpr double kSameCost = 1e-6;
-/// How the head stands on the torso, the camera in the head and the LEDs (not in any drawing) in
-/// the gripper.
+/// Free frames: the head on the torso, the camera in the head, and the LEDs in the gripper, which
+/// no drawing shows.
 const std::set<std::string> kFrames = {"head_pan", "camera_mount", "leds"};
 const std::vector<Vector3<double>> kLeds = {
     {0.03, 0.035, 0.0}, {-0.03, 0.035, 0.01}, {-0.03, -0.035, 0.0}, {0.03, -0.035, 0.01}};
@@ -40,8 +40,8 @@ std::string arm_joint(int i) {
   return "arm_" + std::to_string(i);
 }
 
-/// An arm with a joint every 10 to 30 cm.  Half of the robots have joints about x, y and z as
-/// those in shops, the other half about any axis.
+/// An arm with a joint every 10 to 30 cm.  Half of the robots have joints about x, y and z, as
+/// commercial arms have; the other half about any axis.
 std::vector<Joint> random_arm(SeededRandom& random) {
   using enum JointType;
   const int count = random.integer(5, 8);
@@ -83,11 +83,12 @@ Robot random_robot(SeededRandom& random) {
   return Robot("random_robot", joints);
 }
 
-/// The errors of the true robot, as `value`; calibrations start at zero when nothing is known.
+/// The errors of the true robot, as `value`.
 ParameterTable random_truth(const Robot& robot, SeededRandom& random) {
   ParameterTable truth;
   for (const Joint& joint : robot.joints()) {
-    if (!moves(joint.type) || joint.name == "head_pan") continue;  // the pan is its frame's yaw
+    if (!moves(joint.type) || joint.name == "head_pan")
+      continue;  // the pan zero is the yaw of its frame
     truth.add({.name = joint.name, .value = random.either_sign(0.0, 2.0) * kDegree});
   }
   for (const std::string& frame : kFrames) {
@@ -112,7 +113,7 @@ Problem make_problem(const Robot& robot, const ParameterTable& table) {
   return problem;
 }
 
-/// Turns the head to the gripper, not quite, and takes a sample; none if not all LEDs are seen.
+/// Turns the head roughly to the gripper and takes a sample; nullopt if it does not see all LEDs.
 std::optional<Sample> look(const TrueRobot& robot, const TrueCamera& camera, Positions positions,
                            SeededRandom& random) {
   const auto gripper_from = [&](const char* link) {
@@ -135,7 +136,7 @@ std::optional<Sample> look(const TrueRobot& robot, const TrueCamera& camera, Pos
   return sample;
 }
 
-/// Adds samples with the arm at random.
+/// Adds samples at random poses of the arm.
 void add_samples(Problem& problem, const Robot& robot, const ParameterTable& truth,
                  SeededRandom& random) {
   const TrueRobot true_robot(robot, truth, kFrames);
@@ -151,7 +152,7 @@ void add_samples(Problem& problem, const Robot& robot, const ParameterTable& tru
   }
 }
 
-/// The truth as it is known by eye.
+/// A start as from aligning by eye.
 Eigen::VectorXd by_eye(const ParameterTable& truth, SeededRandom& random) {
   Eigen::VectorXd start = truth.values();
   for (int i = 0; i < truth.size(); ++i) {
@@ -175,7 +176,7 @@ Eigen::VectorXd by_eye(const ParameterTable& truth, SeededRandom& random) {
 struct Outcome {
   StepResult from_truth, by_eye;
 
-  /// Relative; positive: the start by eye ended higher.
+  /// Relative; positive if the start by eye ended at a higher cost.
   [[nodiscard]] double difference() const {
     return (by_eye.final_cost - from_truth.final_cost) / from_truth.final_cost;
   }

@@ -1,5 +1,5 @@
-// What the examples use to pretend that they had a robot: random numbers, poses and a depth camera.
-// Where the robot really is, true_robot.hpp knows.
+// A simulated robot for the examples: random numbers, poses and a depth camera.  true_robot.hpp has
+// the robot's true kinematics.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,8 +19,8 @@ namespace kinecal::examples {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Random numbers that are the same for a seed everywhere.  (The standard says what mt19937_64
-/// gives, but leaves its distributions to each library.)
+/// Random numbers that are the same everywhere for the same seed.  (The standard defines
+/// mt19937_64, but leaves distributions to each library.)
 class SeededRandom {
  public:
   explicit SeededRandom(std::uint64_t seed) : engine_(seed) {}
@@ -35,7 +35,7 @@ class SeededRandom {
     return first + static_cast<int>(uniform(0.0, last - first + 1.0));
   }
 
-  /// Of a size between the two, with either sign.
+  /// A number of random sign whose size is between the two.
   [[nodiscard]] double either_sign(double least, double most) {
     const double size = uniform(least, most);
     return uniform(0.0, 1.0) < 0.5 ? -size : size;
@@ -53,14 +53,14 @@ class SeededRandom {
     return {x, y, z};
   }
 
-  /// A unit vector, all directions alike.
+  /// A unit vector in a uniformly random direction.
   [[nodiscard]] Vector3<double> direction() { return normal_vector().normalized(); }
 
  private:
   std::mt19937_64 engine_;
 };
 
-/// A sample without observations: each joint anywhere within its limits.
+/// A sample without observations: each joint at a random position within its limits.
 [[nodiscard]] inline Sample random_pose(const Robot& robot, SeededRandom& random) {
   Sample sample;
   for (const Joint& joint : robot.joints()) {
@@ -73,7 +73,7 @@ class SeededRandom {
   return sample;
 }
 
-/// 640 x 480 pixels, as its driver has it.
+/// A camera of 640 x 480 pixels, as its driver reports it.
 [[nodiscard]] inline CameraInfo example_camera_info() {
   CameraInfo info;
   info.width = 640;
@@ -86,14 +86,14 @@ class SeededRandom {
   return info;
 }
 
-/// How well a depth camera measures.
+/// Noise of a depth camera.
 struct CameraNoise {
   double pixel = 0.6;    ///< standard deviation, pixels
   double depth = 0.001;  ///< standard deviation at 1 m, metres; it grows with the square
 };
 
-/// What the driver reports of a point: a camera with these true parameters, which the driver takes
-/// for `camera`.  The inverse of DepthCamera::point, with noise.
+/// The point that the driver reports, with noise: the true camera has parameters v, but the driver
+/// uses those of `camera`.  The inverse of DepthCamera::point.
 /// @param p_camera  (3) the point, metres, in the camera's true optical frame
 /// @param v         (6) fx fy cx cy z_offset z_scaling, as DepthCamera has them
 /// @returns         (3) metres
@@ -111,7 +111,7 @@ struct CameraNoise {
   return {right * raw / camera.fx, down * raw / camera.fy, raw};
 }
 
-/// True if the camera has the point in its image, not at the edge.
+/// True if the point is in the camera's image, and not at its edge.
 /// @param p_camera  (3) metres, in the optical frame
 [[nodiscard]] inline bool is_in_image(const DepthCamera<>& camera,
                                       const Vector3<double>& p_camera) {
@@ -121,12 +121,12 @@ struct CameraNoise {
          std::abs(camera.fy * p_camera.y()) < kUsed * camera.cy * p_camera.z();
 }
 
-/// Points of a link as a depth camera reports them, and as they are known.
+/// Points of a link: as a depth camera reports them, and their known positions.
 struct Look {
   Observation seen, known;
 };
 
-/// Those of the points that the camera has in its image, no further away than 2 m.
+/// The points that are in the camera's image and at most 2 m away.
 /// @param camera  the sensor's name
 /// @param frame   its optical frame
 /// @param points  metres, in the link

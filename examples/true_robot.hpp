@@ -1,5 +1,4 @@
-// A robot and a camera as they really are, beside what URDF and driver say: for examples that
-// simulate them.
+// The true robot and the true camera of a simulation, which differ from URDF and driver.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,21 +15,21 @@
 
 namespace kinecal::examples {
 
-/// What the joints report: radians or metres.
+/// Measured joint positions by name: radians or metres.
 using Positions = std::map<std::string, double>;
 
 class TrueRobot {
  public:
-  /// @param truth   what is wrong with the URDF, by the names of the parameters
-  /// @param frames  whose corrections are among them; those that are no joints are virtual frames
+  /// @param truth   errors of the URDF, by parameter name
+  /// @param frames  names of corrected frames; those that are not joints are virtual frames
   TrueRobot(const Robot& robot, const ParameterTable& truth, std::set<std::string> frames)
       : robot_(robot), truth_(truth), frames_(std::move(frames)) {}
 
   [[nodiscard]] const Robot& robot() const { return robot_; }
   [[nodiscard]] const ParameterTable& truth() const { return truth_; }
 
-  /// Where a link really is when the joints report these positions.
-  /// @param beyond  a virtual frame that hangs on the link, if that is what is asked for
+  /// True pose of a link when the joints report these positions.
+  /// @param beyond  a virtual frame beyond the link: gives its pose instead
   [[nodiscard]] Pose<double> pose(const std::string& base, const std::string& tip,
                                   const Positions& positions,
                                   const std::string& beyond = "") const {
@@ -57,11 +56,11 @@ class TrueRobot {
   const Robot& robot_;
   const ParameterTable& truth_;
   std::set<std::string> frames_;
-  mutable std::map<std::pair<std::string, std::string>, Way> ways_;  ///< those asked for so far
+  mutable std::map<std::pair<std::string, std::string>, Way> ways_;  ///< cache
 };
 
-/// Where a link really is while the joints report what the sample says.
-/// @param truth  what is wrong with the robot's drawing: of any joint, as an offset or a frame
+/// True pose of a link when the joints report the positions of the sample.
+/// @param truth  errors of the robot's drawing: offsets or frames of any joints
 [[nodiscard]] inline Pose<double> true_pose(const Robot& robot, const ParameterTable& truth,
                                             const std::string& base, const std::string& tip,
                                             const Sample& sample) {
@@ -74,10 +73,10 @@ class TrueRobot {
   return TrueRobot(robot, truth, joints).pose(base, tip, positions);
 }
 
-/// A depth camera that its driver takes for example_camera_info().
+/// A depth camera whose driver uses example_camera_info().
 class TrueCamera {
  public:
-  /// @param truth  holds what is wrong with it: camera_fx, ..., camera_z_scaling
+  /// @param truth  has its errors: camera_fx, ..., camera_z_scaling
   /// @param frame  its optical frame
   TrueCamera(const ParameterTable& truth, std::string frame)
       : driver_(DepthCamera<>::from(example_camera_info())), frame_(std::move(frame)) {
@@ -86,7 +85,7 @@ class TrueCamera {
     }
   }
 
-  /// What its driver reports of a point.
+  /// The point that the driver reports.
   /// @param p_camera  (3) metres, in the optical frame
   [[nodiscard]] Feature record(const Vector3<double>& p_camera, SeededRandom& random) const {
     return {frame_, recorded_point(driver_, p_camera, errors_, {}, random)};
@@ -100,7 +99,7 @@ class TrueCamera {
   std::array<double, 6> errors_{};
 };
 
-/// A sample of these positions in which nothing observes yet.
+/// A sample of these positions, without observations.
 [[nodiscard]] inline Sample sample_at(const Positions& positions) {
   Sample sample;
   for (const auto& [joint, position] : positions) {

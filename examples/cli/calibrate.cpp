@@ -44,7 +44,7 @@ ResultFileOptions file_options(const CalibrateOptions& options) {
   return files;
 }
 
-/// Results must not replace what they were made from.
+/// Results must not replace their own input.
 void check_targets(const CalibrateOptions& options, const std::filesystem::path& folder,
                    const std::vector<OutputFile>& files) {
   std::vector<std::string> inputs = options.samples;
@@ -81,7 +81,7 @@ int calibrate(const CalibrateOptions& options) {
   print(input.diagnostics);
   if (!input.diagnostics.errors.empty()) return kBadInput;
 
-  // Found out before the work is done: whether the results can be written.
+  // Checks that the results can be written before the work begins.
   std::optional<OutputFolder> folder;
   if (!options.dry_run) folder.emplace(options.output);
   const double reading = seconds_since(start);

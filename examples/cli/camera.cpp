@@ -1,4 +1,4 @@
-// kinecal camera: what a camera file says, and the same as camera_info.
+// kinecal camera: shows a camera file, and writes it as camera_info.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 

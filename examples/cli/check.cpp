@@ -1,4 +1,4 @@
-// kinecal check: every mistake in the input, without solving.
+// kinecal check: lists every error in the input, without solving.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
@@ -12,7 +12,7 @@ int check(const CheckOptions& options) {
   print(input.diagnostics);
   const std::size_t errors = input.diagnostics.errors.size();
   if (errors > 0) {
-    fmt::print(stderr, "{} mistake{} found\n", errors, errors == 1 ? "" : "s");
+    fmt::print(stderr, "{} error{} found\n", errors, errors == 1 ? "" : "s");
     return kBadInput;
   }
   for (const CalibrationStep& step : input.calibration.steps) {
@@ -20,10 +20,10 @@ int check(const CheckOptions& options) {
       fmt::print("step '{}': fits the robot; samples were not given\n", step.name);
     } else {
       fmt::print("step '{}': {} samples, {} free parameters\n", step.name,
-                 step.problem.num_samples(), step.free.size());
+                 step.problem->num_samples(), step.free.size());
     }
   }
-  fmt::print("no mistakes found\n");
+  fmt::print("no errors found\n");
   return kDone;
 }
 

@@ -1,5 +1,4 @@
-// The commands of the program.  Each returns the exit code: 0 done, 1 bad input, 2 did not
-// converge.  They are all that main.cpp sees of the libraries built for each instruction set.
+// The commands of the program.  Each returns an exit code.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,6 +7,7 @@
 
 namespace kinecal::cli {
 
+/// 0: done; 1: bad input; 2: did not converge.
 enum ExitCode { kDone = 0, kBadInput = 1, kNotConverged = 2 };
 
 struct CalibrateOptions {
@@ -17,12 +17,12 @@ struct CalibrateOptions {
   std::string offsets = "rising";
   bool upstream_names = false;
   bool dry_run = false;
-  int threads = 0;  ///< zero: one for each core
+  int threads = 0;  ///< zero: one per core
   std::string cost = "compressed";
 };
 
 /// Calibrates the robot and writes the results, all or none.
-[[gnu::visibility("default")]] int calibrate(const CalibrateOptions& options);
+int calibrate(const CalibrateOptions& options);
 
 struct CheckOptions {
   std::string urdf, config;
@@ -30,22 +30,22 @@ struct CheckOptions {
   std::vector<std::string> cameras;  ///< NAME=FILE
 };
 
-/// Finds every mistake in the input without solving.
-[[gnu::visibility("default")]] int check(const CheckOptions& options);
+/// Lists every error in the input, without solving.
+int check(const CheckOptions& options);
 
-/// Says what is in the samples.
-[[gnu::visibility("default")]] int inspect(const std::vector<std::string>& samples);
+/// Shows what is in recordings.
+int inspect(const std::vector<std::string>& samples);
 
 struct InitOptions {
   std::string urdf, output = "calibrate.yaml";
-  std::string base, arm, camera, camera_type, camera_name;  ///< empty: asked, or proposed
-  std::string target_frame, tracker_frame;                  ///< likewise
+  std::string base, arm, camera, camera_type, camera_name;  ///< empty: ask, or propose
+  std::string target_frame, tracker_frame;                  ///< the same
   std::vector<std::string> targets;
   bool force = false;  ///< replace a file
 };
 
 /// Writes a first configuration from a URDF and a few answers.
-[[gnu::visibility("default")]] int init(const InitOptions& options);
+int init(const InitOptions& options);
 
 struct ConvertOptions {
   std::string input, output;
@@ -55,7 +55,7 @@ struct ConvertOptions {
 };
 
 /// Writes samples or poses in another format.
-[[gnu::visibility("default")]] int convert(const ConvertOptions& options);
+int convert(const ConvertOptions& options);
 
 struct CameraOptions {
   std::string file;    ///< or file:cam1
@@ -64,8 +64,8 @@ struct CameraOptions {
   bool force = false;  ///< replace a file
 };
 
-/// Says what a camera file says, and writes it as camera_info.
-[[gnu::visibility("default")]] int camera(const CameraOptions& options);
+/// Shows a camera file, and writes it as camera_info.
+int camera(const CameraOptions& options);
 
 struct InstallOptions {
   std::string result;  ///< folder that calibrate wrote
@@ -75,18 +75,18 @@ struct InstallOptions {
   bool force = false, restore = false, date = false;
 };
 
-/// Puts a result onto the robot, takes the last one back, or prints the date of the one installed.
-[[gnu::visibility("default")]] int install(const InstallOptions& options);
+/// Installs a result on the robot, restores the previous one, or prints the date of the current one.
+int install(const InstallOptions& options);
 
 struct RpyOptions {
   std::vector<std::string> numbers;  ///< three, radians
   bool to_vector = false;            ///< they are roll, pitch, yaw
 };
 
-/// Prints a rotation as a rotation vector and as roll, pitch, yaw.
-[[gnu::visibility("default")]] int rpy(const RpyOptions& options);
+/// Prints a rotation as a rotation vector and as roll, pitch, yaw; degrees, too.
+int rpy(const RpyOptions& options);
 
-/// Name, version and the instruction set that the evaluation was compiled for.
-[[gnu::visibility("default")]] std::string version();
+/// Name, version and the instruction set of the evaluation.
+std::string version();
 
 }  // namespace kinecal::cli

@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/io/bags/mcap/write_mcap.hpp"
 #include "kinecal/io/csv/read_csv_samples.hpp"
 #include "kinecal/io/recordings/bag_topics.hpp"
 #include "kinecal/io/recordings/pose_messages.hpp"
@@ -20,20 +21,20 @@
 namespace kinecal::cli {
 namespace {
 
-/// What was read, unless it is copied message by message.
+/// What was read.  Bags are not read into it if they are copied message by message.
 struct Content {
   std::vector<Sample> samples;
   std::vector<CapturePose> poses;
 };
 
 /// The encoding of the bag to write; nothing for YAML.
-/// @throws InputError  if the name tells no format
+/// @throws InputError  if the name does not end like that of a known format
 std::optional<Encoding> output_encoding(const std::string& output) {
   const std::string extension = std::filesystem::path(output).extension().string();
   if (extension == ".bag") return Encoding::ros1;
   if (extension == ".mcap") return Encoding::cdr;
   if (extension == ".yaml" || extension == ".yml") return std::nullopt;
-  throw InputError(output + ": is to be in no known format; name it .yaml, .bag or .mcap");
+  throw InputError(output + ": unknown format; the name must end in .yaml, .bag or .mcap");
 }
 
 /// Samples or poses in YAML.
@@ -49,7 +50,9 @@ Content read_yaml(const std::string& input, Diagnostics& diagnostics) {
   const std::string extension = std::filesystem::path(input).extension().string();
   if (!found.errors.empty() &&
       (extension == ".csv" || extension == ".tsv" || extension == ".txt")) {
-    throw InputError(input + ": is no YAML; say what the columns of a table mean: --columns FILE");
+    throw InputError(
+        input +
+        ": is not YAML; for a table, give --columns FILE, which says what its columns mean");
   }
   diagnostics.errors.insert(diagnostics.errors.end(), found.errors.begin(), found.errors.end());
   diagnostics.warnings.insert(diagnostics.warnings.end(), found.warnings.begin(),
@@ -57,10 +60,10 @@ Content read_yaml(const std::string& input, Diagnostics& diagnostics) {
   return content;
 }
 
-/// What YAML can hold of a bag: its samples or, without any, its poses; the rest is told.
+/// What YAML can hold of a bag: its samples or, without any, its poses.  Warns of the rest.
 Content read_bag_content(const std::string& input, Diagnostics& diagnostics) {
-  Diagnostics told_again;  // when the messages are read
-  const std::vector<TopicContent> topics = bag_topics(input, told_again);
+  Diagnostics reported_later;  // when the messages are read
+  const std::vector<TopicContent> topics = bag_topics(input, reported_later);
   const bool has_samples = std::any_of(topics.begin(), topics.end(), [](const TopicContent& topic) {
     return topic.use == TopicUse::samples && topic.messages > 0;
   });
@@ -68,7 +71,7 @@ Content read_bag_content(const std::string& input, Diagnostics& diagnostics) {
   for (const TopicContent& topic : topics) {
     if (topic.use == used || topic.messages == 0) continue;
     diagnostics.warning({input, 0},
-                        fmt::format("topic '{}' ({}) is left out: YAML holds {} alone", topic.name,
+                        fmt::format("topic '{}' ({}) is left out: YAML holds only {}", topic.name,
                                     topic.type, has_samples ? "samples" : "poses"));
   }
   if (has_samples) return {read_recording(input, diagnostics).samples, {}};
@@ -89,7 +92,8 @@ std::string counted(const Content& content) {
   return fmt::format("{} samples", content.samples.size());
 }
 
-/// Everything that is in the input, as YAML.
+/// Writes everything that was read, as YAML.
+/// @return  what was written, in words
 std::string write_yaml(const Content& content, const std::string& output) {
   std::ostringstream text;
   if (content.samples.empty()) {
@@ -101,8 +105,8 @@ std::string write_yaml(const Content& content, const std::string& output) {
   return counted(content);
 }
 
-/// A bag from a bag, or from what was read.
-/// @return  what was written, in words; nothing if there were mistakes
+/// Writes a bag from a bag, or from what was read.
+/// @return  what was written, in words; nothing if there were errors
 std::optional<std::string> write_bag(const ConvertOptions& options, Encoding encoding,
                                      Diagnostics& diagnostics) {
   const bool from_bag =
@@ -110,7 +114,7 @@ std::optional<std::string> write_bag(const ConvertOptions& options, Encoding enc
   Content content;
   if (!from_bag) content = read_content(options, diagnostics);
   if (!diagnostics.errors.empty()) return std::nullopt;
-  const OutputFolder folder(folder_of(options.output));  // made where it is missing
+  const OutputFolder folder(folder_of(options.output));  // creates it if it is missing
   BagOutput bag(options.output, encoding,
                 encoding == Encoding::cdr ? best_mcap_compression() : Compression::none);
   std::string words = counted(content);

@@ -1,4 +1,4 @@
-// kinecal init: a first configuration, by a few questions.
+// kinecal init: writes a first configuration from a URDF and a few answers.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
@@ -32,7 +32,7 @@ std::string check_target(const std::string& word) {
   if (init_target(word)) return "";
   std::vector<std::string_view> words;
   for (const InitTargetWord& known : kInitTargets) words.push_back(known.word);
-  return fmt::format("'{}' is no target{}", word, did_you_mean(word, words));
+  return fmt::format("'{}' is not a target{}", word, did_you_mean(word, words));
 }
 
 /// One or two targets: the floor may come with another one.
@@ -47,7 +47,7 @@ void answer_targets(const InitOptions& options, InitAnswers& answers) {
     const InitTarget target = *init_target(words.front());
     if (needs_camera(target) && target != InitTarget::ground && on_a_terminal() &&
         options.camera_type != "camera2d") {
-      const Question floor{"--target", "Does the camera see the floor too, in samples of its own?",
+      const Question floor{"--target", "Does the camera also see the floor, in separate samples?",
                            choices({"no", "yes"})};
       const std::string seen = ask(floor, [](const std::string& word) -> std::string {
         return word == "no" || word == "yes" ? "" : "yes or no";
@@ -65,8 +65,8 @@ void answer_targets(const InitOptions& options, InitAnswers& answers) {
       answers.with_ground = true;
     } else if (is_chosen && target != answers.target) {
       throw InputError(
-          fmt::format("--target: {} and {} cannot be had in one configuration; only "
-                      "ground goes with another target",
+          fmt::format("--target: {} and {} do not go into one configuration; only ground can be "
+                      "combined with another target",
                       to_string(answers.target), word));
     } else {
       answers.target = target;
@@ -90,7 +90,7 @@ void answer_camera(const Robot& robot, const InitOptions& options, InitAnswers& 
   } else if (on_a_terminal() && !floor) {
     const Question question{
         "--camera-type",
-        "What does the camera give?",
+        "What does the camera measure?",
         {{"camera3d", "points in metres: a depth camera"}, {"camera2d", "pixels"}}};
     answers.camera_type = ask(question, [](const std::string& type) -> std::string {
       return type == "camera3d" || type == "camera2d" ? "" : "camera3d or camera2d";
@@ -105,7 +105,7 @@ void answer_camera(const Robot& robot, const InitOptions& options, InitAnswers& 
       });
 }
 
-/// Names that have a proposal: frames that are in no URDF, the base.
+/// Names that have a proposal: the base, and frames that the URDF does not contain.
 void answer_names(const Robot& robot, const InitOptions& options, InitAnswers& answers) {
   const InitAnswers proposed = with_proposals(robot, answers);
   const auto frame = [&](const std::string& given, const Question& question) {
@@ -128,19 +128,20 @@ void answer_names(const Robot& robot, const InitOptions& options, InitAnswers& a
               {"--tracker-frame", "What do the samples call the frame of the tracker (frame_id)?",
                choices({proposed.tracker_frame})});
   }
-  if (proposed.base.empty()) return;  // for a link that is none, told later
+  if (proposed.base.empty()) return;  // a link does not exist; initial_config() reports it
   const bool floor = answers.with_ground || answers.target == InitTarget::ground;
   answers.base = ask_unless_given(
       options.base,
       {"--base",
-       fmt::format("In which link is everything compared{}?", floor ? " (z = 0 is the floor)" : ""),
+       fmt::format("In which link are measurements compared{}?",
+                   floor ? " (z = 0 is the floor)" : ""),
        choices({proposed.base})},
       [&](const std::string& link) {
         return why_not([&](Diagnostics& d) { check_init_link(robot, "--base", link, d); });
       });
 }
 
-/// Before any question: what was given must not be found wrong at the end.
+/// Checks the options before any question, so that no answers are lost.
 void check_given(const Robot& robot, const InitOptions& options) {
   Diagnostics diagnostics;
   for (const auto& [option, link] :
@@ -155,11 +156,11 @@ void check_given(const Robot& robot, const InitOptions& options) {
   diagnostics.throw_if_errors();
 }
 
-/// Tells options that the target makes no use of.
+/// Warns of options that the target does not use.
 void warn_of_idle(const InitOptions& options, InitTarget target) {
   const auto warn = [&](bool is_used, const std::string& given, const char* option) {
     if (is_used || given.empty()) return;
-    fmt::print(stderr, "warning: {} has no part in target {}\n", option, to_string(target));
+    fmt::print(stderr, "warning: {} is not used with target {}\n", option, to_string(target));
   };
   warn(needs_arm(target), options.arm, "--arm");
   warn(needs_camera(target), options.camera, "--camera");
@@ -186,7 +187,7 @@ InitAnswers answer(const Robot& robot, const InitOptions& options) {
   return answers;
 }
 
-/// As a shell takes it for one word.
+/// Quoted, if a shell would not take the text as one word.
 std::string as_word(const std::string& text) {
   const bool is_plain = text.find_first_of(" \t\"$&;()<>|*?'") == std::string::npos;
   return is_plain ? text : "'" + text + "'";
@@ -199,7 +200,7 @@ int init(const InitOptions& options) {
   check();  // before any question
   const Robot robot = read_urdf(options.urdf);
   const std::string text = initial_config(robot, answer(robot, options));
-  check();  // somebody may have written it while questions were answered
+  check();  // the file may have appeared meanwhile
   write_file(options.output, text);
   fmt::print("wrote {}\nnext: kinecal check --urdf {} --config {}\n", options.output,
              as_word(options.urdf), as_word(options.output));

@@ -17,7 +17,7 @@
 namespace kinecal::cli {
 namespace {
 
-/// Runs one reader; what makes its file unusable joins the other mistakes.
+/// Runs one reader; an error that makes its file unusable is added to the others.
 template <class Read>
 auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(read())> {
   try {
@@ -39,7 +39,7 @@ Recording read_recordings(const std::vector<std::string>& files, Diagnostics& di
       return std::filesystem::equivalent(file, other, missing);
     };
     if (std::any_of(before.begin(), before.end(), same)) {
-      diagnostics.warning({file, 0}, "is given twice: its samples count twice");
+      diagnostics.warning({file, 0}, "is given twice, so its samples count twice");
     }
     before.push_back(file);
     auto read = attempt([&] { return read_recording(file, diagnostics); }, diagnostics);
@@ -72,9 +72,10 @@ Input read_input(const std::string& urdf, const std::string& config,
   Recording recording = read_recordings(samples, diagnostics);
   input.samples = std::move(recording.samples);
   if (urdf.empty() && recording.urdf.empty()) {
-    diagnostics.error({"--urdf", 0}, samples.empty()
-                                         ? "is required without samples"
-                                         : "is required: no /robot_description in the samples");
+    diagnostics.error({"--urdf", 0},
+                      samples.empty()
+                          ? "is required without samples"
+                          : "is required, because the samples contain no /robot_description");
   } else if (urdf.empty()) {
     input.urdf = "/robot_description";
     robot = read_robot([&] { return std::move(recording.urdf); });
@@ -88,7 +89,7 @@ Input read_input(const std::string& urdf, const std::string& config,
     input.calibration = assemble(*configuration, *robot, input.samples, diagnostics);
     return input;
   }
-  // What is known to be wrong is left out; the rest is still held against the robot.
+  // Blocks of a wrong configuration are left out; the rest is still checked against the robot.
   if (!configuration_is_good) {
     for (StepConfig& step : configuration->steps) step.error_blocks.clear();
   }

@@ -1,4 +1,4 @@
-// The input of a calibration, read from the user's files; every mistake is told in one go.
+// The input of a calibration, read from the user's files; all errors are reported at once.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,23 +11,25 @@
 
 namespace kinecal::cli {
 
+/// Everything that a calibration needs.
 struct Input {
   Robot robot;
-  std::string urdf, urdf_text;  ///< where the text is from, as messages name it
+  std::string urdf;       ///< name of the URDF in messages: its file or topic
+  std::string urdf_text;  ///< its content
   std::vector<Sample> samples;
   Calibration calibration;
   Diagnostics diagnostics;
 };
 
-/// Reads and assembles everything; mistakes end up in the diagnostics.
+/// Reads and assembles everything; errors go to Input::diagnostics.
 /// @param urdf     empty: the /robot_description of the samples' bag
 /// @param cameras  NAME=FILE, for samples without camera_info
 [[nodiscard]] Input read_input(const std::string& urdf, const std::string& config,
                                const std::vector<std::string>& samples,
                                const std::vector<std::string>& cameras = {});
 
-/// Reads samples from several files of any format, the URDF from the first that has one; mistakes
-/// end up in the diagnostics.
+/// Reads samples from several files of any format, and the URDF from the first that has one.  Errors
+/// go to the diagnostics.
 [[nodiscard]] Recording read_recordings(const std::vector<std::string>& files,
                                         Diagnostics& diagnostics);
 

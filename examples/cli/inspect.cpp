@@ -1,4 +1,4 @@
-// kinecal inspect: what is in the samples.
+// kinecal inspect: shows what is in recordings.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
@@ -86,8 +86,7 @@ void print_sensors(const std::vector<Sample>& samples) {
   fmt::print("Sensors\n{}\n", table.str());
 }
 
-/// What is missing here and there: joints or sensors of some samples only, features without
-/// numbers.
+/// Prints gaps: joints or sensors that only some samples have, features without numbers.
 void print_gaps(const std::vector<Sample>& samples) {
   std::string gaps;
   const auto add = [&](const std::string& what, std::size_t count) {
@@ -119,7 +118,7 @@ void print_topics(const std::string& file, const std::vector<TopicContent>& topi
   fmt::print("{}\n", table.str());
 }
 
-/// Poses to capture: joints, and what is looked for there.
+/// Prints poses to capture: joints, and the features to look for.
 void print_poses(const std::vector<CapturePose>& poses) {
   std::vector<Sample> samples(poses.size());
   std::map<std::string, std::size_t> finders;
@@ -136,7 +135,7 @@ void print_poses(const std::vector<CapturePose>& poses) {
   fmt::print("Features\n{}\n", table.str());
 }
 
-/// Prints what bags hold, and poses.
+/// Prints the topics of bags, and poses.
 /// @return  the files with samples
 std::vector<std::string> with_samples(const std::vector<std::string>& files,
                                       Diagnostics& diagnostics) {
@@ -160,7 +159,7 @@ std::vector<std::string> with_samples(const std::vector<std::string>& files,
     if (has(TopicUse::samples)) {
       found.push_back(file);
     } else if (has(TopicUse::poses)) {
-      Diagnostics of_poses;  // with what the topics told already
+      Diagnostics of_poses;  // repeats what bag_topics() found
       const std::vector<CapturePose> poses = read_bag_poses(file, of_poses);
       if (diagnostics.errors.empty()) diagnostics.errors = of_poses.errors;
       print_poses(poses);
@@ -176,7 +175,7 @@ int inspect(const std::vector<std::string>& files) {
   const std::vector<std::string> used = with_samples(files, of_bags);
   const std::vector<Sample> samples = read_recordings(used, of_samples).samples;
   print(of_bags);
-  if (of_bags.errors.empty()) print(of_samples);  // else once is enough
+  if (of_bags.errors.empty()) print(of_samples);  // else they would be printed twice
   if (!of_bags.errors.empty() || !of_samples.errors.empty()) return kBadInput;
   if (used.empty()) return kDone;
   fmt::print("{} samples\n\n", samples.size());

@@ -1,4 +1,4 @@
-// kinecal install: a result onto the robot, and back.
+// kinecal install: puts a result on the robot, and back.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/io/install/install.hpp"
 
@@ -13,10 +13,10 @@
 namespace kinecal::cli {
 namespace {
 
-/// Prints why a result is not fit to be installed; an empty text if it is.
+/// Why a result should not be installed; empty if it should.
 std::string why_unfit(const ResultFolder& result, const std::string& folder) {
   if (!result.converged) {
-    return folder + ": has no report.json that says whether the result converged";
+    return folder + ": has no report.json, so it is unknown whether the result converged";
   }
   return *result.converged ? "" : folder + "/report.json: the result did not converge";
 }
@@ -30,7 +30,7 @@ int install_result(const InstallOptions& options) {
   const ResultFolder result = read_result_folder(options.result);
   if (const std::string unfit = why_unfit(result, options.result); !unfit.empty()) {
     if (!options.force) {
-      fmt::print(stderr, "error: {}; nothing installed, --force installs it all the same\n", unfit);
+      fmt::print(stderr, "error: {}; nothing installed; --force installs it anyway\n", unfit);
       return kNotConverged;
     }
     fmt::print(stderr, "warning: {}\n", unfit);
@@ -42,17 +42,18 @@ int install_result(const InstallOptions& options) {
   for (const std::string& name : done.added) fmt::print("wrote {}\n", in_folder(options, name));
   const std::string launch = in_folder(options, options.launch);
   if (done.backup.empty()) {
-    fmt::print("{} is as it was: this calibration is installed\n", launch);
+    fmt::print("{} is unchanged: this calibration is already installed\n", launch);
   } else {
-    fmt::print("changed {}; the one before is {}, --restore puts it back\n", launch, done.backup);
+    fmt::print("changed {}; the previous version is {}, --restore puts it back\n", launch,
+               done.backup);
   }
   return kDone;
 }
 
 int restore(const InstallOptions& options) {
   const std::string undone = restore_installed(options.folder, options.launch, options.force);
-  fmt::print("restored {}; the one that it replaced is {}\n", in_folder(options, options.launch),
-             undone);
+  fmt::print("restored {}; the version that it replaced is {}\n",
+             in_folder(options, options.launch), undone);
   return kDone;
 }
 

@@ -16,21 +16,21 @@ namespace {
 using namespace kinecal::cli;
 
 void add_input(CLI::App& command, std::string& urdf, std::string& config) {
-  command
-      .add_option("--urdf", urdf,
-                  "the robot's URDF; without it the bag's /robot_description is taken")
+  command.add_option("--urdf", urdf, "the robot's URDF; default: /robot_description of the bag")
       ->type_name("FILE");
   command
-      .add_option("--config", config, "what is calibrated: robot_calibration's YAML, of ROS 1 or 2")
+      .add_option("--config", config,
+                  "what to calibrate: a configuration of robot_calibration, ROS 1 or ROS 2")
       ->required()
       ->type_name("FILE");
 }
 
 void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
   command
-      .add_option("--camera", cameras,
-                  "intrinsics of a sensor whose samples have none: camera_info, Kalibr or OpenCV "
-                  "YAML; FILE:cam1 of several")
+      .add_option(
+          "--camera", cameras,
+          "intrinsics of a sensor that was recorded without camera_info: camera_info, Kalibr "
+          "or OpenCV YAML; FILE:cam1 for one of several")
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
 }
@@ -45,9 +45,10 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   add_cameras(command, options.cameras);
   command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
   command
-      .add_option("--offsets", options.offsets,
-                  "where joint offsets are written: added to <calibration rising>, or folded into "
-                  "<origin> for drivers that ignore it")
+      .add_option(
+          "--offsets", options.offsets,
+          "where joint offsets go: rising adds them to <calibration rising>, origin puts them "
+          "into the joints' <origin>, for drivers that ignore <calibration>")
       ->check(CLI::IsMember({"rising", "origin"}))
       ->capture_default_str();
   command.add_flag("--upstream-names", options.upstream_names,
@@ -55,13 +56,12 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
   command
       .add_option("--threads", options.threads,
-                  "how many threads share the work, one for each core by default; the result does "
-                  "not depend on it")
+                  "number of threads, default: one per core; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command
       .add_option("--cost", options.cost,
-                  "how Ceres is given the samples: summed, or each feature by itself (slower, for "
-                  "comparison)")
+                  "how Ceres gets the samples: compressed sums them, stacked keeps every feature "
+                  "(slower, for comparison)")
       ->check(CLI::IsMember({"compressed", "stacked"}))
       ->capture_default_str();
 }
@@ -72,33 +72,35 @@ void add_init(CLI::App& command, InitOptions& options) {
       ->type_name("FILE")
       ->capture_default_str();
   command
-      .add_option("--target", options.targets,
-                  "what the robot is measured against: leds, checkerboard (in the gripper), "
-                  "world_checkerboard, tracker or ground; ground may come with another")
+      .add_option(
+          "--target", options.targets,
+          "what the robot is measured against: leds, checkerboard (in the gripper), "
+          "world_checkerboard, tracker or ground; ground also goes with another: leds,ground")
       ->delimiter(',')
       ->type_name("TARGET");
   command
-      .add_option("--target-frame", options.target_frame,
-                  "frame_id of the board's corners or of the reflector in the samples, which is in "
-                  "no URDF; by default 'checkerboard' or 'smr'")
+      .add_option(
+          "--target-frame", options.target_frame,
+          "frame_id of the board's corners or of the reflector in the samples, not a link of "
+          "the URDF; default: 'checkerboard' or 'smr'")
       ->type_name("NAME");
   command
       .add_option("--tracker-frame", options.tracker_frame,
-                  "frame_id of what a tracker measured, by default 'tracker_frame'")
+                  "frame_id of the points of a tracker, default: 'tracker_frame'")
       ->type_name("NAME");
   command.add_option("--arm", options.arm, "link at the end of the arm")->type_name("LINK");
   command.add_option("--camera", options.camera, "the camera's optical frame")->type_name("LINK");
   command
       .add_option("--camera-type", options.camera_type,
-                  "camera3d (points in metres, default) or camera2d (pixels)")
+                  "camera3d (points in metres), the default, or camera2d (pixels)")
       ->type_name("TYPE");
   command
       .add_option("--robot-camera-name", options.camera_name,
-                  "sensor_name of the camera in the samples, by default 'camera'")
+                  "sensor_name of the camera in the samples, default: 'camera'")
       ->type_name("NAME");
   command
       .add_option("--base", options.base,
-                  "link in which everything is compared, by default the highest one")
+                  "link in which measurements are compared, default: the highest one")
       ->type_name("LINK");
   command.add_flag("--force", options.force, "replace the file that is there");
 }
@@ -111,15 +113,15 @@ void add_convert(CLI::App& command, ConvertOptions& options) {
       ->type_name("FILE");
   command
       .add_option("output", options.output,
-                  "the file to write; its name tells the format: .yaml, .bag (ROS 1) or .mcap")
+                  "the file to write, in the format of its name: .yaml, .bag (ROS 1) or .mcap")
       ->required()
       ->type_name("FILE");
   command
       .add_option("--columns", options.columns,
-                  "the input is a table; YAML that tells what its columns mean")
+                  "read the input as a table; this YAML file says what its columns mean")
       ->type_name("FILE");
   command.add_flag("--drop-clouds", options.drop_clouds,
-                   "leave out the point clouds and images of observations; YAML never has them");
+                   "leave out point clouds and images; YAML never has them");
   command.add_flag("--force", options.force, "replace the file that is there");
 }
 
@@ -128,9 +130,12 @@ void add_camera(CLI::App& command, CameraOptions& options) {
       ->required()
       ->type_name("FILE");
   CLI::Option* output =
-      command.add_option("--output", options.output, "where it is written as camera_info")
+      command
+          .add_option("--output", options.output, "write the camera to this file, as camera_info")
           ->type_name("FILE");
-  command.add_option("--keys", options.keys, "those of drivers' files, or of the ROS 2 message")
+  command
+      .add_option("--keys", options.keys,
+                  "file: keys as in files of camera drivers; message: as in the ROS 2 message")
       ->check(CLI::IsMember({"file", "message"}))
       ->needs(output)
       ->capture_default_str();
@@ -140,8 +145,8 @@ void add_camera(CLI::App& command, CameraOptions& options) {
   command.add_flag("--force", options.force, "replace the file that is there")->needs(output);
 }
 
-/// The arguments in the order that the parser takes, the last one first.  It takes -.5 for an
-/// option, and -0.5 for a number.
+/// The arguments as the parser expects them, the last one first.  The parser takes -.5 for an option,
+/// so the numbers of rpy become -0.5.
 std::vector<std::string> arguments_of(int argc, char** argv) {
   const bool are_numbers = argc > 1 && std::string("rpy") == argv[1];
   std::vector<std::string> arguments;
@@ -155,7 +160,8 @@ std::vector<std::string> arguments_of(int argc, char** argv) {
 
 void add_install(CLI::App& command, InstallOptions& installing) {
   CLI::Option* result =
-      command.add_option("result", installing.result, "what calibrate wrote")->type_name("DIR");
+      command.add_option("result", installing.result, "folder that calibrate wrote")
+          ->type_name("DIR");
   command.add_option("--to", installing.folder, "folder of the robot's launch file")
       ->required()
       ->type_name("DIR");
@@ -163,17 +169,19 @@ void add_install(CLI::App& command, InstallOptions& installing) {
       ->type_name("FILE")
       ->capture_default_str();
   command
-      .add_option("--name", installing.names,
-                  "how the launch file calls what is set, where that is not as on Fetch: "
-                  "z_offset_mm=camera/z_offset_mm; KEY= sets nothing")
+      .add_option(
+          "--name", installing.names,
+          "set another name in the launch file than Fetch's: z_offset_mm=camera/z_offset_mm; "
+          "KEY= leaves the key out")
       ->type_name("KEY=NAME")
       ->allow_extra_args(false);
-  command.add_flag("--force", installing.force,
-                   "install what did not converge; restore what has lost files");
+  command.add_flag(
+      "--force", installing.force,
+      "install a result that did not converge; restore a version whose files are gone");
   CLI::Option* restore =
-      command.add_flag("--restore", installing.restore, "take the last installation back")
+      command.add_flag("--restore", installing.restore, "put the previous version back")
           ->excludes(result);
-  command.add_flag("--date", installing.date, "print the date of what is installed")
+  command.add_flag("--date", installing.date, "print the date of the installed version")
       ->excludes(result)
       ->excludes(restore);
 }
@@ -201,7 +209,7 @@ class Commands {
   explicit Commands(CLI::App& app) : app_(app) {}
 
   /// @param describe  adds the options to the command
-  /// @param run       does what it is for
+  /// @param run       runs the command
   template <class Options>
   void add(const char* name, const char* says, void (*describe)(CLI::App&, Options&),
            int (*run)(const Options&)) {
@@ -214,18 +222,19 @@ class Commands {
 
   [[nodiscard]] int run_called() const { return called_(); }
 
-  /// What is said of arguments that are wrong.
+  /// The message about wrong arguments.
   [[nodiscard]] std::string refusal(const std::string& first, const CLI::Error& error) const {
     std::string names;
     for (const std::string& name : names_) {
       if (name == first) {
         return std::string("error: ") + error.what() + "; 'kinecal " + name +
-               " --help' tells what it takes\n";
+               " --help' lists its options\n";
       }
       names += (names.empty() ? "" : ", ") + name;
     }
-    return "error: " + (first.empty() ? "no command is given" : "'" + first + "' is no command") +
-           "; one of " + names + "\n";
+    return "error: " +
+           (first.empty() ? "no command is given" : "'" + first + "' is not a command") +
+           "; use one of " + names + "\n";
   }
 
  private:
@@ -239,22 +248,25 @@ int run(int argc, char** argv) {
                "kinecal");
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
-  app.footer("'kinecal COMMAND --help' tells what a command takes.");
+  app.footer("'kinecal COMMAND --help' lists the options of a command.");
   Commands commands(app);
-  commands.add("init", "write a first configuration from a URDF: asks what is not given", add_init,
-               init);
-  commands.add("check", "find every mistake in the input, without calibrating", add_check, check);
+  commands.add("init",
+               "write a first configuration from a URDF; asks for what the options leave open",
+               add_init, init);
+  commands.add("check", "list every error in the input at once, without calibrating", add_check,
+               check);
   commands.add("calibrate", "calibrate the robot and write its corrected URDF and camera files",
                add_calibrate, calibrate);
-  commands.add("install", "put a result onto the robot: its files and its launch file", add_install,
-               install);
+  commands.add("install", "copy a result to the robot and set it in the launch file; or go back",
+               add_install, install);
   commands.add("inspect", "show what is in recordings: topics, sensors, features, joints, gaps",
                add_inspect, inspect);
   commands.add("convert", "write samples or poses in another format", add_convert, convert);
   commands.add("camera", "show a camera file, and write it as camera_info", add_camera, camera);
-  commands.add("rpy",
-               "a rotation vector (a b c of a free frame) as roll, pitch, yaw (a URDF's), and back",
-               add_rpy, rpy);
+  commands.add(
+      "rpy",
+      "convert a rotation vector (a b c of a free frame) to roll, pitch, yaw (a URDF's), or back",
+      add_rpy, rpy);
   try {
     app.parse(arguments_of(argc, argv));
   } catch (const CLI::ParseError& e) {
@@ -265,7 +277,7 @@ int run(int argc, char** argv) {
   }
   const int code = commands.run_called();
   if (std::fflush(stdout) == 0) return code;
-  std::fprintf(stderr, "error: the output cannot be printed\n");
+  std::fprintf(stderr, "error: cannot write to the standard output\n");
   return kBadInput;
 }
 

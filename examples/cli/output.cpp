@@ -12,7 +12,7 @@ std::vector<Observability> observe(const Calibration& calibration,
   const Eigen::VectorXd values = result.table.values();
   std::vector<Observability> all;
   for (const CalibrationStep& step : calibration.steps) {
-    all.push_back(observability(step.problem, step.free,
+    all.push_back(observability(*step.problem, step.free,
                                 {values.data(), static_cast<std::size_t>(values.size())}));
   }
   return all;

@@ -1,4 +1,4 @@
-// What a calibration gives back to people: a report, doubts, files.
+// What the program makes of a result: a report, warnings, files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -6,19 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/results/result_files.hpp"
 #include "kinecal/trust/observability.hpp"
 
 namespace kinecal::cli {
 
-/// What the samples of each step tell.
+/// The observability of each step from its samples.
 [[nodiscard]] std::vector<Observability> observe(const Calibration& calibration,
                                                  const CalibrationResult& result);
 
-/// Prints what was done: steps, error blocks, parameters.
+/// Prints steps, error blocks and parameters.
 void print_result(const std::string& robot, std::size_t samples, const CalibrationResult& result);
 
-/// Prints to the standard error stream what may be wrong with a result.
+/// Prints warnings about a result to the standard error stream.
 void print_doubts(const Calibration& calibration, const CalibrationResult& result,
                   const std::vector<Observability>& observability);
 
@@ -35,7 +36,7 @@ struct UrdfFile {
                                                    std::span<const Sample> samples,
                                                    const ResultFileOptions& options = {});
 
-/// Writes them, all or none, and says so.
+/// Writes all files or none, and prints their names.
 void write(OutputFolder& folder, const std::vector<OutputFile>& files);
 
 }  // namespace kinecal::cli

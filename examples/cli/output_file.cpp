@@ -15,7 +15,7 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
     }
   }
   if (force || !std::filesystem::exists(std::filesystem::symlink_status(output))) return;
-  throw OutputError(output + ": exists; give --force to replace it, or another name");
+  throw OutputError(output + ": exists; use --force to replace it, or choose another name");
 }
 
 std::filesystem::path folder_of(const std::string& output) {

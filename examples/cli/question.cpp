@@ -35,7 +35,7 @@ void print(const Question& question) {
   std::fflush(stdout);
 }
 
-/// What an answer typed stands for; nothing if it must be asked again.
+/// The meaning of a typed answer; nothing if the question must be asked again.
 std::optional<std::string> understood(const Question& question, const std::string& line) {
   const std::vector<Choice>& choices = question.choices;
   if (line.empty() && !choices.empty()) return choices.front().answer;
@@ -66,9 +66,9 @@ std::string ask(const Question& question, const WhyNot& why_not) {
       fmt::print("{} {} (the only one)\n", question.option, question.choices.front().answer);
       return question.choices.front().answer;
     }
-    throw InputError(question.option + " is required where nobody can be asked" +
+    throw InputError(question.option + " is required, because the input is not a terminal" +
                      (question.choices.empty() ? "; no link of the URDF looks like one"
-                                               : "; one of " + listed(question.choices)));
+                                               : "; use one of " + listed(question.choices)));
   }
   for (;;) {
     print(question);

@@ -8,31 +8,31 @@
 
 namespace kinecal::cli {
 
-/// What can be chosen: the answer, and a line that says what it means.
+/// A possible answer, and a line that explains it.
 struct Choice {
   std::string answer, says;
 };
 
 [[nodiscard]] std::vector<Choice> choices(const std::vector<std::string>& answers);
 
-/// One question; what is answered on the command line is not asked.
+/// A question, asked unless its option is given on the command line.
 struct Question {
   std::string option;  ///< "--arm"
   std::string asks;
-  std::vector<Choice> choices;  ///< the first is the one that Enter chooses
+  std::vector<Choice> choices;  ///< Enter chooses the first one
 };
 
 /// Says why an answer is not good; empty if it is.
 using WhyNot = std::function<std::string(const std::string& answer)>;
 
-/// Whether there is somebody who can be asked.
+/// Whether the standard input is a terminal, so that questions can be asked.
 [[nodiscard]] bool on_a_terminal();
 
-/// Asks until the answer is good.  Where nobody can be asked, the only choice is taken.
-/// @throws InputError  where nobody can be asked and there are several; at the end of the answers
+/// Asks until the answer is good.  Without a terminal, takes the only choice.
+/// @throws InputError  without a terminal, if there is not exactly one choice; or if the input ends
 [[nodiscard]] std::string ask(const Question& question, const WhyNot& why_not);
 
-/// What was given, or what is typed; the first choice where nobody can be asked.
+/// The given answer, or else the typed one; without a terminal, the first choice.
 [[nodiscard]] std::string ask_unless_given(const std::string& given, const Question& question,
                                            const WhyNot& why_not);
 

@@ -1,7 +1,7 @@
 // kinecal rpy: rotation vectors as roll, pitch, yaw, and back.
 //
-// Free frames are calibrated as rotation vectors, URDFs are written in roll, pitch, yaw; the three
-// numbers look alike and are not.
+// A free frame is calibrated as a rotation vector; a URDF has roll, pitch, yaw.  The three numbers
+// look alike but are not the same.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/geometry/rpy.hpp"
 
@@ -33,7 +33,7 @@ Vector3<double> three_numbers(const std::vector<std::string>& texts) {
   return numbers;
 }
 
-/// One line for programs: every digit; and one for people.
+/// Prints a line with every digit, for programs, and one in degrees, for people.
 void print(const char* what, const Vector3<double>& v) {
   const Vector3<double> r = v + Vector3<double>::Zero();  // never -0
   const Vector3<double> d = r * (180.0 / std::numbers::pi);

@@ -1,15 +1,16 @@
-// kinecal --version: which program this is, and what it was compiled for.
+// kinecal --version: the version, and the instruction set of the evaluation.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
 #include "commands.hpp"
-#include "kinecal/geometry/packet.hpp"
+#include "kinecal/crate/any_problem.hpp"
 
 namespace kinecal::cli {
 
 std::string version() {
-  return fmt::format("kinecal " KINECAL_VERSION " ({}, {} samples at a time)", instruction_set(),
-                     kLanes<Packet>);
+  const Evaluation evaluation = evaluation_of_library();
+  return fmt::format("kinecal " KINECAL_VERSION " ({}, {} samples at a time)",
+                     evaluation.instruction_set, evaluation.lanes);
 }
 
 }  // namespace kinecal::cli

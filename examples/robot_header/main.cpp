@@ -1,4 +1,4 @@
-// kinecal_robot_header: a URDF in, a C++ header with its robot as constant data out.
+// kinecal_robot_header: reads a URDF and writes a C++ header with the robot as constant data.
 // kinecal_add_robot() runs it when a project is built.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
@@ -23,7 +23,7 @@ struct Options {
   std::string urdf, output, name_space;
 };
 
-/// False if the arguments are not what the usage says.
+/// False if the arguments do not match the usage.
 bool parse(int argc, char** argv, Options& options) {
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string_view name = argv[i];
@@ -40,7 +40,7 @@ bool parse(int argc, char** argv, Options& options) {
   return argc % 2 == 1 && !options.urdf.empty() && !options.output.empty();
 }
 
-/// Replaces the header as a whole; a reader never sees half of it.
+/// Replaces the whole header at once; a reader never sees half of it.
 void write(const fs::path& path, const std::string& text) {
   kinecal::OutputFolder folder(path.has_parent_path() ? path.parent_path() : fs::path("."));
   folder.write({{path.filename().string(), text}});

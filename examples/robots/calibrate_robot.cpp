@@ -1,4 +1,4 @@
-// What the programs of all robots have in common: options, samples, the report.
+// The common part of all robots' programs: options, samples, the report.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -11,7 +11,8 @@
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/report/text.hpp"
-#include "kinecal/solve/calibrate_crate.hpp"
+#include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/observability.hpp"
 #include "simulate.hpp"
 
 namespace kinecal::examples {
@@ -57,24 +58,25 @@ void write(const std::string& path, const std::vector<Sample>& samples) {
 }
 
 Calibration calibration_of(const RobotExample& example, const std::vector<Sample>& samples) {
-  Problem problem = example.problem(samples);
-  const FreeSet free = example.free_set(problem.table());
+  std::unique_ptr<AnyProblem> problem = example.problem(samples);
+  const FreeSet free = example.free_set(problem->table());
   return make_calibration(std::move(problem), free, samples);
 }
 
-/// An error block on samples that the calibration has not seen.
+/// An error block on held-out samples.
 struct HeldOut {
   std::string name, unit;
   int features = 0;
-  double by_urdf = 0.0, calibrated = 0.0, noise = 0.0;  ///< rms of components; by the truth: noise
-  double metres = 1.0;                                  ///< that a unit stands for
+  double by_urdf = 0.0, calibrated = 0.0,
+         noise = 0.0;   ///< rms of components; noise: with the true values
+  double metres = 1.0;  ///< per unit of the residual
 };
 
 std::vector<HeldOut> hold_out(const RobotExample& example, Simulation& simulation,
                               const Options& options, const CalibrationResult& result) {
   const std::vector<Sample> samples = simulation.samples(options.pairs, options.planes);
   const Calibration calibration = calibration_of(example, samples);
-  const Problem& problem = calibration.steps.front().problem;
+  const AnyProblem& problem = *calibration.steps.front().problem;
   const auto statistics = [&](const ParameterTable& known) {
     Eigen::VectorXd all = problem.table().values();
     const Eigen::VectorXd before = all;
@@ -84,7 +86,7 @@ std::vector<HeldOut> hold_out(const RobotExample& example, Simulation& simulatio
   };
   const auto found = statistics(result.table), real = statistics(simulation.truth());
   std::vector<HeldOut> blocks;
-  for (std::size_t i = 0; i < problem.terms().size(); ++i) {
+  for (std::size_t i = 0; i < example.blocks.size(); ++i) {
     HeldOut& block = blocks.emplace_back();
     block = {found[i].name,       found[i].unit,      found[i].count,
              found[i].before.rms, found[i].after.rms, real[i].after.rms};
@@ -95,15 +97,16 @@ std::vector<HeldOut> hold_out(const RobotExample& example, Simulation& simulatio
   return blocks;
 }
 
-/// Prints the error blocks; true if the calibrated robot is as good as the true one, nearly.
+/// Prints the error blocks.
+/// @returns  true if the calibrated robot is nearly as good as the true one
 bool is_as_good_as_the_truth(const std::vector<HeldOut>& blocks) {
-  constexpr double kNearly = 1.2;  // 27 parameters from 100 points of a tracker cost a tenth
+  constexpr double kNearly = 1.2;  // 27 parameters from 100 tracker points: a tenth more than noise
   bool good = true;
   TextTable table(
       {"error block", "features", "unit", "by the URDF", "calibrated", "noise alone", "mm"});
   for (const HeldOut& block : blocks) {
-    const auto text = [&](double value) { return detail::in_reading_unit(value, block.unit); };
-    table.add({block.name, fmt::format("{}", block.features), detail::reading_unit(block.unit),
+    const auto text = [&](double value) { return in_reading_unit(value, block.unit); };
+    table.add({block.name, fmt::format("{}", block.features), reading_unit(block.unit),
                text(block.by_urdf), text(block.calibrated), text(block.noise),
                fmt::format("{:.3f}", 1e3 * block.metres * block.calibrated)});
     good = good && block.calibrated <= kNearly * block.noise;

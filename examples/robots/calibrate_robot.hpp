@@ -1,4 +1,4 @@
-// The program of a robot: a crate and its URDF are all it takes.
+// The program of a robot; it needs only a crate and a URDF.
 //
 //   int main(int argc, char** argv) {
 //     return calibrate_robot(fetch::Fetch(), "fetch/fetch.urdf", argc, argv);
@@ -6,7 +6,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "instances.hpp"
 #include "kinecal/crate/crate.hpp"
 #include "robot_example.hpp"
 
@@ -21,12 +20,13 @@ template <SensorPart S>
   return example;
 }
 
-/// The plane whose points have residual zero, found from the residuals of four points.
+/// The plane whose points have a residual of zero, from the residuals of four points.
 template <PointBlock B>
 [[nodiscard]] ExamplePlane plane_of(const B& block) {
-  static_assert(kResiduals<B> == 1,
-                "kinecal: samples are simulated for blocks of two sensors and for planes; this "
-                "block takes one sensor and is no plane: give the program --samples of your own");
+  static_assert(
+      kResiduals<B> == 1,
+      "kinecal: the simulation knows blocks of two sensors and planes; this block has one "
+      "sensor and is not a plane: give the program your own --samples");
   const auto residual = [&](const Vector3<double>& p) { return block(p)(0); };
   const double distance = residual(Vector3<double>::Zero());
   Vector3<double> normal;
@@ -42,7 +42,8 @@ template <BlockPart B>
   return example;
 }
 
-/// @param crate  of any kinecal::Crate; weights and losses are its own
+/// Runs the program for a crate, with the crate's weights and losses.
+/// @param crate  any kinecal::Crate
 template <class C>
 [[nodiscard]] RobotExample describe(const C& crate, const std::string& urdf) {
   RobotExample example{.urdf = urdf, .robot = C::robot(), .base = C::base()};
@@ -59,7 +60,7 @@ template <class C>
     if (kIsVirtual || P::kKind == ParameterKind::frame_offset) example.frames.emplace(P::kOwner);
   });
   example.problem = [crate](std::span<const Sample> samples) {
-    return crate.problem(C::table(samples));
+    return std::make_unique<Problem>(crate.problem(C::table(samples)));
   };
   example.free_set = &C::free;
   return example;

@@ -1,23 +1,24 @@
-// A robot's crate as the simulation and the program know it: names and functions, no types.
+// A robot's crate for simulation and program: names and functions in place of types.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "kinecal/crate/problem.hpp"
+#include "kinecal/crate/any_problem.hpp"
 #include "simulated.hpp"
 
 namespace kinecal::examples {
 
 struct ExampleSensor {
   Sensor sensor;
-  std::optional<Target> target = {};  ///< that the crate names
+  std::optional<Target> target = {};  ///< if the crate names one
   std::optional<Measuring> measuring = {};
-  bool moves = false;  ///< some joint of its chain does
+  bool moves = false;  ///< true if a joint of its chain moves
 };
 
 /// A plane in the base: points p with normal . p + distance = 0.
@@ -29,7 +30,7 @@ struct ExamplePlane {
 struct ExampleBlock {
   std::string name;
   std::vector<std::string> sensors = {};
-  std::optional<ExamplePlane> plane = {};  ///< that its sensor sees, if it has but one
+  std::optional<ExamplePlane> plane = {};  ///< that its sensor sees, if it has only one sensor
 };
 
 /// One number that is free: of a joint, a frame or a camera.
@@ -44,16 +45,15 @@ struct RobotExample {
   std::vector<ExampleSensor> sensors = {};
   std::vector<ExampleBlock> blocks = {};
   std::vector<ExampleParameter> free = {};
-  std::set<std::string> frames = {};  ///< those that are free
-  std::string virtual_frame = {};     ///< in which chains carry their targets; empty: at their tips
-  /// The crate's problem, without samples; what its cameras start from is taken from these.
-  std::function<Problem(std::span<const Sample>)> problem = {};
+  std::set<std::string> frames = {};  ///< the free ones
+  std::string virtual_frame = {};     ///< of the targets; empty: targets are at the tips
+  /// The crate's problem, without samples; cameras start from the settings in these samples.
+  std::function<std::unique_ptr<AnyProblem>(std::span<const Sample>)> problem = {};
   std::function<FreeSet(const ParameterTable&)> free_set = {};
 };
 
-/// Calibrates a robot on simulated samples, or on those of a file, and prints what came of it.
-/// @returns  0 if it converged and the robot is as well known as the noise allows, 1 on bad input,
-///           2 otherwise
+/// Calibrates a robot on simulated samples, or on those of a file, and prints the result.
+/// @returns  0 if it converged and is as accurate as the noise allows, 1 on bad input, 2 otherwise
 int calibrate_robot(const RobotExample& example, int argc, char** argv);
 
 }  // namespace kinecal::examples

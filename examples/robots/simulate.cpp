@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kEncoder = 2e-5;  // standard deviation, radians or metres
 
-/// How far the truth is from the URDF.
+/// Sizes of the URDF's errors.
 double deviation(const Robot& robot, const ExampleParameter& parameter, SeededRandom& random) {
   const auto is = [&](const std::string_view part) { return parameter.part == part; };
   if (is("x") || is("y") || is("z")) return random.either_sign(0.005, 0.01);
@@ -43,7 +43,7 @@ Measuring measuring_of(const ExampleSensor& eye) {
   return eye.measuring.value_or(eye.sensor.type == SensorType::camera2d ? kPinhole : Measuring{});
 }
 
-/// What a chain carries for an eye to see.
+/// The target at the tip of a chain.
 Target target_of(const ExampleSensor& carrier, const ExampleSensor& eye) {
   return carrier.target.value_or(is_camera(eye) ? Target{} : kReflector);
 }
@@ -61,7 +61,7 @@ std::vector<Vector3<double>> points_of(const Target& target) {
   return points;
 }
 
-/// How far a point is outside of what a camera sees: zero inside, more the farther away.
+/// Distance of a point from a camera's field of view: zero inside, growing outside.
 double outside(const DepthCamera<>& camera, const Measuring& measuring,
                const Vector3<double>& p_camera) {
   const double z = p_camera.z();
@@ -73,7 +73,7 @@ double outside(const DepthCamera<>& camera, const Measuring& measuring,
          std::clamp(z - measuring.far, 0.0, kMost);
 }
 
-/// How far a target is turned away from an eye.
+/// How far a target faces away from an eye.
 /// @param eye_T_target  its pose in the eye's frame
 double turned_away(const Target& target, const Pose<double>& eye_T_target) {
   const bool is_flat = target.columns > 1 || target.rows > 1;

@@ -1,16 +1,16 @@
-// Samples of a robot that is not quite what its URDF says, for the error blocks of its crate.
+// Simulates samples of a robot that differs from its URDF, for the error blocks of its crate.
 //
-// The true robot is drawn at random: joints 2 to 4 degrees off, frames 5 to 10 mm and 1 to 2
-// degrees, focal lengths and centres 1 to 2 percent, depths 5 mm and 1 percent.  Then for each
-// block, where its sensors could have seen what it compares:
+// The true robot is random: joints are 2 to 4 degrees off, frames 5 to 10 mm and 1 to 2 degrees,
+// focal lengths and principal points 1 to 2 percent, depths 5 mm and 1 percent.  Then for each
+// block, in poses in which its sensors see what it compares:
 //
 //   a camera and a chain     the points of the target at the chain's tip, all of them in the image
 //   a tracker and a chain    the same points, measured in the frame of the chain that does not move
-//   a camera and a plane     a grid of pixels, as far as they show the plane
+//   a camera and a plane     a grid of pixels, those that show the plane
 //
-// A pose is drawn within the limits of the joints and then changed, a joint at a time, until the
-// target is seen; from there it wanders about among the poses in which it is.  Nothing knows where
-// the robot's own body is: arms may pass through it and in front of a camera.
+// A random pose within the joint limits is changed, one joint at a time, until the eye sees the
+// target; from there it wanders among poses in which it does.  The simulation does not know the
+// robot's body: arms may pass through it, or in front of a camera.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,22 +23,22 @@ class Simulation {
  public:
   Simulation(const RobotExample& example, std::uint64_t seed);
 
-  /// @param pairs, planes  how many samples for each block of two sensors and of one
-  /// @throws std::invalid_argument  naming a block that cannot be simulated
-  /// @throws std::runtime_error     naming a block whose target is seen from nowhere
+  /// @param pairs, planes  number of samples for each block of two sensors and of one sensor
+  /// @throws std::invalid_argument  if it cannot simulate a block, with its name
+  /// @throws std::runtime_error     if it does not find a pose that sees the target of a block
   [[nodiscard]] std::vector<Sample> samples(int pairs, int planes);
 
-  /// What is wrong with the robot, by the names of the parameters.
+  /// Errors of the URDF, by parameter name.
   [[nodiscard]] const ParameterTable& truth() const { return truth_; }
 
-  /// What a pixel of a camera covers at the points it has seen so far, on average.
+  /// Mean size of a camera's pixel at the points that it has observed so far.
   /// @returns  metres
   [[nodiscard]] double metres_a_pixel(const std::string& camera) const;
 
  private:
-  using Violation = std::function<double(const Positions&)>;  ///< zero where all is seen
+  using Violation = std::function<double(const Positions&)>;  ///< zero if everything is visible
 
-  /// What a block compares, by who does what.
+  /// The two roles in what a block compares.
   struct Scene {
     const ExampleSensor* eye = nullptr;      ///< a camera or a tracker
     const ExampleSensor* carrier = nullptr;  ///< of the target
@@ -53,7 +53,7 @@ class Simulation {
   [[nodiscard]] double plane_violation(const Scene& scene, const Positions& positions) const;
   [[nodiscard]] std::vector<Vector3<double>> plane_points(const Scene& scene,
                                                           const Positions& positions) const;
-  /// What the eye reports of points in its own frame.
+  /// The points that the eye reports, for points in its own frame.
   [[nodiscard]] Observation observe(const ExampleSensor& eye,
                                     const std::vector<Vector3<double>>& points);
 
@@ -61,7 +61,7 @@ class Simulation {
   SeededRandom random_;
   ParameterTable truth_;
   TrueRobot robot_;
-  std::vector<const Joint*> joints_;                      ///< that have a position of their own
+  std::vector<const Joint*> joints_;                      ///< with a position of their own
   std::map<std::string, std::pair<double, int>> depths_;  ///< by camera: their sum and number
 };
 

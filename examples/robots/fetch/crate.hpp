@@ -1,7 +1,8 @@
 // Fetch: four LEDs in the gripper and the floor, seen by the depth camera in the head.
 //
-// Free are seven joints of the arm, the tilt of the head, the frames of head and camera, the camera
-// itself; the zero of the pan joint is the yaw of its frame.  Source: Fetch paper, III
+// Free are seven joints of the arm, the head tilt, the frames of head and camera, and the camera
+// itself.  The zero of the pan joint is the yaw of its frame.
+// Source: Fetch paper, III.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,22 +23,22 @@ struct Arm : Chain3d<"arm", To<"gripper_led_frame">> {
 };
 using Camera = Camera3d<"camera", To<"head_camera_rgb_optical_frame">>;
 
-/// The camera measures an LED at 0.8 m to 1 mm; beyond 3 sigma something went wrong.
+/// At 0.8 m the camera measures an LED to 1 mm; beyond 3 sigma it is an outlier.
 struct SameLeds : Block<"hand_eye", PointToPoint, "camera", "arm"> {
   SameLeds() {
     options.weight = 1.0 / 0.001;
     options.loss = {LossType::huber, 3.0};
   }
 };
-/// The floor at 1.5 m to 3 mm; samples of the LEDs do not show it.
+/// At 1.5 m the camera measures the floor to 3 mm; samples of the LEDs do not show it.
 struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
   OnFloor() {
     options.weight = 1.0 / 0.003;
     options.alone = true;
   }
 };
-/// A turn of the head tilt is one of the camera's frame the other way, and a turn of arm and head
-/// about the vertical shows nowhere: drawing and joint decide.
+/// The head tilt trades with the pitch of the camera's frame, and a common yaw of arm and head is
+/// not observable: the prior keeps them close to the drawing.
 struct KeepCamera : PriorOn<"restrict_camera", "head_camera_rgb_joint"> {
   KeepCamera() { rotation_scale = 5.0; }
 };
@@ -54,6 +55,7 @@ using HandEye =
           FrameOffset<"head_camera_rgb_joint">, SameLeds, KeepCamera, KeepShoulder>;
 using Ground = Crate<Camera, DepthIntrinsics<"camera">, OnFloor>;
 using Fetch = Crate<HandEye, Ground>;
-using FetchWithTorso = Crate<Fetch, JointOffset<"torso_lift_joint">>;  // the floor shows it
+using FetchWithTorso =
+    Crate<Fetch, JointOffset<"torso_lift_joint">>;  // the floor makes it observable
 
 }  // namespace fetch

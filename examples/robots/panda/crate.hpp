@@ -1,7 +1,7 @@
-// Panda: a camera on the hand sees a checkerboard that lies on the table.
+// Panda: a camera on the hand observes a checkerboard on the table.
 //
-// Where camera and board are is free, so the first and the last joint are not: their zeros are
-// those of the two frames.
+// The poses of camera and board are free, so the first and the last joint are not: the frames
+// absorb their zeros.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,7 +1,7 @@
 // PR2: a checkerboard in each gripper, seen by the Kinect on the head.
 //
-// Where the boards are held is free, so the last joint of each arm is not: its zero is theirs.  Two
-// arms fix the zero of the head's pan, which one alone would follow.
+// The poses of the boards are free, so the last joint of each arm is not: the board's frame absorbs
+// its zero.  Two arms determine the zero of the head pan; one arm alone could follow it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

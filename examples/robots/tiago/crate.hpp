@@ -1,7 +1,7 @@
 // TIAGo: a checkerboard in place of the gripper, seen by the depth camera in the head.
 //
-// Where the board is held is free, so the last joint is not: its zero is that of the board.  Nor is
-// the first: arm and head could turn together.
+// The pose of the board is free, so the last joint is not: the board's frame absorbs its zero.  The
+// first joint is not free either, because arm and head could turn together.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,6 +1,6 @@
 // UBR-1: four LEDs in the gripper and the floor, seen by the depth camera in the head.
 //
-// The parameters are those of Fetch, whose ancestor it is.
+// The parameters are those of Fetch, its successor.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,7 +21,8 @@ struct Arm : Chain3d<"arm", To<"wrist_roll_link">> {
 };
 using Camera = Camera3d<"camera", To<"head_camera_rgb_optical_frame">>;
 
-/// Samples of the LEDs do not show the floor; a third of the weight: it is farther away.
+/// Samples of the LEDs do not show the floor.  It has a third of the weight because it is farther
+/// away.
 struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
   OnFloor() {
     options.alone = true;

@@ -1,7 +1,7 @@
 // UR5e: a laser tracker measures a reflector on the flange.
 //
-// Where tracker and reflector are is free, so the first and the last joint are not: their zeros are
-// those of the two frames.
+// The poses of tracker and reflector are free, so the first and the last joint are not: the frames
+// absorb their zeros.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,12 +20,11 @@ using Tracking = Crate<Chain3d<"tracker", To<"tracker">>, Chain3d<"arm", To<"ref
                        FrameOffset<"tracker_joint">, FrameOffset<"reflector_joint", Axes::xyz>,
                        Block<"tracking", PointToPoint, "tracker", "arm">>;
 
-/// The zeros of the joints, whose lengths are taken as drawn.
+/// The zeros of the joints; lengths are as drawn.
 using Ur5e = Crate<Tracking, JointOffset<"shoulder_lift_joint">, JointOffset<"elbow_joint">,
                    JointOffset<"wrist_1_joint">, JointOffset<"wrist_2_joint">>;
 
-/// All of its kinematics that can be seen: where joints are parallel, one of their lengths and
-/// zeros stands for the others'.
+/// All observable kinematics: of parallel joints, one length and one zero stand for the others.
 inline constexpr Axes kXa = {.x = true, .a = true}, kXya = {.x = true, .y = true, .a = true};
 inline constexpr Axes kXabc = {.x = true, .a = true, .b = true, .c = true};
 using Ur5eAll = Crate<Tracking, JointOffset<"shoulder_lift_joint">, JointOffset<"wrist_2_joint">,
