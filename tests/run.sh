@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 cmake/install_packages.sh test
 for preset in "${@:-dev}"; do
-  echo "== $preset"
+  echo "== $preset, $(date +%H:%M:%S)"
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset"
   ctest --preset "$preset" -j "$(nproc)"

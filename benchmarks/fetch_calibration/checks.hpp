@@ -1,7 +1,7 @@
-// Nothing is timed before all methods agree: on residuals, derivatives, sums and solutions.
+// Checks before timing: all methods must agree on residuals, derivatives, sums and solutions.
 //
-// Exact derivatives agree to the rounding of some hundred operations; central differences are good
-// to about 1e-8, Ceres' step being 1.5e-8 where parameters are small.
+// Exact derivatives agree to the rounding of a few hundred operations.  Central differences are
+// good to about 1e-8, because Ceres' step is 1.5e-8 for small parameters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace kinecal::bench {
 
-/// A method that computes something else than the others.
+/// A method computes something else than the others.
 struct Disagreement : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -51,9 +51,9 @@ void expect_near(const A& a, const B& b, double tolerance, const std::string& me
 
 }  // namespace detail
 
-/// Compares what every method evaluates with the reference's.
+/// Compares the evaluations of every method with those of the reference.
 /// @param reference  an exact method
-/// @throws Disagreement  naming method, quantity and difference
+/// @throws Disagreement  with method, quantity and difference
 inline void check_evaluations(const Method& reference, const std::vector<Method>& methods,
                               Values x) {
   const Stacked truth = reference.stacked(x, true);
@@ -74,7 +74,7 @@ inline void check_evaluations(const Method& reference, const std::vector<Method>
   }
 }
 
-/// @throws Disagreement  if a solution of as many samples costs more or less than the reference's
+/// @throws Disagreement  if a solution of the same samples has another cost than the reference's
 inline void check_solution(const std::string& method, const Solved& solved, double cost) {
   const double found = std::abs(solved.cost - cost) / cost;
   detail::expect(found <= kSolutionTolerance, method, "costs of solutions", found,

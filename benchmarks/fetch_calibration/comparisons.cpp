@@ -10,7 +10,7 @@
 namespace kinecal::bench {
 namespace {
 
-/// Point to point as a user writes it.
+/// PointToPoint as a user would write it.
 struct WrittenByAUser {
   template <class S>
   Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
@@ -18,7 +18,7 @@ struct WrittenByAUser {
   }
 };
 
-/// The distance as an angle at the base: jets find the derivatives.
+/// The distance as an angle at the base, so that jets compute the derivatives.
 struct OfTheView {
   template <class S>
   Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
@@ -30,7 +30,7 @@ struct OfTheView {
   }
 };
 
-/// The samples with each feature twelve times, as many corners of a checkerboard.
+/// The samples with each feature twelve times: the number of corners of a checkerboard.
 std::vector<Sample> with_corners(std::vector<Sample> samples) {
   for (Sample& sample : samples) {
     for (Observation& observation : sample.observations) {
@@ -43,7 +43,7 @@ std::vector<Sample> with_corners(std::vector<Sample> samples) {
   return samples;
 }
 
-/// A problem that is evaluated over and over.
+/// A problem that is evaluated repeatedly.
 struct Work {
   std::string name;
   BasicProblem<Packet> problem;
@@ -53,7 +53,7 @@ struct Work {
       : name(std::move(title)), problem(std::move(made)), evaluator(problem, free, threads) {}
 };
 
-/// Prints how long each takes in units of the first.
+/// Prints the time of each as a multiple of the first.
 void print_ratios(const std::vector<std::unique_ptr<Work>>& works, std::span<const double> x,
                   int rounds) {
   std::vector<Timed> timed;

@@ -6,8 +6,8 @@
 
 namespace kinecal::bench {
 
-/// Measures and prints them, each beside what it is compared with.
-/// @param rounds        medians are over so many, interleaved
+/// Measures and prints them, each next to its control.
+/// @param rounds        number of interleaved rounds; times are medians over them
 /// @param most_samples  for the comparison of threads
 void print_comparisons(const FetchWork& work, int rounds, int most_samples);
 

@@ -1,10 +1,10 @@
-// A number that counts what is done with it: in place of double in our templates it tells how many
-// floating-point operations they are.
+// A number that counts operations: in place of double in our templates, it counts their
+// floating-point operations.
 //
 //   const Operations done = operations_of([&] { walk(chain, motions, corrections, walker); });
 //
-// Additions and subtractions, multiplications, divisions and square roots count one each; changes
-// of sign, comparisons, sines and cosines none.  A product with a constant counts, whatever it is.
+// An addition, subtraction, multiplication, division or square root counts one; changes of sign,
+// comparisons, sines and cosines count zero.  A product with a constant counts, even with one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,7 +28,7 @@ struct Counting {
   double value = 0.0;
 
   Counting() = default;
-  Counting(double x) : value(x) {}  // NOLINT: a constant is a number that nothing was done with
+  Counting(double x) : value(x) {}  // NOLINT: a constant without operations
   template <std::integral I>
   Counting(I x) : value(static_cast<double>(x)) {}  // NOLINT
   explicit operator double() const { return value; }
@@ -73,7 +73,7 @@ struct Counting {
   friend bool isfinite(Counting x) { return std::isfinite(x.value); }
 };
 
-/// What a callable does with numbers that count.
+/// The operations of a callable on counting numbers.
 template <class Work>
 [[nodiscard]] Operations operations_of(Work&& work) {
   const Operations before = std::exchange(counted, {});

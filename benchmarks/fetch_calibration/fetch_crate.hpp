@@ -1,4 +1,4 @@
-// The Fetch work as a crate: the same sensors, parameters and block as types.
+// The workload as a crate: the same sensors, parameters and block as types.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@ namespace kinecal::bench {
 template <FixedString Tip>
 using FromTorso = Chain<fetch::Robot, "torso_lift_link", Tip>;
 
-/// Its parameters stand in the order of fetch_parameters().
+/// Its parameters are in the order of fetch_parameters().
 using FetchCrate =
     Crate<Chain3d<"arm", FromTorso<"wrist_roll_link">>,
           Camera3d<"camera", FromTorso<"head_camera_rgb_optical_frame">>,

@@ -1,7 +1,7 @@
-// The Fetch's arm and head: the robot whose calibration is measured, and its 26 parameters.
+// The robot of the workload: the Fetch's arm and head, with 26 parameters.
 //
-// From torso_lift_link on: seven joints to wrist_roll_link, two and a camera mount to the optical
-// frame of the head camera.
+// From torso_lift_link, seven joints lead to wrist_roll_link; two joints and a camera mount lead to
+// the optical frame of the head camera.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -36,7 +36,7 @@ inline const std::set<std::string> kFreeFrames = {"head_camera_rgb_joint", "head
   return robot_from<fetch::Robot>();
 }
 
-/// What may be wrong, in the order of the Jacobian's columns: eight joint offsets (the zero of
+/// The free parameters, in the order of the Jacobian's columns: eight joint offsets (the zero of
 /// head_pan_joint is in its frame), six of the depth camera, the frames of camera and head.
 /// @param z_offset, z_scaling  of the depth driver while the samples were recorded: metres, factor
 [[nodiscard]] inline ParameterTable fetch_parameters(double z_offset, double z_scaling) {

@@ -1,5 +1,5 @@
-// How many floating-point operations the wide jets are, counted by running them on numbers that
-// count.
+// Number of floating-point operations of the wide jets, counted by running them on counting
+// numbers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -31,7 +31,7 @@ inline constexpr double kFullSums = 2.0 * kRows * kParameters * (kParameters + 1
 
 namespace detail {
 
-/// Operations of one sample in the scalar S, its share of what is done once for all included.
+/// Operations per sample in the scalar S, including its share of what is done once for all samples.
 template <class S>
 [[nodiscard]] double walk_operations(const FetchWork& work, const std::array<S, kParameters>& x) {
   const WalkModel model(work);

@@ -1,9 +1,9 @@
 // The yardstick: KDL's forward kinematics, differentiated by Ceres' central differences.
 //
-// What robot_calibration does, with nothing in its way: chains, joint positions and parameters are
-// resolved to segments and indices once, constant transforms are folded, and no name is looked up
-// while residuals are evaluated.  KDL keeps a joint's last pose, so of the 53 evaluations that a
-// Jacobian takes most find nearly all sines and cosines done.
+// The method of robot_calibration at its best: chains, joint positions and parameters are resolved
+// to segments and indices once, constant transforms are folded, and evaluation does not look up
+// names.  KDL caches the last pose of a joint, so most of the 53 evaluations of a Jacobian compute
+// hardly any sine or cosine.
 //
 //   pose of a joint = origin * correction * motion(q + offset)
 // SPDX-License-Identifier: Apache-2.0
@@ -37,7 +37,7 @@ class KdlChain {
     for (std::size_t i = 0; i < chain.joints.size(); ++i) {
       const ChainJoint& joint = chain.joints[i];
       const KDL::Frame origin = to_kdl(joint.fixed);
-      // A correction stands between the origin and the motion: the segment has the motion only.
+      // A correction comes between origin and motion, so the segment has the motion only.
       const KDL::Frame in_segment = joint.corrected ? KDL::Frame::Identity() : origin;
       const KDL::Joint moved =
           moves(joint.type)
@@ -86,7 +86,7 @@ class KdlChain {
       return joint.frame[axis] < 0 ? 0.0 : x[joint.frame[axis]];
     };
     const KDL::Vector shift(value(0), value(1), value(2)), turn(value(3), value(4), value(5));
-    // Not KDL's norm: it takes vectors below 1e-6 for zero, and the differences' steps are smaller.
+    // Not KDL's norm: it treats vectors below 1e-6 as zero, and steps of differences are smaller.
     const double angle = std::sqrt(KDL::dot(turn, turn));
     if (angle == 0.0) return KDL::Frame(shift);
     return {KDL::Rotation::Rot2(turn / angle, angle), shift};

@@ -1,7 +1,7 @@
-// Samples made in place of the recorded ones: a robot with errors looks at the LEDs in its gripper.
+// Simulated samples in place of recorded ones: a robot with errors looks at LEDs in its gripper.
 //
-// Random poses within the joints' limits in which the camera sees all four LEDs, by the walk and
-// the camera model, from true values that are known.  Measured points carry noise of 1 mm.
+// The poses are random within the joint limits; in each the camera sees all four LEDs.  Walk and
+// camera model use known true values.  Measured points have noise of 1 mm.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace kinecal::bench {
 
-/// Where the LEDs are: metres, in wrist_roll_link.
+/// Positions of the LEDs: metres, in wrist_roll_link.
 [[nodiscard]] inline std::array<Vector3<double>, kLeds> led_points() {
   return {{{0.1044, 0.0355, 0.0396},
            {0.0514, 0.0355, 0.0396},
@@ -35,8 +35,8 @@ namespace kinecal::bench {
   return info;
 }
 
-/// Values of the size of a real robot's errors: degrees in joints, a centimetre in frames and
-/// depth, a hundredth in intrinsics; fixed by their index.
+/// Values as large as a real robot's errors: degrees in joints, a centimetre in frames and depth,
+/// one percent in intrinsics.  Each is determined by its index.
 [[nodiscard]] inline Eigen::VectorXd made_values(const ParameterTable& table) {
   Eigen::VectorXd values(table.size());
   for (int i = 0; i < table.size(); ++i) {
@@ -87,7 +87,7 @@ class MadeSamples {
     return sample;
   }
 
-  /// Adds what the sensors see; false if that is not all LEDs, half a metre away or more.
+  /// Adds the observations; false unless the camera sees all LEDs, at least half a metre away.
   [[nodiscard]] bool observe(Sample& sample) {
     const auto position_of = [&](const std::string& joint) { return *sample.position(joint); };
     const Pose<double> base_T_arm = forward_kinematics(arm_, position_of, arm_corrections_);
@@ -98,7 +98,7 @@ class MadeSamples {
     for (const Vector3<double>& led : led_points()) {
       const Vector3<double> p = camera_T_base * (base_T_arm * led);
       if (p.z() < 0.5) return false;
-      // The raw pixel and depth that mean this point on the true camera.
+      // The pixel and raw depth of this point in the true camera.
       const double u = depth.fx * (1 + depth_[0]) * p.x() / p.z() + depth.cx * (1 + depth_[2]);
       const double v = depth.fy * (1 + depth_[1]) * p.y() / p.z() + depth.cy * (1 + depth_[3]);
       const double z = p.z() / (1 + depth_[5]) - depth_[4];

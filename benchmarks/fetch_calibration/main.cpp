@@ -1,9 +1,9 @@
-// The headline: what evaluating and solving the calibration of a Fetch costs, by each method, on
-// one thread, beside the peak of the processor.
+// The headline: the time to evaluate and solve the calibration of a Fetch, by each method, on one
+// thread, and as a share of the processor's peak.
 //
 //   fetch_calibration_bench [--json FILE] [--quick] [--samples N]
 //
-// Before anything is timed all methods are checked against each other: exit code 1 if they differ.
+// All methods are compared with each other before anything is timed; exit code 1 if they differ.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <cstdlib>
@@ -56,7 +56,7 @@ Options read_options(int argc, char** argv) {
   return options;
 }
 
-/// A method of a class that evaluates into stacked rows and lets Ceres solve.
+/// The method of a class that evaluates stacked rows and solves with Ceres.
 template <class Evaluator>
 Method stacked_method(const std::string& name, bool exact, const FetchWork& work,
                       const Flops& flops) {
@@ -79,7 +79,7 @@ Method stacked_method(const std::string& name, bool exact, const FetchWork& work
           .flops = flops};
 }
 
-/// All methods, in the order of the report: the first is the yardstick.
+/// All methods in the order of the report; the first is the yardstick.
 std::vector<Method> all_methods(const FetchWork& work) {
   std::vector<Method> methods = own_methods(work);
   methods.insert(methods.begin(),
@@ -116,7 +116,7 @@ std::vector<Row> time_evaluations(const std::vector<Method>& methods, Values x, 
   return rows;
 }
 
-/// Solves n samples by each method that is not predicted to take too long, each a few times.
+/// Solves n samples a few times by each method, unless it is predicted to take too long.
 void time_solves(const std::vector<Method>& methods, int n, std::vector<Row>& rows) {
   std::vector<std::vector<double>> seconds(methods.size());
   std::vector<double> budget(methods.size(), 2.0);
@@ -126,7 +126,7 @@ void time_solves(const std::vector<Method>& methods, int n, std::vector<Row>& ro
       std::map<int, Solved>& solves = rows[m].solves;
       const bool predicted = n == kSamples || solves.contains(n / 10);
       if (!predicted || (n > kSamples && 10 * solves[n / 10].seconds > kLongestSolve)) continue;
-      if (budget[m] <= 0.0) continue;  // solved for two seconds: enough
+      if (budget[m] <= 0.0) continue;  // two seconds of solving are enough
       Solved solved = methods[m].solve(n);
       budget[m] -= solved.converged ? solved.seconds : budget[m];
       if (!solved.converged) continue;

@@ -1,7 +1,7 @@
-// A method: one way to evaluate the residuals of all samples, as the benchmark times and checks it.
+// A method: one way to evaluate the residuals of all samples, for timing and checking.
 //
-// What is timed leaves its results where and how it suits the method; `stacked` gives them in the
-// same layout for all, for the checks.  Normal equations are the sums that a solver takes:
+// A timed evaluation stores its results as it suits the method; `stacked` returns them in one
+// layout for the checks.  Normal equations are the sums that a solver needs:
 //
 //   cost = 1/2 r^T r      gradient = J^T r      hessian = J^T J
 // SPDX-License-Identifier: Apache-2.0
@@ -46,7 +46,7 @@ struct Solved {
   Eigen::VectorXd values;
 };
 
-/// Floating-point operations a sample; 0: not known.
+/// Floating-point operations per sample; 0 if unknown.
 struct Flops {
   double residual = 0.0, residual_jacobian = 0.0, normal_equations = 0.0;
 };
@@ -62,7 +62,7 @@ struct Method {
   Flops flops = {};
 };
 
-/// J^T J and J^T r of what is stacked, in one product over the rows of all samples.
+/// J^T J and J^T r of stacked rows, in one product over the rows of all samples.
 [[nodiscard]] inline Sums sums_of(const Stacked& stacked) {
   Sums sums;
   sums.cost = 0.5 * stacked.residual.squaredNorm();
@@ -71,13 +71,13 @@ struct Method {
   return sums;
 }
 
-/// Solves that are predicted to take longer are left out; those that take twice as long end.
+/// A solve that is predicted to take longer is skipped; one that takes twice as long is stopped.
 inline constexpr double kLongestSolve = 20.0;  // seconds
 
-/// The same for all methods that let Ceres solve: steps as the library takes them, and normal
-/// equations, which are quickest for many rows of few columns.  The cost is minimized to ten
-/// digits: beyond, differences and the rounding of a million squares decide, and a method drifts
-/// along what cannot be observed until its time is over.
+/// Options for all methods that solve with Ceres: steps as in the library, and normal equations,
+/// which are fastest for many rows of few columns.  The cost is minimized to ten digits.  Beyond
+/// that, numeric differences and rounding decide, and a method drifts along unobservable parameter
+/// combinations until its time is over.
 [[nodiscard]] inline ceres::Solver::Options solver_options() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
@@ -93,11 +93,11 @@ inline constexpr double kLongestSolve = 20.0;  // seconds
   return options;
 }
 
-/// Solves with one residual block a sample.
-/// @param costs     cost functions of 12 x 26, one a sample; they stay the caller's
-/// @param x         (26) in: where to start; out: where it ended
+/// Solves with one residual block per sample.
+/// @param costs     cost functions of 12 x 26, one per sample; the caller keeps ownership
+/// @param x         (26) in: start; out: solution
 /// @param callback  called before each evaluation, or nullptr
-/// @throws std::runtime_error  if Ceres finds no solution
+/// @throws std::runtime_error  if Ceres does not find a solution
 template <class CostFunction>
 [[nodiscard]] Solved solve_with_ceres(const std::vector<std::unique_ptr<CostFunction>>& costs,
                                       Eigen::VectorXd& x,

@@ -9,13 +9,13 @@
 namespace kinecal::bench {
 namespace {
 
-/// The work as it is put together at run time.
+/// The workload with chains built at run time.
 template <class S>
 BasicProblem<S> from_models(const FetchWork& work, int samples) {
   return own_problem<S>(work, work.cycled(samples));
 }
 
-/// The same from the types of a crate.
+/// The workload from the types of a crate.
 template <class S>
 BasicProblem<S> from_crate(const FetchWork& work, int samples) {
   BasicProblem<S> problem = FetchCrate().problem<S>(work.table);
@@ -34,7 +34,7 @@ class OwnPath {
         values_(work.initial_values()),
         evaluator_(problem_, free_) {}
 
-  /// Residuals, and the dense Jacobian, of one pack of samples after the other.
+  /// Residuals and dense Jacobian, one pack of samples after the other.
   void evaluate(Values x, bool jacobian) {
     evaluator_.for_each_term(x, jacobian, [&](int, const Term<S>& term, auto views, const auto&) {
       term.evaluate(views, jacobian, Linearization::measured, rows_);
@@ -76,7 +76,7 @@ class OwnPath {
   PackedRows<S> rows_;
 };
 
-/// Operations of one sample, its share of what is done once for all included.
+/// Operations per sample, including its share of what is done once for all samples.
 Flops own_flops(const FetchWork& work) {
   OwnPath<Counting> path(work, kSamples, from_models);
   const Eigen::VectorXd values = work.timed_values();

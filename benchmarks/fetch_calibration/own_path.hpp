@@ -1,4 +1,4 @@
-// Our own evaluation path, as every calibration takes it: in doubles or in packets.
+// The library's own evaluation, as every calibration uses it: in doubles or in packets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

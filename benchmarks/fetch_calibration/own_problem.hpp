@@ -1,4 +1,4 @@
-// The Fetch work as a problem of ours.
+// The workload as a kinecal::BasicProblem.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace kinecal::bench {
 
-/// @tparam S  the scalar in which it is evaluated
+/// @tparam S  scalar of the evaluation
 template <class S, ErrorBlock B = PointToPoint>
 [[nodiscard]] BasicProblem<S> own_problem(const FetchWork& work, std::span<const Sample> samples,
                                           const TermOptions& options = {}) {

@@ -1,8 +1,8 @@
-// The measured peak of the processor: multiply-adds a second, all that its units can do.
+// The measured peak of the processor: the most multiply-adds per second.
 //
-// Independent multiply-adds in registers, of the width of the instruction set compiled for, as many
-// chains as hide their latency.  Without fused multiply-add: multiplications and additions side by
-// side, half of each.  The best of several repeats counts.
+// The loop runs independent chains of multiply-adds in registers, as wide as the instruction set
+// that is compiled for, and enough of them to hide the latency.  Without fused multiply-add, half
+// of the chains multiply and half add.  The best of several repeats counts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,27 +25,27 @@ namespace kinecal::bench {
 
 namespace detail {
 
-/// Keeps the compiler from knowing a value.
+/// Hides a value from the compiler.
 template <class V>
 void hide(V& value) {
   asm volatile("" : "+m"(value) : : "memory");
 }
 
 #if defined(__FMA__) || defined(__ARM_FEATURE_FMA)
-inline constexpr int kOperations = 2;  ///< of one step of a chain, a lane
-/// Two units, four or five cycles: ten would do; registers hold twelve and two constants.
+inline constexpr int kOperations = 2;  ///< per step of a chain and lane
+/// Two units with four or five cycles need ten; the registers hold twelve and two constants.
 inline constexpr std::size_t kPeakChains = 12;
 #else
 inline constexpr int kOperations = 1;
-/// Half of them multiply, half add; with two constants they fill sixteen registers.
+/// Half multiply, half add; with two constants they fill sixteen registers.
 inline constexpr std::size_t kPeakChains = 14;
 #endif
 
-/// Each chain has its own name in here: arrays that are indexed would be kept in memory.
+/// Indices are constants here: the compiler would keep an array with variable indices in memory.
 template <std::size_t... I>
 [[nodiscard]] Packet run_chains(long steps, Packet factor, Packet summand,
                                 std::index_sequence<I...>) {
-  // They start from values of their own: chains that are the same would be computed once.
+  // Different start values, because equal chains would be computed once.
   std::array<Packet, sizeof...(I)> x = {Packet(1.0 + double(I))...};
   for (long step = 0; step < steps; ++step) {
     if constexpr (kOperations == 2) {
@@ -57,9 +57,9 @@ template <std::size_t... I>
   return (x[I] + ...);
 }
 
-/// Seconds that steps of all chains take.
+/// Seconds for a number of steps of all chains.
 [[nodiscard]] inline double seconds_of_chains(long steps) {
-  Packet factor(1.0), summand(0.0);  // numbers stay what they are, never denormal or infinite
+  Packet factor(1.0), summand(0.0);  // numbers stay the same, never denormal or infinite
   hide(factor);
   hide(summand);
   const auto start = std::chrono::steady_clock::now();
@@ -87,7 +87,7 @@ template <std::size_t... I>
   return best;
 }
 
-/// Peak of several threads at once: all their operations over the time from the first start to the
+/// Peak of several threads at once: all operations divided by the time from the first start to the
 /// last end.
 /// @returns  GFLOP/s
 [[nodiscard]] inline double peak_gflops_of_threads(int threads, int repeats = 15) {

@@ -1,4 +1,4 @@
-// What the benchmark found, as a table for people and as JSON for programs.
+// The results of the benchmark: a table for people and JSON for programs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,23 +17,23 @@
 
 namespace kinecal::bench {
 
-/// Figures of one method; those that were not measured are absent.
+/// Figures of one method; empty if not measured.
 struct Row {
   std::string name;
-  std::optional<double> residual_ns, residual_jacobian_ns, normal_equations_ns;  ///< a sample
+  std::optional<double> residual_ns, residual_jacobian_ns, normal_equations_ns;  ///< per sample
   std::map<int, Solved> solves;  ///< by number of samples
   Flops flops;
 };
 
 struct Report {
-  std::vector<Row> rows;  ///< the first one is what the others are compared with
+  std::vector<Row> rows;  ///< the others are compared with the first
   double peak_gflops = 0.0;
   int threads = 1;
 };
 
 namespace detail {
 
-/// "1234 ns  21.3x  45 % of the peak": a figure, how much faster than the first row, its share.
+/// "1234 ns  21.3x  45 % of the peak": a figure, the speed-up over the first row, the peak's share.
 [[nodiscard]] inline std::string figure(const std::optional<double>& ns,
                                         const std::optional<double>& first, double flops,
                                         double peak) {
@@ -50,7 +50,7 @@ namespace detail {
 
 }  // namespace detail
 
-/// The evaluation of one sample: ns, ratio to the first row, share of the peak where it is known.
+/// Evaluation per sample: ns, ratio to the first row, share of the peak if known.
 inline void print_evaluations(const Report& report) {
   fmt::print("peak of one core {:.1f} GFLOP/s ({}, {} lanes)\n\n", report.peak_gflops,
              instruction_set(), lanes());

@@ -1,5 +1,5 @@
-// Medians of interleaved rounds: each round times every method once, so that whatever disturbs the
-// machine for a while disturbs all of them.
+// Medians of interleaved rounds: each round times every method once, so that a disturbance of the
+// machine affects all methods alike.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,7 +21,7 @@ struct Timed {
   return *middle;
 }
 
-/// Seconds of one call, over as many as given.
+/// Seconds per call, averaged over `calls`.
 [[nodiscard]] inline double seconds_of(const std::function<void()>& work, long calls) {
   const auto start = std::chrono::steady_clock::now();
   for (long i = 0; i < calls; ++i) work();
@@ -29,7 +29,7 @@ struct Timed {
   return seconds.count() / double(calls);
 }
 
-/// How many calls take as long as given; they also warm up.
+/// Number of calls that take the given time; also warms up.
 [[nodiscard]] inline long calls_for(const std::function<void()>& work, double at_least) {
   long calls = 1;
   for (double each = seconds_of(work, calls); each * double(calls) < at_least;
@@ -39,8 +39,8 @@ struct Timed {
   return calls;
 }
 
-/// Times all of them; the results are in Timed::seconds.
-/// @param at_least  seconds that each is timed in each round
+/// Times all methods; the results are in Timed::seconds.
+/// @param at_least  seconds for which each method runs in each round
 inline void time_interleaved(std::vector<Timed>& all, int rounds, double at_least = 0.02) {
   std::vector<long> calls;
   for (const Timed& one : all) calls.push_back(calls_for(one.work, at_least));

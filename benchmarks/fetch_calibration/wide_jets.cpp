@@ -1,5 +1,5 @@
-// What computes in wide jets.  g++ 12 makes code of half the speed of it at -O3, so this file is
-// compiled at -O2.
+// The computations in wide jets.  They are compiled at -O2: with g++ 12 they are half as fast at
+// -O3.
 // SPDX-License-Identifier: Apache-2.0
 #include "wide_jets.hpp"
 

@@ -1,8 +1,8 @@
 // Automatic differentiation of everything: our walk in one wide ceres::Jet over all parameters.
 //
-// Used as well as it can be: sines and cosines of measured joints are stored, corrections are made
-// once for all samples of an evaluation, in the scalar of that evaluation.  What computes in jets
-// is in wide_jets.cpp, so that it can be compiled the way that is quickest for it.
+// At its best: sines and cosines of measured joints are stored; corrections are computed once for
+// all samples of an evaluation, in the scalar of that evaluation.  The computations in jets are in
+// wide_jets.cpp, so that they can have their own compiler flags.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,14 +20,14 @@ namespace kinecal::bench {
 
 using WideJet = ceres::Jet<double, kParameters>;
 
-/// What is the same for all samples of one evaluation.
+/// What all samples of one evaluation share.
 template <class S>
 struct WalkState {
   Corrections<S> arm, camera;
   std::array<S, DepthCamera<>::kParameters> depth;
 };
 
-/// One sample as the walk takes it.
+/// One sample as the walk needs it.
 struct WalkSample {
   std::vector<Motion<double>> arm, camera;
   DepthCamera<> depth_camera;
@@ -79,7 +79,7 @@ struct WalkModel {
   }
 };
 
-/// State whose derivatives are by the parameters.
+/// The state as jets with derivatives by the parameters.
 /// @param x  (26) parameters
 [[nodiscard]] WalkState<WideJet> wide_jet_state(const WalkModel& model, const double* x);
 
@@ -89,7 +89,7 @@ struct WalkModel {
 void wide_jet_rows(const WalkModel& model, const WalkState<WideJet>& state,
                    const WalkSample& sample, double* residuals, double* jacobian);
 
-/// States of one evaluation in both scalars; Ceres asks for them before it evaluates.
+/// The states of one evaluation in both scalars; Ceres calls it before it evaluates.
 class WideJetStates final : public ceres::EvaluationCallback {
  public:
   /// @param x  (26) the parameters, which Ceres changes in place
@@ -118,7 +118,7 @@ class WideJetStates final : public ceres::EvaluationCallback {
   WalkState<WideJet> jets_;
 };
 
-/// What ceres::AutoDiffCostFunction is, with the state shared by all samples.
+/// A ceres::AutoDiffCostFunction with a state that all samples share.
 class WideJetCost final : public ceres::SizedCostFunction<kRows, kParameters> {
  public:
   WideJetCost(const WideJetStates& states, WalkSample sample)

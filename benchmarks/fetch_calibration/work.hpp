@@ -1,9 +1,9 @@
-// The work that is measured: the calibration of a Fetch from 100 samples of four LEDs.
+// The workload: the calibration of a Fetch from 100 samples of four LEDs.
 //
-//   r = p_camera - p_arm     metres, in torso_lift_link; 12 residuals a sample, 26 free parameters
+//   r = p_camera - p_arm     metres, in torso_lift_link
 //
-// The samples are the recorded ones where the data sets are present (KINECAL_DATA), otherwise made
-// ones of the same shape.  No prior: nothing but these residuals.
+// with 12 residuals per sample and 26 free parameters.  The samples are recorded if the data sets are
+// present (KINECAL_DATA), else simulated with the same shape.  There are no priors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,7 +21,7 @@ namespace kinecal::bench {
 
 inline constexpr int kSamples = 100;
 
-/// What one sample says, resolved: a method makes of it once what it evaluates.
+/// One sample with names resolved; each method prepares it once.
 struct Sighting {
   const Sample* sample;
   DepthCamera<> camera;                           ///< as recorded
@@ -34,7 +34,7 @@ struct Sighting {
   }
 };
 
-/// @throws std::invalid_argument  if it is not four points of the arm seen by the camera
+/// @throws std::invalid_argument  if it does not have four points of the arm and of the camera
 [[nodiscard]] inline Sighting sighting(const Sample& sample) {
   const Observation* camera = sample.observation("camera");
   const Observation* arm = sample.observation("arm");
@@ -55,7 +55,7 @@ struct FetchWork {
   ParameterTable table = fetch_parameters(0.0, 1.0);
   Sensor arm = arm_sensor(), camera = camera_sensor();
   std::vector<Sample> samples;
-  bool recorded = false;  ///< false: the samples are made ones
+  bool recorded = false;  ///< false if the samples are simulated
 
   FetchWork() {
     const char* folder = std::getenv("KINECAL_DATA");
@@ -74,7 +74,7 @@ struct FetchWork {
     }
   }
 
-  /// n samples: those there are, again and again.
+  /// n samples: the given ones, repeated.
   [[nodiscard]] std::vector<Sample> cycled(int n) const {
     std::vector<Sample> result;
     result.reserve(static_cast<std::size_t>(n));
@@ -93,15 +93,15 @@ struct FetchWork {
     return result;
   }
 
-  /// Where evaluations are timed: nothing is zero, nothing is at its minimum.
+  /// The values at which evaluations are timed: not zero, and not at the minimum.
   [[nodiscard]] Eigen::VectorXd timed_values() const { return 0.5 * made_values(table); }
 
-  /// Where a calibration starts.
+  /// The values at which a calibration starts.
   [[nodiscard]] Eigen::VectorXd initial_values() const { return table.values(); }
 };
 
-/// The chains that both of our own ways to evaluate and the yardstick walk: constant transforms
-/// are folded into the joints, so all of them meet the same joints.
+/// The chains that all methods walk.  Constant transforms are folded into the joints, so all
+/// methods visit the same joints.
 struct FetchChains {
   RuntimeChain arm, camera;
   std::array<int, 6> camera_parameters{};  ///< in the table, in the order of kCameraParameters

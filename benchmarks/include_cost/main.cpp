@@ -1,10 +1,11 @@
-// What it costs to include a header: seconds, memory and lines of translation units.
+// The cost of including a header: seconds, memory and lines of translation units.
 //
 //   include_cost_bench <compiler> <flag>... -- <translation unit>...
 //
-// Each is compiled three times; seconds are of the processor, so that other programs on the machine
-// do not count, and the median of the three.  Memory is the compiler's largest resident set.  Lines
-// are those the preprocessor leaves, without empty ones. SPDX-License-Identifier: Apache-2.0
+// Each is compiled three times.  Seconds are processor time, which other programs on the machine do
+// not change, and the median of the three.  Memory is the compiler's largest resident set.  Lines
+// are the non-empty ones after preprocessing.
+// SPDX-License-Identifier: Apache-2.0
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,7 +26,7 @@ using Command = std::vector<std::string>;
 
 struct Usage {
   double seconds;    ///< of the processor, user and system
-  double megabytes;  ///< largest resident set of the command and what it starts
+  double megabytes;  ///< largest resident set of the command and its children
 };
 
 Command operator+(Command command, const Command& more) {

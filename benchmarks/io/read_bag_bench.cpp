@@ -1,9 +1,10 @@
-// Reading samples from bags with point clouds, beside reading the same bytes and doing nothing.
+// Reading samples from bags with point clouds.  Control: reading the same bytes without parsing.
 //
 //   read_bag_bench [MEGABYTES]     of the bag, 1000 by default
 //
-// Prints seconds, MB/s and the largest memory of the process.  The bags are made in the folder for
-// temporary files and removed: a cloud of 100 kB in each sample, chunks not compressed.
+// Prints seconds, MB/s and the largest memory of the process.  The bags are written to the folder
+// for temporary files and removed afterwards: a cloud of 100 kB per sample, chunks not compressed.
+// SPDX-License-Identifier: Apache-2.0
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -17,7 +18,7 @@
 
 #include "kinecal/io/recordings/bag_output.hpp"
 #include "kinecal/io/recordings/read_recording.hpp"
-#include "kinecal/io/recordings/sample_message.hpp"
+#include "kinecal/io/recordings/sample_message.ipp"
 
 namespace kinecal {
 namespace {
@@ -71,7 +72,7 @@ double seconds_of(const auto& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Megabytes, the most this process has had.
+/// Largest memory of this process so far, megabytes.
 double most_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

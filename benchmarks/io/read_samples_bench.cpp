@@ -1,4 +1,4 @@
-// Reading samples, beside the YAML parser alone with a handler that ignores every event.
+// Reading samples.  Control: the YAML parser with a handler that ignores every event.
 //
 //   BM_read_samples/10000       as many threads as there are processors
 //   BM_read_samples_one/10000   one thread
@@ -16,7 +16,7 @@
 
 #include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
-#include "kinecal/io/yaml/yaml_events.hpp"
+#include "kinecal/io/yaml/yaml_events.ipp"
 
 namespace kinecal {
 namespace {
@@ -57,7 +57,7 @@ std::string written(const std::vector<Sample>& samples) {
   return out.str();
 }
 
-/// A file of samples that is there as long as this.
+/// A file of samples that exists as long as this object.
 struct SampleText {
   explicit SampleText(std::int64_t count) : text(written(made_samples(count))) {
     std::ofstream(path, std::ios::binary) << text;
@@ -97,7 +97,7 @@ void BM_read_samples_one(benchmark::State& state) {
   read(state, 1);
 }
 
-/// Listens to nothing.
+/// Ignores every event.
 struct Ignore {
   std::size_t documents = 0;
   void document_starts() { ++documents; }

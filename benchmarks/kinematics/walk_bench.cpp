@@ -1,4 +1,4 @@
-// Forward kinematics and twists of one pose, beside a hand-written chain of 4x4 matrices.
+// Forward kinematics and twists of one pose.  Control: a hand-written chain of 4x4 matrices.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
@@ -18,7 +18,7 @@ struct Work {
       measured_motions(chain, [](const std::string& joint) { return 0.1 * double(joint.size()); });
 };
 
-/// The control: joints one after the other, trigonometry included, nothing else.
+/// The control: joint after joint, with trigonometry.
 Eigen::Isometry3d by_hand(const Work& work) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const auto apply = [&](const Pose<double>& fixed) {

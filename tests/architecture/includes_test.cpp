@@ -1,4 +1,4 @@
-// The tree reads as the way of the data: a folder includes only folders that stand above it.
+// The order of the folders (ARCHITECTURE.md): a folder includes only folders above it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 const fs::path kHeaders = fs::path(KINECAL_SOURCE_DIR) / "include/kinecal";
 
-/// From the ground up; what a folder may include stands before it.
+/// A folder may include those before it.
 const std::vector<std::string> kFolders = {"geometry", "kinematics", "parameters", "samples",
                                            "sensors",  "errors",     "crate",      "solve",
                                            "trust",    "io",         "report"};
@@ -26,11 +26,25 @@ struct Include {
   std::string target;
 };
 
+/// Headers, and the definitions of headers (.ipp).
+bool is_source(const fs::path& file) {
+  return file.extension() == ".hpp" || file.extension() == ".ipp";
+}
+
+int lines_of(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 std::vector<Include> all_includes() {
   std::vector<Include> includes;
   const std::string directive = "#include ";
   for (const auto& file : fs::recursive_directory_iterator(kHeaders)) {
-    if (file.path().extension() != ".hpp") continue;
+    if (!is_source(file.path())) continue;
     std::ifstream in(file.path());
     for (std::string line; std::getline(in, line);) {
       if (!line.starts_with(directive)) continue;
@@ -42,23 +56,24 @@ std::vector<Include> all_includes() {
   return includes;
 }
 
-/// Where a header stands in the order; the doors and kinecal.hpp stand outside of it.
+/// Place of a folder in the order.
 std::ptrdiff_t rank(const std::string& folder) {
   return std::find(kFolders.begin(), kFolders.end(), folder) - kFolders.begin();
 }
 
-/// The folder of include/kinecal in which a header stands; empty for a door.
+/// The folder of include/kinecal that holds a header; empty for an umbrella header.
 std::string folder_of(const fs::path& header) {
   const fs::path relative = fs::relative(header, kHeaders);
   return relative.has_parent_path() ? relative.begin()->string() : "";
 }
 
-TEST(Architecture, AFolderIncludesOnlyFoldersThatStandAboveIt) {
+TEST(Architecture, AFolderIncludesOnlyFoldersAboveIt) {
   const auto includes = all_includes();
   ASSERT_GT(includes.size(), 100u);
   for (const auto& [header, target] : includes) {
     const std::string folder = folder_of(header);
     if (folder.empty() || !target.starts_with("kinecal/")) continue;
+    if (target == "kinecal/linkage.hpp") continue;  // a macro, below all folders
     ASSERT_LT(rank(folder), std::ssize(kFolders)) << "unknown folder " << folder;
     const fs::path path = fs::path(target).lexically_relative("kinecal");
     const std::string other = path.begin()->stem().string();
@@ -85,45 +100,103 @@ TEST(Architecture, CoreSeesEigenAndTheStandardLibraryOnly) {
   }
 }
 
-TEST(Architecture, EachFolderHasADoorThatOpensAllOfIt) {
+TEST(Architecture, TheUmbrellaHeaderOfAFolderIncludesAllItsHeaders) {
   for (const std::string& folder : kFolders) {
-    const fs::path door = kHeaders / (folder + ".hpp");
-    ASSERT_TRUE(fs::exists(door)) << door;
-    std::ifstream in(door);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const fs::path umbrella = kHeaders / (folder + ".hpp");
+    ASSERT_TRUE(fs::exists(umbrella)) << umbrella;
+    const std::string text = text_of(umbrella);
+    int headers = 0;
     for (const auto& file : fs::recursive_directory_iterator(kHeaders / folder)) {
-      if (file.is_directory()) continue;
+      if (file.path().extension() != ".hpp") continue;
+      ++headers;
       const std::string name = "kinecal/" + fs::relative(file.path(), kHeaders).string();
-      EXPECT_THAT(text, testing::HasSubstr("\"" + name + "\"")) << "not in " << door;
+      EXPECT_THAT(text, testing::HasSubstr("\"" + name + "\"")) << "not in " << umbrella;
     }
+    EXPECT_GT(headers, 0) << folder;
   }
 }
 
-/// What a door of the whole tree opens: kinecal/<name>.hpp.
-std::vector<std::string> opened_by(const std::string& door) {
-  std::vector<std::string> doors;
+/// The umbrella headers that an umbrella header of the whole tree includes, without ".hpp".
+std::vector<std::string> included_by(const std::string& umbrella) {
+  std::vector<std::string> names;
   for (const auto& [header, target] : all_includes()) {
-    if (header == kHeaders / door) doors.push_back(fs::path(target).stem().string());
+    if (header == kHeaders / umbrella) names.push_back(fs::path(target).stem().string());
   }
-  return doors;
+  return names;
 }
 
-TEST(Architecture, CoreOpensAllFoldersThatNeedEigenAloneAndKinecalOpensTheRest) {
+TEST(Architecture, CoreIncludesTheFoldersThatNeedOnlyEigenAndKinecalIncludesTheRest) {
   const auto solve = std::find(kFolders.begin(), kFolders.end(), "solve");
-  EXPECT_THAT(opened_by("core.hpp"), testing::UnorderedElementsAreArray(kFolders.begin(), solve));
+  EXPECT_THAT(included_by("core.hpp"), testing::UnorderedElementsAreArray(kFolders.begin(), solve));
   std::vector<std::string> rest(solve, kFolders.end());
   rest.push_back("core");
-  EXPECT_THAT(opened_by("kinecal.hpp"), testing::UnorderedElementsAreArray(rest));
+  EXPECT_THAT(included_by("kinecal.hpp"), testing::UnorderedElementsAreArray(rest));
 }
 
-TEST(Architecture, EveryHeaderHasALicenceAndFitsIntoTheHead) {
+/// A header or .ipp of more lines than the rule allows, and why.
+struct LongSource {
+  const char *file, *reason;
+};
+
+constexpr int kMostLines = 200, kMostLinesOfAnException = 300;
+
+/// Sorted by name; what has become short enough is removed from here.
+constexpr LongSource kLongSources[] = {
+    {"crate/block_term.hpp",
+     "one class template: a term evaluates, sums and lays out its rows alike"},
+    {"crate/crate.hpp", "one class template: all that a Crate is"},
+    {"crate/difference_gram.hpp", "the derivation of the moments and its one class"},
+    {"crate/evaluator.hpp", "one class template: packs to views, rows and sums"},
+    {"crate/sensor_view.hpp", "one class template for poses, points and camera motions of a pack"},
+    {"geometry/jet.hpp", "one scalar with all its operators and functions"},
+    {"geometry/packet.hpp", "a scalar and its functions for every instruction set"},
+    {"io/assemble.ipp", "from all of a configuration to problems, in one pass"},
+    {"io/bags/mcap/messages.ipp", "one reader: records, chunks and index of a file"},
+    {"io/bags/mcap/write_mcap.ipp", "one writer: records, chunks, index and summary of a file"},
+    {"io/bags/ros1/read_bag.ipp", "one reader: records, chunks and index of a bag"},
+    {"io/config/config_map.ipp", "one class: a map of a configuration, its types and its errors"},
+    {"io/csv/read_csv_samples.ipp", "from rows to samples, with a message for each mistake"},
+    {"io/install/launch_folder.ipp", "one sequence of file operations that may stop anywhere"},
+    {"io/messages/definition.ipp", "the grammar of .msg files and its parser"},
+    {"io/parameters_from_config.ipp", "every kind of parameter that a configuration names"},
+    {"kinematics/twist_walker.hpp", "the derivation of the twists and its one walker"},
+    {"parameters/free_parameters.hpp", "every kind of free parameter as a type"},
+};
+
+TEST(Architecture, EveryHeaderHasALicence) {
+  int headers = 0;
   for (const auto& file : fs::recursive_directory_iterator(kHeaders)) {
-    if (file.path().extension() != ".hpp") continue;
-    std::ifstream in(file.path());
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (!is_source(file.path())) continue;
+    ++headers;
+    const std::string text = text_of(file.path());
     EXPECT_THAT(text, testing::HasSubstr("SPDX-License-Identifier: Apache-2.0")) << file.path();
-    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 270) << file.path();
     EXPECT_THAT(text, testing::StartsWith("// ")) << file.path();
+  }
+  EXPECT_GT(headers, 100);
+}
+
+TEST(Architecture, EveryHeaderFitsIntoTheHeadButForNamedExceptions) {
+  int headers = 0;
+  for (const auto& file : fs::recursive_directory_iterator(kHeaders)) {
+    if (!is_source(file.path())) continue;
+    ++headers;
+    const std::string name = fs::relative(file.path(), kHeaders).string();
+    const bool is_exception = std::any_of(std::begin(kLongSources), std::end(kLongSources),
+                                          [&](const LongSource& s) { return s.file == name; });
+    const int lines = lines_of(text_of(file.path()));
+    EXPECT_LE(lines, is_exception ? kMostLinesOfAnException : kMostLines) << name;
+  }
+  EXPECT_GT(headers, 100);
+}
+
+TEST(Architecture, EachExceptionToTheLengthIsNeededAndHasAReason) {
+  const char* before = "";
+  for (const auto& [file, reason] : kLongSources) {
+    EXPECT_LT(std::string(before), file) << "not sorted, or listed twice";
+    before = file;
+    ASSERT_TRUE(fs::exists(kHeaders / file)) << file << " does not exist";
+    EXPECT_GT(lines_of(text_of(kHeaders / file)), kMostLines) << file << " needs no exception";
+    EXPECT_GT(std::string(reason).size(), 10u) << file << " has no reason";
   }
 }
 

@@ -11,9 +11,9 @@ function(expect_not_found components expected)
   endif()
 endfunction()
 expect_not_found("" "component 'kinecal' needs what was not found: \
-Ceres 2.1, urdfdom, yaml-cpp, pugixml, fmt, libyaml")
+Ceres 2.1, urdfdom, pugixml, fmt, ZLIB, libyaml")
 expect_not_found("core;solve" "component 'solve' needs what was not found: Ceres 2.1 ")
-expect_not_found(cor "there is no component 'cor', only core, solve, io and kinecal")
+expect_not_found(cor "there is no component 'cor', only core, solve, io, kinecal and headers")
 
 execute_process(COMMAND ${configure_core} -DCOMPONENTS=core COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core COMMAND_ERROR_IS_FATAL ANY)
@@ -27,10 +27,28 @@ if(NOT pkg_config)
 endif()
 file(RENAME ${prefix} ${WORK}/moved)
 set(ENV{PKG_CONFIG_PATH} ${WORK}/moved/share/pkgconfig)
-execute_process(COMMAND ${pkg_config} --cflags --libs kinecal-core OUTPUT_VARIABLE flags
-                COMMAND_ERROR_IS_FATAL ANY)
-separate_arguments(flags UNIX_COMMAND "${flags}")
+function(flags_of component)
+  execute_process(COMMAND ${pkg_config} --cflags --libs kinecal-${component} OUTPUT_VARIABLE flags
+                  COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  set(flags ${flags} PARENT_SCOPE)
+endfunction()
+flags_of(core)
 execute_process(COMMAND ${COMPILER} -std=c++20 ${WORK}/consumer/core/main.cpp ${flags}
                         -o ${WORK}/core/by_pkg_config COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/core/by_pkg_config COMMAND_ERROR_IS_FATAL ANY)
+
+# A source that is compiled for another instruction set than the library does not link.
+if(CMAKE_HOST_SYSTEM_PROCESSOR STREQUAL x86_64)
+  execute_process(COMMAND ${COMPILER} -std=c++20 -mavx ${WORK}/consumer/core/main.cpp ${flags}
+                          -o ${WORK}/core/mixed RESULT_VARIABLE result ERROR_VARIABLE output)
+  if(result EQUAL 0 OR NOT output MATCHES "kinecal::x86_64_avx::kLibraryIsCompiled")
+    message(FATAL_ERROR "other flags than the library's: ${output}")
+  endif()
+endif()
+
+flags_of(io)
+execute_process(COMMAND ${COMPILER} -std=c++20 ${WORK}/consumer/io.cpp ${flags}
+                        -o ${WORK}/core/io COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK}/core/io ${WORK}/consumer/pendulum.urdf COMMAND_ERROR_IS_FATAL ANY)
 file(RENAME ${WORK}/moved ${prefix})

@@ -1,5 +1,5 @@
-# Included by run.cmake: a robot's header follows its URDF; a mistake there is told with its line, and
-# the header stays.
+# Included by run.cmake: a robot's header follows its URDF.  An error in the URDF is reported with its
+# line, and the header stays.
 set(urdf ${WORK}/consumer/pendulum.urdf)
 set(header ${WORK}/build/pendulum_include/robots/pendulum.hpp)
 set(build_robot ${CMAKE_COMMAND} --build ${WORK}/build --target pendulum)
@@ -25,6 +25,6 @@ replace_in_urdf("0 0 0.5" "0 0 half")
 execute_process(COMMAND ${build_robot} RESULT_VARIABLE result OUTPUT_VARIABLE output
                 ERROR_VARIABLE output)
 if(result EQUAL 0 OR NOT output MATCHES "consumer/pendulum.urdf:6: joint 'pivot': .*not 3 numbers")
-  message(FATAL_ERROR "a mistake in the URDF is not told: ${output}")
+  message(FATAL_ERROR "the error in the URDF is not reported: ${output}")
 endif()
 check_header(0.5)

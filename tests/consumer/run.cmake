@@ -1,11 +1,37 @@
 # Builds and runs the consumer against kinecal as its users have it:
-#   cmake -DMODE=install|deb|source -DSOURCE=... -DBUILD=... -DWORK=... -DCOMPILER=... -P run.cmake
+#   cmake -DMODE=install|deb|source|headers -DSOURCE=... -DBUILD=... -DWORK=... -DCOMPILER=... -P run.cmake
 # install  what `cmake --install` installs
 # deb      the package that `cpack` makes of the same, unpacked into a folder of its own
 # source   what FetchContent fetches
+# headers  the headers alone, of a source that was configured and not built
 file(REMOVE_RECURSE ${WORK})
 set(prefix ${WORK}/prefix)
 set(options -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -G Ninja)
+
+if(MODE STREQUAL headers)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/bare ${options}
+                          -DKINECAL_BUILD_TESTS=OFF -DKINECAL_BUILD_BENCHMARKS=OFF
+                  OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} --install ${WORK}/bare --component headers
+                          --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  foreach(file README.md CONCEPTS.md ARCHITECTURE.md examples/02_calibrate.cpp)
+    if(NOT EXISTS ${prefix}/share/doc/kinecal/${file})
+      message(FATAL_ERROR "${file} is not installed")
+    endif()
+  endforeach()
+  file(COPY ${SOURCE}/tests/consumer/ DESTINATION ${WORK}/consumer)
+  set(configure ${CMAKE_COMMAND} -S ${WORK}/consumer/core -B ${WORK}/core ${options}
+                -DCMAKE_PREFIX_PATH=${prefix})
+  execute_process(COMMAND ${configure} -DCOMPONENTS=core RESULT_VARIABLE result
+                  OUTPUT_QUIET ERROR_VARIABLE output)
+  if(result EQUAL 0 OR NOT output MATCHES "headers alone are")
+    message(FATAL_ERROR "component 'core' without its library: ${output}")
+  endif()
+  execute_process(COMMAND ${configure} -DCOMPONENTS=headers COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${WORK}/core/core COMMAND_ERROR_IS_FATAL ANY)
+  return()
+endif()
 
 if(MODE STREQUAL install)
   execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix}

@@ -116,9 +116,13 @@ void expect_the_same(const FreeSet& free) {
   test::expect_same(normal_equations(found, x, &free), normal_equations(expected, x, &free), 1e-12);
   const double cost = normal_equations(expected, x, nullptr).cost;
   EXPECT_NEAR(normal_equations(found, x, nullptr).cost, cost, 1e-13 * cost);
-  const auto rows = test::rows_of(found, x, &free);
-  for (const auto& [key, of_term] : test::rows_of(expected, x, &free)) {
+  const auto rows = test::rows_of(found, x, &free),
+             expected_rows = test::rows_of(expected, x, &free);
+  ASSERT_GT(expected_rows.size(), 0u);
+  ASSERT_EQ(rows.size(), expected_rows.size());
+  for (const auto& [key, of_term] : expected_rows) {
     const TermResiduals& same = rows.at(key);
+    ASSERT_EQ(same.residual.size(), of_term.residual.size());
     EXPECT_LE((same.residual - of_term.residual).norm(), 1e-13 * (1 + of_term.residual.norm()));
     EXPECT_LE((same.jacobian - of_term.jacobian).norm(), 1e-13 * (1 + of_term.jacobian.norm()));
   }
@@ -179,23 +183,98 @@ TEST(Crate, SaysWhatKindItsBlocksAre) {
                                    "weight chain3d_to_chain3d m", "pixels chain3d_to_camera2d px"));
 }
 
-TEST(Crate, WalksAreUsedWhereTheyFit) {
-  const Problem problem = crate().problem(All::table({}));
-  const FreeSet free = All::free(problem.table());
-  ASSERT_EQ(problem.walks().size(), 4u);
-  for (std::size_t s = 0; s < 4; ++s) {
-    const SensorModel& sensor = problem.sensors()[s];
-    const SensorState state(sensor, free);
-    for (std::size_t c = 0; c < sensor.chains().size(); ++c) {
-      const auto& walks = problem.walks()[s];
-      const auto fits = [&](const CompiledWalk<Packet>& walk) {
-        return walk.tip == sensor.chains()[c].tip && walk.columns == state.columns[c];
-      };
-      const bool is_seen = sensor.sensor().type == SensorType::chain3d || c == 0;
-      EXPECT_EQ(std::count_if(walks.begin(), walks.end(), fits), is_seen ? 1 : 0)
-          << sensor.sensor().name << ", " << sensor.chains()[c].tip;
-    }
+/// Stands in for a compiled walk and counts its calls.
+struct CountedWalk {
+  CompiledWalk<Packet> real;
+  int pose_only = 0, with_twists = 0;
+};
+
+constexpr std::size_t kMostWalks = 8;
+std::array<CountedWalk, kMostWalks> counted;
+
+/// A compiled walk is a plain function, so there is one for each place in the list.
+template <std::size_t I>
+CompiledWalk<Packet> counting(const CompiledWalk<Packet>& walk) {
+  counted[I] = {walk};
+  CompiledWalk<Packet> stand_in = walk;
+  stand_in.pose_only = [](const auto& start, const auto* motions, auto& tip) {
+    ++counted[I].pose_only;
+    counted[I].real.pose_only(start, motions, tip);
+  };
+  stand_in.with_twists = [](const auto& start, const auto* motions, auto& tip) {
+    ++counted[I].with_twists;
+    counted[I].real.with_twists(start, motions, tip);
+  };
+  return stand_in;
+}
+
+CompiledWalk<Packet> counting(std::size_t i, const CompiledWalk<Packet>& walk) {
+  return [&]<std::size_t... I>(std::index_sequence<I...>) {
+    CompiledWalk<Packet> stand_in;
+    (void)((I == i ? (stand_in = counting<I>(walk), true) : false) || ...);
+    return stand_in;
   }
+  (std::make_index_sequence<kMostWalks>{});
+}
+
+/// How often each walk is called: by its sensor and tip, "arm board".
+std::map<std::string, int> calls(const std::vector<std::string>& names, int CountedWalk::*which) {
+  std::map<std::string, int> calls;
+  for (std::size_t i = 0; i < names.size(); ++i) calls[names[i]] = counted[i].*which;
+  return calls;
+}
+
+/// In each lane of a sample's pack the arm's features are in the hand or on the board: a sensor's
+/// walk to either is taken once for each pack with a feature at its end.
+TEST(Crate, WalksAreUsedWhereTheyFit) {
+  const Problem of_crate = crate().problem(All::table({}));
+  Problem problem(All::robot(), All::base(), All::table({}),
+                  {"camera_joint", "mount", "board", "weight"});
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < of_crate.sensors().size(); ++s) {
+    const Sensor& sensor = of_crate.sensors()[s].sensor();
+    std::vector<CompiledWalk<Packet>> walks;
+    for (const CompiledWalk<Packet>& walk : of_crate.walks(s)) {
+      ASSERT_LT(names.size(), kMostWalks);
+      walks.push_back(counting(names.size(), walk));
+      names.push_back(sensor.name + " " + walk.tip);
+    }
+    problem.add_sensor(sensor, std::move(walks));
+  }
+  EXPECT_THAT(names, testing::ElementsAre("arm tip", "arm board", "camera camera_frame",
+                                          "weight counterweight", "weight board", "eye base"));
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  problem.add_block("weight", PointToPoint{}, {"weight", "arm"});
+  problem.add_block("pixels", PointToPixel{}, {"arm", "eye"});
+  const int count = 6 * kLanes<Packet>;
+  for (const Sample& sample : some_samples(count)) problem.add_sample(sample);
+  // A sixth of the samples are on the board with an eye, a sixth without; a third each in the hand.
+  ASSERT_EQ(std::ssize(problem.packs()), 6);
+  const std::map<std::string, int> fit = {{"arm tip", 4},
+                                          {"arm board", 2},
+                                          {"camera camera_frame", 6},
+                                          {"weight counterweight", 6},
+                                          {"weight board", 0},
+                                          {"eye base", 3}};
+  std::map<std::string, int> none = fit;
+  for (auto& [name, n] : none) n = 0;
+  const std::vector<double> x = test::random_values(problem.table(), 0.05, 3);
+  const FreeSet free = All::free(problem.table()), all = test::all_free(problem.table());
+
+  (void)normal_equations(problem, x, &free);
+  EXPECT_EQ(calls(names, &CountedWalk::with_twists), fit);
+  EXPECT_EQ(calls(names, &CountedWalk::pose_only), none);
+  for (CountedWalk& walk : counted) walk.with_twists = 0;
+  (void)normal_equations(problem, x, nullptr);  // the cost alone
+  EXPECT_EQ(calls(names, &CountedWalk::with_twists), none);
+  EXPECT_EQ(calls(names, &CountedWalk::pose_only), fit);
+  for (CountedWalk& walk : counted) walk.pose_only = 0;
+  // Not what they are compiled for: only chains without free parameters are the same.
+  (void)normal_equations(problem, x, &all);
+  std::map<std::string, int> same = none;
+  same["eye base"] = 3;
+  EXPECT_EQ(calls(names, &CountedWalk::with_twists), same);
+  EXPECT_EQ(calls(names, &CountedWalk::pose_only), none);
 }
 
 }  // namespace

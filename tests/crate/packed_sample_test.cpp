@@ -39,6 +39,7 @@ std::vector<Seen> seen_in_samples(int count) {
 
 void expect_lane(const PackedObservation<Packet>& pack, int i, const PackedObservation<double>& one,
                  double weight) {
+  ASSERT_EQ(one.measured.size(), 4u);
   ASSERT_EQ(pack.measured.size(), one.measured.size());
   EXPECT_EQ(pack.chain, one.chain);
   for (std::size_t f = 0; f < one.measured.size(); ++f) {
@@ -117,7 +118,7 @@ TEST(PackedSample, OfDoublesHoldsOneSample) {
   EXPECT_EQ(pack.seen[1]->measured, seen[0][1]->measured);
 }
 
-TEST(PackedSample, AFeatureThatIsNoNumberRepeatsAnotherWithWeightZero) {
+TEST(PackedSample, AFeatureThatIsNotANumberRepeatsAnotherWithWeightZero) {
   const Problem problem = test::scene_problem();
   const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
   Sample sample = test::exact_samples(problem, zero, 1)[0];
@@ -153,6 +154,7 @@ TEST(PackedSample, SamplesOfDifferentShapesDoNotShareAPack) {
     samples.insert(samples.end(), pack.samples.begin(), pack.samples.end());
   }
   std::sort(samples.begin(), samples.end());
+  ASSERT_EQ(samples.size(), 50u);
   for (int n = 0; n < 50; ++n) EXPECT_EQ(samples[static_cast<std::size_t>(n)], n);
 }
 

@@ -49,10 +49,13 @@ TEST(Parallel, NumbersTheThreadsFromZeroAndNoNumberTwiceAtOnce) {
 TEST(Parallel, UsesTheCallersThreadAlone) {
   const std::thread::id caller = std::this_thread::get_id();
   for (const int pieces : {1, 9}) {
+    int called = 0;
     for_each_piece(pieces, 1, [&](int, int thread) {
+      ++called;
       EXPECT_EQ(thread, 0);
       EXPECT_EQ(std::this_thread::get_id(), caller);
     });
+    EXPECT_EQ(called, pieces);
   }
 }
 

@@ -46,11 +46,11 @@ TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
   EXPECT_THAT(message_of<std::invalid_argument>([&] {
                 problem.add_block("b", PointToPoint{}, {"arm", "eye"});
               }),
-              HasSubstr("sensor 'eye' sees pixels"));
+              HasSubstr("sensor 'eye' observes pixels"));
   EXPECT_THAT(message_of<std::invalid_argument>([&] {
                 problem.add_block("b", PointToPixel{}, {"arm", "camera"});
               }),
-              HasSubstr("sensor 'camera' sees points"));
+              HasSubstr("sensor 'camera' observes points"));
 }
 
 TEST(Problem, TakesSensorsAndBlocksBeforeSamplesOnly) {

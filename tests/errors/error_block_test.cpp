@@ -37,6 +37,38 @@ static_assert(!ErrorBlock<NotTemplated>, "a block must take jets");
 static_assert(!ErrorBlock<DynamicSize>, "a residual has a fixed size");
 static_assert(!ErrorBlock<NoCall>);
 
+// The built-in blocks: figures worked out by hand.
+
+TEST(ErrorBlock, PointToPointIsTheFirstLessTheSecond) {
+  EXPECT_EQ(PointToPoint{}(Vector3<double>(1, 2, 3), Vector3<double>(0.5, 4, -1)),
+            Vector3<double>(0.5, -2, 4));
+}
+
+TEST(ErrorBlock, PointToPlaneIsTheDistanceOnTheSideOfTheNormal) {
+  const PointToPlane plane(2, -4, 4, 12);  // |(2, -4, 4)| = 6
+  EXPECT_DOUBLE_EQ(plane(Vector3<double>(0, 0, 0))(0), 2.0);
+  EXPECT_DOUBLE_EQ(plane(Vector3<double>(3, 0, 0))(0), 3.0);
+  EXPECT_DOUBLE_EQ(plane(Vector3<double>(0, 3, 0))(0), 0.0);
+  EXPECT_DOUBLE_EQ(plane(Vector3<double>(0, 0, 3))(0), 4.0);
+  EXPECT_DOUBLE_EQ(plane(Vector3<double>(3, 6, -3))(0), -3.0);
+  EXPECT_DOUBLE_EQ(PointToPlane()(Vector3<double>(5, 6, 0.7))(0), 0.7) << "the floor";
+}
+
+TEST(ErrorBlock, PointToPixelIsThePredictedPixelLessTheObservedOne) {
+  // x = 0.5, y = -0.25;  u = 500 * 1.1 * 0.5 + 320,  v = 400 * -0.25 + 240 * 0.5
+  const Sight<double> sight{{1, -0.5, 2}, {0.1, 0, 0, -0.5}, {500, 400, 320, 240, {}}, {590, 30}};
+  EXPECT_LE((PointToPixel{}(sight)-Eigen::Vector2d(5, -10)).norm(), 1e-12);
+}
+
+TEST(ErrorBlock, PlaneToPlaneIsTheTurnOfTheNormalsAndTheDistanceToTheSecond) {
+  const PlaneToPlane block{2.0, 3.0};
+  const Plane<double> a{{1, 2, 4}, {0, 0, 1}}, b{{1, 1, 1}, {0, 0.6, 0.8}};
+  const Eigen::Vector4d expected(0, 2 * -0.6, 2 * 0.2, 3 * (0.6 * 1 + 0.8 * 3));
+  EXPECT_LE((block(a, b) - expected).norm(), 1e-14);
+  EXPECT_LE((block(a, Plane<double>{b.centroid, -b.normal}) - expected).norm(), 1e-14);
+  EXPECT_LE((block(Plane<double>{a.centroid, -a.normal}, b) + expected).norm(), 1e-14);
+}
+
 TEST(Jet, DifferentiatesItsFunctionsLikeTheirFormulas) {
   using J = Jet<double, 2>;
   const double x = 0.7, y = 1.3;

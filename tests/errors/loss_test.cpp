@@ -121,7 +121,7 @@ TEST(Loss, OfAPacketIsThatOfEachLane) {
   }
 }
 
-TEST(Loss, OfWhatIsNoNumberIsNone) {
+TEST(Loss, OfNaNIsNaN) {
   for (const LossType type : kAll) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_TRUE(std::isnan(Loss({type, 1.0})(nan).rho)) << static_cast<int>(type);

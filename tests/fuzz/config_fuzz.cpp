@@ -1,4 +1,4 @@
-// Feeds read_config() with what is no configuration.
+// Feeds read_config() with any bytes.
 #include <sys/mman.h>
 #include <unistd.h>
 

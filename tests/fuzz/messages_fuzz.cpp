@@ -1,7 +1,8 @@
-// Feeds decode() with bytes that are no messages, and parse_definition() with texts that are none.
+// Feeds decode() with bytes that are not messages, and parse_definition() with texts that are not
+// definitions.
 //
-// The first byte chooses: messages of ROS 1, CDR, or a definition and a message of it, with a NUL
-// between.  What can be decoded is encoded and must then be decoded to the same bytes.
+// The first byte selects a message of ROS 1, one in CDR, or a definition and a message of it with a
+// NUL between.  What can be decoded is encoded, decoded and encoded: the bytes must be the same.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -10,7 +11,7 @@
 #include "kinecal/io/messages/decode.hpp"
 #include "kinecal/io/messages/encode.hpp"
 #include "kinecal/io/messages/known_definitions.hpp"
-#include "kinecal/io/recordings/message_samples.hpp"
+#include "kinecal/io/recordings/message_samples.ipp"
 
 namespace {
 

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   int files = 0;
   for (const auto& file : std::filesystem::directory_iterator(argv[1])) {
     std::printf("%s\n", file.path().filename().c_str());
-    std::fflush(stdout);  // the last one told is the one that breaks it
+    std::fflush(stdout);  // the last name printed is the file that breaks it
     std::ifstream in(file.path(), std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     (void)LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());

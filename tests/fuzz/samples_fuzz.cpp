@@ -1,11 +1,11 @@
-// Feeds the reader of CalibrationData YAML with what is none.  Small pieces, so that texts of a few
-// lines are cut, too.
+// Feeds the reader of CalibrationData YAML with any text, also in pieces so small that texts of a
+// few lines are cut.
 #include <cstddef>
 #include <cstdint>
 #include <sstream>
 #include <string>
 
-#include "kinecal/io/samples/sample_file.hpp"
+#include "kinecal/io/samples/sample_file.ipp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const std::size_t piece : {std::size_t{64}, kinecal::detail::SampleFile::kPieceBytes}) {

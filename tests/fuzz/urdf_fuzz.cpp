@@ -1,5 +1,5 @@
-// Feeds parse_urdf() and patch_urdf() with what is no URDF.  A patched URDF must be one again, and
-// have the joints that it had.
+// Feeds parse_urdf() and patch_urdf() with text that is not a URDF.  A patched URDF must be a URDF
+// again, with the same joints.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -3,6 +3,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <numbers>
 #include <random>
 
@@ -44,6 +45,17 @@ TEST(Rotation, ExpTurnsByTheLengthOfTheVector) {
   const Matrix3<double> r = exp(Vector3<double>(0.0, 0.0, 0.3));
   EXPECT_NEAR(r(0, 0), std::cos(0.3), kRounding);
   EXPECT_NEAR(r(1, 0), std::sin(0.3), kRounding);
+}
+
+TEST(Rotation, ExpIsTheTurnOfAQuaternionAboutAnyAxis) {
+  for (const auto& w : difficult_vectors()) {
+    const double half = 0.5 * w.norm();
+    const Vector3<double> axis = w.norm() > 0.0 ? Vector3<double>(w / w.norm()) : w;
+    const Vector3<double> v = std::sin(half) * axis;
+    const Matrix3<double> expected =
+        Eigen::Quaterniond(std::cos(half), v.x(), v.y(), v.z()).toRotationMatrix();
+    EXPECT_TRUE(exp(w).isApprox(expected, kRounding)) << w.transpose();
+  }
 }
 
 TEST(Rotation, LogUndoesExpAlsoAtZeroAndNearPi) {

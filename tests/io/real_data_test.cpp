@@ -1,10 +1,12 @@
 // The real data sets, against the figures of an independent implementation (data/README.md): costs
 // and RMS, never raw parameters.
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <random>
 
+#include "kinecal/crate/evaluate.hpp"
 #include "kinecal/io/results/result_files.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
@@ -48,7 +50,7 @@ TEST(FetchSynth, TheTruthCostsWhatItShould) {
     truth(fetch.result.table.index(line.first.as<std::string>())) = line.second.as<double>();
   }
   const double cost =
-      normal_equations(fetch.calibration.steps[0].problem,
+      normal_equations(*fetch.calibration.steps[0].problem,
                        {truth.data(), static_cast<std::size_t>(truth.size())}, nullptr)
           .cost;
   EXPECT_NEAR(cost / 1.036399372e-3, 1.0, 1e-9);
@@ -105,7 +107,7 @@ TEST_P(Ur5Tracker, ReachesTheReferenceOnTheGridAndOnPosesThatWereNotFitted) {
   const Eigen::VectorXd values = grid.result.table.values();
   const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
   const double rms =
-      block_statistics(held_out.steps[0].problem, all, all)[0].after.rms * std::sqrt(3.0) * 1e3;
+      block_statistics(*held_out.steps[0].problem, all, all)[0].after.rms * std::sqrt(3.0) * 1e3;
   EXPECT_NEAR(rms, expected.random_rms, 2 * kRmsTolerance);
 }
 

@@ -10,11 +10,22 @@ namespace kinecal {
 namespace {
 
 TEST(Packet, IsAsWideAsTheInstructionSet) {
-  const int lanes = instruction_set() == "x86-64-v4"   ? 8
-                    : instruction_set() == "x86-64-v3" ? 4
-                    : instruction_set() == "x86-64"    ? 2
-                                                       : 1;
-  EXPECT_GE(kLanes<Packet>, lanes) << instruction_set();
+#if defined(__GNUC__) && !defined(__clang__)
+  // The compiler aligns nothing more than the widest register; clang's figure is always 16.
+  EXPECT_EQ(sizeof(Packet), std::size_t(__BIGGEST_ALIGNMENT__)) << instruction_set();
+#endif
+  EXPECT_EQ(sizeof(Packet), sizeof(double) * std::size_t(kLanes<Packet>));
+  if (instruction_set() == "x86-64-v4") {
+    EXPECT_EQ(kLanes<Packet>, 8);
+  }
+#ifndef __AVX512F__
+  if (instruction_set() == "x86-64-v3") {
+    EXPECT_EQ(kLanes<Packet>, 4);
+  }
+#endif
+#ifndef __AVX__
+  EXPECT_EQ(kLanes<Packet>, 2) << instruction_set();
+#endif
 }
 
 TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {

@@ -22,7 +22,7 @@ static_assert(Chain<StaticRobot, "base", "tip", Names<>, "board">::kSize == 5);
 static_assert(Arm::kJoints[1].axis.principal() == 2 && Arm::kJoints[2].axis.principal() == -1);
 static_assert(Arm::kTail.translation == std::array{0.1, 0.0, 0.0});
 
-/// What a chain is told of a moment: the same for both kinds.
+/// Joint positions that both kinds of chain get.
 struct Positions {
   [[nodiscard]] double operator()(const std::string& joint) const {
     double position = 0.1;

@@ -36,7 +36,7 @@ TEST_F(Convert, TheExampleCalibratesAsTheReadmeSays) {
   EXPECT_THAT(done.err, HasSubstr("1 feature is not a number"));
 }
 
-TEST_F(Convert, TellsWhatIsWrongAndWritesNothing) {
+TEST_F(Convert, ReportsErrorsAndWritesNothing) {
   std::string table = read("tracker.csv");
   write("tracker.csv", table.replace(table.find("dif_x"), 5, "dif_xx"));
   const Outcome made = kinecal("convert tracker.csv samples.yaml --columns columns.yaml");
@@ -69,7 +69,7 @@ TEST_F(Convert, MakesTheFolderOfItsOutput) {
   }
 }
 
-TEST_F(Convert, AFullDiskIsToldWithTheNameOfTheOutput) {
+TEST_F(Convert, AFullDiskIsReportedWithTheNameOfTheOutput) {
   for (const std::string output : {"full.yaml", "full.bag", "full.mcap"}) {
     // The greatest file that may be written, in blocks of 512 or 1024 bytes: 2.
     const Outcome made =

@@ -91,11 +91,12 @@ TEST_F(Init, NamesTheOptionWhereNobodyCanBeAsked) {
   EXPECT_THAT(arm.err, AllOf(HasSubstr("--arm is required"), HasSubstr("gripper_led_frame")));
   const Outcome camera = init("ur5e", "--target leds");
   EXPECT_EQ(camera.code, 1);
-  EXPECT_THAT(camera.err, HasSubstr("--camera is required where nobody can be asked; no link of"));
+  EXPECT_THAT(camera.err,
+              HasSubstr("--camera is required, because the input is not a terminal; no link of"));
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
 }
 
-TEST_F(Init, TellsAnAnswerThatIsWrongAndTheNearest) {
+TEST_F(Init, ReportsAWrongAnswerAndTheNearestName) {
   const Outcome link = init("fetch", "--target tracker --arm griper_link");
   EXPECT_EQ(link.code, 1);
   EXPECT_THAT(link.err,
@@ -134,11 +135,11 @@ TEST_F(Init, NeverWritesOverTheUrdf) {
   EXPECT_THAT(next.out, HasSubstr("check --urdf 'my robot.urdf' --config calibrate.yaml"));
 }
 
-TEST_F(Init, NamesFramesByOptionsAndTellsThoseOfNoUse) {
+TEST_F(Init, NamesFramesByOptionsAndWarnsOfUnusedOnes) {
   const Outcome made = init(
       "ur5e", "--target tracker --target-frame ball --tracker-frame at960 --camera-type camera2d");
   EXPECT_EQ(made.code, 0) << made.err;
-  EXPECT_THAT(made.err, HasSubstr("warning: --camera-type has no part in target tracker"));
+  EXPECT_THAT(made.err, HasSubstr("warning: --camera-type is not used with target tracker"));
   EXPECT_THAT(read("calibrate.yaml"),
               AllOf(HasSubstr("{name: at960, x: true"), HasSubstr("{name: ball, x: true"),
                     Not(HasSubstr("smr")), Not(HasSubstr("tracker_frame"))));
@@ -148,8 +149,8 @@ TEST_F(Init, NamesFramesByOptionsAndTellsThoseOfNoUse) {
 }
 
 TEST_F(Init, AsksOnATerminal) {
-  // Target 2, the floor: no; arm 9 is none, 1; camera: misspelt, then Enter; type: Enter; its name:
-  // no good, then eye; the board's frame: that of a joint, then charuco; the base: Enter.
+  // Target 2; the floor: no; arm: 9, which is not in the list, then 1; camera: misspelt, then Enter;
+  // type: Enter; its name: refused, then eye; frame of the board: a joint, then charuco; base: Enter.
   const Outcome asked = type("fetch", "",
                              "2\n\n9\n1\nhead_camera_rgb_optcal_frame\n\n\narm\neye\n"
                              "elbow_flex_joint\ncharuco\n\n");
@@ -161,7 +162,7 @@ TEST_F(Init, AsksOnATerminal) {
               AllOf(HasSubstr("(sensor_name)? [camera]: "), HasSubstr("'arm' cannot be the camera"),
                     HasSubstr("the board (frame_id)? [checkerboard]: "),
                     HasSubstr("'elbow_flex_joint' is a link or a joint"),
-                    HasSubstr("everything compared? [base_link]: ")));
+                    HasSubstr("measurements compared? [base_link]: ")));
   EXPECT_THAT(read("calibrate.yaml"),
               AllOf(HasSubstr("{name: charuco, x: true"), HasSubstr("eye_z_offset"),
                     HasSubstr("frame: gripper_link"), Not(HasSubstr("ground_plane"))));

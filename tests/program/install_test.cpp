@@ -28,18 +28,18 @@ class InstallProgram : public test::InstallScene {
   }
 };
 
-TEST_F(InstallProgram, InstallsRestoresAndTellsTheDate) {
+TEST_F(InstallProgram, InstallsRestoresAndPrintsTheDate) {
   EXPECT_EQ(run("--to robot --date").out, "uncalibrated\n");
   const test::Outcome installed = run("out --to robot");
   EXPECT_EQ(installed.code, 0) << installed.err;
   EXPECT_THAT(installed.out, AllOf(HasSubstr("wrote robot/calibrated_2026_01_02_03_04_05.urdf\n"),
-                                   HasSubstr("changed robot/robot.launch; the one before is "
+                                   HasSubstr("changed robot/robot.launch; the previous version is "
                                              "robot.launch.backup_1, --restore puts it back\n")));
   EXPECT_THAT(launch(), HasSubstr("textfile=\"" + folder_.string() + "/robot/calibrated_2026"));
   EXPECT_EQ(run("--date --to robot").out, "2026-01-02 03:04:05\n");
   const test::Outcome again = run("out --to robot/");
   EXPECT_EQ(again.code, 0);
-  EXPECT_THAT(again.out, HasSubstr("is as it was: this calibration is installed"));
+  EXPECT_THAT(again.out, HasSubstr("is unchanged: this calibration is already installed"));
   const test::Outcome restored = run("--restore --to robot");
   EXPECT_EQ(restored.code, 0) << restored.err;
   EXPECT_THAT(restored.out, StartsWith("restored robot/robot.launch; "));
@@ -81,7 +81,7 @@ TEST_F(InstallProgram, RestoresWhatHasLostFilesOnlyIfForced) {
   older.replace(older.find(urdf), urdf.size(), "gone.urdf");
   write("robot/robot.launch.backup_1", older);
   expect_refused("--restore --to robot",
-                 AllOf(HasSubstr("robot.launch.backup_1: names what is not there any more: "
+                 AllOf(HasSubstr("robot.launch.backup_1: names files that no longer exist: "
                                  "gone.urdf; "),
                        HasSubstr("--force")));
   EXPECT_EQ(run("--restore --to robot --force").code, 0);

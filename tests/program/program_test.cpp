@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <yaml-cpp/yaml.h>
 
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <pugixml.hpp>
 #include <random>
 
+#include "kinecal/io/camera_info.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
@@ -255,14 +258,14 @@ TEST_F(Program, ExitsWith2AndWritesNothingWhenItDoesNotConverge) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
-TEST_F(Program, TellsWhatItDid) {
+TEST_F(Program, ReportsTimeAndSpeed) {
   const Outcome result = calibrate();
   EXPECT_THAT(result.out,
               ContainsRegex("20 samples, [0-9.]+ s: reading [0-9.]+ s, solving [0-9.]+ "
                             "s \\([0-9]+ iterations, [0-9.]+ million samples a second, "));
 }
 
-/// The program at each level that the processor has: the dynamic loader is told which to look for.
+/// The program at each level that the processor has: an option of the dynamic loader chooses it.
 TEST_F(Program, CalibratesAlikeAtEachLevelOfTheProcessor) {
   if (!KINECAL_HAS_LEVELS) GTEST_SKIP() << "the program is built without KINECAL_X86_64_LEVELS";
   const std::string loader = "/lib64/ld-linux-x86-64.so.2";
@@ -294,7 +297,8 @@ TEST_F(Program, CalibratesAlikeAtEachLevelOfTheProcessor) {
         YAML::LoadFile((folder_ / "out/report.json").string())["steps"][0]["final_cost"]
             .as<double>();
     if (best.empty()) baseline_cost = cost;
-    constexpr double kRounding = 1e-9;  // sums in another order, and fused; far below what is told
+    constexpr double kRounding =
+        1e-9;  // sums in another order, and fused; far below what is printed
     EXPECT_NEAR(cost, baseline_cost, kRounding * baseline_cost) << level;
     best = level;
   }
@@ -384,7 +388,7 @@ TEST_F(Program, AResultGoesOntoTheRobotWithEitherNames) {
   }
 }
 
-TEST_F(Program, CheckTellsEveryMistakeInOneGo) {
+TEST_F(Program, CheckReportsAllErrorsAtOnce) {
   spoil("c.yaml", " - elbow", " - elbwo\n - sholder");
   spoil("c.yaml", "frame: hand", "frame: hnad");
   const Outcome result = run("check --urdf tiny.urdf --config c.yaml --samples s.yaml");
@@ -486,7 +490,7 @@ TEST_F(Program, RefusesAModelAndAFrameOfOneNameInTheRos2Dialect) {
   expect_refused(AllOf(HasSubstr("c.yaml:"), HasSubstr("'arm'"), HasSubstr("rename")));
 }
 
-TEST_F(Program, RefusesYamlThatIsNone) {
+TEST_F(Program, RefusesWhatIsNotYaml) {
   write("c.yaml", "models: [a, {b: c\n");
   expect_refused(HasSubstr("c.yaml:"));
 }
@@ -516,7 +520,8 @@ TEST_F(Program, LeavesOutFeaturesThatAreNotNumbersWithACount) {
   write_all(all);
   const Outcome result = calibrate();
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err, AllOf(HasSubstr("2 features are not a number"), HasSubstr("s.yaml:")));
+  EXPECT_THAT(result.err,
+              AllOf(HasSubstr("2 features are not numbers and left out"), HasSubstr("s.yaml:")));
   EXPECT_EQ(
       YAML::LoadFile((folder_ / "out/report.json").string())["error_blocks"][0]["count"].as<int>(),
       58);
@@ -647,11 +652,11 @@ TEST_F(Program, ReadsTheUrdfFromAPipe) {
   EXPECT_TRUE(fs::exists(folder_ / "out/calibrated.urdf"));
 }
 
-TEST_F(Program, TellsWhatTheSamplesCannotTell) {
+TEST_F(Program, ListsUnobservableCombinations) {
   spoil("c.yaml", " - elbow", " - elbow\n - shoulder");
   const Outcome result = calibrate();  // the shoulder turns about the same axis as the mast's yaw
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err, AllOf(HasSubstr("combinations of the parameters"), HasSubstr("shoulder"),
+  EXPECT_THAT(result.err, AllOf(HasSubstr("parameter combinations are"), HasSubstr("shoulder"),
                                 HasSubstr("mast_joint_")));
 }
 
@@ -662,10 +667,10 @@ TEST_F(Program, RefusesFewerResidualsThanParameters) {
   write_all(all);
   const Outcome result = calibrate();
   EXPECT_EQ(result.code, 2);
-  EXPECT_THAT(result.err, HasSubstr("6 residuals cannot tell 8 parameters"));
+  EXPECT_THAT(result.err, HasSubstr("6 residuals cannot determine 8 parameters"));
 }
 
-TEST_F(Program, TellsOfAParameterThatEndedAtItsBound) {
+TEST_F(Program, WarnsOfAParameterThatEndedAtItsBound) {
   write("c.yaml", std::string(kConfig) + "bounds: {elbow: [-0.5, 0.01]}\n");
   const Outcome result = calibrate();
   EXPECT_EQ(result.code, 0) << result.err;
@@ -696,7 +701,7 @@ cal_steps:
   EXPECT_GT(steps[1]["initial_cost"].as<double>(), 0.1);
 }
 
-TEST_F(Program, StartingAtTheResultIsNoFailure) {
+TEST_F(Program, StartingAtTheResultConverges) {
   ASSERT_EQ(calibrate().code, 0);
   std::string values = "initial_values:\n";
   for (const auto& line : YAML::LoadFile((folder_ / "out/calibration.yaml").string())) {
@@ -744,7 +749,7 @@ TEST_F(Program, RefusesADistortionModelItDoesNotKnow) {
   expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("'equidistant' is not supported")));
 }
 
-TEST_F(Program, AnObservationWithoutFeaturesIsNone) {
+TEST_F(Program, AnObservationWithoutFeaturesDoesNotCount) {
   auto all = samples();
   all[2].observations[1].features.clear();
   write_all(all);
@@ -791,7 +796,7 @@ TEST_F(Program, ACameraFileThatIsThereIsReplacedOnlyIfForced) {
   EXPECT_THAT(read("mine.yaml"), HasSubstr("camera_matrix:"));
 }
 
-TEST_F(Program, TellsWhereTheBaseIsMisspeltOrMissing) {
+TEST_F(Program, ReportsWhereTheBaseIsMisspeltOrMissing) {
   spoil("c.yaml", "base_link: base_link", "base_link: base_lnk");
   expect_refused(AllOf(HasSubstr("c.yaml:1: base_link: no link 'base_lnk'"),
                        HasSubstr("did you mean 'base_link'?")));
@@ -811,12 +816,12 @@ TEST_F(Program, RefusesAFolderWhereAFileIsMeant) {
   EXPECT_THAT(run("check --urdf folder --config c.yaml").err, HasSubstr("folder: is a folder"));
 }
 
-TEST_F(Program, TellsTheCommandsToWhomMisspellsOne) {
+TEST_F(Program, ListsTheCommandsIfOneIsMisspelt) {
   const Outcome misspelt = run("calibrat --urdf tiny.urdf");
   EXPECT_EQ(misspelt.code, 1);
-  EXPECT_THAT(misspelt.err,
-              AllOf(HasSubstr("error: 'calibrat' is no command; one of "), HasSubstr("calibrate")));
-  EXPECT_THAT(run("").err, HasSubstr("error: no command is given; one of init, "));
+  EXPECT_THAT(misspelt.err, AllOf(HasSubstr("error: 'calibrat' is not a command; use one of "),
+                                  HasSubstr("calibrate")));
+  EXPECT_THAT(run("").err, HasSubstr("error: no command is given; use one of init, "));
   EXPECT_THAT(
       run("check --config c.yaml --urfd x").err,
       AllOf(HasSubstr("error: "), HasSubstr("--urfd"), HasSubstr("'kinecal check --help'")));

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "kinecal/io/bags/mcap.hpp"
+#include "kinecal/io/bags/mcap/read_mcap.hpp"
 #include "kinecal/io/recordings/convert.hpp"
 #include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
@@ -192,13 +192,13 @@ TEST_F(RecordingsProgram, GivePosesBackAsTheyWere) {
                                testing::ContainsRegex("led_finder +101\n")));
 }
 
-TEST_F(RecordingsProgram, TellWhatYamlCannotHold) {
+TEST_F(RecordingsProgram, WarnOfWhatYamlCannotHold) {
   KINECAL_NEEDS_DATA("fetch/synth");
   const std::string bag = synth() / "calibration_data.bag";
   const test::Outcome converted = kinecal("convert " + bag + " a.yaml");
   EXPECT_EQ(converted.code, 0);
   EXPECT_THAT(converted.err, AllOf(HasSubstr("warning: "), HasSubstr("topic 'robot_description'"),
-                                   HasSubstr("is left out: YAML holds samples alone")));
+                                   HasSubstr("is left out: YAML holds only samples")));
   EXPECT_EQ(kinecal("convert " + bag + " a.mcap").err, "");
 }
 
@@ -214,7 +214,7 @@ TEST_F(RecordingsProgram, ThatWereCutOffGiveWhatWasWrittenWholeAndAWarning) {
 }
 
 TEST_F(RecordingsProgram, WithMistakesWriteNothing) {
-  write("no.bag", "#ROSBAG V2.0\nthis is none");
+  write("no.bag", "#ROSBAG V2.0\nthis is not one");
   for (const char* call :
        {"convert no.bag out.mcap", "convert no.bag out.yaml", "convert missing.bag out.mcap",
         "convert no.bag out.xyz", "calibrate --config none.yaml --samples no.bag --output out"}) {

@@ -80,7 +80,7 @@ TEST_F(RobotHeaderProgram, ReplacesTheHeaderAsAWhole) {
   EXPECT_EQ(read("opened_before.hpp"), std::string(100000, 'x')) << "was written into";
 }
 
-TEST_F(RobotHeaderProgram, AMistakeIsToldWithFileAndLine) {
+TEST_F(RobotHeaderProgram, AnErrorIsReportedWithFileAndLine) {
   expect_refused("</joint>", "", StartsWith("bad.urdf:10: malformed XML"));
   expect_refused("<parent link=\"base\"/>", "<parent link=\"bass\"/>",
                  AllOf(StartsWith("bad.urdf:5: "), HasSubstr("bass"), HasSubstr("shoulder")));
@@ -89,7 +89,7 @@ TEST_F(RobotHeaderProgram, AMistakeIsToldWithFileAndLine) {
   expect_refused(kUrdf, "", StartsWith("bad.urdf: the file is empty"));
 }
 
-TEST_F(RobotHeaderProgram, ANameThatCannotBeANamespaceIsToldWithItsLine) {
+TEST_F(RobotHeaderProgram, ANameThatCannotBeANamespaceIsReportedWithItsLine) {
   expect_refused("\"arm\"", "\"3 arms\"", StartsWith("bad.urdf:2: the robot's name '3 arms' "));
   expect_refused("\"arm\"", "\"class\"", StartsWith("bad.urdf:2: the robot's name 'class' "));
   expect_refused("arm", "arm", StartsWith("'3arms' cannot be a namespace"), "--namespace 3arms");
@@ -109,7 +109,7 @@ TEST_F(RobotHeaderProgram, FilesThatCannotBeReadOrWritten) {
   EXPECT_EQ(read("arm.urdf"), kUrdf);
 }
 
-TEST_F(RobotHeaderProgram, TellsItsUsageWhenItIsCalledWrongly) {
+TEST_F(RobotHeaderProgram, PrintsItsUsageWhenItIsCalledWrongly) {
   for (const char* arguments : {"", "arm.urdf", "--urdf arm.urdf", "--output arm.hpp",
                                 "--urdf arm.urdf --output", "--urdf a --output b --name c"}) {
     const test::Outcome result = generate(arguments);

@@ -52,7 +52,8 @@ void expect_same_text(const std::string& a, const std::string& b) {
     const double x_number = std::strtod(x, &x_end), y_number = std::strtod(y, &y_end);
     const bool are_numbers = x_end != x && y_end != y;
     if (are_numbers) {
-      ASSERT_NEAR(x_number, y_number, tolerance(y_number)) << "at \"" << std::string(x).substr(0, 40) << "\"";
+      ASSERT_NEAR(x_number, y_number, tolerance(y_number))
+          << "at \"" << std::string(x).substr(0, 40) << "\"";
     } else {
       ASSERT_EQ(*x, *y) << "at \"" << std::string(x).substr(0, 40) << "\"";
     }
@@ -101,11 +102,11 @@ TEST_F(RobotProgram, FetchsCrateSolvesWhatItsConfigurationSays) {
   }
 }
 
-TEST_F(RobotProgram, TellsWhatItFoundOnSamplesHeldOut) {
+TEST_F(RobotProgram, ReportsWhatItFoundOnSamplesHeldOut) {
   const test::Outcome result = run(KINECAL_CALIBRATE_FETCH " --pairs 40 --planes 10 --seed 3");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("On samples held out"));
-  EXPECT_THAT(result.err, HasSubstr("these samples tell 24 of 26 combinations"));
+  EXPECT_THAT(result.err, HasSubstr("24 of 26 parameter combinations are observable"));
 }
 
 TEST_F(RobotProgram, ExitsWith2WhereHeldOutSamplesShowMoreThanNoise) {

@@ -42,7 +42,7 @@ TEST(JsonReport, IsReadBackAsItWasWritten) {
   EXPECT_EQ(json["observability"][0]["unobservable"][0]["camera_z_offset"].as<double>(), -0.5);
 }
 
-TEST(JsonReport, WritesNullForWhatIsNoNumber) {
+TEST(JsonReport, WritesNullForNotANumber) {
   EXPECT_EQ(json_number(std::nan("")), "null");
   EXPECT_EQ(json_number(0.1), "0.1");
   EXPECT_EQ(json_string("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
@@ -68,11 +68,11 @@ TEST(TextReport, SaysWhatSolvingTook) {
   EXPECT_THAT(solving_text({}), HasSubstr("solving 0.0000 s (0 iterations, 0 million"));
 }
 
-TEST(TextReport, NamesWhatTheSamplesCannotTell) {
+TEST(TextReport, NamesUnobservableCombinations) {
   const auto table = result().table;
   EXPECT_EQ(observability_text("one", {2, 1.0, {}}, table), "");
   const std::string text = observability_text("one", {1, 2.5, {{{0, 1.0}, {1, -0.5}}}}, table);
-  EXPECT_THAT(text, HasSubstr("tell 1 of 2 combinations"));
+  EXPECT_THAT(text, HasSubstr("1 of 2 parameter combinations are observable"));
   EXPECT_THAT(text, HasSubstr("+1 elbow -0.5 camera_z_offset"));
 }
 

@@ -24,6 +24,32 @@ TEST(DepthCamera, FollowsTheDriversDepthFormula) {
   EXPECT_LE((p - Vector3<double>(0, 0, 2.01 * 0.9)).norm(), 1e-15);
 }
 
+/// Figures worked out by hand, away from the centre: the pixel, its raw depth and the point.
+TEST(DepthCamera, FindsThePixelAndRawDepthOfAPoint) {
+  const DepthCamera<> camera{500, 400, 320, 240, 0.02, 1.25};
+  const Vector3<double> measured = camera.measurement({0.5, -0.25, 1.25});
+  EXPECT_LE((measured - Vector3<double>(520, 160, 0.98)).norm(), 1e-12);
+  // fx = 1000, fy = 200, cx = 160, cy = 360, z = (0.98 + 0.52) * 2
+  const Vector3<double> p =
+      camera.point(measured, std::array<double, 6>{1.0, -0.5, -0.5, 0.5, 0.52, 1.0});
+  EXPECT_LE((p - Vector3<double>(360 * 3.0 / 1000, -200 * 3.0 / 200, 3.0)).norm(), 1e-12);
+}
+
+TEST(DepthCamera, TakesItsSettingsFromPAndItsDriver) {
+  CameraInfo info;
+  info.k = {500, 0, 320, 0, 501, 240, 0, 0, 1};
+  info.p = {480, 0, 310, 0, 0, 481, 230, 0, 0, 0, 1, 0};
+  info.z_offset = 0.01;
+  info.z_scaling = 1.1;
+  const DepthCamera<> camera = DepthCamera<>::from(info);
+  EXPECT_EQ(camera.fx, 480);
+  EXPECT_EQ(camera.fy, 481);
+  EXPECT_EQ(camera.cx, 310);
+  EXPECT_EQ(camera.cy, 230);
+  EXPECT_EQ(camera.z_offset, 0.01);
+  EXPECT_EQ(camera.z_scaling, 1.1);
+}
+
 /// Random settings and measurements: another camera and another pixel in each lane.
 template <class Q>
 struct RandomViews {
@@ -122,8 +148,13 @@ TEST(PinholeCamera, ARectifiedImageIsDescribedByPAndADistortedOneByK) {
   info.d = {0, 0, 0, 0, 0};
   EXPECT_EQ(PinholeCamera<>::from(info).fx, 480);
   info.d = {0.1, 0, 0, 0, 0};
-  EXPECT_EQ(PinholeCamera<>::from(info).fx, 500);
   EXPECT_EQ(PinholeCamera<>::from(info).d[0], 0.1);
+  const auto numbers = [](const PinholeCamera<>& c) {
+    return std::array<double, 4>{c.fx, c.fy, c.cx, c.cy};
+  };
+  EXPECT_EQ(numbers(PinholeCamera<>::from(info)), (std::array<double, 4>{500, 501, 320, 240}));
+  info.d = {};
+  EXPECT_EQ(numbers(PinholeCamera<>::from(info)), (std::array<double, 4>{480, 481, 310, 230}));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "kinecal/errors.hpp"
+#include "support/oracle.hpp"
 #include "support/static_robot.hpp"
 
 namespace kinecal {
@@ -33,11 +34,7 @@ std::vector<Sample> exact_samples(const std::vector<double>& truth, int count) {
   for (int c = 0; c < free.size(); ++c) {
     values(free.parameters()[static_cast<std::size_t>(c)]) = truth[static_cast<std::size_t>(c)];
   }
-  const Problem problem = Tracked().problem(table);
-  const SensorModel& arm = problem.sensors()[0];
-  const Corrections<double> corrections = corrections_for(
-      arm.parameters()[0],
-      std::span<const double>(values.data(), static_cast<std::size_t>(values.size())));
+  const test::OracleValues<double> of_robot(table, values);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> angle(-1.0, 1.0);
   std::vector<Sample> samples;
@@ -48,14 +45,13 @@ std::vector<Sample> exact_samples(const std::vector<double>& truth, int count) {
       sample.joint_names.emplace_back(joint);
       sample.joint_positions.push_back(angle(random));
     }
-    const Pose<double> tip = forward_kinematics(
-        arm.chains()[0], [&](const std::string& joint) { return *sample.position(joint); },
-        corrections);
+    const test::OraclePose<double> tip =
+        test::oracle_pose(robot_from<StaticRobot>(), "base", "tip", "", sample, of_robot);
     sample.observations = {{"arm", {}, {}}, {"tracker", {}, {}}};
     for (int i = 0; i < 3; ++i) {
       const Vector3<double> p(0.1 * i, 0.05, 0.02 * i * i);
       sample.observations[0].features.push_back({"tip", p});
-      sample.observations[1].features.push_back({"base", tip * p});
+      sample.observations[1].features.push_back({"base", tip(p)});
     }
   }
   return samples;

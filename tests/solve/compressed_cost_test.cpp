@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kinecal/crate/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "support/scene.hpp"
 
@@ -63,7 +64,7 @@ TEST(CompressedCost, HasTheCostGradientAndHessianOfTheStackedResiduals) {
             1e-10 * hessian.norm());  // directions below kNoCurvature are left out
 }
 
-/// The problem above frees parameters that cannot be told apart: its Hessian is singular.
+/// The problem above frees parameters that its samples cannot separate: its Hessian is singular.
 TEST(CompressedCost, IsFiniteWhereTheHessianIsSingular) {
   const Problem problem = noisy_problem({});
   const FreeSet free = all_free(problem);
@@ -84,8 +85,8 @@ TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
     const FreeSet free = all_free(problem);
     const auto x = test::random_values(problem.table(), 0.02, 5);
     Evaluator<Packet> evaluator(problem, free);
-    const CompressedCost<Packet> cost(evaluator, Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-                                                     x.data(), problem.table().size())));
+    const CompressedCost cost(evaluator, Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                                             x.data(), problem.table().size())));
     const auto n = static_cast<Eigen::Index>(free.size());
     const auto cost_at = [&](const std::vector<double>& values) {
       Eigen::VectorXd r(n + 1);

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "kinecal/crate/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "support/scene.hpp"
 
 namespace kinecal {
 namespace {
 
-/// Parameters of the scene that camera and arm together can tell.
+/// Parameters of the scene that camera and arm together determine.
 const std::vector<std::string> kObservable = {
     "shoulder_lift",  "elbow",          "wrist",          "head_tilt",       "camera_joint_x",
     "camera_joint_y", "camera_joint_z", "camera_joint_a", "camera_joint_c",  "camera_fx",
@@ -147,6 +148,19 @@ TEST(Solve, AnActiveBoundEndsAtTheMinimumOfTheOtherParameters) {
   }
 }
 
+TEST(Solve, AStartBeyondABoundIsMovedOntoIt) {
+  const auto samples = noisy_samples(20, 1e-3);
+  const Problem problem = bounded_problem("elbow", -0.05, 0.05, samples);
+  const FreeSet free = free_of(problem.table(), kObservable);
+  Eigen::VectorXd beyond = Eigen::VectorXd::Zero(problem.table().size()), on_bound = beyond;
+  beyond(problem.table().index("elbow")) = 0.4;
+  on_bound(problem.table().index("elbow")) = 0.05;
+  const StepResult found = solve(problem, free, beyond), expected = solve(problem, free, on_bound);
+  EXPECT_TRUE(found.converged) << found.termination;
+  EXPECT_EQ(found.initial_cost, expected.initial_cost);
+  EXPECT_TRUE(beyond == on_bound);
+}
+
 TEST(Solve, ABoundThatIsNotReachedChangesNothing) {
   const auto samples = noisy_samples(20, 1e-3);
   const Problem problem = bounded_problem("elbow", -1.0, 1.0, samples);
@@ -188,25 +202,56 @@ TEST(Solve, SaysWhereAResidualIsNotDefinedAtTheStart) {
   EXPECT_NE(result.termination.find("s.yaml:12"), std::string::npos) << result.termination;
 }
 
+/// The camera stands a centimetre off.  Each of N samples has four features with |d r / d x| = 1
+/// and a prior of scale p:  cost = N / 2 (4 (x - 0.01)^2 + (p x)^2), least at x = 4 / (4 + p^2)
+/// 0.01
 TEST(Solve, APriorCountsOncePerSampleAndPullsToZero) {
+  constexpr double kOff = 0.01, kScale = 3.0;
+  constexpr int kSamples = 7;
   Problem problem = test::scene_problem();
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
-  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {});
-  const auto samples = noisy_samples(7, 0.0);
-  for (const Sample& sample : samples) problem.add_sample(sample);
-  Eigen::VectorXd values = true_values(problem.table());
-  std::optional<UndefinedResidual> undefined;
-  const double cost = normal_equations(problem, span_of(values), nullptr).cost;
-  double squares = 0.0;
-  for (const char* axis : {"x", "y", "z"}) {
-    squares +=
-        std::pow(2.0 * values(problem.table().index(parameter_name("camera_joint", axis))), 2);
+  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 5.0}, {.weight = kScale / 2.0});
+  const int x = problem.table().index("camera_joint_x");
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(problem.table().size());
+  truth(x) = kOff;
+  for (const Sample& sample : test::exact_samples(problem, span_of(truth), kSamples)) {
+    problem.add_sample(sample);
   }
-  for (const char* axis : {"a", "b", "c"}) {
-    squares +=
-        std::pow(3.0 * values(problem.table().index(parameter_name("camera_joint", axis))), 2);
+  for (const CostForm form : {CostForm::compressed, CostForm::stacked}) {
+    SCOPED_TRACE(to_string(form));
+    SolveOptions options;
+    options.form = form;
+    Eigen::VectorXd values = truth;
+    const StepResult result =
+        solve(problem, free_of(problem.table(), {"camera_joint_x"}), values, options);
+    EXPECT_TRUE(result.converged) << result.termination;
+    constexpr double kRounding = 1e-10, kSquared = kScale * kScale;
+    EXPECT_NEAR(result.initial_cost, 0.5 * kSamples * kSquared * kOff * kOff,
+                kRounding * result.initial_cost);
+    EXPECT_NEAR(values(x), 4.0 / (4.0 + kSquared) * kOff, kRounding * kOff);
+    EXPECT_NEAR(result.final_cost, 0.5 * kSamples * 4.0 * kSquared / (4.0 + kSquared) * kOff * kOff,
+                kRounding * result.initial_cost);
   }
-  EXPECT_NEAR(cost / (0.5 * 7 * squares), 1.0, 1e-10);
+}
+
+/// Of a joint and a frame each axis has its own scale.
+TEST(Solve, APriorScalesJointTranslationAndRotation) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  problem.add_prior("restrict", {"head_pan", 4.0, 2.0, 3.0}, {});
+  std::vector<double> values = test::random_values(problem.table(), 0.03, 11);
+  const auto value = [&](const char* name) {
+    return values[static_cast<std::size_t>(problem.table().index(name))];
+  };
+  for (const Sample& sample : test::exact_samples(problem, values, 7)) problem.add_sample(sample);
+  double squares = std::pow(4.0 * value("head_pan"), 2);
+  for (const char* axis : {"head_pan_x", "head_pan_y", "head_pan_z"}) {
+    squares += std::pow(2.0 * value(axis), 2);
+  }
+  for (const char* axis : {"head_pan_a", "head_pan_b", "head_pan_c"}) {
+    squares += std::pow(3.0 * value(axis), 2);
+  }
+  EXPECT_NEAR(normal_equations(problem, values, nullptr).cost / (0.5 * 7 * squares), 1.0, 1e-10);
 }
 
 /// Two thousand samples: several pieces for the threads to share.
@@ -286,7 +331,7 @@ TEST(Solve, RefusesAProblemWithoutSamples) {
     Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
     const StepResult result = solve(problem, free_of(problem.table(), {"elbow"}), values, options);
     EXPECT_FALSE(result.converged);
-    EXPECT_EQ(result.termination, "failed: 0 residuals cannot tell 1 parameters");
+    EXPECT_EQ(result.termination, "failed: 0 residuals cannot determine 1 parameter");
   }
 }
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "kinecal/crate/evaluate.hpp"
 #include "kinecal/errors.hpp"
+#include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/solve.hpp"
 #include "support/sums.hpp"
 
@@ -10,7 +12,7 @@ namespace kinecal {
 namespace {
 
 // Sums over some hundred rows in another order, and H solved in place of J: its condition, squared,
-// is 1e4 to 1e5 in scaled columns where parameters can be told apart.
+// is 1e4 to 1e5 in scaled columns where parameters can be separated.
 constexpr double kSameProblem = 1e-10;
 
 /// A solve to compare in both forms.
@@ -115,7 +117,7 @@ TEST(StackedResiduals, HaveTheCostAndGradientOfTheNormalEquations) {
       Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
       values(problem.table().index("board_x")) = 0.5;  // held
       std::vector<double> x(static_cast<std::size_t>(free.size()), 0.0);
-      StackedResiduals<Packet> stack(problem, free, values, x.data(), losses);
+      StackedResiduals stack(problem, free, values, x.data(), losses);
       ceres::Problem::Options options;
       options.evaluation_callback = &stack;
       ceres::Problem ceres_problem(options);
@@ -140,8 +142,8 @@ TEST(StackedResiduals, AreOneBlockForEachFeatureAndPrior) {
   const Problem problem = problem_of({"priors", {}, true});
   const FreeSet free = test::free_of(problem.table(), kFree);
   std::vector<double> x(static_cast<std::size_t>(free.size()), 0.0);
-  StackedResiduals<Packet> stack(problem, free, Eigen::VectorXd::Zero(problem.table().size()),
-                                 x.data(), Losses::as_given);
+  StackedResiduals stack(problem, free, Eigen::VectorXd::Zero(problem.table().size()), x.data(),
+                         Losses::as_given);
   ceres::Problem::Options options;
   options.evaluation_callback = &stack;
   ceres::Problem ceres_problem(options);
@@ -201,13 +203,13 @@ TEST(StackedResiduals, RefuseValuesForWhichAResidualIsNotDefined) {
   const FreeSet free = test::free_of(problem.table(), {"head_pan"});
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(problem.table().size());
   std::vector<double> x = {0.0};
-  StackedResiduals<Packet> stack(problem, free, zero, x.data(), Losses::as_given);
+  StackedResiduals stack(problem, free, zero, x.data(), Losses::as_given);
   ceres::Problem::Options options;
   options.evaluation_callback = &stack;
   ceres::Problem ceres_problem(options);
   stack.add_to(ceres_problem, x.data());
   Evaluator<Packet> evaluator(problem, free);
-  const CompressedCost<Packet> compressed(evaluator, zero);
+  const CompressedCost compressed(evaluator, zero);
   Eigen::Vector2d r;
   for (const double pan : {0.0, M_PI, 0.01}) {
     x[0] = pan;

@@ -1,4 +1,4 @@
-// What a compiler knows of chains, free parameters and crates.
+// What the compiler knows about chains, free parameters and crates.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/crate/crate.hpp"
 #include "kinecal/errors/point_to_plane.hpp"
@@ -26,7 +26,7 @@ static_assert(Chain<Fetch, "base_link", "base_link">::kSize == 0);
 static_assert(ToGripper::kTail.translation == std::array{0.16645, 0.0, 0.0});
 static_assert(ToGripper::kJoints[6].name == "wrist_roll_joint" && !ToGripper::kJoints[6].corrected);
 
-// What stands before the first motion is the same for all positions.
+// What comes before the first motion is the same for all positions.
 using Fixed = Chain<Every, "torso", "Kamera \303\274brig">;
 using Corrected = Chain<Every, "torso", "Kamera \303\274brig", Names<"Kamera \303\274brig">>;
 static_assert(Fixed::kSize == 0 && Fixed::kFirstMotion == 0);
@@ -36,7 +36,7 @@ using Gripper = Chain<Fetch, "wrist_flex_link", "gripper_link",
 static_assert(Gripper::kSize == 3 && Gripper::kFirstMotion == 0);
 static_assert(Gripper::kJoints[2].name == "checkerboard" && Gripper::kJoints[2].corrected);
 
-// Origins that do not turn or shift, and principal axes, are known as such; -0 is 0.
+// Identity rotations, zero translations and principal axes are detected; -0 is 0.
 using First = detail::FixedOf<ToCamera, 0>;
 static_assert(!detail::kTurns<First> && detail::ConstantColumn<First, 3>::kFirst == 0);
 static_assert(detail::kTurns<detail::FixedOf<ToCamera, ToCamera::kSize>>);
@@ -77,14 +77,14 @@ using Depth = DepthCorrection<"camera">;
 static_assert(FreeParameter<Elbow> && FreeParameter<Shift> && FreeParameter<Board> &&
               FreeParameter<Lens> && FreeParameter<Depth> && !FreeParameter<PointToPlane>);
 
-// A slot is the number of those in front.
+// A slot is the number of parameters before it.
 using Free = FreeParameters<Elbow, Shift, Board, Lens, Depth, Turn>;
 static_assert(Free::kSize == 1 + 3 + 6 + 4 + 2 + 3 && Free::are_distinct());
 static_assert(Free::kSlot<Elbow> == 0 && Free::kSlot<Shift> == 1 && Free::kSlot<Board> == 4 &&
               Free::kSlot<Lens> == 10 && Free::kSlot<Depth> == 14 && Free::kSlot<Turn> == 16);
 static_assert(FreeParameters<>::kSize == 0 && FreeParameters<>::are_distinct());
 
-// Numbers are found by name, whatever parameter they belong to.
+// Numbers are found by name, whichever free parameter they belong to.
 static_assert(Free::find("elbow_flex_joint", "") == 0 && Free::find("head_pan_joint", "z") == 3 &&
               Free::find("camera", "z_scaling") == 15 && Free::find("head_pan_joint", "c") == 18);
 static_assert(Free::find("elbow_flex_joint", "x") == -1 && Free::find("head_pan_joint", "") == -1);
@@ -93,7 +93,7 @@ static_assert(Free::have<FrameOffset<"head_pan_joint">>() &&
 static_assert(!FreeParameters<Shift>::have<FrameOffset<"head_pan_joint">>());
 static_assert(Free::kSlot<DepthIntrinsics<"camera">> == 10);
 
-// Names are those of all numbers, however they are put together.
+// Names must be distinct, even if owner and part are split differently.
 static_assert(!FreeParameters<Elbow, Elbow>::are_distinct());
 static_assert(!FreeParameters<Lens, DepthIntrinsics<"camera">>::are_distinct());
 static_assert(!FreeParameters<Shift, JointOffset<"head_pan_joint_y">>::are_distinct());
@@ -114,14 +114,14 @@ using HandEye = Block<"hand_eye", PointToPoint, "camera", "arm">;
 using Ground = Block<"ground", PointToPlane, "camera">;
 static_assert(SensorPart<Arm> && SensorPart<Head> && BlockPart<HandEye> && !BlockPart<Arm>);
 
-// The order of the parts does not matter but for that of the parameters.
+// Parts may stand in any order; parameters keep theirs.
 using Forwards = Crate<Arm, Head, Elbow, Depth, HandEye, Ground>;
 using Backwards = Crate<Ground, HandEye, Elbow, Depth, Head, Arm>;
 static_assert(std::is_same_v<Forwards::Free, FreeParameters<Elbow, Depth>>);
 static_assert(std::is_same_v<Forwards::Free, Backwards::Free>);
 static_assert(Backwards::Sensors::kSize == 2 && Backwards::Blocks::kSize == 2);
 
-// A crate of crates has the parts of all, each once.
+// A crate of crates has the parts of all of them, each once.
 using Reach = Crate<Arm, Head, Elbow, HandEye>;
 using Look = Crate<Head, Depth, Ground>;
 using Both = Crate<Reach, Look, Shift, PriorOn<"small", "head_pan_joint">>;

@@ -1,6 +1,6 @@
-# What must compile and what must not, with one compiler:
+# Checks with one compiler what must compile and what must not:
 #   cmake -DCOMPILER=... -DINCLUDES=<folders> -P run.cmake
-# right.cpp compiles; wrong.cpp does not, and the compiler's errors are those that it expects.
+# right.cpp compiles; wrong.cpp does not, and gives exactly the errors that it expects.
 cmake_minimum_required(VERSION 3.25)
 set(call ${CMAKE_COMMAND} -E env LC_ALL=C ${COMPILER} -std=c++20 -fsyntax-only)
 foreach(folder IN LISTS INCLUDES)
@@ -13,7 +13,7 @@ endif()
 
 execute_process(COMMAND ${call} ${CMAKE_CURRENT_LIST_DIR}/right.cpp COMMAND_ERROR_IS_FATAL ANY)
 
-# Semicolons and brackets would be read as lists.
+# CMake would read semicolons and brackets as lists.
 function(read_as_text variable)
   string(REGEX REPLACE "[][;]" "," text "${${variable}}")
   set(${variable} "${text}" PARENT_SCOPE)
@@ -37,7 +37,7 @@ foreach(sentence error IN ZIP_LISTS expected errors)
   string(REPLACE "// expect: " "kinecal: " sentence "${sentence}")
   string(FIND "${error}" "${sentence}" place)
   if(NOT sentence OR place EQUAL -1)
-    fail("should say '${sentence}', and says '${error}'")
+    fail("should say '${sentence}', but says '${error}'")
   endif()
 endforeach()
 
@@ -48,9 +48,9 @@ foreach(name suggestion IN ZIP_LISTS meant suggested)
   string(REGEX REPLACE "// meant: (nothing)?" "" name "${name}")
   string(REGEX REPLACE "DidYouMean<|>|'|, " "" suggestion "${suggestion}")
   if(NOT name STREQUAL suggestion)
-    fail("should suggest '${name}', and suggests '${suggestion}'")
+    fail("should suggest '${name}', but suggests '${suggestion}'")
   endif()
 endforeach()
 
 list(LENGTH expected count)
-message(STATUS "${COMPILER}: ${count} wrong lines are told as they should be")
+message(STATUS "${COMPILER}: ${count} wrong lines give the expected errors")

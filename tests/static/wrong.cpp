@@ -1,6 +1,6 @@
-// Wrong lines.  Each has one error, the sentence that stands above it after "expect:", and nothing
-// follows from it; where "meant:" stands, the compiler asks whether that was meant.  run.cmake
-// compares them in order, so each sentence is the first and only error of its line.
+// Wrong lines.  Each gives exactly one error: the sentence after "expect:" above it.  "meant:" is
+// the name that the compiler suggests.  run.cmake compares errors and suggestions in order, so each
+// sentence is the first and only error of its line.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_to_pixel.hpp"
@@ -48,8 +48,8 @@ Chain<Fetch, "torso_lift_link", "head_pan_link", Names<"haed_pan_joint">> misspe
 
 // ---- before the constructors of crates, in which all further checks stand
 
-// expect: a part of this Crate is none; parts are sensors, free parameters, Block, PriorOn and
-Crate<Arm, Head, HandEye, PointToPlane> part_that_is_none;
+// expect: this template argument is not a Crate part; parts are sensors, free parameters, Block
+Crate<Arm, Head, HandEye, PointToPlane> not_a_part;
 
 // expect: the crate has no part of this name; correct the name
 // meant: hand_eye
@@ -72,7 +72,7 @@ auto value_half_free(const Shift& result) {
 
 // ---- free parameters
 
-// expect: the robot has no joint of the name in this JointOffset; correct the name
+// expect: the robot does not have the joint in this JointOffset; correct its name
 // meant: elbow_flex_joint
 Crate<Arm, Head, JointOffset<"elbow_flx_joint">, HandEye> misspelt_joint_offset;
 
@@ -83,18 +83,18 @@ Crate<Arm, Head, JointOffset<"head_camera_joint">, HandEye> joint_offset_of_fixe
 Crate<Finger, JointOffset<"finger \\right\\">, Block<"ground", PointToPlane, "finger">>
     joint_offset_of_mimic;
 
-// expect: the robot has no joint of the name in this FrameOffset; correct the name, or write
+// expect: the robot does not have the joint in this FrameOffset; correct its name, or write
 // meant: head_camera_rgb_joint
 Crate<Arm, Head, FrameOffset<"head_camera_rgb_jiont">, HandEye> misspelt_frame_offset;
 
-// expect: the robot has no joint of the name in this FrameOffset; correct the name, or write
+// expect: the robot does not have the joint in this FrameOffset; correct its name, or write
 // meant: nothing
 Crate<Arm, Head, FrameOffset<"checkerboard">, HandEye> unknown_frame_offset;
 
 // expect: this VirtualFrame has the name of a joint of the robot; write FrameOffset for the joint
 Crate<Arm, Head, VirtualFrame<"wrist_roll_joint">, HandEye> virtual_frame_named_as_joint;
 
-// expect: this frame offset frees none of its axes; choose some or leave it out
+// expect: this frame offset does not free any axis; choose axes or leave it out
 Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes{}>, HandEye> frame_without_axes;
 
 // expect: a free parameter occurs twice in this Crate; leave one of them out
@@ -102,24 +102,24 @@ Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes::xyz>,
       FrameOffset<"head_pan_joint", Axes{.z = true, .c = true}>, HandEye>
     overlapping_axes;
 
-// expect: the crate has no camera of the name in this parameter; add the camera or correct the name
+// expect: the crate does not have the camera in this parameter; add the camera or correct its name
 // meant: camera
 Crate<Arm, Head, DepthIntrinsics<"camrea">, HandEye> misspelt_camera;
 
-// expect: the sensor in this parameter has no such settings; intrinsics are those of a Camera3d or
+// expect: the sensor in this parameter does not have these settings; a Camera3d or Camera2d has
 Crate<Arm, Pinhole, DepthIntrinsics<"pinhole">, Block<"pixels", PointToPixel, "arm", "pinhole">>
     depth_of_pinhole_camera;
 
-// expect: the sensor in this parameter has no such settings; intrinsics are those of a Camera3d or
+// expect: the sensor in this parameter does not have these settings; a Camera3d or Camera2d has
 Crate<Arm, Head, CameraIntrinsics<"arm">, HandEye> intrinsics_of_arm;
 
-// expect: nothing depends on this free parameter; no error block has a sensor that it moves: leave
+// expect: no residual depends on this free parameter, because no error block has a sensor that it
 Crate<Arm, Head, JointOffset<"torso_lift_joint">, HandEye> above_all_chains;
 
-// expect: nothing depends on this free parameter; no error block has a sensor that it moves: leave
+// expect: no residual depends on this free parameter, because no error block has a sensor that it
 Crate<Arm, Head, JointOffset<"elbow_flex_joint">, Ground> moves_unused_sensor;
 
-// expect: no joint or frame of the name in this PriorOn is free in the crate; correct the name or
+// expect: the joint or frame in this PriorOn is not free in the crate; correct its name or leave
 // meant: head_pan_joint
 Crate<Arm, Head, FrameOffset<"head_pan_joint">, HandEye, PriorOn<"small", "head_pn_joint">>
     misspelt_prior;
@@ -162,10 +162,10 @@ Crate<JointOffset<"elbow_flex_joint">, HandEye> no_sensors;
 // expect: this Crate has no Block; add what is to be minimized
 Crate<Arm, Head, JointOffset<"elbow_flex_joint">> no_blocks;
 
-// expect: the chains of this Crate start at different links or are of different robots; features
+// expect: the chains of this Crate start at different links or belong to different robots; features
 Crate<Arm, Camera3d<"camera", Chain<Fetch, "base_link", "head_pan_link">>, HandEye> different_bases;
 
-// expect: the chains of this Crate start at different links or are of different robots; features
+// expect: the chains of this Crate start at different links or belong to different robots; features
 Crate<Arm, Camera3d<"camera", Chain<Every, "torso", "lower">>, HandEye> different_robots;
 
 // expect: two sensors of this Crate have the same name; rename one of them

@@ -1,4 +1,4 @@
-// What a bag holds, as text, for comparison.
+// The content of a bag as text, for comparison.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace kinecal {
 
 struct BagReading {
-  std::vector<std::string> topics;    ///< "name type encoding definition", as they were asked for
+  std::vector<std::string> topics;    ///< "name type encoding definition", the wanted ones
   std::vector<std::string> messages;  ///< "name time data"
   std::vector<std::string> errors, warnings;
 };

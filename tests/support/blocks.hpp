@@ -6,7 +6,7 @@
 
 namespace kinecal::test {
 
-/// PointToPoint again, written by a user.
+/// PointToPoint as a user would write it.
 struct UnknownDifference {
   template <class S>
   [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
@@ -14,8 +14,8 @@ struct UnknownDifference {
   }
 };
 
-/// PointToPoint again, with a piece that is never used: nobody can know that it is a difference,
-/// and jets find its derivatives.
+/// PointToPoint with a piece that is never used: it is not detected as a difference, so jets
+/// compute its derivatives.
 struct HiddenDifference {
   template <class S>
   [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
@@ -24,7 +24,7 @@ struct HiddenDifference {
   }
 };
 
-/// One residual of two points: their distance, less what it should be.
+/// One residual of two points: their distance minus the expected one.
 struct Distance {
   double expected = 0.2;
   template <class S>
@@ -36,7 +36,7 @@ struct Distance {
   }
 };
 
-/// Five residuals of two points, none of them linear.
+/// Five nonlinear residuals of two points.
 struct FiveOfTwo {
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 5, 1> operator()(const Vector3<S>& p_a,

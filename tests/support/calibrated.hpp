@@ -1,7 +1,8 @@
-// A calibration from files, for tests: read, assemble, solve; mistakes in the files throw.
+// A calibration from files: read, assemble, solve; errors in the files throw.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 

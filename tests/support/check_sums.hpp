@@ -1,5 +1,6 @@
-// Normal equations that never form a Jacobian against rows that are stacked and multiplied out: for
-// any error blocks, with each loss, for what is free and what is held, in packets and in doubles.
+// Normal equations that never form a Jacobian against the rows of the oracle, stacked and
+// multiplied out: for any error blocks, with each loss, for what is free and what is held, in
+// packets and in doubles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,12 +12,37 @@ namespace kinecal::test {
 inline constexpr double kOrderOfSums = 1e-10;
 // The same operations in the same order but for what compilers fuse; sums of lanes.
 inline constexpr double kSameArithmetic = 1e-12;
+// The oracle's formulas are others: some dozen operations on metres, radians or residual_of.
+inline constexpr double kOtherFormulas = 1e-12;
 
 struct Scene {
   std::string base = "base_link", arm_frame = "hand";
-  double residual = 0.05;    ///< the scale of the losses: some features are on either side of it
   double residual_of = 1.0;  ///< what the residual is the difference of; for rounding
+  bool either_sign = false;  ///< of the residual, as that of planes
 };
+
+/// Where the blocks of a scene are evaluated.
+inline std::vector<double> scene_values() {
+  return random_values(wide_table(), 0.05, 4);
+}
+
+/// Samples of other values, which leave residuals.
+template <class S>
+std::vector<Sample> scene_samples(const BasicProblem<S>& problem, const Scene& scene) {
+  std::vector<double> truth = scene_values();
+  for (std::size_t i = 0; i < truth.size(); ++i) truth[i] += 5e-3 * static_cast<double>(i % 5);
+  return wide_samples(problem, truth, 9, scene.arm_frame);
+}
+
+/// The rows of a scene's error blocks by the oracle; they do not depend on weights and losses.
+template <class AddBlocks>
+OracleRows oracle_rows_of(const Scene& scene, AddBlocks&& add_blocks) {
+  const Problem problem = wide_problem<Packet>(scene.base);
+  OracleProblem oracle = oracle_of(problem);
+  add_blocks(oracle, TermOptions{});
+  for (const Sample& sample : scene_samples(problem, scene)) oracle.add_sample(sample);
+  return oracle.rows(scene_values());
+}
 
 inline std::vector<std::pair<std::string, FreeSet>> free_sets(const ParameterTable& table) {
   const FreeSet all = all_free(table);
@@ -88,38 +114,61 @@ inline void expect_same_rows(const Problem& packets, const BasicProblem<double>&
   }
 }
 
-/// @param add_blocks  adds the error blocks under test to a problem, with the options given
+/// The rows in doubles for all parameters are those of the oracle.
+inline void expect_rows_of_oracle(const BasicProblem<double>& numbers, const OracleRows& oracle,
+                                  const std::vector<double>& x, const Scene& scene) {
+  const FreeSet all = all_free(numbers.table());
+  const auto found = rows_of(numbers, x, &all);
+  ASSERT_EQ(found.size(), oracle.size());
+  for (const auto& [key, rows] : found) {
+    SCOPED_TRACE("term " + std::to_string(key.first) + ", sample " + std::to_string(key.second));
+    ASSERT_TRUE(oracle.contains(key));
+    expect_rows_of_oracle(rows, oracle.at(key), kOtherFormulas * scene.residual_of, kOtherFormulas,
+                          scene.either_sign);
+  }
+}
+
+/// @param add_blocks   adds the error blocks under test to a problem, with the options given
+/// @param oracle_rows  theirs
+/// @param residual     the scale of the losses
 template <class AddBlocks>
-void check_sums(const Scene& scene, AddBlocks&& add_blocks) {
+void check_sums(const Scene& scene, AddBlocks&& add_blocks, const OracleRows& oracle_rows,
+                double residual) {
+  ASSERT_FALSE(oracle_rows.empty());
   for (const LossType type : {LossType::none, LossType::huber, LossType::cauchy, LossType::tukey}) {
     SCOPED_TRACE("loss " + std::to_string(static_cast<int>(type)) + ", base " + scene.base +
                  ", the arm's points in " + scene.arm_frame);
     TermOptions options;
     options.weight = 2.5;
-    options.loss = {type, options.weight * scene.residual};
+    options.loss = {type, options.weight * residual};
     Problem packets = wide_problem<Packet>(scene.base);
     BasicProblem<double> numbers = wide_problem<double>(scene.base);
+    OracleProblem oracle = oracle_of(packets);
     add_blocks(packets, options);
     add_blocks(numbers, options);
-    const std::vector<double> x = random_values(packets.table(), 0.05, 4);
-    std::vector<double> truth = x;
-    for (std::size_t i = 0; i < truth.size(); ++i) truth[i] += 1e-2 * static_cast<double>(i % 3);
-    for (const Sample& s : wide_samples(packets, truth, 9, scene.arm_frame)) {
+    add_blocks(oracle, options);
+    const std::vector<double> x = scene_values();
+    for (const Sample& s : scene_samples(packets, scene)) {
       packets.add_sample(s);
       numbers.add_sample(s);
+      oracle.add_sample(s);
     }
+    expect_rows_of_oracle(numbers, oracle_rows, x, scene);
+    const auto expected = [&](const FreeSet& free, Losses losses = Losses::as_given) {
+      return oracle.multiplied_out(oracle_rows, x, free, losses);
+    };
     const FreeSet all = all_free(packets.table());
-    const double longest = column_lengths(multiplied_out(packets, x, all)).maxCoeff();
+    const double longest = column_lengths(expected(all)).maxCoeff();
     for (const auto& [name, free] : free_sets(packets.table())) {
       SCOPED_TRACE("free: " + name);
       const NormalEquations in_packets = normal_equations(packets, x, &free);
       const NormalEquations in_numbers = normal_equations(numbers, x, &free);
-      expect_same(in_packets, multiplied_out(packets, x, free), kOrderOfSums, longest);
-      expect_same(in_numbers, multiplied_out(numbers, x, free), kOrderOfSums, longest);
+      expect_same(in_packets, expected(free), kOrderOfSums, longest);
+      expect_same(in_numbers, expected(free), kOrderOfSums, longest);
       expect_same(in_packets, in_numbers, kSameArithmetic * scene.residual_of, longest);
       expect_same_rows(packets, numbers, x, free, scene);
       const NormalEquations convex = normal_equations(packets, x, &free, Losses::convex);
-      expect_same(convex, multiplied_out(packets, x, free, Losses::convex), kOrderOfSums, longest);
+      expect_same(convex, expected(free, Losses::convex), kOrderOfSums, longest);
     }
     const NormalEquations normal = normal_equations(packets, x, &all);
     EXPECT_GT(normal.cost, 0.0);
@@ -133,13 +182,23 @@ void check_sums(const Scene& scene, AddBlocks&& add_blocks) {
   }
 }
 
-/// The same for one block between sensors.
+/// The same for one block between sensors, half of its features beyond the scale of the losses.
 template <ErrorBlock B>
 void check_sums_of(const Scene& scene, const B& block, const std::vector<std::string>& sensors) {
   SCOPED_TRACE(sensors.front() + " and " + sensors.back());
-  check_sums(scene, [&](auto& problem, const TermOptions& options) {
+  const auto add_block = [&](auto& problem, const TermOptions& options) {
     problem.add_block("block", block, sensors, options);
-  });
+  };
+  const OracleRows rows = oracle_rows_of(scene, add_block);
+  std::vector<double> norms;
+  for (const auto& [key, of_sample] : rows) {
+    for (Eigen::Index i = 0; i < of_sample.residual.size(); i += kResiduals<B>) {
+      norms.push_back(of_sample.residual.segment(i, kResiduals<B>).norm());
+    }
+  }
+  ASSERT_GE(norms.size(), 9u);
+  std::sort(norms.begin(), norms.end());
+  check_sums(scene, add_block, rows, 0.5 * (norms[norms.size() / 2] + norms[norms.size() / 2 + 1]));
 }
 
 }  // namespace kinecal::test

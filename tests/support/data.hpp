@@ -1,4 +1,4 @@
-// Where the real data sets are: KINECAL_DATA, by default ../shared/data beside the checkout.
+// The folder of the real data sets: KINECAL_DATA, by default ../shared/data beside the checkout.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,7 +21,7 @@ inline bool data_required() {
 
 }  // namespace kinecal::test
 
-/// Skips the test, with the reason, where a data set is absent; fails if KINECAL_REQUIRE_DATA=1.
+/// Skips the test and says why if a data set is absent; fails with KINECAL_REQUIRE_DATA=1.
 #define KINECAL_NEEDS_DATA(set)                                                             \
   if (!std::filesystem::exists(kinecal::test::data_folder() / (set))) {                     \
     if (kinecal::test::data_required()) {                                                   \

@@ -1,4 +1,4 @@
-// All robots that are shipped, and the real ones where their data are: name and URDF.
+// All robots with their URDFs: the shipped ones, and the real ones if their data are present.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

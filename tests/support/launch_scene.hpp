@@ -1,4 +1,4 @@
-// A result of a calibration and a robot's folder to install it into, on the disk.
+// On disk: the result of a calibration, and a robot's folder to install it into.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace kinecal::test {
 
-/// As on Fetch: CRLF here and there, comments that look like what is set, both kinds of quotes.
+/// As on Fetch: some CRLF, comments that look like settings, both kinds of quotes.
 inline const char* const kLaunch =
     "<?xml version=\"1.0\"?>\r\n"
     "<launch>\n"
@@ -62,7 +62,7 @@ class InstallScene : public FolderTest {
   }
 
   [[nodiscard]] std::string launch() const { return read("robot/robot.launch"); }
-  /// Replaces a piece of a file, once.
+  /// Replaces the first occurrence of a text in a file.
   void spoil(const std::string& name, const std::string& from, const std::string& to) const {
     std::string text = read(name);
     const auto at = text.find(from);

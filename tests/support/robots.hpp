@@ -1,4 +1,4 @@
-// Robots in code, for tests that need no files.
+// Robots in code, for tests without files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,8 +13,8 @@ inline Pose<double> origin(const Vector3<double>& xyz, const Vector3<double>& rp
   return {rotation_from_rpy(rpy), xyz};
 }
 
-/// A torso that slides, an arm with skew axes and a gripper whose second finger mimics the first, a
-/// pan-tilt head with a camera.  Every kind of joint that a chain takes occurs.
+/// A sliding torso, an arm with skew axes and a gripper whose second finger mimics the first, and a
+/// pan-tilt head with a camera: every kind of joint that a chain takes.
 inline Robot mobile_manipulator() {
   using enum JointType;
   return Robot(

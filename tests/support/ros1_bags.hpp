@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/bags/ros1_bag.hpp"
-#include "kinecal/io/bags/write_ros1_bag.hpp"
+#include "kinecal/io/bags/ros1/read_bag.hpp"
+#include "kinecal/io/bags/ros1/write_bag.hpp"
 
 namespace kinecal::test {
 
@@ -30,7 +30,7 @@ inline std::ostream& operator<<(std::ostream& out, const Recorded& m) {
 }
 
 struct BagContents {
-  std::vector<BagTopic> topics;  ///< that were asked for
+  std::vector<BagTopic> topics;  ///< the wanted ones
   std::vector<Recorded> messages;
   std::vector<std::string> errors, warnings;
 };
@@ -73,7 +73,7 @@ inline std::vector<Recorded> some_messages(int count) {
   return messages;
 }
 
-/// @param close  otherwise it is a recording that was interrupted
+/// @param close  false: an interrupted recording
 inline std::string bag_of(const std::vector<Recorded>& messages,
                           Compression compression = Compression::none,
                           std::size_t chunk_bytes = 300, bool close = true) {
@@ -88,7 +88,7 @@ inline std::string bag_of(const std::vector<Recorded>& messages,
   return out.str();
 }
 
-/// What this kinecal was built with.
+/// The compressions that this build of kinecal reads.
 inline std::vector<Compression> compressions_of_ros1() {
   std::vector<Compression> found;
   for (const Compression c : {Compression::none, Compression::bz2, Compression::lz4}) {

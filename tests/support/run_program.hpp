@@ -1,4 +1,4 @@
-// Programs run as their users run them, in a folder of their own.
+// Runs programs as users do, each in its own folder.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,7 +20,7 @@ struct Outcome {
   std::string out, err;
 };
 
-/// A program and its arguments, by way of the shell, in a folder.
+/// Runs a program with arguments through the shell, in a folder.
 inline Outcome run_in(const std::filesystem::path& folder, const std::string& call) {
   const auto read = [&](const char* name) {
     std::ifstream file(folder / name, std::ios::binary);
@@ -33,7 +33,7 @@ inline Outcome run_in(const std::filesystem::path& folder, const std::string& ca
 
 class ProgramTest : public FolderTest {
  protected:
-  /// A program and its arguments, by way of the shell.
+  /// Runs a program with arguments through the shell.
   [[nodiscard]] Outcome run(const std::string& call) const { return run_in(folder_, call); }
 };
 

@@ -1,4 +1,4 @@
-// Whether a joint as constant data is the same as one at run time, field by field, bit by bit.
+// Compares a joint as constant data with one at run time, field by field, bit for bit.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/problem.hpp"
-#include "support/instances.hpp"
+#include "kinecal/crate/evaluate.hpp"
+#include "support/oracle.hpp"
 #include "support/robots.hpp"
 
 namespace kinecal::test {
@@ -68,18 +68,15 @@ inline std::vector<double> random_values(const ParameterTable& table, double sca
   return values;
 }
 
-/// The pose in the base of a frame of a sensor in a sample, at the given values.
+/// The pose in the base of a frame of a sensor in a sample, at the given values, by the oracle.
 template <class S>
 Pose<double> tip_pose(const BasicProblem<S>& problem, std::size_t sensor, const std::string& frame,
                       const Sample& sample, std::span<const double> values) {
   const SensorModel& model = problem.sensors()[sensor];
-  for (std::size_t c = 0; c < model.chains().size(); ++c) {
-    if (model.chains()[c].tip != frame) continue;
-    return forward_kinematics(
-        model.chains()[c], [&](const std::string& joint) { return *sample.position(joint); },
-        corrections_for(model.parameters()[c], values));
-  }
-  throw std::invalid_argument("no frame " + frame);
+  const OraclePose<double> pose =
+      oracle_pose(mobile_manipulator(), model.chains().front().base, model.sensor().frame, frame,
+                  sample, OracleValues<double>(problem.table(), values));
+  return {pose.r, pose.t};
 }
 
 /// Samples that fit the problem's robot exactly at the given values: joint positions are random,
@@ -93,6 +90,7 @@ std::vector<Sample> exact_samples(const BasicProblem<S>& problem, std::span<cons
   std::vector<Sample> samples;
   const CameraInfo info = camera_info();
   const Robot robot = mobile_manipulator();
+  const OracleValues<double> value(problem.table(), values);
   for (int n = 0; n < count; ++n) {
     Sample sample;
     sample.source = "scene:" + std::to_string(n);
@@ -105,26 +103,21 @@ std::vector<Sample> exact_samples(const BasicProblem<S>& problem, std::span<cons
     const auto tip = [&](std::size_t sensor, const std::string& frame) {
       return tip_pose(problem, sensor, frame, sample, values);
     };
-    std::array<double, 6> camera{};
-    std::array<double, 4> eye{};
-    for (std::size_t i = 0; i < 6; ++i) {
-      camera[i] = values[static_cast<std::size_t>(problem.sensors()[1].camera_parameters()[i])];
-      if (i >= 4) continue;
-      eye[i] = values[static_cast<std::size_t>(problem.sensors()[2].camera_parameters()[i])];
-    }
     Observation arm{"arm", {}}, depth_camera{"camera", {}, info}, pinhole{"eye", {}, info};
     for (int f = 0; f < features; ++f) {
       const double z = depth(random);
       const Vector3<double> seen{side(random) * z, side(random) * z, z};  // braces: in this order
       // The raw pixel and depth that mean this point at these camera parameters.
-      const double z0 = z / (1.0 + camera[5]) - camera[4];
-      const double u = seen.x() / z * 550 * (1 + camera[0]) + 320 * (1 + camera[2]);
-      const double v = seen.y() / z * 545 * (1 + camera[1]) + 240 * (1 + camera[3]);
+      const double z0 = z / (1.0 + value("camera_z_scaling")) - value("camera_z_offset");
+      const double u =
+          seen.x() / z * 550 * (1 + value("camera_fx")) + 320 * (1 + value("camera_cx"));
+      const double v =
+          seen.y() / z * 545 * (1 + value("camera_fy")) + 240 * (1 + value("camera_cy"));
       const Vector3<double> recorded((u - 320) * z0 / 550, (v - 240) * z0 / 545, z0);
       depth_camera.features.push_back({"camera_optical_frame", recorded});
       const Vector3<double> p_base = tip(1, "camera_optical_frame") * seen;
       arm.features.push_back({arm_frame, tip(0, arm_frame).inverse() * p_base});
-      const Eigen::Vector2d pixel = PinholeCamera<>::from(info).project(seen, eye);
+      const Eigen::Vector2d pixel = oracle_pixel(info, seen, "eye", value);
       pinhole.features.push_back({"camera_optical_frame", {pixel.x(), pixel.y(), 0}});
     }
     sample.observations = {arm, depth_camera, pinhole};

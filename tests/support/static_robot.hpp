@@ -1,13 +1,13 @@
-// A robot as constant data in which every kind of joint that a chain takes occurs: skew and
-// principal axes of either sign, joints that slide, mimics, origins that shift, turn and do
-// neither. SPDX-License-Identifier: Apache-2.0
+// A robot as constant data with every kind of joint that a chain takes: skew and principal axes of
+// either sign, sliding joints, mimics, origins that translate, rotate, or are the identity.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "kinecal/kinematics/static_chain.hpp"
 
 namespace kinecal::test {
 
-/// A turn by a rational angle (cosine 0.8, sine 0.6), so that the compiler can write it.
+/// A rotation with rational cosine (0.8) and sine (0.6), so that it is an exact constant.
 constexpr PoseData turned_about(int axis, std::array<double, 3> shift = {}) {
   constexpr double kCos = 0.8, kSin = 0.6;
   if (axis == 0) return {{1, 0, 0, 0, kCos, -kSin, 0, kSin, kCos}, shift};

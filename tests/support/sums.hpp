@@ -1,5 +1,4 @@
-// The scene with more sensors, and the normal equations as a textbook has them: rows stacked and
-// multiplied out.
+// The scene with more sensors, and normal equations against those of the oracle.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,7 +7,7 @@
 #include <map>
 
 #include "kinecal/crate/evaluate.hpp"
-#include "support/scene.hpp"
+#include "support/oracle_problem.hpp"
 
 namespace kinecal::test {
 
@@ -88,34 +87,6 @@ std::map<std::pair<int, int>, TermResiduals> rows_of(const BasicProblem<S>& prob
         << "term " << term << " visits sample " << sample << " again";
   });
   return rows;
-}
-
-/// rho' J^T J and so on from the rows, feature by feature.
-template <class S>
-NormalEquations multiplied_out(const BasicProblem<S>& problem, std::span<const double> values,
-                               const FreeSet& free, Losses losses = Losses::as_given) {
-  NormalEquations total(free.size());
-  const auto add = [&](const TermOptions& options, int size, const TermResiduals& rows) {
-    for (Eigen::Index i = 0; i < rows.residual.size(); i += size) {
-      const Eigen::VectorXd r = options.weight * rows.residual.segment(i, size);
-      const Eigen::MatrixXd j = options.weight * rows.jacobian.middleRows(i, size);
-      const auto loss = options.loss_for(losses)(r.squaredNorm());
-      total.cost += 0.5 * loss.rho;
-      total.gradient += loss.derivative * j.transpose() * r;
-      total.hessian += loss.derivative * j.transpose() * j;
-    }
-  };
-  const auto undefined = evaluate(problem, values, &free, [&](int t, int, const auto& rows) {
-    const Term<S>& term = *problem.terms()[static_cast<std::size_t>(t)];
-    add(term.options(), term.feature_size(), rows);
-  });
-  EXPECT_FALSE(undefined.has_value());
-  TermResiduals rows;
-  for (const PriorTerm& prior : problem.priors()) {
-    prior.evaluate(problem.table(), values, &free, rows);
-    for (int n = 0; n < problem.num_samples(); ++n) add(prior.options, Prior::kRows, rows);
-  }
-  return total;
 }
 
 /// How much of a parameter there is in normal equations: the root of its diagonal element, the

@@ -1,4 +1,4 @@
-// A folder of a test's own, removed with all that is in it.
+// A temporary folder of one test, removed with its content.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

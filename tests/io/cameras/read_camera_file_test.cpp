@@ -96,12 +96,12 @@ class CameraFile : public test::FolderTest {
       (void)read(text, which);
       diagnostics_.throw_if_errors();
     } catch (const InputError& error) {
-      std::string told = error.what();
+      std::string message = error.what();
       const std::string before = folder_.string() + "/";
-      for (auto at = told.find(before); at != std::string::npos; at = told.find(before)) {
-        told.erase(at, before.size());
+      for (auto at = message.find(before); at != std::string::npos; at = message.find(before)) {
+        message.erase(at, before.size());
       }
-      return told;
+      return message;
     }
     return "(not refused)";
   }
@@ -172,18 +172,18 @@ TEST_F(CameraFile, ReadsOneCameraOfACamchain) {
 
 TEST_F(CameraFile, ACameraMustBeChosenIfThereAreSeveral) {
   EXPECT_THAT(refusal(kKalibr),
-              HasSubstr("c.yaml: there are several cameras, cam0 to cam1; say which"));
+              HasSubstr("c.yaml: there are several cameras, cam0 to cam1; choose one"));
   EXPECT_THAT(refusal(kKalibr, "cma1"), HasSubstr("no camera 'cma1'; did you mean 'cam1'?"));
-  EXPECT_THAT(refusal(kMessage, "cam0"), HasSubstr("no 'cam0'"));
+  EXPECT_THAT(refusal(kMessage, "cam0"), HasSubstr("there is no 'cam0'"));
   const std::string text = kKalibr;
   EXPECT_EQ(read(text.substr(0, text.find("cam1:"))).k, kMatrix);
 }
 
 TEST_F(CameraFile, RefusesKalibrsOtherModelsByName) {
   EXPECT_EQ(refusal(replaced(kKalibr, "model: pinhole", "model: omni"), "cam0"),
-            "c.yaml:3: cam0: camera_model 'omni' is not read; pinhole is");
+            "c.yaml:3: cam0: camera_model 'omni' is not supported; it must be pinhole");
   EXPECT_EQ(refusal(replaced(kKalibr, "radtan", "equidistant"), "cam0"),
-            "c.yaml:5: cam0: distortion_model 'equidistant' is not read; radtan is");
+            "c.yaml:5: cam0: distortion_model 'equidistant' is not supported; it must be radtan");
   EXPECT_EQ(refusal(replaced(kKalibr, "550.5, 551.5", "550.5"), "cam0"),
             "c.yaml:6: cam0: intrinsics has 3 numbers, not 4");
   EXPECT_THAT(refusal(replaced(kKalibr, "resolution: [640, 480]", "res: []"), "cam0"),
@@ -220,7 +220,8 @@ TEST_F(CameraFile, OpencvsKeysMayBeWrittenInOtherWays) {
 TEST_F(CameraFile, RefusesWhatOpencvHasAndCameraInfoHasNot) {
   EXPECT_THAT(refusal(replaced(replaced(kOpencv, ", 0.01 ]", " , 0.01, 0, 0, 0, 0, 0, 0, 0 ]"),
                                "rows: 5", "rows: 12")),
-              HasSubstr("c.yaml:13: distortion_coefficients has 12 numbers; 4, 5 and 8"));
+              HasSubstr("c.yaml:13: distortion_coefficients has 12 numbers; distortion models of "
+                        "camera_info have 4, 5 or 8"));
   EXPECT_THAT(refusal(replaced(kOpencv, "flags: 0", "fisheye_model: 1")),
               HasSubstr("c.yaml:6: fisheye_model"));
   EXPECT_THAT(refusal(replaced(kOpencv, "rows: 5", "rows: 4")),
@@ -234,7 +235,7 @@ TEST_F(CameraFile, WithoutASizeIsReadWithAWarning) {
   EXPECT_THAT(diagnostics_.warnings, testing::ElementsAre(HasSubstr("c.yaml: the size of the")));
 }
 
-TEST_F(CameraFile, TellsWhatIsWrongWithItsLine) {
+TEST_F(CameraFile, ReportsErrorsWithTheirLine) {
   EXPECT_THAT(refusal(replaced(kMessage, "0.0, 0.0, 1.0]\nr", "0.0, 1.0]\nr")),
               HasSubstr("c.yaml:8: k has 8 numbers, not 9"));
   EXPECT_THAT(refusal(replaced(kMessage, "551.5", "abc")),
@@ -248,7 +249,7 @@ TEST_F(CameraFile, TellsWhatIsWrongWithItsLine) {
               HasSubstr("c.yaml:8: 'k' says the same as 'K' in line 12; keep one of them"));
   EXPECT_THAT(refusal(replaced(kMessage, "roi", "k: []\nroi")), HasSubstr("'k' occurs twice"));
   EXPECT_THAT(refusal("camera_matrix: {rows: 3, cols: 3, data: 5}"),
-              HasSubstr("c.yaml:1: camera_matrix is no list of numbers"));
+              HasSubstr("c.yaml:1: camera_matrix is neither a list of numbers"));
 }
 
 TEST_F(CameraFile, RefusesAMisspeltMatrixInsteadOfDoingWithoutIt) {
@@ -264,9 +265,10 @@ TEST_F(CameraFile, RefusesAMisspeltMatrixInsteadOfDoingWithoutIt) {
   EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("unknown key 'grabber' is ignored")));
 }
 
-TEST_F(CameraFile, RefusesWhatIsNoCameraFile) {
-  EXPECT_THAT(refusal("a: 1"), HasSubstr("c.yaml: is no camera file: neither camera_matrix"));
-  EXPECT_THAT(refusal(""), HasSubstr("c.yaml: is no camera file"));
+TEST_F(CameraFile, RefusesWhatIsNotACameraFile) {
+  EXPECT_THAT(refusal("a: 1"),
+              HasSubstr("c.yaml: is not a camera file: it has neither camera_matrix"));
+  EXPECT_THAT(refusal(""), HasSubstr("c.yaml: is not a camera file"));
   EXPECT_THAT(refusal("[1, 2"), HasSubstr("c.yaml:"));
   EXPECT_THAT(refusal(","), HasSubstr("c.yaml:"));
   EXPECT_THROW((void)read_camera_file((folder_ / "none.yaml").string(), diagnostics_), InputError);

@@ -285,7 +285,7 @@ TEST(ReadConfig, EmptyFilesAreErrors) {
   EXPECT_THAT(errors("abc\n"), ElementsAre("calibrate.yaml: the file is 'abc', not a map"));
 }
 
-TEST(ReadConfig, SecondDocumentIsAnErrorAndASeparatorIsNone) {
+TEST(ReadConfig, SecondDocumentIsAnErrorButASeparatorIsNot) {
   EXPECT_THAT(errors("---\n" + kRos1 + "---\n"), IsEmpty());
   EXPECT_THAT(errors(kRos1 + "---\na: 1\n"),
               ElementsAre(HasSubstr("calibrate.yaml:12: a second document begins here")));
@@ -454,7 +454,7 @@ TEST(ReadConfig, AxesAreFlagsInEverySpelling) {
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.step().free_frames[0].axes,
               ElementsAre(true, true, true, false, false, false));
-  for (const std::string bad : {"2", "0.5", "perhaps", "[true]", "", "!own true"}) {
+  for (const std::string bad : {"2", "0.5", "perhaps", "yEs", "[true]", "", "!own true"}) {
     EXPECT_THAT(errors(with(kRos1, "y: true", "y: " + bad)),
                 ElementsAre(HasSubstr("calibrate.yaml:8: free frame 'board': y is ")))
         << bad;
@@ -472,7 +472,7 @@ TEST(ReadConfig, TwoOfThreeRotationsAreAcceptedWithAWarning) {
   ASSERT_EQ(two.warnings.size(), 1u);
   EXPECT_THAT(two.warnings[0],
               HasSubstr("calibrate.yaml:8: free frame 'board': roll and yaw are free and pitch is "
-                        "not: what is freed are two components of a rotation vector"));
+                        "not: the free parameters are two components of a rotation vector"));
   EXPECT_THAT(warnings(with(kRos1, "x: true", "roll: true")), IsEmpty());
   EXPECT_THAT(warnings(with(kRos1, "x: true", "roll: true, pitch: true, yaw: true")), IsEmpty());
 }
@@ -500,7 +500,7 @@ TEST(ReadConfig, InitialValueOfAFrameThatIsNotFreeIsAnError) {
 TEST(ReadConfig, InitialValueOfAnAxisThatIsNotFreeIsIgnoredWithAWarning) {
   EXPECT_THAT(warnings(kRos1 + with(kInitial, "x: 0.5", "yaw: 0.2, pitch: 0.0")),
               ElementsAre("calibrate.yaml:12: initial value of free frame 'board': yaw is not "
-                          "free: its initial value is ignored, as upstream does"));
+                          "free: its initial value is ignored, as robot_calibration does"));
   // Two angles make a rotation vector with a third component.
   EXPECT_THAT(warnings(with(kRos1, "x: true", "roll: true, yaw: true") +
                        "free_frames_initial_values:\n - {name: board, roll: 0.5, yaw: 0.5}\n"),
@@ -508,7 +508,7 @@ TEST(ReadConfig, InitialValueOfAnAxisThatIsNotFreeIsIgnoredWithAWarning) {
                                  "is not free")));
 }
 
-TEST(ReadConfig, NumbersThatAreNoneAreErrors) {
+TEST(ReadConfig, TextsThatAreNotNumbersAreErrors) {
   for (const std::string bad :
        {"abc", ".nan", ".inf", "1e999", "'1,5'", "0x10", "!degrees 90", "deg(90)", "[1]", ""}) {
     EXPECT_THAT(errors(kRos1 + with(kInitial, "0.5", bad)),
@@ -583,7 +583,7 @@ TEST(ReadConfig, BlockNeedsItsTypeItsModelsAndItsParameter) {
 TEST(ReadConfig, MeshBlocksAreRefusedByName) {
   EXPECT_THAT(errors(with_block("type: chain3d_to_mesh, model: arm, link_name: base")),
               ElementsAre("calibrate.yaml:10: error block 'block': type 'chain3d_to_mesh' is not "
-                          "supported in this version; distances of points to a plane are: "
+                          "supported in this version; distances of points to a plane are: use "
                           "chain3d_to_plane"));
 }
 
@@ -699,7 +699,7 @@ TEST(ReadConfig, Ros1StepsRunInAlphabeticalOrderAndTakeOverWhatTheyLeaveOut) {
   EXPECT_EQ(second.error_blocks.size(), 1u);
 }
 
-TEST(ReadConfig, MistakesOfListsThatStepsShareAreToldOnce) {
+TEST(ReadConfig, ErrorsInListsThatStepsShareAreReportedOnce) {
   EXPECT_EQ(warnings(kRos1Steps).size(), 1u);
   EXPECT_THAT(errors(with(kRos1Steps, "model_a: camera", "model_a: camra")),
               ElementsAre("calibrate.yaml:18: error block 'hand_eye': model_a 'camra' is not a "
@@ -726,7 +726,7 @@ TEST(ReadConfig, StepsHaveOneBaseLink) {
               IsEmpty());
   EXPECT_THAT(errors(with(kRos1Steps, "  b_second:", "  b_second:\n    base_link: base")),
               ElementsAre("calibrate.yaml:10: step 'b_second': base_link 'base' differs from "
-                          "'torso' in line 1; all steps have the same"));
+                          "'torso' in line 1; all steps must have the same base_link"));
 }
 
 TEST(ReadConfig, StepsUnderCalStepsAreAMap) {
@@ -778,7 +778,7 @@ TEST(ReadConfig, Ros2ItemsWithoutAMapAreErrorsWithTheNearestOne) {
               Contains("calibrate.yaml:11: step 'calibrate': free frame 'board' has no map 'board' "
                        "beside the list 'free_frames'; did you mean 'bord'?"));
   EXPECT_THAT(warnings(with(kRos2, "board: {", "bord: {")), IsEmpty());
-  // A map that no list names is no misspelling of its neighbour.
+  // A map that no list names is not a misspelling of its neighbour.
   EXPECT_THAT(warnings(with(kRos2, "[arm, camera, eye]", "[arm, camera]")),
               ElementsAre("calibrate.yaml:9: step 'calibrate': unknown key 'eye' is ignored"));
   EXPECT_THAT(warnings(with(kRos2, "      arm:", "      arm1: {type: chain3d}\n      arm:")),

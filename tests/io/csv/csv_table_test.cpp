@@ -57,7 +57,7 @@ TEST(CsvTable, CountsLinesAlsoWithinCells) {
   EXPECT_EQ(rows[2].line, 5);
 }
 
-TEST(CsvTable, TellsWhereAQuotedCellGoesWrong) {
+TEST(CsvTable, ReportsWhereAQuotedCellGoesWrong) {
   Diagnostics diagnostics;
   (void)csv_rows("a\n\"b\nc", ',', "t.csv", diagnostics);
   (void)csv_rows("a\n\"b\"c,d\n", ',', "u.csv", diagnostics);

@@ -1,4 +1,4 @@
-// Samples from tables: every column where it belongs, every mistake with its place and name.
+// Samples from tables: every column where it belongs, every error with its place and name.
 #include "kinecal/io/csv/read_csv_samples.hpp"
 
 #include <gmock/gmock.h>
@@ -153,7 +153,7 @@ TEST_F(ReadCsvSamples, DoesNotDependOnTheLocale) {
   EXPECT_EQ(samples[0].observations[0].features[0].point.y(), 0.5) << "of the mapping";
 }
 
-TEST_F(ReadCsvSamples, TellsAColumnThatIsNotThereAndTheNearest) {
+TEST_F(ReadCsvSamples, ReportsAMissingColumnAndTheNearestName) {
   (void)read(kTable, with(kMapping, "dx]", "dxx]"));
   EXPECT_THAT(diagnostics_.errors,
               ElementsAre(AllOf(HasSubstr("m.yaml:14: column 'dxx'"), HasSubstr("is not in"))));
@@ -161,7 +161,7 @@ TEST_F(ReadCsvSamples, TellsAColumnThatIsNotThereAndTheNearest) {
   EXPECT_THAT(diagnostics_.errors, ElementsAre(AllOf(HasSubstr("m.yaml:3: column 'jiont_1'"),
                                                      HasSubstr("did you mean 'joint_1'?"))));
   (void)read(kTable, with(kMapping, "q1", "13"));
-  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("has 12 columns, counted from 1")));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("has columns 1 to 12")));
   (void)read(kTable, std::string("header: false\n") + kMapping);
   EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("the table has no header")));
   (void)read(with(kTable, "q2", "q1"), with(kMapping, "q2", "2"));
@@ -173,7 +173,7 @@ TEST_F(ReadCsvSamples, SuspectsTheSeparatorWhereThereIsOneColumn) {
   EXPECT_THAT(diagnostics_.errors, testing::Each(HasSubstr("is the separator right?")));
 }
 
-TEST_F(ReadCsvSamples, TellsCellsThatAreNoNumbers) {
+TEST_F(ReadCsvSamples, ReportsCellsThatAreNotNumbers) {
   (void)read(with(kTable, "1000.1", "1000.1mm"));
   EXPECT_THAT(diagnostics_.errors,
               testing::Each(HasSubstr("t.csv:2: column 'x' is '1000.1mm', which is not a number")));
@@ -193,7 +193,7 @@ TEST_F(ReadCsvSamples, CountsMistakesThatRepeatThemselves) {
   EXPECT_THAT(diagnostics_.errors.back(), HasSubstr("t.csv: 30 more cells"));
 }
 
-TEST_F(ReadCsvSamples, TellsMistakesOfTheMappingWithTheirLines) {
+TEST_F(ReadCsvSamples, ReportsErrorsOfTheMappingWithTheirLines) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"separator: colon\njoints:", "m.yaml:1: separator 'colon' is not one of"},
       {"jionts:", "m.yaml:1: unknown key 'jionts'; did you mean 'joints'?"},
@@ -216,7 +216,7 @@ TEST_F(ReadCsvSamples, TellsMistakesOfTheMappingWithTheirLines) {
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the file is a list, not a map")));
 }
 
-TEST_F(ReadCsvSamples, TellsFilesThatAreEmptyOrNotThere) {
+TEST_F(ReadCsvSamples, ReportsFilesThatAreEmptyOrMissing) {
   (void)read("");
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the table has no rows")));
   EXPECT_THROW((void)read_csv_samples("nowhere.csv", (folder_ / "m.yaml").string(), diagnostics_),

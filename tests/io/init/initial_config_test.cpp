@@ -1,9 +1,10 @@
-// What init writes is a configuration without mistakes, frees nothing that its target cannot tell,
-// and keeps what stays open by a prior: for each robot, target and kind of camera.
+// What init writes is a valid configuration.  It frees nothing that its target does not determine,
+// except for what a prior keeps: for each robot, target and kind of camera.
 #include "kinecal/io/init/initial_config.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <fstream>
 #include <map>
@@ -15,7 +16,6 @@
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "support/every_robot.hpp"
-#include "support/instances.hpp"
 
 namespace kinecal {
 namespace {
@@ -45,7 +45,7 @@ std::vector<Case> every_case() {
   for (const test::NamedUrdf& urdf : test::every_robot()) {
     const Robot robot = read_urdf(urdf.file.string());
     const auto arms = propose_arms(robot), cameras = propose_cameras(robot);
-    if (arms.empty()) continue;  // told by the test of proposals
+    if (arms.empty()) continue;  // the test of proposals reports it
     for (const InitTargetWord& word : kInitTargets) {
       for (const char* type : {"camera3d", "camera2d"}) {
         for (const bool ground : {false, true}) {
@@ -69,7 +69,7 @@ std::vector<Case> every_case() {
 
 class InitialConfig : public testing::TestWithParam<Case> {
  protected:
-  /// The configuration that is written, read again; as a file, for messages have its lines.
+  /// The configuration that is written, read again from a file: messages have its lines.
   Config read_again(const std::string& text, Diagnostics& diagnostics) {
     const auto path =
         std::filesystem::path(testing::TempDir()) / ("kinecal_init_" + GetParam().name + ".yaml");
@@ -135,11 +135,11 @@ class Simulation {
     const Pose<double> base_T_second =
         forward_kinematics(to_second_, at) * truth_.frames[second_frame_];
     const bool is_camera = second_.type != "chain3d";
-    Observation told{first_.name, {}}, seen{second_.name, {}};
+    Observation modelled{first_.name, {}}, seen{second_.name, {}};
     for (int i = 0; i < 5; ++i) {
       Vector3<double> p(0.1 * random(), 0.1 * random(), 0.1 * random());
       if (target_ == InitTarget::tracker) p.setZero();
-      told.features.push_back({first_frame_, p});
+      modelled.features.push_back({first_frame_, p});
       p = base_T_second.inverse() * (base_T_first * p);
       if (target_ == InitTarget::ground) {  // where a ray of the camera meets z = 0
         const Vector3<double> ray(random(), random(), 1.0);
@@ -154,7 +154,7 @@ class Simulation {
       seen.camera->p = {500, 0, 320, 0, 0, 500, 240, 0, 0, 0, 1, 0};
       seen.camera->k = {500, 0, 320, 0, 500, 240, 0, 0, 1};
     }
-    if (target_ != InitTarget::ground) sample.observations.push_back(told);
+    if (target_ != InitTarget::ground) sample.observations.push_back(modelled);
     sample.observations.push_back(seen);
     return sample;
   }
@@ -168,7 +168,7 @@ class Simulation {
   std::mt19937 engine_{7};  // fixed, for the same test in each run
 };
 
-TEST_P(InitialConfig, IsReadAndFitsTheRobotWithoutAWord) {
+TEST_P(InitialConfig, IsReadAndFitsTheRobotWithoutAWarning) {
   const Robot robot = read_urdf(GetParam().urdf.string());
   const std::string text = initial_config(robot, GetParam().answers);
   Diagnostics diagnostics;
@@ -178,7 +178,7 @@ TEST_P(InitialConfig, IsReadAndFitsTheRobotWithoutAWord) {
   EXPECT_THAT(diagnostics.warnings, testing::IsEmpty()) << text;
 }
 
-TEST_P(InitialConfig, FreesOnlyWhatSamplesTellOrAPriorKeeps) {
+TEST_P(InitialConfig, FreesOnlyWhatSamplesDetermineOrAPriorKeeps) {
   const Robot robot = read_urdf(GetParam().urdf.string());
   const std::string text = initial_config(robot, GetParam().answers);
   Diagnostics diagnostics;
@@ -189,9 +189,9 @@ TEST_P(InitialConfig, FreesOnlyWhatSamplesTellOrAPriorKeeps) {
   ASSERT_THAT(diagnostics.errors, testing::IsEmpty()) << text;
   const CalibrationStep& step = calibration.steps.front();
   const Eigen::VectorXd values = calibration.table.values();
-  const Observability told = observability(step.problem, step.free,
-                                           std::span(values.data(), values.data() + values.size()));
-  for (const Combination& open : told.unobservable) {
+  const Observability found = observability(
+      *step.problem, step.free, std::span(values.data(), values.data() + values.size()));
+  for (const Combination& open : found.unobservable) {
     std::string names;
     bool kept = false;
     for (const auto& [index, factor] : open) {
@@ -278,7 +278,7 @@ class InitialConfigMistakes : public testing::Test {
                     "camera_color_optical_frame",   "camera3d", "camera"};
 };
 
-TEST_F(InitialConfigMistakes, AreToldAllAtOnceWithTheOptionAndTheNearestName) {
+TEST_F(InitialConfigMistakes, AreReportedAllAtOnceWithTheOptionAndTheNearestName) {
   EXPECT_EQ(message(good_), "");
   good_.base = "panda_lnk0";
   good_.camera = "camera_color_optcal_frame";
@@ -294,7 +294,7 @@ TEST_F(InitialConfigMistakes, ACameraInTheHandDoesNotSeeWhatTheHandHolds) {
   EXPECT_THAT(message(good_), HasSubstr("--target world_checkerboard"));
 }
 
-TEST_F(InitialConfigMistakes, ACameraThatDoesNotMoveIsNoUseForABoardInTheWorld) {
+TEST_F(InitialConfigMistakes, ABoardInTheWorldNeedsACameraThatMoves) {
   good_.base = "panda_link7";
   EXPECT_THAT(message(good_), HasSubstr("--camera: camera 'camera_color_optical_frame' does not"));
 }
@@ -307,7 +307,7 @@ TEST_F(InitialConfigMistakes, PixelsDoNotShowTheFloor) {
   EXPECT_THAT(message(good_), HasSubstr("--target: tracker and ground"));
 }
 
-TEST_F(InitialConfigMistakes, TheCameraHasANameOfItsOwn) {
+TEST_F(InitialConfigMistakes, TheCameraHasItsOwnName) {
   good_.camera_name = "board";
   EXPECT_THAT(message(good_), HasSubstr("--robot-camera-name: 'board'"));
 }
@@ -322,7 +322,8 @@ TEST_F(InitialConfigMistakes, FramesHaveTheNamesThatAreGivenAndNoOthers) {
   EXPECT_THAT(message(good_), HasSubstr("--target-frame: 'panda_joint44' is a link or a joint"));
   good_.target = InitTarget::tracker;
   good_.target_frame = good_.tracker_frame = "laser";
-  EXPECT_THAT(message(good_), HasSubstr("--tracker-frame: is the frame of the reflector too"));
+  EXPECT_THAT(message(good_),
+              HasSubstr("--tracker-frame: 'laser' is the frame of the reflector too"));
 }
 
 TEST_F(InitialConfigMistakes, TheBaseNeedNotBeGiven) {

@@ -1,4 +1,4 @@
-// What is proposed of each robot: the end that its makers would choose stands first.
+// The proposals for each robot: the end of the arm that its makers would choose comes first.
 #include "kinecal/io/init/robot_parts.hpp"
 
 #include <gmock/gmock.h>

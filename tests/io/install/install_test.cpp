@@ -1,10 +1,12 @@
 #include "kinecal/io/install/install.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "kinecal/io/install/launch_folder.ipp"
 #include "support/launch_scene.hpp"
 
 namespace kinecal {
@@ -183,8 +185,8 @@ TEST_F(Install, RestoresNothingThatTheRobotCouldNotStartFrom) {
     restore();
     ADD_FAILURE() << "not refused";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("robot.launch.backup_2: names what is not there any "
-                                              "more: calibrated_2026_01_02_03_04_05.urdf, "
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("robot.launch.backup_2: names files that no longer "
+                                              "exist: calibrated_2026_01_02_03_04_05.urdf, "
                                               "rgb_camera_2026_01_02_03_04_05.yaml; "),
                                     HasSubstr("--force")));
   }
@@ -200,7 +202,7 @@ TEST_F(Install, FilesElsewhereAreNoMatterOfARestoration) {
   EXPECT_THAT(launch(), HasSubstr("file:///home/robot/rgb_that_never_was.yaml"));
 }
 
-TEST_F(Install, ABackupThatIsNoLaunchFileIsNotRestored) {
+TEST_F(Install, ABackupThatIsNotALaunchFileIsNotRestored) {
   install();
   const std::string installed = launch();
   write("robot/robot.launch.backup_1", "<launch>cut o");
@@ -325,7 +327,7 @@ TEST_F(Install, RefusesALaunchFileThatIsNotThereWithTheNearest) {
   EXPECT_THROW((void)LaunchFolder(folder_ / "rob", "robot.launch"), InputError);
 }
 
-TEST_F(Install, RefusesAnOffsetThatIsNone) {
+TEST_F(Install, RefusesAnOffsetThatIsNotFinite) {
   spoil("out/calibration_2026_01_02_03_04_05.yaml", "-0.0025", ".inf");
   expect_refused(HasSubstr("z_offset of inf m"));
 }

@@ -1,4 +1,4 @@
-#include "kinecal/io/install/launch_text.hpp"
+#include "kinecal/io/install/launch_text.ipp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -95,15 +95,15 @@ TEST(LaunchText, AnArgumentIsSetWhereItIsDeclaredNotWhereItIsPassedOn) {
             "<launch><include file=\"f\"><arg name=\"u\" value=\"2\"/></include></launch>");
 }
 
-TEST(LaunchText, TellsEveryNameThatIsNotThereWithTheNearest) {
-  const std::string told = refusal(
+TEST(LaunchText, ReportsEveryMissingNameWithTheNearest) {
+  const std::string message = refusal(
       "<launch>\n<param name=\"calibration_dat\" value=\"\"/><arg name=\"q\" "
       "default=\"\"/></launch>",
       {param("calibration_date", "1"), arg("rgb_url", "1")});
-  EXPECT_THAT(told, StartsWith("robot.launch: no param 'calibration_date'; did you mean "
-                               "'calibration_dat'? --name key=NAME"));
-  EXPECT_THAT(told, AllOf(HasSubstr("\nrobot.launch: no arg 'rgb_url'; --name key=NAME"),
-                          HasSubstr("--name key= leaves it out")));
+  EXPECT_THAT(message, StartsWith("robot.launch: no param 'calibration_date'; did you mean "
+                                  "'calibration_dat'? --name key=NAME"));
+  EXPECT_THAT(message, AllOf(HasSubstr("\nrobot.launch: no arg 'rgb_url'; --name key=NAME"),
+                             HasSubstr("--name key= leaves it out")));
 }
 
 TEST(LaunchText, RefusesAParameterThatOccursTwice) {
@@ -130,7 +130,7 @@ TEST(LaunchText, RefusesAnElementWithTwoValues) {
             "robot.launch:1: param 'a' has both textfile and value; keep one of them");
 }
 
-TEST(LaunchText, RefusesWhatIsNoLaunchFile) {
+TEST(LaunchText, RefusesWhatIsNotALaunchFile) {
   EXPECT_THAT(refusal("<robot/>", {}),
               StartsWith("robot.launch:1: the root element is <robot>; a launch file begins with"));
   EXPECT_THAT(refusal("def generate_launch_description():", {}), HasSubstr("malformed XML"));
@@ -155,7 +155,7 @@ TEST(LaunchNames, AreFetchsButForTheGivenOnes) {
   EXPECT_EQ(names.at("robot_description"), "robot_description");
 }
 
-TEST(LaunchNames, RefuseWhatIsNoKey) {
+TEST(LaunchNames, RefuseWrongKeys) {
   EXPECT_THAT(names_refusal({"z_scalin=s"}), HasSubstr("did you mean 'z_scaling'?"));
   EXPECT_THAT(names_refusal({"banana=s"}), AllOf(HasSubstr("'banana'"), Not(HasSubstr("did you"))));
   EXPECT_THAT(names_refusal({"z_scaling"}), HasSubstr("KEY=NAME"));

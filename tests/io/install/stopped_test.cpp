@@ -2,6 +2,7 @@
 //
 // The calls that change the disk are taken over here: at the n-th one the process ends, as in a
 // crash, or the call fails, as on a full disk; for every n.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -89,19 +90,19 @@ class Stopped : public test::InstallScene {
     return WEXITSTATUS(status) == kCrashed;
   }
 
-  /// Fails at the n-th call.  @return  whether that was told; nothing if there are fewer calls
+  /// Fails at the n-th call.  @return  whether that was reported; nothing if there are fewer calls
   static std::optional<bool> fails_at(int n, const std::function<void()>& run) {
     calls_left = n;
     fault = Fault::full_disk;
-    bool told = false;
+    bool reported = false;
     try {
       run();
     } catch (const OutputError&) {
-      told = true;
+      reported = true;
     }
     const bool reached = fault == Fault::none;
     fault = Fault::none;
-    return reached ? std::optional(told) : std::nullopt;
+    return reached ? std::optional(reported) : std::nullopt;
   }
 };
 
@@ -135,12 +136,12 @@ TEST_F(Stopped, AFullDiskLeavesTheFolderAsItWas) {
   for (int n = 0; n < kMostCalls; ++n) {
     reset();
     const auto before = robot();
-    const auto told = fails_at(n, [&] { install(); });
-    if (!told) break;
-    if (*told) ++failures;
-    // Not told: a link that failed became a copy.  Done: the wait after the last rename failed.
+    const auto reported = fails_at(n, [&] { install(); });
+    if (!reported) break;
+    if (*reported) ++failures;
+    // Not reported: a link that failed became a copy.  Done: the wait after the last rename failed.
     EXPECT_THAT(robot(), AnyOf(before, done)) << n;
-    EXPECT_TRUE(*told || robot() == done) << n;
+    EXPECT_TRUE(*reported || robot() == done) << n;
   }
   EXPECT_GT(failures, 15);
 }
@@ -167,9 +168,9 @@ TEST_F(Stopped, AFullDiskLeavesAVersionThatWorksWhenRestoring) {
     reset();
     install();
     const std::string installed = launch();
-    const auto told = fails_at(n, [&] { restore(); });
-    if (!told) break;
-    if (*told) ++failures;
+    const auto reported = fails_at(n, [&] { restore(); });
+    if (!reported) break;
+    if (*reported) ++failures;
     EXPECT_THAT(launch(), AnyOf(test::kLaunch, installed)) << n;
   }
   EXPECT_GT(failures, 2);

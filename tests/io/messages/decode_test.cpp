@@ -171,10 +171,10 @@ TEST(Decode, SaysWhichCdrItCannotRead) {
   EXPECT_EQ(refusal(0), "");
   EXPECT_EQ(refusal(1), "");
   EXPECT_EQ(refusal(3),
-            "byte 0: the message is PL_CDR (its first bytes are 0 3); plain CDR is what "
-            "can be read");
+            "byte 0: the message is PL_CDR (its first bytes are 0 3); only plain CDR can be "
+            "read");
   EXPECT_THAT(refusal(7), testing::HasSubstr("is XCDR version 2"));
-  EXPECT_THAT(refusal(0x28), testing::HasSubstr("is no CDR"));
+  EXPECT_THAT(refusal(0x28), testing::HasSubstr("is not CDR"));
 }
 
 TEST(Decode, TakesTextsOfRos2WithoutTheirNul) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/io/messages/known_definitions.hpp"
+#include "kinecal/io/messages/known_messages.ipp"
 
 namespace kinecal {
 namespace {
@@ -83,12 +84,12 @@ TEST(Definition, MayHaveAHeaderOfItsPackageAndLackTheTimesOfRos2) {
 }
 
 TEST(Definition, SaysWhatIsWrongWithIt) {
-  EXPECT_THAT(refusal("float64 x\nOther other\n"), HasSubstr("'a/Other' is used and not defined"));
+  EXPECT_THAT(refusal("float64 x\nOther other\n"), HasSubstr("'a/Other' is used but not defined"));
   EXPECT_THAT(refusal("float64\n"), HasSubstr("line 1: 'float64' has no name"));
-  EXPECT_THAT(refusal("float64[x] y\n"), HasSubstr("line 1: '[x]' is no size"));
-  EXPECT_THAT(refusal("float64[0] y\n"), HasSubstr("line 1: '[0]' is no size"));
-  EXPECT_THAT(refusal("float64[3 y\n"), HasSubstr("is no size"));
-  EXPECT_THAT(refusal("float64[99999999999] y\n"), HasSubstr("is no size"));
+  EXPECT_THAT(refusal("float64[x] y\n"), HasSubstr("line 1: '[x]' is not the size of a list"));
+  EXPECT_THAT(refusal("float64[0] y\n"), HasSubstr("line 1: '[0]' is not the size of a list"));
+  EXPECT_THAT(refusal("float64[3 y\n"), HasSubstr("is not the size of a list"));
+  EXPECT_THAT(refusal("float64[99999999999] y\n"), HasSubstr("is not the size of a list"));
   EXPECT_THAT(refusal("\nwstring y\n"), HasSubstr("line 2: wide strings"));
   EXPECT_THAT(refusal("Type again\n"), HasSubstr("contains itself"));
   EXPECT_THAT(refusal("B b\n===\nMSG: a/B\nC c\n===\nMSG: a/C\nB b\n"),
@@ -149,7 +150,7 @@ TEST(Definition, IsNotDeeperThanItsReaderMayGo) {
 
 TEST(Definition, HasNoMoreTextThanIsPlausible) {
   EXPECT_THAT(refusal(std::string(kMostOfADefinition + 1, '\n')),
-              HasSubstr("it has 1048577 bytes"));
+              HasSubstr("it has 1048577 bytes; at most 1048576 are read"));
 }
 
 TEST(Definition, OfAllKnownMessagesIsComplete) {

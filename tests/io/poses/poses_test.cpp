@@ -1,4 +1,4 @@
-// Poses survive being written and read; mistakes are told with line and name.
+// Poses are written and read without loss; errors name line and key.
 #include "kinecal/io/poses/poses.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ TEST(Poses, AreReadInBlocksAndWithoutFeatures) {
                                  CapturePose{{"pan"}, {0.5}, {}}));
 }
 
-TEST(Poses, TellTheirMistakesAllInOneGo) {
+TEST(Poses, ReportAllTheirErrorsTogether) {
   Diagnostics diagnostics;
   (void)read(
       "- {joints: [a, b], positions: [1]}\n"
@@ -64,7 +64,7 @@ TEST(Poses, TellTheirMistakesAllInOneGo) {
       diagnostics);
   EXPECT_THAT(
       diagnostics.errors,
-      testing::IsSupersetOf({HasSubstr("poses.yaml:1: pose 1: 2 joints but 1 positions"),
+      testing::IsSupersetOf({HasSubstr("poses.yaml:1: pose 1: 2 joints but 1 position"),
                              HasSubstr("poses.yaml:2: pose 2: positions: 'x'"),
                              HasSubstr("poses.yaml:2: pose 2: joint 'a' occurs twice"),
                              HasSubstr("poses.yaml:3: pose 3: unknown key 'jionts'; did you mean "

@@ -1,14 +1,20 @@
-#include "kinecal/io/recordings/message_samples.hpp"
+#include "kinecal/io/recordings/message_samples.ipp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "kinecal/io/messages/decode.hpp"
 #include "kinecal/io/messages/encode.hpp"
 #include "kinecal/io/messages/known_definitions.hpp"
-#include "kinecal/io/recordings/sample_message.hpp"
+#include "kinecal/io/recordings/sample_message.ipp"
 
 namespace kinecal {
 namespace {
@@ -66,7 +72,7 @@ TEST(MessageSamples, AreThoseThatWereWrittenInBothEncodings) {
     const Observation &arm = all[0].observations[0], &camera = all[0].observations[1];
     EXPECT_EQ(arm.features[0].frame, "tip");
     EXPECT_EQ(arm.features[0].point, sample.observations[0].features[0].point);
-    EXPECT_FALSE(arm.camera) << "a camera_info of zeros is none";
+    EXPECT_FALSE(arm.camera) << "a camera_info of zeros is not a camera";
     EXPECT_TRUE(std::isnan(camera.features[0].point.x()));
     ASSERT_TRUE(camera.camera);
     EXPECT_EQ(camera.camera->width, 640);
@@ -78,7 +84,7 @@ TEST(MessageSamples, AreThoseThatWereWrittenInBothEncodings) {
   }
 }
 
-TEST(MessageSamples, TellsWhatIsWrongAsForYaml) {
+TEST(MessageSamples, ReportsErrorsAsForYaml) {
   Sample sample = made_sample();
   sample.joint_positions.pop_back();
   Diagnostics diagnostics;
@@ -102,12 +108,138 @@ TEST(MessageSamples, TakesMessagesWithMoreAndOtherFields) {
   EXPECT_EQ(all[0].observations[0].features[0].point, Vector3<double>(1e-300, 2.5, -3.0));
 }
 
-TEST(MessageSamples, MissesWhatAMessageHasNot) {
+TEST(MessageSamples, ReportsWhatAMessageLacks) {
   detail::MessageSamples messages("made.bag");
   messages.add(MessageFields{}, 4);
   Diagnostics diagnostics;
   EXPECT_TRUE(messages.take(diagnostics).empty());
   EXPECT_THAT(diagnostics.errors[0], HasSubstr("made.bag:4: sample without 'joint_states'"));
+}
+
+/// Doubles whose text is long, lossy or not a number; the last is a NaN with a payload.
+const std::vector<double> kDifficult = {
+    0.1 + 0.2,
+    1e-310,
+    std::numeric_limits<double>::denorm_min(),
+    -0.0,
+    std::numeric_limits<double>::max(),
+    std::numeric_limits<double>::infinity(),
+    -std::numeric_limits<double>::infinity(),
+    std::numeric_limits<double>::quiet_NaN(),
+    std::bit_cast<double>(std::uint64_t{0xfff8'0000'0000'1234})};
+
+TEST(MessageSamples, HaveTheNumbersOfTheMessageBitForBit) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  Sample sample;
+  sample.observations = {{"camera", {}, CameraInfo{}}};
+  CameraInfo& camera = *sample.observations[0].camera;
+  camera.width = 1;
+  for (const double x : kDifficult) {
+    sample.joint_names.push_back("joint_" + std::to_string(sample.joint_names.size()));
+    sample.joint_positions.push_back(x);
+    sample.observations[0].features.push_back({"tip", {x, x, x}});
+    camera.d.push_back(x);
+  }
+  camera.k.fill(kDifficult[0]);
+  camera.r.fill(kDifficult[1]);
+  camera.p.fill(kDifficult[8]);
+  for (const Encoding encoding : {Encoding::ros1, Encoding::cdr}) {
+    Diagnostics diagnostics;
+    const std::vector<Sample> all = read_again({sample}, encoding, diagnostics);
+    EXPECT_THAT(diagnostics.errors, ElementsAre());
+    ASSERT_EQ(all.size(), 1u);
+    const Observation& seen = all[0].observations.at(0);
+    ASSERT_TRUE(seen.camera);
+    for (std::size_t i = 0; i < kDifficult.size(); ++i) {
+      EXPECT_EQ(bits(all[0].joint_positions.at(i)), bits(kDifficult[i])) << kDifficult[i];
+      EXPECT_EQ(bits(seen.camera->d.at(i)), bits(kDifficult[i])) << kDifficult[i];
+      for (const double x : seen.features.at(i).point) EXPECT_EQ(bits(x), bits(kDifficult[i]));
+    }
+    for (const double x : seen.camera->k) EXPECT_EQ(bits(x), bits(kDifficult[0]));
+    for (const double x : seen.camera->r) EXPECT_EQ(bits(x), bits(kDifficult[1]));
+    for (const double x : seen.camera->p) EXPECT_EQ(bits(x), bits(kDifficult[8]));
+  }
+}
+
+/// A message with one joint at `position` and one observation.
+MessageFields message_of(MessageValue position, MessageFields observation) {
+  MessageValue::List positions, observations;
+  positions.push_back(std::move(position));
+  observations.emplace_back(std::move(observation));
+  static const std::vector<std::string> names = {"pan"};
+  return detail::fields(
+      "joint_states",
+      detail::fields("name", detail::texts(names), "position", std::move(positions)),
+      "observations", std::move(observations));
+}
+
+std::vector<Sample> read_message(const MessageFields& message, Diagnostics& diagnostics) {
+  detail::MessageSamples messages("made.bag");
+  messages.add(message, 7);
+  return messages.take(diagnostics);
+}
+
+TEST(MessageSamples, TakeWholeNumbersAndTextsForNumbers) {
+  constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
+  constexpr std::int64_t kBetween = (std::int64_t{1} << 53) + 1;  // no double is this
+  const std::pair<MessageValue, double> positions[] = {
+      {std::int64_t{-3}, -3.0},         {std::uint64_t{1}, 1.0},
+      {kMost, 18446744073709551616.0},  {kBetween, 9007199254740992.0},
+      {std::string_view("0.25"), 0.25},
+  };
+  for (const auto& [position, expected] : positions) {
+    Diagnostics diagnostics;
+    const auto samples =
+        read_message(message_of(position, detail::fields("sensor_name", "arm")), diagnostics);
+    EXPECT_THAT(diagnostics.errors, ElementsAre());
+    ASSERT_EQ(samples.size(), 1u);
+    EXPECT_THAT(samples[0].joint_positions, ElementsAre(expected));
+  }
+}
+
+TEST(MessageSamples, TakeANumberForItsTextWhereAWordStands) {
+  const std::pair<MessageValue, std::string> names[] = {
+      {std::int64_t{-9007199254740993}, "-9007199254740993"},
+      {std::numeric_limits<std::uint64_t>::max(), "18446744073709551615"},
+      {0.1 + 0.2, "0.30000000000000004"},
+      {5.0, "5"},
+      {std::numeric_limits<double>::quiet_NaN(), "nan"},
+      {-std::numeric_limits<double>::infinity(), "-inf"},
+  };
+  for (const auto& [name, expected] : names) {
+    Diagnostics diagnostics;
+    const auto samples =
+        read_message(message_of(0.5, detail::fields("sensor_name", name)), diagnostics);
+    EXPECT_THAT(diagnostics.errors, ElementsAre());
+    ASSERT_EQ(samples.size(), 1u);
+    EXPECT_EQ(samples[0].observations.at(0).sensor, expected);
+  }
+}
+
+TEST(MessageSamples, ReportNumbersInTheWrongPlaceAsYamlDoes) {
+  const auto errors = [](MessageValue position, MessageFields observation) {
+    Diagnostics diagnostics;
+    (void)read_message(message_of(std::move(position), std::move(observation)), diagnostics);
+    return diagnostics.errors;
+  };
+  const auto with_height = [](double height) {
+    return detail::fields("sensor_name", "arm", "ext_camera_info",
+                          detail::fields("camera_info", detail::fields("height", height)));
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(errors(std::string_view("fast"), detail::fields("sensor_name", "arm")),
+              ElementsAre("made.bag:7: position: 'fast' is not a number"));
+  EXPECT_THAT(errors(0.5, detail::fields("sensor_name", "arm", "features", 0.5)),
+              ElementsAre("made.bag:7: features: '0.5' is not a list"));
+  EXPECT_THAT(
+      errors(0.5, detail::fields("sensor_name", "arm", "ext_camera_info", std::int64_t{-1})),
+      ElementsAre("made.bag:7: ext_camera_info: '-1' is not a map"));
+  EXPECT_THAT(errors(0.5, with_height(kNan)),
+              testing::Contains("made.bag:7: height: nan is not a number of pixels"));
+  EXPECT_THAT(errors(0.5, with_height(-std::numeric_limits<double>::infinity())),
+              testing::Contains("made.bag:7: height: -inf is not a number of pixels"));
+  EXPECT_THAT(errors(0.5, with_height(0.5)),
+              testing::Contains("made.bag:7: height: 0.5 is not a number of pixels"));
 }
 
 }  // namespace

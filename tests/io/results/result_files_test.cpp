@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kinecal/io/results/result_text.ipp"
 #include "support/scene.hpp"
 
 namespace kinecal {
@@ -27,8 +28,7 @@ TEST(JointPatches, AreMadeOfOffsetsAndFrameCorrectionsOfTheRobotsJoints) {
 }
 
 TEST(ResultFiles, CameraFilesAreNamedAsUpstreamNamesThem) {
-  ResultFileOptions ours, upstream;
-  upstream.date = "2026_01_02_03_04_05";
+  const std::string ours, upstream = "2026_01_02_03_04_05";  // no date, a date
   EXPECT_EQ(detail::camera_file("depth", "head", ours), "depth_head.yaml");
   EXPECT_EQ(detail::camera_file("depth", "camera", ours), "depth_camera.yaml");
   EXPECT_EQ(detail::camera_file("rgb", "head", upstream), "rgb_head_2026_01_02_03_04_05.yaml");

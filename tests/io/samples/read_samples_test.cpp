@@ -159,7 +159,7 @@ TEST(ReadSamples, NanAndInfinityAreKept) {
   EXPECT_EQ(q[4], 15.0);
 }
 
-TEST(ReadSamples, CameraOfASensorThatIsNoCameraIsUnset) {
+TEST(ReadSamples, CameraOfASensorThatIsNotACameraIsUnset) {
   const std::string zeros = "[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]";
   const std::string message =
       "{header: {frame_id: ''}, height: 0, width: 0, distortion_model: '', D: [], K: " + zeros +
@@ -222,7 +222,7 @@ TEST(ReadSamples, FileWithoutSamplesIsAnError) {
   }
 }
 
-TEST(ReadSamples, TextThatIsNoSampleIsAnErrorWithItsLine) {
+TEST(ReadSamples, TextThatIsNotASampleIsAnErrorWithItsLine) {
   expect_error(kSample + "hello\n", 6, {"sample", "'hello' is not a map"});
   expect_error(kSample + "- 1\n- 2\n---\n", 6, {"sample", "a list stands here, not a map"});
 }
@@ -238,7 +238,7 @@ TEST(ReadSamples, SampleWithoutJointStatesOrObservationsIsAnError) {
 
 TEST(ReadSamples, NamesAndPositionsOfDifferentLengthAreAnError) {
   expect_error("joint_states: {name: [a, b], position: [1]}\n" + kArm + "---\n", 1,
-               {"joint_states: 2 names but 1 positions"});
+               {"joint_states: 2 names but 1 position"});
 }
 
 TEST(ReadSamples, WhatIsNotANumberIsAnErrorWithItsValue) {
@@ -364,7 +364,7 @@ TEST(ReadSamples, NumberThatMayBeCutOffIsAnError) {
               ElementsAre(AllOf(StartsWith(complete.at(6)), HasSubstr("no '---'"))));
 }
 
-TEST(ReadSamples, AllMistakesOfAFileAreToldInOneGo) {
+TEST(ReadSamples, AllErrorsOfAFileAreReportedTogether) {
   const Reading reading = read_text("joint_states: {name: [a], position: [x]}\n" + kArm + "---\n" +
                                     kSample + kArm + "---\n");
   EXPECT_THAT(reading.diagnostics.errors,
@@ -373,12 +373,12 @@ TEST(ReadSamples, AllMistakesOfAFileAreToldInOneGo) {
   EXPECT_EQ(reading.samples[0].source, reading.path + ":6");
 }
 
-TEST(ReadSamples, ManyMistakesAreNotToldWithoutEnd) {
+TEST(ReadSamples, ManyErrorsAreNotListedWithoutEnd) {
   std::string text;
   for (int i = 0; i < 1000; ++i) text += kJoints + "---\n";
   const Reading reading = read_text(text);
   ASSERT_EQ(reading.diagnostics.errors.size(), 21u);
-  EXPECT_THAT(reading.diagnostics.errors[20], HasSubstr("more than 20 mistakes"));
+  EXPECT_THAT(reading.diagnostics.errors[20], HasSubstr("more than 20 errors"));
 }
 
 TEST(ReadSamples, AsManyThreadsAsOneLikesReadTheSame) {

@@ -1,4 +1,4 @@
-#include "kinecal/io/samples/sample_file.hpp"
+#include "kinecal/io/samples/sample_file.ipp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ TEST(SampleFile, SamplesStandInTheOrderOfTheFile) {
   EXPECT_THAT(reading.samples, HasSubstr("\ns.yaml:996\n"));
 }
 
-TEST(SampleFile, FirstMistakeOfTheFileIsTheFirstThatIsTold) {
+TEST(SampleFile, FirstErrorOfTheFileIsTheFirstThatIsReported) {
   const std::string mistake = "joint_states: {name: [a], position: [x]}\n" + kArm + "---\n";
   const Reading reading = read_in_every_way(many_samples(30) + mistake + many_samples(30) +
                                             mistake + "---\n" + kJoints + "---\n");
@@ -93,7 +93,7 @@ TEST(SampleFile, FirstMistakeOfTheFileIsTheFirstThatIsTold) {
                                           HasSubstr("s.yaml:312: sample without 'observations'")));
 }
 
-TEST(SampleFile, NothingIsToldOfWhatFollowsTextThatIsNotYaml) {
+TEST(SampleFile, NothingIsReportedAfterTextThatIsNotYaml) {
   const std::string open = "joint_states: {name: [a], position: [x]\n";
   for (const std::string& not_yaml :
        {open + kArm + "---\n", std::string(", a\n---\n"), std::string("\"a\n---\n"),
@@ -151,7 +151,7 @@ TEST(SampleFile, DocumentsEndAndBeginInEveryWayOfYaml) {
   }
 }
 
-TEST(SampleFile, MissingSeparatorAtTheEndIsTold) {
+TEST(SampleFile, MissingSeparatorAtTheEndIsReported) {
   const std::string sample = kJoints + kArm;
   EXPECT_THAT(read_in_every_way(kSample + sample).warnings,
               ElementsAre(AllOf(StartsWith("s.yaml:6: "), HasSubstr("no '---'"))));
@@ -167,7 +167,7 @@ TEST(SampleFile, FileWithoutSamplesIsAnErrorInEveryWay) {
   }
 }
 
-TEST(SampleFile, ManyMistakesEndAtTheSamePlaceOnAnyNumberOfThreads) {
+TEST(SampleFile, ManyErrorsEndAtTheSamePlaceOnAnyNumberOfThreads) {
   std::string text = many_samples(10);
   for (int i = 0; i < 500; ++i) text += kJoints + "---\n";
   for (const std::size_t bytes : {std::size_t{1}, std::size_t{300}, kAll}) {
@@ -175,7 +175,7 @@ TEST(SampleFile, ManyMistakesEndAtTheSamePlaceOnAnyNumberOfThreads) {
       const Reading reading = read_text(text, bytes, threads);
       ASSERT_EQ(reading.errors.size(), 21u);
       EXPECT_THAT(reading.errors[0], StartsWith("s.yaml:51: sample without 'observations'"));
-      EXPECT_THAT(reading.errors[20], StartsWith("s.yaml:91: more than 20 mistakes"));
+      EXPECT_THAT(reading.errors[20], StartsWith("s.yaml:91: more than 20 errors"));
       EXPECT_EQ(reading.samples, read_text(many_samples(10), kAll, 1).samples);
     }
   }

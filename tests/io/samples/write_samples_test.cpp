@@ -141,7 +141,7 @@ TEST(WriteSamples, NamesAndPositionsOfDifferentLengthAreRefused) {
     FAIL() << "it was written";
   } catch (const std::invalid_argument& e) {
     EXPECT_STREQ(e.what(),
-                 "sample recorded.yaml:7: 2 joint names but 1 positions; it cannot be written");
+                 "sample recorded.yaml:7: 2 joint names but 1 position; it cannot be written");
   }
 }
 

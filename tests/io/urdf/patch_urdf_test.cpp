@@ -15,7 +15,11 @@
 #include <tuple>
 #include <vector>
 
+#include "kinecal/geometry/rpy.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/io/urdf/urdf_text.ipp"
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/motion.hpp"
 #include "kinecal/kinematics/pose_walker.hpp"
 #include "support/data.hpp"
 
@@ -406,7 +410,7 @@ TEST(PatchUrdfError, AJointThatIsNotInTheFile) {
                InputError);
 }
 
-TEST(PatchUrdfError, AnOffsetOfAJointWithoutAPositionOfItsOwn) {
+TEST(PatchUrdfError, AnOffsetOfAJointWithoutItsOwnPosition) {
   EXPECT_THAT(refusal(one_joint(kAB, "fixed"), {{"j", 0.1}}),
               StartsWith("arm.urdf:2: joint 'j' is fixed"));
   EXPECT_THAT(refusal(kDifficult, {{"last", 0.1}}),

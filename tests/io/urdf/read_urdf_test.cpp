@@ -1,5 +1,6 @@
 #include "kinecal/io/urdf/read_urdf.hpp"
 
+#include <console_bridge/console.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/geometry/rpy.hpp"
+#include "kinecal/kinematics/chain.hpp"
 #include "support/data.hpp"
 
 namespace kinecal {
@@ -242,7 +245,7 @@ TEST(ReadUrdfError, AnAxisOfLengthZero) {
               "arm.urdf:6: joint 'elbow' has an axis of length zero");
 }
 
-TEST(ReadUrdfError, NumbersThatAreNone) {
+TEST(ReadUrdfError, TextsThatAreNotNumbers) {
   EXPECT_THAT(refusal(elbow(kLinks + std::string("\n<origin xyz=\"0 O 0\"/>"))),
               "arm.urdf:7: joint 'elbow': xyz=\"0 O 0\" of <origin> is not 3 numbers");
   for (const std::string bad : {"", "1 2", "1 2 3 4", "1,5 0 0", "nan 0 0", "0 inf 0", "1e999 0 0",
@@ -260,14 +263,14 @@ TEST(ReadUrdfError, AMimicOfAMissingJoint) {
                     HasSubstr("did you mean 'shoulder'?")));
 }
 
-TEST(ReadUrdfError, WhatUrdfdomRefusesIsToldInItsWordsWithTheLine) {
+TEST(ReadUrdfError, WhatUrdfdomRefusesIsReportedInItsWordsWithTheLine) {
   EXPECT_THAT(refusal(elbow(kLinks, "revolute")),
               AllOf(StartsWith("arm.urdf:6: "), HasSubstr("elbow"), HasSubstr("limits")));
   EXPECT_THAT(refusal(elbow(kLinks + std::string("<limit effort='much' velocity='1'/>"))),
               AllOf(StartsWith("arm.urdf:6: "), HasSubstr("elbow"), HasSubstr("much")));
 }
 
-TEST(ReadUrdfError, AllMistakesOfTheJointsAreToldAtOnce) {
+TEST(ReadUrdfError, AllErrorsOfTheJointsAreReportedAtOnce) {
   const std::string message =
       refusal(elbow("<origin xyz=\"a\"/>\n<parent link=\"upper\"/>", "revolt"));
   EXPECT_THAT(message, AllOf(HasSubstr("unknown type"), HasSubstr("no <child"),
@@ -283,7 +286,7 @@ TEST(ReadUrdfError, XacroLeftInTheFile) {
                     HasSubstr("run xacro on it first")));
 }
 
-TEST(ReadUrdf, ExpandedXacroIsNoXacro) {
+TEST(ReadUrdf, ExpandedXacroIsNotTakenForXacro) {
   EXPECT_NO_THROW((void)parse_urdf(
       "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='a'/></robot>",
       "arm.urdf"));

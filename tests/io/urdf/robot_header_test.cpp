@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/io/urdf/cpp_text.ipp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/kinematics/robot_data.hpp"
 #include "robots/every_joint.hpp"
 #include "support/data.hpp"
 #include "support/same_joint.hpp"

@@ -1,4 +1,4 @@
-#include "kinecal/io/urdf/urdf_text.hpp"
+#include "kinecal/io/urdf/urdf_text.ipp"
 
 #include <gtest/gtest.h>
 
@@ -7,34 +7,9 @@
 namespace kinecal {
 namespace {
 
-TEST(UrdfText, NumbersAreFoundWithTheirPlaces) {
-  const auto tokens = number_tokens(" 1.5\t+2\r\n-3e-2 ");
-  ASSERT_TRUE(tokens);
-  ASSERT_EQ(tokens->size(), 3u);
-  EXPECT_EQ((*tokens)[0].value, 1.5);
-  EXPECT_EQ((*tokens)[1].value, 2.0);
-  EXPECT_EQ((*tokens)[2].value, -0.03);
-  EXPECT_EQ((*tokens)[1].begin, 5u);
-  EXPECT_EQ((*tokens)[1].end, 7u);
-}
-
-TEST(UrdfText, OnlyFiniteDecimalNumbersAreNumbers) {
-  for (const char* text : {"a", "1,5", "nan", "inf", "1e999", "+-1", "++1", "+", "0x1p3", "1 2m"}) {
-    EXPECT_FALSE(number_tokens(text)) << text;
-  }
-  EXPECT_TRUE(number_tokens("  ")->empty());
-}
-
-TEST(UrdfText, PlacesAreBytesAndLinesOfTheText) {
-  const std::string text =
-      "\xEF\xBB\xBF<?xml version='1.0' encoding='ISO-8859-1'?>\r\n<!-- \xE9 &amp; \n -->"
-      "<robot name='&lt;r'>\r\n <link name='a'/>\r\n <joint name='j'/></robot>";
-  const UrdfText source(text, "r.urdf");
-  const pugi::xml_node joint = source.joint("j");
-  ASSERT_TRUE(joint);
-  EXPECT_EQ(text.substr(source.offset(joint), 6), "<joint");
-  EXPECT_EQ(source.place(joint).str(), "r.urdf:5");
-  EXPECT_EQ(source.place({}).str(), "r.urdf");
+TEST(UrdfText, JointsAreFoundByTheirNamesAmongTheRobotsOwn) {
+  const UrdfText source("<robot><a><joint name='k'/></a>\n<joint name='j'/></robot>", "r.urdf");
+  EXPECT_EQ(source.place(source.joint("j")).str(), "r.urdf:2");
   EXPECT_FALSE(source.joint("k"));
 }
 

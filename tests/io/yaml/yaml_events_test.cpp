@@ -1,4 +1,4 @@
-#include "kinecal/io/yaml/yaml_events.hpp"
+#include "kinecal/io/yaml/yaml_events.ipp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Writes down what it is told: "+" for a document, "{", "[" and scalars after their line, "."
-/// ends.
+/// Writes down the events: "+" for a document, "{", "[" and scalars after their line, "." for ends.
 struct Recorder {
   std::string text;
   void document_starts() { text += "+ "; }

@@ -1,4 +1,4 @@
-#include "kinecal/io/yaml/yaml_pieces.hpp"
+#include "kinecal/io/yaml/yaml_pieces.ipp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

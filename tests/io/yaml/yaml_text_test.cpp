@@ -66,7 +66,7 @@ TEST(YamlText, NumbersAreReadInEveryUsualForm) {
   }
 }
 
-TEST(YamlText, WhatIsNotANumberAsAWholeIsNone) {
+TEST(YamlText, WhatIsNotANumberAsAWholeIsRefused) {
   for (const char* text : {"", " ", "a", "1a", "1 2", "+-1", "--1", "0x10", "1_000", "1,5", "1e400",
                            "...", "-", ".", "+", "1e", "..5"}) {
     EXPECT_EQ(number_from_yaml(text), std::nullopt) << text;

@@ -1,4 +1,4 @@
-#include "kinecal/io/bags/mcap.hpp"
+#include "kinecal/io/bags/mcap/read_mcap.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/bags/write_mcap.hpp"
+#include "kinecal/io/bags/codec/compression.hpp"
+#include "kinecal/io/bags/formats.hpp"
+#include "kinecal/io/bags/mcap/records.ipp"
+#include "kinecal/io/bags/mcap/write_mcap.hpp"
 #include "support/bags.hpp"
 
 namespace kinecal {
@@ -181,7 +184,7 @@ TEST(Mcap, WhateverByteIsWrongNothingIsReadThatWasNotWritten) {
   }
 }
 
-TEST(Mcap, ADamagedIndexIsToldAndEverythingIsReadWithoutIt) {
+TEST(Mcap, ADamagedIndexIsAWarningAndEverythingIsReadWithoutIt) {
   std::string file = bag_of(8, {Compression::none, 100, true});
   file[file.size() - 60] = 'X';  // among the summary's offsets
   const BagReading reading = read(file);
@@ -197,10 +200,11 @@ TEST(Mcap, AnIndexOfMoreBytesThanIsPlausibleIsNotRead) {
   const BagReading reading = read(file);
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.messages, SizeIs(1));
-  EXPECT_THAT(reading.warnings, ElementsAre(HasSubstr("the index is told to begin at byte 8")));
+  EXPECT_THAT(reading.warnings,
+              ElementsAre(HasSubstr("the footer says that the index begins at byte 8")));
 }
 
-/// Where the summary begins, as the footer says; its sum is taken back.
+/// Where the summary begins, as the footer says; sets its sum to 0, "unknown".
 std::size_t start_of_summary(std::string& file) {
   for (std::size_t i = 9; i <= 12; ++i) file[file.size() - i] = '\0';
   ByteReader footer(detail::as_bytes(std::string_view(file).substr(file.size() - 28)));
@@ -257,6 +261,16 @@ TEST(Mcap, ADamagedChunkIsNamedByItsByte) {
                                 HasSubstr("is damaged"), HasSubstr("check sum"))));
 }
 
+/// The sum was computed by another program.
+TEST(Mcap, CheckSumsAreCrc32) {
+  const std::string records = channel(1, 0, "/a", "cdr") + message(1, 5, "x");
+  const BagReading right = read(whole(chunk("", records.size(), 0x54039F12, records)));
+  EXPECT_THAT(right.errors, IsEmpty());
+  EXPECT_THAT(right.messages, ElementsAre("a 5 x"));
+  EXPECT_THAT(read(whole(chunk("", records.size(), 1, records))).errors,
+              ElementsAre(HasSubstr("its check sum is 54039f12 and should be 00000001")));
+}
+
 TEST(Mcap, ZerosAtTheEndAreARecordingWithoutPower) {
   std::string file = bag_of(8, {Compression::none, 0, false});
   file.resize(file.size() - 8 - 29 - 13);  // up to the end of the data
@@ -271,7 +285,8 @@ TEST(Mcap, ZerosAtTheEndAreARecordingWithoutPower) {
 TEST(Mcap, WhatHasNoEndAlthoughTheFileHasOneIsDamaged) {
   std::string file = whole(message(1, 0, "data"));
   file[8 + 17 + 5] = '\x7F';  // a length
-  EXPECT_THAT(read(file).errors, ElementsAre(HasSubstr("byte 25: what begins here does not end")));
+  EXPECT_THAT(read(file).errors,
+              ElementsAre(HasSubstr("byte 25: the record that begins here runs beyond")));
 }
 
 TEST(Mcap, UnknownRecordsAndThoseWithoutMessagesAreSkipped) {
@@ -287,7 +302,7 @@ TEST(Mcap, UnknownRecordsAndThoseWithoutMessagesAreSkipped) {
               ElementsAre("said 5 hello"));
 }
 
-TEST(Mcap, SchemasTellTypesAndTexts) {
+TEST(Mcap, SchemasHaveTypesAndTexts) {
   const std::string file = whole(
       schema(1, "std_msgs/String", "ros1msg", "string data\n") +
       schema(2, "std_msgs/msg/String", "ros2idl", "module std_msgs {};") +
@@ -300,11 +315,11 @@ TEST(Mcap, SchemasTellTypesAndTexts) {
                                           "two std_msgs/String cdr ", "three  cdr "));
   EXPECT_THAT(reading.messages, ElementsAre("one 1 1", "two 2 2", "three 3 3"));
   EXPECT_THAT(reading.warnings,
-              ElementsAre("b.mcap: 2 topics are not written as ROS does and left out: '/four' as "
+              ElementsAre("b.mcap: 2 topics are not in an encoding of ROS and left out: '/four' as "
                           "'json' and others"));
 }
 
-/// ROS 2 does so in its compression mode MESSAGE.
+/// As in ROS 2's compression mode MESSAGE.
 TEST(Mcap, MessagesThatAreCompressedOneByOneAreUnpacked) {
   const auto packed_as = [](const std::string& text) {
     const auto bytes = pack(detail::as_bytes(text), Compression::zstd);
@@ -337,7 +352,7 @@ TEST(Mcap, MessagesThatAreCompressedOneByOneAreUnpacked) {
 TEST(Mcap, WhatContradictsItselfIsDamaged) {
   const std::string string = schema(1, "std_msgs/msg/String", "ros2msg", "string data\n");
   const auto errors = [](const std::string& records) { return read(whole(records)).errors; };
-  EXPECT_THAT(errors(message(7, 0, "")), ElementsAre(HasSubstr("a message of channel 7")));
+  EXPECT_THAT(errors(message(7, 0, "")), ElementsAre(HasSubstr("a message is of channel 7")));
   EXPECT_THAT(errors(channel(1, 9, "/a", "cdr") + message(1, 0, "")),
               ElementsAre(HasSubstr("topic '/a' is of schema 9")));
   EXPECT_THAT(errors(string + schema(1, "std_msgs/msg/Bool", "ros2msg", "bool data\n")),
@@ -361,10 +376,10 @@ TEST(Mcap, ChunksThatLieAboutTheirSizeAreErrors) {
   }
 }
 
-TEST(Mcap, AFileThatIsNoneIsAnError) {
+TEST(Mcap, AFileOfAnotherFormatIsAnError) {
   EXPECT_THAT(read("").errors, ElementsAre("b.mcap: is empty"));
   EXPECT_THAT(read("#ROSBAG V2.0\n").errors,
-              ElementsAre("b.mcap: is no MCAP file: it does not begin as one"));
+              ElementsAre("b.mcap: is not an MCAP file: it does not begin as one"));
   const auto at = [](const std::string& path) {
     return read_bag({}, [&](const BagReader& reader,
                             Diagnostics& diagnostics) { read_mcap(path, reader, diagnostics); })
@@ -375,9 +390,9 @@ TEST(Mcap, AFileThatIsNoneIsAnError) {
   EXPECT_THAT(at("/tmp"), ElementsAre("/tmp: is a folder, not a file"));
 }
 
-TEST(Mcap, MessagesThatTheIndexCountsAndTheFileLacksAreToldOf) {
-  // The last message leaves, as if its chunk had been cut out, and the sum of the index is taken
-  // back: 0 is "not told".
+TEST(Mcap, MessagesThatTheIndexCountsAndTheFileLacksAreAWarning) {
+  // The last message is removed, as if its chunk had been cut out, and the sum of the index is set
+  // to 0, "unknown".
   const std::string file = bag_of(4, {Compression::none, 0, true});
   const std::size_t at = file.find("message 3") - 31;
   std::string shorter = file.substr(0, at) + file.substr(at + 31 + 10);
@@ -387,7 +402,7 @@ TEST(Mcap, MessagesThatTheIndexCountsAndTheFileLacksAreToldOf) {
   const BagReading reading = read(shorter);
   EXPECT_THAT(reading.messages, SizeIs(3));
   EXPECT_THAT(reading.warnings,
-              ElementsAre("b.mcap: topic 'camera/image' has 1 messages, and 2 were recorded"));
+              ElementsAre("b.mcap: topic 'camera/image': the file has 1 of 2 recorded messages"));
 }
 
 TEST(Mcap, WhatTheReaderThrowsIsNotCaught) {

@@ -1,4 +1,4 @@
-#include "kinecal/io/bags/write_ros1_bag.hpp"
+#include "kinecal/io/bags/ros1/write_bag.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -94,7 +94,7 @@ TEST(WriteRos1Bag, WhatStandsInFrontOfItStays) {
   EXPECT_EQ(read_bag(out.str().substr(6)).messages.size(), 1u);
 }
 
-TEST(WriteRos1Bag, MistakesAreRefused) {
+TEST(WriteRos1Bag, WrongArgumentsAreRefused) {
   std::ostringstream out;
   EXPECT_THROW(Ros1BagWriter(out, Compression::zstd), std::invalid_argument);
   Ros1BagWriter bag(out);
@@ -123,7 +123,7 @@ for topic, (kind, data, md5, _, _), time in bag.read_messages(raw=True):
 print(sorted(c.header.get('latching', b'0') for c in bag._get_connections()))
 )";
 
-/// Writes what it reads, compressed as it is told.
+/// Copies a bag, compressed as its second argument says.
 const std::string kPythonCopy = R"(
 import sys
 try:
@@ -137,10 +137,10 @@ with rosbag.Bag('copy.bag', 'w', compression=sys.argv[2], chunk_threshold=300) a
 
 class Rosbag : public test::ProgramTest {
  protected:
-  /// @return  why it cannot be asked
+  /// @return  why rosbag cannot run; empty if it can
   [[nodiscard]] static std::string absent(const test::Outcome& outcome) {
     const bool skipped = outcome.err.find("skipped: ") != std::string::npos || outcome.code == 127;
-    return skipped ? "rosbag cannot be asked: " + outcome.err : "";
+    return skipped ? "rosbag cannot run: " + outcome.err : "";
   }
 };
 

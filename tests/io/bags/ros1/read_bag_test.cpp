@@ -1,4 +1,4 @@
-#include "kinecal/io/bags/ros1_bag.hpp"
+#include "kinecal/io/bags/ros1/read_bag.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/bags/ros1_text.hpp"
+#include "kinecal/io/bags/ros1/record_text.ipp"
+#include "kinecal/io/bags/ros1/records.ipp"
 #include "support/data.hpp"
 #include "support/ros1_bags.hpp"
 
@@ -68,13 +69,13 @@ std::string open_bag(const std::string& records) {
   return bag_header(0, 0, 0) + records;
 }
 
-/// A bag without its index, as one that was interrupted.
+/// A bag without its index, like an interrupted recording.
 std::string without_index(std::string bag) {
   const std::size_t place = bag.find("index_pos=") + 10;
   return bag.replace(place, 8, 8, '\0');
 }
 
-/// Where chunks and the indices after them end, and how many messages stand in front of there.
+/// Where chunks and the indices after them end, and how many messages stand before that.
 std::vector<std::pair<std::size_t, std::size_t>> ends_of_chunks(const std::string& bag) {
   std::vector<std::pair<std::size_t, std::size_t>> ends;
   ByteReader reader(std::as_bytes(std::span(bag)));
@@ -102,7 +103,7 @@ TEST(Ros1Bag, WhatIsNotWantedIsLeftOut) {
   }
 }
 
-/// Chunks of what is not wanted are damaged here, and nobody sees it.
+/// Chunks without wanted messages are damaged here, which is not noticed.
 TEST(Ros1Bag, ChunksThatHoldNothingWantedAreNotRead) {
   const std::vector<Recorded> messages = some_messages(50);
   std::string bag = bag_of(messages);
@@ -175,8 +176,8 @@ TEST(Ros1Bag, AChunkThatIsStillOpenIsReadWhereItCanBe) {
 
 TEST(Ros1Bag, MessagesOutsideOfChunksAreRead) {
   const std::string records = message(3, 4, "x") + message(3, 5, "");
-  const std::string told = connection(3, "a", "std_msgs/String");
-  const std::string bag = bag_header(kFirstRecord + records.size(), 1, 0) + records + told;
+  const std::string defined = connection(3, "a", "std_msgs/String");
+  const std::string bag = bag_header(kFirstRecord + records.size(), 1, 0) + records + defined;
   const BagContents read = read_bag(bag);
   EXPECT_THAT(read.errors, IsEmpty());
   EXPECT_THAT(read.warnings, IsEmpty());
@@ -196,13 +197,14 @@ TEST(Ros1Bag, ConnectionsThatSayTheSameAreOneTopic) {
   EXPECT_EQ(read.topics[1].type, "T/B");
 }
 
-TEST(Ros1Bag, MistakesOfMessagesAreToldWithTheirPlace) {
+TEST(Ros1Bag, ErrorsOfMessagesHaveTheirPlace) {
   const std::string records = connection(0, "a", "T/A") + message(5, 1, "x") + message(5, 1, "x") +
                               connection(0, "a", "T/B") + message(0, 1, "y");
   const BagContents outside = read_bag(open_bag(records));
-  EXPECT_THAT(outside.errors,
-              ElementsAre(AllOf(StartsWith("a.bag: byte 4"), HasSubstr("of connection 5")),
-                          AllOf(StartsWith("a.bag: byte 4"), HasSubstr("is told twice"))));
+  EXPECT_THAT(
+      outside.errors,
+      ElementsAre(AllOf(StartsWith("a.bag: byte 4"), HasSubstr("of connection 5")),
+                  AllOf(StartsWith("a.bag: byte 4"), HasSubstr("stands in the bag twice"))));
   EXPECT_EQ(outside.messages.size(), 1u);
   const auto size = static_cast<std::uint32_t>(records.size());
   const BagContents inside = read_bag(open_bag(chunk("none", size, records)));
@@ -221,13 +223,13 @@ TEST(Ros1Bag, ARecordOfUnknownKindIsLeftOutAndNoOther) {
   }
 }
 
-TEST(Ros1Bag, WhatIsNoBagIsSaidToBeNone) {
+TEST(Ros1Bag, WhatIsNotABagIsAnError) {
   const auto error = [](const std::string& text) { return read_bag(text).errors.at(0); };
   EXPECT_EQ(error(""), "a.bag: is empty");
   EXPECT_EQ(error("#ROSBAG"), "a.bag: is cut off within its first line");
   EXPECT_THAT(error("joint_states: {}\n"), HasSubstr("is not a ROS 1 bag"));
   EXPECT_THAT(error("#ROSBAG V1.2\nx"), HasSubstr("'rosbag fix'"));
-  EXPECT_THAT(error("#ROSBAG V2.0\n"), HasSubstr("cut off in front of its first message"));
+  EXPECT_THAT(error("#ROSBAG V2.0\n"), HasSubstr("cut off before its first message"));
   EXPECT_THAT(error(std::string(detail::kRos1Magic) + message(0, 0, "")),
               HasSubstr("byte 13: the bag header is missing"));
   EXPECT_THAT(error(bag_header(0, 0, 0, "rosbag/AesCbcEncryptor")), HasSubstr("encrypted"));
@@ -261,8 +263,8 @@ TEST(Ros1Bag, WhatTheUsersFunctionsThrowPassesThrough) {
   read(false);
 }
 
-/// The second chunk of a bag is damaged.  @param lost  of its messages; those of others are all
-/// there
+/// The second chunk of a bag is damaged.
+/// @param lost  messages of that chunk; those of the others are all read
 void expect_loss(const std::string& damaged, std::size_t lost, const std::string& expected_error) {
   const BagContents read = read_bag(damaged);
   ASSERT_FALSE(read.errors.empty()) << expected_error;
@@ -289,7 +291,7 @@ TEST(Ros1Bag, DamageOfAChunkLosesNoOther) {
   expect_loss(damaged(bag.find("op=", second) + 3, "\x77"), all, "a record of unknown kind");
   expect_loss(damaged(size, "\xff\xff\xff\x7f"), all, "bytes, not the 2147483647 that it claims");
   expect_loss(damaged(data_size, "\xff\xff\xff\x7f"), all, "the most that is read is 1073741824");
-  expect_loss(damaged(data_size, "\xff\xff\xff\x0f"), all, "268435455 bytes are needed and ");
+  expect_loss(damaged(data_size, "\xff\xff\xff\x0f"), all, "expected 268435455 bytes, ");
   expect_loss(damaged(data_size, std::string("\0\x10\0\0", 4)), all, "the chunk has 4096 bytes");
   // Its records then stand outside of it, and are read there.
   expect_loss(damaged(data_size, std::string(4, '\0')), 0, "the chunk has 0 bytes, not the");
@@ -318,7 +320,7 @@ TEST(Ros1Bag, ChunkInfosThatPointElsewhereLoseNoMessage) {
   EXPECT_FALSE(read.errors.empty());
 }
 
-TEST(Ros1Bag, ChunkInfosThatTellTooLittleLoseNoMessage) {
+TEST(Ros1Bag, IncompleteChunkInfosLoseNoMessage) {
   std::string bag = bag_of(some_messages(50));
   for (std::size_t at = bag.rfind("chunk_pos="), i = 0; i < 2;
        at = bag.rfind("chunk_pos=", at - 1), ++i) {
@@ -327,7 +329,7 @@ TEST(Ros1Bag, ChunkInfosThatTellTooLittleLoseNoMessage) {
   const BagContents all = read_bag(bag);
   EXPECT_EQ(all.messages, some_messages(50));
   EXPECT_THAT(all.errors, IsEmpty());
-  EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("more topics than its chunk info tells of")));
+  EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("more topics than its chunk info lists")));
   EXPECT_THAT(read_bag(bag, {"robot_description"}).warnings, IsEmpty());
 }
 
@@ -358,7 +360,7 @@ TEST(Ros1Bag, ABombIsAnError) {
   }
 }
 
-TEST(Ros1Bag, AMissingLibraryIsToldOnce) {
+TEST(Ros1Bag, AMissingLibraryIsReportedOnce) {
   for (const Compression c : {Compression::bz2, Compression::lz4}) {
     if (is_available(c)) continue;
     const std::string packed = chunk(std::string(to_string(c)), 100, "12345");
@@ -367,15 +369,15 @@ TEST(Ros1Bag, AMissingLibraryIsToldOnce) {
   }
 }
 
-TEST(Ros1Bag, ManyMistakesEnd) {
+TEST(Ros1Bag, TooManyErrorsEndTheReading) {
   std::string records;
   for (std::uint32_t i = 0; i < 100; ++i) records += message(i, 0, "");
   const BagContents read = read_bag(open_bag(records));
   ASSERT_EQ(read.errors.size(), 21u);
-  EXPECT_THAT(read.errors[20], HasSubstr("more than 20 mistakes"));
+  EXPECT_THAT(read.errors[20], HasSubstr("more than 20 errors"));
 }
 
-/// Nothing but what the sanitizers see: each byte, each in another way.
+/// Only sanitizers see a failure here: each byte is damaged, each in several ways.
 TEST(Ros1Bag, DamageAnywhereDoesNoHarm) {
   for (const Compression c : compressions_of_ros1()) {
     const std::string bag = bag_of(some_messages(12), c, 150);
@@ -408,7 +410,7 @@ struct Genuine {
   std::int64_t first, last;
 };
 
-/// Figures of rosbag.
+/// The figures come from rosbag.
 TEST(Ros1Bag, BagsThatRosRecordedAreReadAsRosReadsThem) {
   KINECAL_NEEDS_DATA("fetch");
   for (const Genuine& g :

@@ -1,4 +1,4 @@
-#include "kinecal/io/bags/compression.hpp"
+#include "kinecal/io/bags/codec/compression.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +9,9 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "kinecal/io/bags/codec/block_unpacker.ipp"
+#include "kinecal/io/bags/codec/unpack.ipp"
 
 namespace kinecal {
 namespace {
@@ -115,7 +118,7 @@ TEST(Compression, ABombTakesNoMoreMemoryThanIsPlausible) {
     const auto packed = pack(zeros, c);
     std::vector<std::byte> out;
     const std::uint64_t most = detail::most_unpacked(packed.size());
-    if (most >= zeros.size()) continue;  // lz4 is no bomb
+    if (most >= zeros.size()) continue;  // lz4 does not pack that well
     EXPECT_EQ(mistake(packed, c, most, out),
               "does not unpack to " + std::to_string(most) + " bytes, but to more");
     EXPECT_LE(out.capacity(), 33 * kMegabyte) << to_string(c);

@@ -1,4 +1,4 @@
-#include "kinecal/io/urdf/xml_edit.hpp"
+#include "kinecal/io/xml/xml_edit.ipp"
 
 #include <gtest/gtest.h>
 
@@ -19,6 +19,11 @@ TEST(XmlEdit, EditsAreMadeAtTheirPlacesInTheOldText) {
 
 TEST(XmlEdit, InsertionsAtOnePlaceKeepTheirOrder) {
   EXPECT_EQ(apply_edits("ab", {{1, 0, "1"}, {1, 0, "2"}}), "a12b");
+}
+
+TEST(XmlEdit, TextInAnAttributeIsEscapedForItsQuotes) {
+  EXPECT_EQ(xml_attribute_text("a & b < 'c' \"d\"", '"'), "a &amp; b &lt; 'c' &quot;d&quot;");
+  EXPECT_EQ(xml_attribute_text("'c' \"d\"", '\''), "&apos;c&apos; \"d\"");
 }
 
 TEST(XmlEdit, AStartTagEndsAtItsOwnBracket) {

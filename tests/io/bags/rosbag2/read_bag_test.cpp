@@ -1,4 +1,4 @@
-#include "kinecal/io/bags/ros2_bag.hpp"
+#include "kinecal/io/bags/rosbag2/read_bag.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/bags/write_mcap.hpp"
+#include "kinecal/io/bags/codec/compression.hpp"
+#include "kinecal/io/bags/formats.hpp"
+#include "kinecal/io/bags/mcap/write_mcap.hpp"
+#include "kinecal/io/bags/rosbag2/metadata.ipp"
 #include "support/bags.hpp"
 #include "support/temporary_folder.hpp"
+
+#ifdef KINECAL_HAVE_SQLITE
+#include <sqlite3.h>
+#endif
 
 namespace kinecal {
 namespace {
@@ -98,7 +105,7 @@ TEST_F(Ros2Bag, AMissingFileIsAnErrorAndNothingIsRead) {
   EXPECT_THAT(reading.messages, IsEmpty());
 }
 
-TEST_F(Ros2Bag, OfACompressionThatIsNotKnownIsAnError) {
+TEST_F(Ros2Bag, OfUnknownCompressionIsAnError) {
   write_mcap("bag_0.mcap", "1");
   write_metadata({"bag_0.mcap"}, "  compression_format: lz4\n  compression_mode: MESSAGE\n");
   EXPECT_THAT(read().errors, ElementsAre(HasSubstr("compression_format 'lz4' is not known")));
@@ -106,7 +113,7 @@ TEST_F(Ros2Bag, OfACompressionThatIsNotKnownIsAnError) {
 
 #ifdef KINECAL_HAVE_ZSTD
 
-/// ROS 2 does so in its compression mode FILE; what is unpacked lies in a folder of this test.
+/// Compressed as in ROS 2's mode FILE.  TMPDIR is a folder of this test.
 class CompressedRos2Bag : public Ros2Bag {
  protected:
   CompressedRos2Bag() {
@@ -179,7 +186,7 @@ TEST_F(CompressedRos2Bag, ThatCannotBeUnpackedSaysWhy) {
   setenv("TMPDIR", "/no/such/folder", 1);
   EXPECT_THAT(
       read().errors,
-      ElementsAre(HasSubstr("bag_0.mcap.zstd: cannot be unpacked: TMPDIR names no folder")));
+      ElementsAre(HasSubstr("bag_0.mcap.zstd: cannot be unpacked: TMPDIR is not a folder")));
 }
 
 #else
@@ -191,14 +198,14 @@ TEST_F(Ros2Bag, ThatIsCompressedSaysWhatToInstall) {
 
 #endif
 
-TEST_F(Ros2Bag, MetadataThatHasNoEndIsNotRead) {
+TEST_F(Ros2Bag, EndlessMetadataIsNotRead) {
   write_mcap("bag_0.mcap", "1");
   write_metadata({"bag_0.mcap"});
   fs::resize_file(bag_ / "metadata.yaml", std::uintmax_t{1} << 40);
   EXPECT_THAT(read().errors, ElementsAre(HasSubstr("metadata.yaml: has more bytes than")));
 }
 
-TEST_F(Ros2Bag, MetadataThatIsNoneIsAnErrorWithItsPlace) {
+TEST_F(Ros2Bag, WrongMetadataIsAnErrorWithItsPlace) {
   write_mcap("bag_0.mcap", "1");
   const auto errors_of = [&](const std::string& metadata) {
     write("metadata.yaml", metadata);
@@ -217,9 +224,9 @@ TEST_F(Ros2Bag, MetadataThatIsNoneIsAnErrorWithItsPlace) {
               ElementsAre(HasSubstr("metadata.yaml:3: ")));
 }
 
-TEST_F(Ros2Bag, AFolderThatIsNoneIsAnError) {
-  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("is no bag of ROS 2")));
-  EXPECT_THAT(read("/no/such/folder").errors, ElementsAre(HasSubstr("is no bag of ROS 2")));
+TEST_F(Ros2Bag, AFolderThatIsNotABagIsAnError) {
+  EXPECT_THAT(read().errors, ElementsAre(HasSubstr("is not a ROS 2 bag")));
+  EXPECT_THAT(read("/no/such/folder").errors, ElementsAre(HasSubstr("is not a ROS 2 bag")));
   write("bag_0.mcap", "no MCAP");
   EXPECT_THAT(read().errors, ElementsAre(HasSubstr("it begins like neither")));
 }

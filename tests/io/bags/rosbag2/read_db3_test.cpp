@@ -1,4 +1,4 @@
-#include "kinecal/io/bags/db3.hpp"
+#include "kinecal/io/bags/rosbag2/read_db3.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/io/bags/codec/compression.hpp"
+#include "kinecal/io/bags/formats.hpp"
+#include "kinecal/io/bags/rosbag2/db3_messages.ipp"
 #include "support/bags.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -41,21 +44,22 @@ class Db3 : public test::FolderTest {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   /// "path: message"
-  [[nodiscard]] std::string told(const std::string& message) const {
+  [[nodiscard]] std::string in_file(const std::string& message) const {
     return path_.string() + ": " + message;
   }
 
   fs::path path_ = folder_ / "bag_0.db3";
 };
 
-TEST_F(Db3, AFileThatIsNoneIsAnError) {
-  EXPECT_THAT(read().errors, ElementsAre(told("cannot be opened: No such file or directory")));
+TEST_F(Db3, AFileThatIsNotADatabaseIsAnError) {
+  EXPECT_THAT(read().errors, ElementsAre(in_file("cannot be opened: No such file or directory")));
   write("");
-  EXPECT_THAT(read().errors, ElementsAre(told("is empty")));
+  EXPECT_THAT(read().errors, ElementsAre(in_file("is empty")));
   write("SQLite for");
-  EXPECT_THAT(read().errors, ElementsAre(told("is no SQLite database: it does not begin as one")));
+  EXPECT_THAT(read().errors,
+              ElementsAre(in_file("is not an SQLite database: it does not begin as one")));
   path_ = folder_;
-  EXPECT_THAT(read().errors, ElementsAre(told("is a folder, not a file")));
+  EXPECT_THAT(read().errors, ElementsAre(in_file("is a folder, not a file")));
 }
 
 #ifndef KINECAL_HAVE_SQLITE
@@ -74,7 +78,7 @@ const std::string kOldTables =
     "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER "
     "NOT NULL, data BLOB NOT NULL);"
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
-/// As ROS 2 Jazzy records; only that the hash is not demanded of these tests.
+/// As ROS 2 Jazzy records, except that the hash of a topic may be left out.
 const std::string kNewTables =
     "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);"
     "CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata "
@@ -92,7 +96,7 @@ const std::string kTopics =
     "INSERT INTO topics(id, name, type, serialization_format, offered_qos_profiles) VALUES"
     "(1, '/joint_states', 'sensor_msgs/msg/JointState', 'cdr', ''),"
     "(2, '/camera/image', 'sensor_msgs/msg/Image', 'cdr', '');";
-/// Not in the order of time; two at the same one.
+/// Not in the order of time; two at the same time.
 const std::string kMessages =
     "INSERT INTO messages(topic_id, timestamp, data) VALUES"
     "(1, 30, CAST('third' AS BLOB)), (2, 20, CAST('image' AS BLOB)), (1, 10, CAST('first' AS "
@@ -120,7 +124,7 @@ TEST_F(Db3, MessagesAreReadInTheOrderOfTimeThenOfRecording) {
                           "camera/image 20 image", "joint_states 30 third", "camera/image 40 "));
 }
 
-TEST_F(Db3, NewerVersionsTellDefinitions) {
+TEST_F(Db3, NewerVersionsHaveDefinitions) {
   run(path_, kNewTables + kTopics + kMessages);
   const BagReading reading = read();
   EXPECT_THAT(reading.errors, IsEmpty());
@@ -166,7 +170,7 @@ TEST_F(Db3, MessagesOfTheWriteAheadLogAreReadToo) {
   EXPECT_THAT(read().messages, SizeIs(5));
 }
 
-TEST_F(Db3, ADatabaseThatIsNoBagIsAnError) {
+TEST_F(Db3, ADatabaseThatIsNotABagIsAnError) {
   run(path_, "CREATE TABLE robots(id INTEGER);");
   EXPECT_THAT(read().errors, ElementsAre(HasSubstr("has no table 'topics'")));
   run(path_, "CREATE TABLE topics(id INTEGER, name, type);");
@@ -185,11 +189,12 @@ TEST_F(Db3, TopicsThatAreNotInCdrAreLeftOut) {
                  "UPDATE topics SET serialization_format = 'protobuf' WHERE id = 2;");
   const BagReading reading = read();
   EXPECT_THAT(reading.messages, SizeIs(3));
-  EXPECT_THAT(reading.warnings, ElementsAre(told("topics not in CDR are left out: 'camera/image' "
-                                                 "as 'protobuf'")));
+  EXPECT_THAT(reading.warnings,
+              ElementsAre(in_file("topics not in CDR are left out: 'camera/image' "
+                                  "as 'protobuf'")));
 }
 
-TEST_F(Db3, WhateverItIsCutOffAtAnErrorIsTold) {
+TEST_F(Db3, AFileThatIsCutOffAnywhereIsAnError) {
   const std::string many =
       "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 400) INSERT INTO "
       "messages(topic_id, timestamp, data) SELECT 1 + i % 2, 1000 + i, CAST('message ' || i AS "
@@ -214,7 +219,7 @@ TEST_F(Db3, WhateverByteIsWrongNothingCrashes) {
   }
 }
 
-TEST_F(Db3, AColumnThatIsComputedIsNone) {
+TEST_F(Db3, AComputedColumnIsNotAccepted) {
   run(path_,
       "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);"
       "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data AS "
@@ -248,7 +253,7 @@ TEST_F(Db3, DefinitionsHaveNoMoreBytesThanArePlausible) {
               ElementsAre(HasSubstr("more topics and definitions than are plausible")));
 }
 
-/// Pages that are of many messages at once: a small file without end.
+/// Pages that are part of many messages make a small file endless.
 TEST_F(Db3, MessagesWithMoreBytesThanTheFileAreDamaged) {
   run(path_, kOldTables + kTopics + kMessages);
   const std::string uri = "file:" + path_.string() + "?mode=ro&immutable=1";
