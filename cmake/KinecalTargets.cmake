@@ -19,7 +19,8 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET GLOBAL yaml-0.1)
 
-# Files of one folder are one translation unit: their headers are parsed once.
+# Files of one folder, with CMAKE_UNITY_BUILD of all folders, are one translation unit: their headers are
+# parsed once.
 function(kinecal_group_units)
   foreach(unit IN LISTS ARGV)
     cmake_path(GET unit PARENT_PATH folder)
@@ -29,6 +30,8 @@ function(kinecal_group_units)
       string(APPEND group _${CMAKE_MATCH_1})
     elseif(group STREQUAL trust)
       set(group solve)
+    elseif(CMAKE_UNITY_BUILD)
+      string(REGEX REPLACE "_.*" "" group ${group})
     endif()
     set_source_files_properties(${unit} PROPERTIES LANGUAGE CXX UNITY_GROUP ${group})
   endforeach()

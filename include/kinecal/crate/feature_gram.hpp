@@ -70,7 +70,7 @@ class FeatureGram {
   void effects(std::size_t body, const S* xi, S* __restrict effects) const {
     const std::size_t width = width_;
     const S *k = row(6 * body) + 6 * body, *end = row(6 * body) + width;
-    for (effects += R * 6 * body; k != end; ++k, effects += R) {
+    for (effects += R * (6 * body); k != end; ++k, effects += R) {
       std::array<S, R> sum;
       for (std::size_t r = 0; r < R; ++r) sum[r] = *k * xi[r * D];
       for (std::size_t d = 1; d < D; ++d) {

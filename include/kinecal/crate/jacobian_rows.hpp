@@ -42,9 +42,9 @@ struct BodySizes {
 
 /// Sizes of two bodies that the compiler knows, so that loops over them unroll.
 template <BodySizes A, BodySizes B>
-struct KnownSizes {
-  static constexpr BodySizes a = A;  ///< of the first body
-  static constexpr BodySizes b = B;  ///< of the second body
+struct KnownSizes {                  // Its members are named as those of Sizes.
+  static constexpr BodySizes a = A;  ///< of the first body   NOLINT(readability-identifier-naming)
+  static constexpr BodySizes b = B;  ///< of the second body  NOLINT(readability-identifier-naming)
 };
 /// Sizes of two bodies that are known at run time.
 struct Sizes {

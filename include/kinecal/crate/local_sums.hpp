@@ -131,7 +131,7 @@ class LocalSums {
   /// @tparam D     numbers per xi
   /// @tparam Felt  how many of them have an effect
   /// @returns      the sums after the last one
-  template <int D, int Felt, int R>
+  template <int D, std::size_t Felt, std::size_t R>
   static S* add_dots(const S* force, const S* moment, const S* xi, std::size_t count, S* sums,
                      std::size_t stride) {
     std::array<S, R * Felt> e;

@@ -38,7 +38,8 @@ struct SampleShape {
   std::vector<std::optional<std::vector<std::size_t>>> chains;  ///< of each feature, by sensor
   std::vector<int> terms;                                       ///< indices of the terms that apply
 
-  auto operator<=>(const SampleShape&) const = default;  ///< any strict order, for a map
+  /// Any strict order, for a map.
+  auto operator<=>(const SampleShape&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// Samples of one shape, one per lane.

@@ -59,8 +59,8 @@ template <class S>
 class SensorView {
  public:
   SensorView() = default;
-  SensorView(SensorView&&) = default;             ///< moves only: starts_ point into twists_
-  SensorView& operator=(SensorView&&) = default;  ///< moves only: starts_ point into twists_
+  SensorView(SensorView&&) noexcept = default;  ///< moves only: starts_ point into twists_
+  SensorView& operator=(SensorView&&) noexcept = default;  ///< moves only: see above
 
   /// What the sensor observed in the current pack.
   [[nodiscard]] const PackedObservation<S>& observation() const { return *observation_; }

@@ -139,7 +139,7 @@ class LaunchFolder {
   [[nodiscard]] static std::filesystem::path checked(const std::filesystem::path& folder,
                                                      const std::string& launch) {
     namespace fs = std::filesystem;
-    const fs::path absolute = (fs::absolute(folder) / "").lexically_normal().parent_path();
+    fs::path absolute = (fs::absolute(folder) / "").lexically_normal().parent_path();
     std::error_code error;
     if (!fs::is_directory(absolute, error)) {
       throw InputError(folder.string() + ": is not a folder; give the one with the launch file");
