@@ -78,6 +78,9 @@ function(kinecal_add_library name)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
                           UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
     kinecal_group_units(${ARG_INSTANCES} ${units})
+    # For tests: they compile in two thirds of the time without optimization, and run mostly what is
+    # in the libraries.
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Debug>:-O1>)
   endif()
   set(KINECAL_UNITS_${name} ${units} PARENT_SCOPE)
   add_library(kinecal::${name} ALIAS ${target})

@@ -6,7 +6,7 @@
 # headers  the headers alone, of a source that was configured and not built
 file(REMOVE_RECURSE ${WORK})
 set(prefix ${WORK}/prefix)
-set(options -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -G Ninja)
+set(options -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER=${COMPILER} -G Ninja)
 
 if(MODE STREQUAL headers)
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/bare ${options}
