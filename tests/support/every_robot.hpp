@@ -16,6 +16,8 @@ namespace kinecal::test {
 struct NamedUrdf {
   std::string name;  ///< letters, digits and underscores
   std::filesystem::path file;
+
+  friend void PrintTo(const NamedUrdf& urdf, std::ostream* out) { *out << urdf.name; }
 };
 
 inline std::vector<NamedUrdf> every_robot() {

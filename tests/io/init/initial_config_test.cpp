@@ -14,6 +14,7 @@
 
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/config/read_config.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "support/every_robot.hpp"
 
@@ -24,10 +25,7 @@ using testing::HasSubstr;
 
 struct Case {
   std::string name;
-  std::filesystem::path urdf;
   InitAnswers answers;
-
-  friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 };
 
 /// Robots that hold their camera in the hand see nothing in it.
@@ -40,35 +38,44 @@ bool makes_sense(const Robot& robot, const InitAnswers& answers) {
   return std::find(above.begin(), above.end(), *turning) == above.end();
 }
 
-std::vector<Case> every_case() {
+/// The answers that make sense for a robot.
+std::vector<Case> every_case(const Robot& robot) {
+  const auto arms = propose_arms(robot), cameras = propose_cameras(robot);
   std::vector<Case> all;
-  for (const test::NamedUrdf& urdf : test::every_robot()) {
-    const Robot robot = read_urdf(urdf.file.string());
-    const auto arms = propose_arms(robot), cameras = propose_cameras(robot);
-    if (arms.empty()) continue;  // the test of proposals reports it
-    for (const InitTargetWord& word : kInitTargets) {
-      for (const char* type : {"camera3d", "camera2d"}) {
-        for (const bool ground : {false, true}) {
-          InitAnswers answers{word.target, ground, "", arms.front(), "", type, "camera"};
-          if (!cameras.empty()) answers.camera = cameras.front();
-          answers.base = propose_base(robot, answers.arm);
-          const bool pixels = answers.camera_type == "camera2d";
-          if (word.target == InitTarget::tracker && (ground || pixels)) continue;
-          if (word.target == InitTarget::ground && (ground || pixels)) continue;
-          if (pixels && ground) continue;
-          if (!makes_sense(robot, answers)) continue;
-          all.push_back({urdf.name + "_" + std::string(word.word) + (pixels ? "_pixels" : "") +
-                             (ground ? "_and_ground" : ""),
-                         urdf.file, answers});
-        }
+  if (arms.empty()) return all;  // the test of proposals reports it
+  for (const InitTargetWord& word : kInitTargets) {
+    for (const char* type : {"camera3d", "camera2d"}) {
+      for (const bool ground : {false, true}) {
+        InitAnswers answers{word.target, ground, "", arms.front(), "", type, "camera"};
+        if (!cameras.empty()) answers.camera = cameras.front();
+        answers.base = propose_base(robot, answers.arm);
+        const bool pixels = answers.camera_type == "camera2d";
+        if (word.target == InitTarget::tracker && (ground || pixels)) continue;
+        if (word.target == InitTarget::ground && (ground || pixels)) continue;
+        if (pixels && ground) continue;
+        if (!makes_sense(robot, answers)) continue;
+        all.push_back(
+            {std::string(word.word) + (pixels ? "_pixels" : "") + (ground ? "_and_ground" : ""),
+             answers});
       }
     }
   }
   return all;
 }
 
-class InitialConfig : public testing::TestWithParam<Case> {
+/// Of one robot.  A test has all cases of it: reading every robot to list them takes a while, and
+/// each test of this program would do it.
+class InitialConfig : public testing::TestWithParam<test::NamedUrdf> {
  protected:
+  template <class F>
+  void for_each_case(F&& test) {
+    const Robot robot = read_urdf(GetParam().file.string());
+    for (const Case& c : every_case(robot)) {
+      SCOPED_TRACE(c.name);
+      test(robot, c.answers);
+    }
+  }
+
   /// The configuration that is written, read again from a file: messages have its lines.
   Config read_again(const std::string& text, Diagnostics& diagnostics) {
     const auto path =
@@ -169,99 +176,89 @@ class Simulation {
 };
 
 TEST_P(InitialConfig, IsReadAndFitsTheRobotWithoutAWarning) {
-  const Robot robot = read_urdf(GetParam().urdf.string());
-  const std::string text = initial_config(robot, GetParam().answers);
-  Diagnostics diagnostics;
-  const Config config = read_again(text, diagnostics);
-  (void)assemble(config, robot, {}, diagnostics);
-  EXPECT_THAT(diagnostics.errors, testing::IsEmpty()) << text;
-  EXPECT_THAT(diagnostics.warnings, testing::IsEmpty()) << text;
+  for_each_case([&](const Robot& robot, const InitAnswers& answers) {
+    const std::string text = initial_config(robot, answers);
+    Diagnostics diagnostics;
+    const Config config = read_again(text, diagnostics);
+    (void)assemble(config, robot, {}, diagnostics);
+    EXPECT_THAT(diagnostics.errors, testing::IsEmpty()) << text;
+    EXPECT_THAT(diagnostics.warnings, testing::IsEmpty()) << text;
+  });
 }
 
 TEST_P(InitialConfig, FreesOnlyWhatSamplesDetermineOrAPriorKeeps) {
-  const Robot robot = read_urdf(GetParam().urdf.string());
-  const std::string text = initial_config(robot, GetParam().answers);
-  Diagnostics diagnostics;
-  const Config config = read_again(text, diagnostics);
-  const auto samples = Simulation(robot, GetParam().answers, config.steps.front(), {}).samples(60);
-  ASSERT_GE(samples.size(), 10u) << "the camera never sees the target";
-  const Calibration calibration = assemble(config, robot, samples, diagnostics);
-  ASSERT_THAT(diagnostics.errors, testing::IsEmpty()) << text;
-  const CalibrationStep& step = calibration.steps.front();
-  const Eigen::VectorXd values = calibration.table.values();
-  const Observability found = observability(
-      *step.problem, step.free, std::span(values.data(), values.data() + values.size()));
-  for (const Combination& open : found.unobservable) {
-    std::string names;
-    bool kept = false;
-    for (const auto& [index, factor] : open) {
-      const std::string& name = calibration.table[index].name;
-      names += " " + name;
-      for (const BlockConfig& block : config.steps.front().error_blocks) {
-        kept = kept || (!block.param.empty() && name.starts_with(block.param));
+  for_each_case([&](const Robot& robot, const InitAnswers& answers) {
+    const std::string text = initial_config(robot, answers);
+    Diagnostics diagnostics;
+    const Config config = read_again(text, diagnostics);
+    const auto samples = Simulation(robot, answers, config.steps.front(), {}).samples(60);
+    ASSERT_GE(samples.size(), 10u) << "the camera never sees the target";
+    const Calibration calibration = assemble(config, robot, samples, diagnostics);
+    ASSERT_THAT(diagnostics.errors, testing::IsEmpty()) << text;
+    const CalibrationStep& step = calibration.steps.front();
+    const Eigen::VectorXd values = calibration.table.values();
+    const Observability found = observability(
+        *step.problem, step.free, std::span(values.data(), values.data() + values.size()));
+    for (const Combination& open : found.unobservable) {
+      std::string names;
+      bool kept = false;
+      for (const auto& [index, factor] : open) {
+        const std::string& name = calibration.table[index].name;
+        names += " " + name;
+        for (const BlockConfig& block : config.steps.front().error_blocks) {
+          kept = kept || (!block.param.empty() && name.starts_with(block.param));
+        }
       }
+      EXPECT_TRUE(kept) << "open:" << names << "\n" << text;
     }
-    EXPECT_TRUE(kept) << "open:" << names << "\n" << text;
-  }
-}
-
-class InitialConfigOfWrongRobots : public InitialConfig {};
-
-/// The floor alone frees no offset and no virtual frame.
-std::vector<Case> every_case_with_offsets() {
-  std::vector<Case> all = every_case();
-  std::erase_if(all, [](const Case& c) { return c.answers.target == InitTarget::ground; });
-  return all;
+  });
 }
 
 /// As far off as its comments allow: joints by 2 degrees, frames that were measured by hand by 30
 /// degrees and 0.1 m (a board), 60 degrees and 0.5 m (a tracker).
-TEST_P(InitialConfigOfWrongRobots, AreFoundFromWhereItStarts) {
-  const InitAnswers& answers = GetParam().answers;
-  const Robot robot = read_urdf(GetParam().urdf.string());
-  Diagnostics diagnostics;
-  const Config config = read_again(initial_config(robot, answers), diagnostics);
-  const StepConfig& step = config.steps.front();
-  Truth truth;
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  for (const FreeParamConfig& param : step.free_params) {
-    if (robot.has_joint(param.name)) truth.offsets[param.name] = 2.0 * kDegree;
-  }
-  for (const FrameInitialValueConfig& frame : step.frame_initial_values) {
-    const bool is_tracker = frame_of(step, step.models.back()) == frame.name;
-    const bool is_reflector = answers.target == InitTarget::tracker && !is_tracker;
-    const double turn = (is_tracker ? 60.0 : 30.0) * kDegree;
-    const Vector3<double> axis_angle = turn / 3.0 * Vector3<double>(1.0, -2.0, 2.0);
-    Pose<double>& pose = truth.frames[frame.name];
-    if (!is_reflector) pose.rotation = exp(axis_angle);
-    pose.translation = (is_tracker ? 0.5 : 0.1) / 3.0 * Vector3<double>(2.0, 1.0, 2.0);
-  }
-  const auto samples = Simulation(robot, answers, step, truth).samples(60);
-  ASSERT_GE(samples.size(), 10u);
-  const CalibrationResult result = calibrate(assemble(config, robot, samples, diagnostics));
-  EXPECT_TRUE(result.converged) << result.termination;
-  constexpr double kMetres = 1e-4, kPixels = 0.05;  // what a prior may take, far below noise
-  EXPECT_LE(result.blocks[0].after.rms, result.blocks[0].unit == "px" ? kPixels : kMetres);
+TEST_P(InitialConfig, FindsWrongRobotsFromWhereItStarts) {
+  for_each_case([&](const Robot& robot, const InitAnswers& answers) {
+    if (answers.target == InitTarget::ground) return;  // frees no offset and no virtual frame
+    Diagnostics diagnostics;
+    const Config config = read_again(initial_config(robot, answers), diagnostics);
+    const StepConfig& step = config.steps.front();
+    Truth truth;
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    for (const FreeParamConfig& param : step.free_params) {
+      if (robot.has_joint(param.name)) truth.offsets[param.name] = 2.0 * kDegree;
+    }
+    for (const FrameInitialValueConfig& frame : step.frame_initial_values) {
+      const bool is_tracker = frame_of(step, step.models.back()) == frame.name;
+      const bool is_reflector = answers.target == InitTarget::tracker && !is_tracker;
+      const double turn = (is_tracker ? 60.0 : 30.0) * kDegree;
+      const Vector3<double> axis_angle = turn / 3.0 * Vector3<double>(1.0, -2.0, 2.0);
+      Pose<double>& pose = truth.frames[frame.name];
+      if (!is_reflector) pose.rotation = exp(axis_angle);
+      pose.translation = (is_tracker ? 0.5 : 0.1) / 3.0 * Vector3<double>(2.0, 1.0, 2.0);
+    }
+    const auto samples = Simulation(robot, answers, step, truth).samples(60);
+    ASSERT_GE(samples.size(), 10u);
+    const CalibrationResult result = calibrate(assemble(config, robot, samples, diagnostics));
+    EXPECT_TRUE(result.converged) << result.termination;
+    constexpr double kMetres = 1e-4, kPixels = 0.05;  // what a prior may take, far below noise
+    EXPECT_LE(result.blocks[0].after.rms, result.blocks[0].unit == "px" ? kPixels : kMetres);
+  });
 }
 
 TEST_P(InitialConfig, FitsIntoLinesAndExplainsEachList) {
-  const Robot robot = read_urdf(GetParam().urdf.string());
-  std::istringstream text(initial_config(robot, GetParam().answers));
-  std::string before;
-  for (std::string line; std::getline(text, line); before = line) {
-    EXPECT_TRUE(line.size() <= 100 || !line.starts_with("#")) << line;
-    const bool is_list = !line.empty() && line.ends_with(":") && line[0] != ' ' && line[0] != '#';
-    EXPECT_TRUE(!is_list || before.starts_with("#")) << line;
-  }
+  for_each_case([&](const Robot& robot, const InitAnswers& answers) {
+    std::istringstream text(initial_config(robot, answers));
+    std::string before;
+    for (std::string line; std::getline(text, line); before = line) {
+      EXPECT_TRUE(line.size() <= 100 || !line.starts_with("#")) << line;
+      const bool is_list = !line.empty() && line.ends_with(":") && line[0] != ' ' && line[0] != '#';
+      EXPECT_TRUE(!is_list || before.starts_with("#")) << line;
+    }
+  });
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryRobot, InitialConfig, testing::ValuesIn(every_case()),
+INSTANTIATE_TEST_SUITE_P(EveryRobot, InitialConfig, testing::ValuesIn(test::every_robot()),
                          [](const auto& param) { return param.param.name; });
-INSTANTIATE_TEST_SUITE_P(EveryRobot, InitialConfigOfWrongRobots,
-                         testing::ValuesIn(every_case_with_offsets()),
-                         [](const auto& param) { return param.param.name; });
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(InitialConfig);
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(InitialConfigOfWrongRobots);
 
 class InitialConfigMistakes : public testing::Test {
  protected:

@@ -19,8 +19,8 @@
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/io/urdf/urdf_text.ipp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/kinematics/motion.hpp"
-#include "kinecal/kinematics/pose_walker.hpp"
 #include "support/data.hpp"
 
 namespace kinecal {
