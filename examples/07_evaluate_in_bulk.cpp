@@ -8,7 +8,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "kinecal/crate.hpp"
+#include "kinecal/core.hpp"
 #include "kinecal/errors.hpp"
 #include "robots/mobile_manipulator.hpp"
 #include "simulation.hpp"

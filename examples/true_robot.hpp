@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "kinecal/kinematics/pose_walker.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "simulation.hpp"
 

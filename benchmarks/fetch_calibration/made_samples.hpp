@@ -8,7 +8,7 @@
 #include <random>
 
 #include "fetch_robot.hpp"
-#include "kinecal/kinematics/pose_walker.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/samples/sample.hpp"
 

@@ -6,6 +6,7 @@
 #include "kinecal/kinematics/chain_checks.hpp"
 #include "kinecal/kinematics/corrections.hpp"
 #include "kinecal/kinematics/fixed_string.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/kinematics/joint.hpp"
 #include "kinecal/kinematics/known_name.hpp"
 #include "kinecal/kinematics/motion.hpp"

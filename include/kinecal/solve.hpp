@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/core.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/solve/calibrate_crate.hpp"
 #include "kinecal/solve/compressed_cost.hpp"

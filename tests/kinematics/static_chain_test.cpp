@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
 #include "support/static_robot.hpp"
 

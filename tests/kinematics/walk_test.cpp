@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "support/oracle.hpp"
 #include "support/robots.hpp"

@@ -15,6 +15,7 @@
 
 #include "kinecal/io/camera_info.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
 #include "support/run_program.hpp"

@@ -11,7 +11,7 @@
 #include "kinecal/io/recordings/convert.hpp"
 #include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
-#include "kinecal/kinematics/pose_walker.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/data.hpp"
 #include "support/run_program.hpp"
 

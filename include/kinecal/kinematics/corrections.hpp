@@ -34,46 +34,32 @@ struct JointCorrection {
 template <class S>
 using Corrections = std::vector<JointCorrection<S>>;
 
-/// The measured motion of each joint of a chain in one sample.
-/// @param position_of  callable: name of a joint -> its measured position, radians or metres
-template <class PositionOf>
-[[nodiscard]] std::vector<Motion<double>> measured_motions(const RuntimeChain& chain,
-                                                           PositionOf&& position_of) {
-  std::vector<Motion<double>> motions;
-  motions.reserve(chain.joints.size());
-  for (const ChainJoint& joint : chain.joints) {
-    const Mimic& drive = joint.drive;
-    motions.push_back(moves(joint.type)
-                          ? make_motion(drive.multiplier * position_of(drive.joint) + drive.offset)
-                          : Motion<double>{});
-  }
-  return motions;
+/// The joints of a chain, from base to tip.
+[[nodiscard]] inline const std::vector<ChainJoint>& joints_of(const RuntimeChain& chain) {
+  return chain.joints;
+}
+/// The joints of a chain that the compiler knows.
+template <StaticChain C>
+[[nodiscard]] constexpr const auto& joints_of(const C&) {
+  return C::kJoints;
 }
 
-/// The same for a chain that the compiler knows.
+/// The measured motion of each joint of a chain in one sample.
+/// @param chain        a RuntimeChain or a Chain
 /// @param position_of  callable: name of a joint -> its measured position, radians or metres
-template <StaticChain C, class PositionOf>
-[[nodiscard]] std::vector<Motion<double>> measured_motions(const C&, PositionOf&& position_of) {
+template <class Chain, class PositionOf>
+[[nodiscard]] std::vector<Motion<double>> measured_motions(const Chain& chain,
+                                                           PositionOf&& position_of) {
   std::vector<Motion<double>> motions;
-  motions.reserve(C::kSize);
-  for (const detail::StaticJointData& joint : C::kJoints) {
-    const MimicData& drive = joint.drive;
+  motions.reserve(joints_of(chain).size());
+  for (const auto& joint : joints_of(chain)) {
+    const auto& drive = joint.drive;
     motions.push_back(
         moves(joint.type)
             ? make_motion(drive.multiplier * position_of(std::string(drive.joint)) + drive.offset)
             : Motion<double>{});
   }
   return motions;
-}
-
-/// Number of joints of a chain, and so of its motions and corrections.
-[[nodiscard]] inline std::size_t num_joints(const RuntimeChain& chain) {
-  return chain.joints.size();
-}
-/// Number of joints of a chain that the compiler knows.
-template <StaticChain C>
-[[nodiscard]] std::size_t num_joints(const C&) {
-  return C::kSize;
 }
 
 }  // namespace kinecal

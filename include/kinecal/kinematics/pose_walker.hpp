@@ -56,25 +56,4 @@ struct PoseWalker {
   }
 };
 
-/// Forward kinematics: base_T_tip of a chain.
-/// @param chain        a RuntimeChain or a Chain
-/// @param position_of  callable: name of a joint -> its measured position, radians or metres
-/// @param corrections  one per joint of the chain
-template <class Chain, class PositionOf, class S>
-[[nodiscard]] Pose<S> forward_kinematics(const Chain& chain, PositionOf&& position_of,
-                                         const Corrections<S>& corrections) {
-  const std::vector<Motion<double>> motions = measured_motions(chain, position_of);
-  PoseWalker<S> walker;
-  walk(chain, std::span<const Motion<double>>(motions),
-       std::span<const JointCorrection<S>>(corrections), walker);
-  return walker.pose;
-}
-
-/// Forward kinematics without corrections.
-/// @param position_of  callable: name of a joint -> its measured position, radians or metres
-template <class Chain, class PositionOf>
-[[nodiscard]] Pose<double> forward_kinematics(const Chain& chain, PositionOf&& position_of) {
-  return forward_kinematics(chain, position_of, Corrections<double>(num_joints(chain)));
-}
-
 }  // namespace kinecal

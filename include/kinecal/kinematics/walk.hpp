@@ -10,7 +10,6 @@
 #pragma once
 
 #include <concepts>
-#include <span>
 #include <utility>
 
 #include "kinecal/kinematics/corrections.hpp"
@@ -66,9 +65,8 @@ template <StaticChain C>
 
 /// The part of a walk before the first moving joint: the same for all joint positions.
 /// @returns  index of that joint, for walk_on(); the number of joints if all are fixed
-template <class Chain, class S, class W>
-[[nodiscard]] std::size_t walk_to_first_motion(const Chain& chain,
-                                               std::span<const JointCorrection<S>> corrections,
+template <class Chain, class Corrected, class W>
+[[nodiscard]] std::size_t walk_to_first_motion(const Chain& chain, const Corrected& corrections,
                                                W& walker) {
   std::size_t passed = 0;
   detail::for_joints(chain, 0, [&](auto i, const auto& joint) {
@@ -83,12 +81,11 @@ template <class Chain, class S, class W>
 }
 
 /// The rest of the walk.
-/// @param first        the result of walk_to_first_motion()
-/// @param motions      measured motion of each joint of the chain (any scalar)
-/// @param corrections  correction of each joint of the chain (any scalar)
-template <class Chain, class Q, class S, class W>
-void walk_on(const Chain& chain, std::size_t first, std::span<const Motion<Q>> motions,
-             std::span<const JointCorrection<S>> corrections, W& walker) {
+/// @param first  the result of walk_to_first_motion()
+/// The other parameters are those of walk().
+template <class Chain, class Motions, class Corrected, class W>
+void walk_on(const Chain& chain, std::size_t first, const Motions& motions,
+             const Corrected& corrections, W& walker) {
   detail::for_joints(chain, first, [&](auto i, const auto& joint) {
     if (i != first) {
       walker.fixed(joint.fixed);
@@ -103,11 +100,10 @@ void walk_on(const Chain& chain, std::size_t first, std::span<const Motion<Q>> m
 
 /// Walks a chain from base to tip.
 /// @param chain        a RuntimeChain or a Chain
-/// @param motions      measured motion of each joint of the chain (any scalar)
-/// @param corrections  correction of each joint of the chain (any scalar)
-template <class Chain, class Q, class S, class W>
-void walk(const Chain& chain, std::span<const Motion<Q>> motions,
-          std::span<const JointCorrection<S>> corrections, W& walker) {
+/// @param motions      measured Motion of each joint of the chain (any scalar), by index
+/// @param corrections  JointCorrection of each joint of the chain (any scalar), by index
+template <class Chain, class Motions, class Corrected, class W>
+void walk(const Chain& chain, const Motions& motions, const Corrected& corrections, W& walker) {
   walk_on(chain, walk_to_first_motion(chain, corrections, walker), motions, corrections, walker);
 }
 
