@@ -37,10 +37,10 @@ KDL::Chain kdl_chain(const Robot& robot, const std::string& base, const std::str
     const KDL::Frame origin = to_kdl((*joint)->origin);
     const KDL::Vector axis = origin.M * to_kdl((*joint)->axis);
     const KDL::Joint moved =
-        !moves((*joint)->type) ? KDL::Joint((*joint)->name, KDL::Joint::Fixed)
-                               : KDL::Joint((*joint)->name, origin.p, axis,
-                                            turns((*joint)->type) ? KDL::Joint::RotAxis
-                                                                  : KDL::Joint::TransAxis);
+        !moves((*joint)->type)
+            ? KDL::Joint((*joint)->name, KDL::Joint::Fixed)
+            : KDL::Joint((*joint)->name, origin.p, axis,
+                         turns((*joint)->type) ? KDL::Joint::RotAxis : KDL::Joint::TransAxis);
     chain.addSegment(KDL::Segment((*joint)->name, moved, origin));
   }
   return chain;

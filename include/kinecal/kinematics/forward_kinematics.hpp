@@ -89,8 +89,9 @@ template <class Chain>
 /// @param q            (joints of the chain) positions, radians or metres; any scalar
 /// @param corrections  JointCorrection of each joint of the chain, by index
 template <class Chain, class Derived, class Corrected = detail::NoCorrections>
-[[nodiscard]] Pose<typename Derived::Scalar> forward_kinematics(
-    const Chain& chain, const Eigen::MatrixBase<Derived>& q, const Corrected& corrections = {}) {
+[[nodiscard]] Pose<typename Derived::Scalar> forward_kinematics(const Chain& chain,
+                                                                const Eigen::MatrixBase<Derived>& q,
+                                                                const Corrected& corrections = {}) {
   PoseWalker<typename Derived::Scalar> walker;
   walk(chain, detail::MotionsAt<Derived>{q.derived()}, corrections, walker);
   return walker.pose;
