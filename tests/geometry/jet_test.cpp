@@ -15,10 +15,13 @@ constexpr double kRounding = 1e-14;  // a few dozen operations on numbers of siz
 /// A formula with everything that a jet can do, its arguments positive.
 template <class T>
 T everything(const T& x, const T& y, const T& z) {
-  using std::abs, std::atan2, std::cos, std::exp, std::log, std::sin, std::sqrt;
+  using std::abs, std::acos, std::asin, std::atan, std::atan2, std::cbrt, std::cos, std::exp,
+      std::hypot, std::log, std::log1p, std::pow, std::sin, std::sqrt, std::tan;
   T sum = x * y - z / x + 2.0 * y - z * 0.5 + T(1.0) / z + y / 4.0;
   sum += sin(x * z) * cos(y) + exp(-x) * log(y + 1.0);
   sum -= sqrt(x * x + y * y + 0.5) * atan2(z - 1.0, x + y);
+  sum += tan(x * 0.3) * asin(z * 0.35) + acos(x * 0.4) * atan(y) + cbrt(y) * hypot(x, z);
+  sum += log1p(x) * pow(y, 2.5) + pow(z - 1.0, 3.0) - pow(x + 1.0, -1.0);
   sum *= abs(x - y) + abs(y - x) + 1.0;
   sum /= z + 3.0 - x * 0.1;
   return 1.0 - (-sum) + 2.0;
@@ -125,6 +128,25 @@ TEST(Jet, OfPacketsMixesWithNumbersAsThatOfDoublesDoes) {
   EXPECT_EQ(DividesNumbers<OfPackets>, DividesNumbers<OfDoubles>) << "1.0 / x";
   EXPECT_EQ(ComparesWithNumbers<OfPackets>, ComparesWithNumbers<OfDoubles>) << "x < 0.0";
   EXPECT_EQ(SelectsNumbers<OfPackets>, SelectsNumbers<OfDoubles>) << "select(x < y, x, 0.0)";
+}
+
+/// As an error block writes it: a point minus a constant one.
+template <class J>
+J distance_to(const Vector3<J>& p, const Vector3<double>& center) {
+  return sqrt((2.0 * (p - center) + center).squaredNorm());
+}
+
+TEST(Jet, OfPacketsMixesWithVectorsOfNumbers) {
+  const Vector3<double> p(1.0, 2.0, 3.0), center(0.3, -0.4, 0.5);
+  using OfDoubles = Jet<double, 3>;
+  using OfPackets = Jet<Packet, 3>;
+  const OfDoubles one = distance_to(point_jets<OfDoubles>(p, 0), center);
+  const OfPackets all =
+      distance_to(point_jets<OfPackets>(Vector3<Packet>(p.cast<Packet>()), 0), center);
+  const Packet packet = distance_to(Vector3<Packet>(p.cast<Packet>()), center);
+  EXPECT_NEAR(lane(packet, 0), one.a, kRounding);
+  EXPECT_NEAR(lane(all.a, 0), one.a, kRounding);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(lane(all.v(k), 0), one.v(k), kRounding);
 }
 
 TEST(Jet, ANumberHasNoDerivatives) {

@@ -81,6 +81,13 @@ TEST(Packet, FunctionsTakeEachLaneByItself) {
     EXPECT_EQ(lane(sqrt(x), i), std::sqrt(a));
     EXPECT_EQ(lane(abs(y), i), std::abs(b));
     EXPECT_EQ(lane(atan2(y, x), i), std::atan2(b, a));
+    EXPECT_EQ(lane(tan(x), i), std::tan(a));
+    EXPECT_EQ(lane(atan(y), i), std::atan(b));
+    EXPECT_EQ(lane(asin(x / 8.0), i), std::asin(a / 8.0));
+    EXPECT_EQ(lane(acos(x / 8.0), i), std::acos(a / 8.0));
+    EXPECT_EQ(lane(cbrt(y), i), std::cbrt(b));
+    EXPECT_EQ(lane(pow(x, 2.5), i), std::pow(a, 2.5));
+    EXPECT_DOUBLE_EQ(lane(hypot(x, y), i), std::hypot(a, b));
   }
 }
 

@@ -120,6 +120,44 @@ struct Jet {
     using std::log;
     return {log(x.a), x.v * (S(1.0) / x.a)};
   }
+  friend Jet log1p(const Jet& x) {
+    using std::log1p;
+    return {log1p(x.a), x.v * (S(1.0) / (S(1.0) + x.a))};
+  }
+  friend Jet tan(const Jet& x) {
+    using std::tan;
+    const S value = tan(x.a);
+    return {value, x.v * (S(1.0) + value * value)};
+  }
+  friend Jet asin(const Jet& x) {
+    using std::asin, std::sqrt;
+    return {asin(x.a), x.v * (S(1.0) / sqrt(S(1.0) - x.a * x.a))};
+  }
+  friend Jet acos(const Jet& x) {
+    using std::acos, std::sqrt;
+    return {acos(x.a), x.v * (S(-1.0) / sqrt(S(1.0) - x.a * x.a))};
+  }
+  friend Jet atan(const Jet& x) {
+    using std::atan;
+    return {atan(x.a), x.v * (S(1.0) / (S(1.0) + x.a * x.a))};
+  }
+  friend Jet cbrt(const Jet& x) {
+    using std::cbrt;
+    const S root = cbrt(x.a);
+    return {root, x.v * (S(1.0) / (S(3.0) * root * root))};
+  }
+  /// x^p.
+  /// @param p  a constant: integers take any x, other numbers x >= 0
+  friend Jet pow(const Jet& x, double p) {
+    using std::pow;
+    if (p == 0.0) return Jet(S(1.0));
+    return {pow(x.a, S(p)), x.v * (S(p) * pow(x.a, S(p - 1.0)))};
+  }
+  friend Jet hypot(const Jet& x, const Jet& y) {
+    using std::hypot;
+    const S length = hypot(x.a, y.a), scale = S(1.0) / length;
+    return {length, x.v * (x.a * scale) + y.v * (y.a * scale)};
+  }
   friend Jet atan2(const Jet& y, const Jet& x) {
     using std::atan2;
     const S scale = S(1.0) / (x.a * x.a + y.a * y.a);
@@ -198,6 +236,16 @@ struct ScalarBinaryOpTraits<kinecal::Jet<S, N>, S, Op> {
 };
 template <class S, int N, class Op>
 struct ScalarBinaryOpTraits<S, kinecal::Jet<S, N>, Op> {
+  using ReturnType = kinecal::Jet<S, N>;
+};
+template <class S, int N, class Op>
+requires kinecal::Jet<S, N>::kOfPackets struct ScalarBinaryOpTraits<kinecal::Jet<S, N>, double,
+                                                                    Op> {
+  using ReturnType = kinecal::Jet<S, N>;
+};
+template <class S, int N, class Op>
+requires kinecal::Jet<S, N>::kOfPackets struct ScalarBinaryOpTraits<double, kinecal::Jet<S, N>,
+                                                                    Op> {
   using ReturnType = kinecal::Jet<S, N>;
 };
 

@@ -113,6 +113,28 @@ class PacketOf {
   friend PacketOf log1p(PacketOf a) {
     return a.each([](double x) { return std::log1p(x); });
   }
+  friend PacketOf tan(PacketOf a) {
+    return a.each([](double x) { return std::tan(x); });
+  }
+  friend PacketOf asin(PacketOf a) {
+    return a.each([](double x) { return std::asin(x); });
+  }
+  friend PacketOf acos(PacketOf a) {
+    return a.each([](double x) { return std::acos(x); });
+  }
+  friend PacketOf atan(PacketOf a) {
+    return a.each([](double x) { return std::atan(x); });
+  }
+  friend PacketOf cbrt(PacketOf a) {
+    return a.each([](double x) { return std::cbrt(x); });
+  }
+  friend PacketOf pow(PacketOf a, PacketOf b) {
+    for (std::size_t i = 0; i < size(); ++i) a.set(i, std::pow(a[i], b[i]));
+    return a;
+  }
+  friend PacketOf hypot(PacketOf a, PacketOf b) {
+    return sqrt(a * a + b * b);
+  }
   friend PacketOf atan2(PacketOf a, PacketOf b) {
     for (std::size_t i = 0; i < size(); ++i) a.set(i, std::atan2(a[i], b[i]));
     return a;

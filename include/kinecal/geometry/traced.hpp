@@ -85,6 +85,18 @@ struct Traced {
   friend Traced cos(const Traced& x) { return {std::cos(x.value), x.varies}; }
   friend Traced exp(const Traced& x) { return {std::exp(x.value), x.varies}; }
   friend Traced log(const Traced& x) { return {std::log(x.value), x.varies}; }
+  friend Traced log1p(const Traced& x) { return {std::log1p(x.value), x.varies}; }
+  friend Traced tan(const Traced& x) { return {std::tan(x.value), x.varies}; }
+  friend Traced asin(const Traced& x) { return {std::asin(x.value), x.varies}; }
+  friend Traced acos(const Traced& x) { return {std::acos(x.value), x.varies}; }
+  friend Traced atan(const Traced& x) { return {std::atan(x.value), x.varies}; }
+  friend Traced cbrt(const Traced& x) { return {std::cbrt(x.value), x.varies}; }
+  friend Traced pow(const Traced& x, const Traced& p) {
+    return {std::pow(x.value, p.value), x.varies || p.varies};
+  }
+  friend Traced hypot(const Traced& x, const Traced& y) {
+    return {std::hypot(x.value, y.value), x.varies || y.varies};
+  }
   friend Traced atan2(const Traced& y, const Traced& x) {
     return {std::atan2(y.value, x.value), x.varies || y.varies};
   }
