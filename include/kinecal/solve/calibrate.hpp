@@ -53,7 +53,8 @@ using Progress = std::function<void(const std::string& step, int iteration, doub
 /// the residuals keep their initial values.
 /// @param problem  without samples
 /// @throws SampleError  naming the sample and what is missing or wrong in it
-/// @throws std::invalid_argument  if no error block can use any of the samples
+/// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor, or if no
+///                                error block can use any of the samples
 [[nodiscard]] Calibration make_calibration(std::unique_ptr<AnyProblem> problem, const FreeSet& free,
                                            std::span<const Sample> samples,
                                            const std::string& step = "calibration");

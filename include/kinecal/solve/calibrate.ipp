@@ -67,6 +67,7 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
 KINECAL_INLINE Calibration make_calibration(std::unique_ptr<AnyProblem> problem,
                                             const FreeSet& free, std::span<const Sample> samples,
                                             const std::string& step) {
+  problem->check(free);
   for (const Sample& sample : samples) problem->add_sample(sample);
   const std::vector<int> touched = problem->touched_parameters();
   if (touched.empty()) {

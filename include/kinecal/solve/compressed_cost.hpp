@@ -18,6 +18,7 @@
 #include <ceres/cost_function.h>
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "kinecal/crate/any_problem.hpp"
 #include "kinecal/linkage.hpp"
@@ -36,9 +37,14 @@ struct EquivalentResidual {
 /// The whole problem as one Ceres cost function over the free parameters.
 class CompressedCost final : public ceres::CostFunction {
  public:
+  /// Columns of the free set by Ceres' parameter block.
+  using Blocks = std::vector<std::vector<int>>;
+
   /// @param evaluator  of the problem and its free parameters; must outlive the cost
   /// @param values     of all parameters of the problem's table; the free ones are replaced
-  CompressedCost(AnyEvaluator& evaluator, Eigen::VectorXd values, Losses losses = Losses::as_given);
+  /// @param blocks     every column once; empty: one block of all
+  CompressedCost(AnyEvaluator& evaluator, Eigen::VectorXd values, Losses losses = Losses::as_given,
+                 Blocks blocks = {});
 
   /// Returns false where a residual is undefined: Ceres then takes a shorter step.
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -50,6 +56,7 @@ class CompressedCost final : public ceres::CostFunction {
   const FreeSet& free_;
   mutable Eigen::VectorXd values_;
   Losses losses_;
+  Blocks blocks_;
 };
 
 }  // namespace kinecal

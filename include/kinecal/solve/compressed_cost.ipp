@@ -37,18 +37,32 @@ KINECAL_INLINE EquivalentResidual::EquivalentResidual(const NormalEquations& nor
 }
 
 KINECAL_INLINE CompressedCost::CompressedCost(AnyEvaluator& evaluator, Eigen::VectorXd values,
-                                              Losses losses)
-    : evaluator_(evaluator), free_(evaluator.free()), values_(std::move(values)), losses_(losses) {
+                                              Losses losses, Blocks blocks)
+    : evaluator_(evaluator),
+      free_(evaluator.free()),
+      values_(std::move(values)),
+      losses_(losses),
+      blocks_(std::move(blocks)) {
   set_num_residuals(free_.size() + 1);
-  mutable_parameter_block_sizes()->push_back(free_.size());
+  if (blocks_.empty()) {
+    std::vector<int>& all = blocks_.emplace_back();
+    for (int c = 0; c < free_.size(); ++c) all.push_back(c);
+  }
+  for (const std::vector<int>& columns : blocks_) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(columns.size()));
+  }
 }
 
 KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, double* residuals,
                                              double** jacobians) const {
-  for (int c = 0; c < free_.size(); ++c) {
-    values_(free_.parameters()[static_cast<std::size_t>(c)]) = parameters[0][c];
+  bool derivatives = false;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    derivatives = derivatives || (jacobians != nullptr && jacobians[b] != nullptr);
+    for (std::size_t k = 0; k < blocks_[b].size(); ++k) {
+      const auto column = static_cast<std::size_t>(blocks_[b][k]);
+      values_(free_.parameters()[column]) = parameters[b][k];
+    }
   }
-  const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
   const NormalEquations normal = evaluator_.normal_equations(
       {values_.data(), static_cast<std::size_t>(values_.size())}, derivatives, losses_);
   if (!std::isfinite(normal.cost)) return false;
@@ -60,8 +74,12 @@ KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, do
   }
   const EquivalentResidual equivalent(normal);
   r = equivalent.residual;
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Eigen::Map<RowMajor>(jacobians[0], free_.size() + 1, free_.size()) = equivalent.jacobian;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (jacobians[b] == nullptr) continue;
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<RowMajor>(jacobians[b], free_.size() + 1, std::ssize(blocks_[b])) =
+        equivalent.jacobian(Eigen::all, blocks_[b]);
+  }
   return true;
 }
 

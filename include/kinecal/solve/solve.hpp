@@ -55,6 +55,8 @@ struct StepResult {
 /// @param free    which parameters may change
 /// @param values  of all parameters of the problem's table: in: where to start; out: where it ended.
 ///                Unchanged if the result is not usable (see StepResult::termination)
+/// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor of the
+///                                problem, or if values are not as many as its table has parameters
 [[nodiscard]] StepResult solve(const AnyProblem& problem, const FreeSet& free,
                                Eigen::VectorXd& values, const SolveOptions& options = {});
 

@@ -16,6 +16,7 @@
 
 #include "kinecal/crate/any_problem.hpp"
 #include "kinecal/linkage.hpp"
+#include "kinecal/solve/stack.hpp"
 
 namespace kinecal {
 
@@ -35,9 +36,6 @@ class CeresLoss final : public ceres::LossFunction {
 /// Residuals and Jacobian of all features and priors at the point where Ceres is.
 class StackedResiduals final : public ceres::EvaluationCallback {
  public:
-  /// Jacobian of all rows: (residuals x free parameters).
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
   /// @param values  of all parameters of the problem's table; the free ones are replaced
   /// @param x       the free parameters, owned by the caller; Ceres changes them
   StackedResiduals(const AnyProblem& problem, const FreeSet& free, Eigen::VectorXd values,
@@ -53,13 +51,12 @@ class StackedResiduals final : public ceres::EvaluationCallback {
   class Rows;
 
   const AnyProblem& problem_;
-  const FreeSet& free_;
+  FreeSet free_;
   Eigen::VectorXd values_;
   const double* x_;
   Losses losses_;
   std::unique_ptr<AnyEvaluator> evaluator_;
-  Eigen::VectorXd residual_;
-  RowMajor jacobian_;
+  Stack rows_;
   bool defined_ = true;
 };
 

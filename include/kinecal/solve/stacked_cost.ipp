@@ -23,10 +23,10 @@ class StackedResiduals::Rows final : public ceres::CostFunction {
   bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
     if (!stack_.defined_) return false;
     const int size = num_residuals();
-    Eigen::Map<Eigen::VectorXd>(residuals, size) = stack_.residual_.segment(row_, size);
+    Eigen::Map<Eigen::VectorXd>(residuals, size) = stack_.rows_.residual.segment(row_, size);
     if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor>(jacobians[0], size, stack_.free_.size()) =
-          stack_.jacobian_.middleRows(row_, size);
+      Eigen::Map<Stack::RowMajor>(jacobians[0], size, stack_.free_.size()) =
+          stack_.rows_.jacobian.middleRows(row_, size);
     }
     return true;
   }
@@ -45,8 +45,8 @@ KINECAL_INLINE StackedResiduals::StackedResiduals(const AnyProblem& problem, con
       x_(x),
       losses_(losses),
       evaluator_(problem.evaluator(free)) {
-  residual_.resize(problem.num_residuals());
-  jacobian_.resize(problem.num_residuals(), free.size());
+  rows_.residual.resize(problem.num_residuals());
+  rows_.jacobian.resize(problem.num_residuals(), free.size());
 }
 
 KINECAL_INLINE void StackedResiduals::PrepareForEvaluation(bool jacobians, bool) {
@@ -54,22 +54,7 @@ KINECAL_INLINE void StackedResiduals::PrepareForEvaluation(bool jacobians, bool)
     values_(free_.parameters()[static_cast<std::size_t>(c)]) = x_[c];
   }
   const std::span<const double> values(values_.data(), static_cast<std::size_t>(values_.size()));
-  Eigen::Index row = 0;
-  const auto stack = [&](double weight, const TermResiduals& of_term) {
-    const Eigen::Index rows = of_term.residual.size();
-    residual_.segment(row, rows) = weight * of_term.residual;
-    if (jacobians) jacobian_.middleRows(row, rows) = weight * of_term.jacobian;
-    row += rows;
-  };
-  const FreeSet* free = jacobians ? &free_ : nullptr;
-  defined_ = !evaluator_->evaluate(values, jacobians, [&](int t, int, const auto& of_term) {
-    stack(problem_.term(t).options().weight, of_term);
-  });
-  TermResiduals of_prior;
-  for (const PriorTerm& prior : problem_.priors()) {
-    prior.evaluate(problem_.table(), values, free, of_prior);
-    stack(prior.options.weight, of_prior);
-  }
+  defined_ = !detail::stack_rows(*evaluator_, values, jacobians, 1.0, rows_);
 }
 
 KINECAL_INLINE void StackedResiduals::add_to(ceres::Problem& problem, double* x) {

@@ -1,0 +1,54 @@
+// A whole problem as one residual vector and one Jacobian: for your own solver or statistics.
+//
+//   const Stack s = stack(problem, free, values);
+//   const Eigen::VectorXd step = -s.jacobian.colPivHouseholderQr().solve(s.residual);
+//
+// Use it for problems of a size that fits in memory; AnyEvaluator::normal_equations() sums the same
+// rows without storing them.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// Weighted residuals of a problem and their derivatives.
+struct Stack {
+  /// Rows as the evaluation writes them.
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  Eigen::VectorXd residual;  ///< (residuals) weight times residual: term by term, sample by sample,
+                             ///< then the priors
+  RowMajor jacobian;         ///< (residuals x free parameters) derivatives of these
+};
+
+/// Stacks all residuals of a problem.  Losses are not applied.
+/// @param free    the columns of the Jacobian
+/// @param values  of all parameters of the problem's table
+/// @returns  residuals whose squares add up to twice the cost without losses.  A prior counts once for
+///           each sample: its rows carry the square root of their number
+/// @throws std::domain_error      if a residual is undefined, such as that of a point behind a camera;
+///                                with the error block and the sample
+/// @throws std::invalid_argument  if a free parameter is not one of the problem, or if values are not
+///                                as many as the table has parameters
+[[nodiscard]] Stack stack(const AnyProblem& problem, const FreeSet& free,
+                          std::span<const double> values);
+
+namespace detail {
+/// Writes weighted rows into a Stack of the problem's size.
+/// @param prior_factor  further factor of the priors' rows
+/// @returns  the first undefined residual, if any; then the rows are not valid
+std::optional<UndefinedResidual> stack_rows(AnyEvaluator& evaluator, std::span<const double> values,
+                                            bool jacobians, double prior_factor, Stack& out);
+}  // namespace detail
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/solve/stack.ipp"
+#endif

@@ -1,0 +1,61 @@
+#include "kinecal/solve/stack.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kinecal/crate/problem.hpp"
+#include "support/check_sums.hpp"
+#include "support/scene.hpp"
+
+namespace kinecal {
+namespace {
+
+Problem problem_of(std::span<const Sample> samples) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.weight = 2.0});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01});
+  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {.weight = 0.1});
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  return problem;
+}
+
+TEST(Stack, HasTheNormalEquationsOfTheProblem) {
+  const Problem empty = test::scene_problem();
+  const std::vector<double> truth = test::random_values(empty.table(), 0.03, 5);
+  std::vector<Sample> samples = test::exact_samples(empty, truth, 12);
+  samples[4].observations[1].features[2].point.x() = std::nan("");  // the camera's
+  const Problem problem = problem_of(samples);
+  const FreeSet free =
+      test::free_of(problem.table(), {"elbow", "camera_joint_x", "camera_joint_b", "camera_fx"});
+  const std::vector<double> at = test::random_values(problem.table(), 0.01, 6);
+  const Stack found = stack(problem, free, at);
+  ASSERT_EQ(found.residual.size(), problem.num_residuals());
+  const NormalEquations expected = normal_equations(problem, at, &free);
+  NormalEquations sums = expected;
+  sums.cost = 0.5 * found.residual.squaredNorm();
+  sums.gradient = found.jacobian.transpose() * found.residual;
+  sums.hessian = found.jacobian.transpose() * found.jacobian;
+  constexpr double kSums = 1e-12;
+  test::expect_same(sums, expected, kSums);
+}
+
+TEST(Stack, NamesTheSampleWhoseResidualIsNotDefined) {
+  const Problem empty = test::scene_problem();
+  const std::vector<double> zero(static_cast<std::size_t>(empty.table().size()), 0.0);
+  std::vector<Sample> samples = test::exact_samples(empty, zero, 3);
+  for (Sample& sample : samples) sample.source = "s.yaml:7";
+  const Problem problem = problem_of(samples);
+  std::vector<double> backwards = zero;
+  backwards[static_cast<std::size_t>(problem.table().index("head_pan"))] = 3.1;  // looks away
+  try {
+    (void)stack(problem, test::free_of(problem.table(), {"head_pan"}), backwards);
+    FAIL() << "nothing was thrown";
+  } catch (const std::domain_error& e) {
+    EXPECT_STREQ(
+        e.what(),
+        "s.yaml:7: error block 'reprojection': the residual is not defined at these values");
+  }
+}
+
+}  // namespace
+}  // namespace kinecal
