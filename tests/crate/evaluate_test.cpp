@@ -281,6 +281,20 @@ TEST(Evaluate, GivesTheSameBytesInWhateverOrderAThreadMeetsTheChains) {
   expect_the_same_for_any_threads(problem);
 }
 
+TEST(Evaluate, RefusesFewerValuesThanParameters) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  const std::vector<double> few(static_cast<std::size_t>(problem.table().size()) - 1, 0.0);
+  const auto evaluator = problem.evaluator(FreeSet({}, problem.table().size()));
+  EXPECT_THROW((void)evaluator->normal_equations(few), std::invalid_argument);
+  EXPECT_THROW((void)evaluator->evaluate(few, false, [](int, int, auto&) {}),
+               std::invalid_argument);
+}
+
+// An evaluator does not outlive its problem.
+static_assert(std::is_constructible_v<Evaluator<double>, const BasicProblem<double>&, FreeSet>);
+static_assert(!std::is_constructible_v<Evaluator<double>, BasicProblem<double>, FreeSet>);
+
 TEST(Evaluate, AProblemWithoutSamplesCostsNothing) {
   for (const int threads : {0, 1, 7}) {
     const Problem problem = three_blocks();

@@ -53,6 +53,49 @@ TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
               HasSubstr("sensor 'camera' observes points"));
 }
 
+TEST(Problem, NamesTheNearestJointOrFrameForAMisspeltPrior) {
+  Problem problem = test::scene_problem();
+  problem.add_prior("keep", {"board", 1.0, 1.0, 1.0});
+  problem.add_prior("keep", {"elbow", 1.0, 1.0, 1.0});
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+              problem.add_prior("keep", {"elbw", 1.0, 1.0, 1.0});
+            }),
+            "prior 'keep': the table has no parameter of joint or frame 'elbw'; did you mean "
+            "'elbow'?");
+}
+
+TEST(Problem, NamesTheNearestParameterForAMisspeltFreeOne) {
+  ParameterTable table = test::scene_table();
+  table.add({.name = "elbw"});
+  table.add({.name = "camera_fz"});
+  Problem problem(test::mobile_manipulator(), "base_link", table, test::kSceneFrames);
+  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
+  const auto free = [&](const char* name) { return FreeSet({table.index(name)}, table.size()); };
+  for (const char* name : {"elbow", "camera_fx", "board_c"}) {
+    EXPECT_NO_THROW((void)problem.evaluator(free(name))) << name;
+  }
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { (void)problem.evaluator(free("elbw")); }),
+            "free parameter 'elbw' belongs to no joint that moves, free frame or sensor; did you "
+            "mean 'elbow'?");
+  EXPECT_THAT(
+      message_of<std::invalid_argument>([&] { (void)problem.evaluator(free("camera_fz")); }),
+      HasSubstr("free parameter 'camera_fz' belongs to no"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] { (void)problem.evaluator(FreeSet({0}, 3)); }),
+              HasSubstr("a free set of a table of 3 parameters; the problem's has"));
+}
+
+TEST(Problem, RefusesFewerPositionsThanJoints) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  Sample sample = samples()[0];
+  sample.source = "s.yaml:3";
+  sample.joint_positions.pop_back();
+  EXPECT_THAT(
+      message_of<SampleError>([&] { problem.add_sample(sample); }),
+      testing::MatchesRegex("s.yaml:3: it has [0-9]+ joint names, but positions of [0-9]+"));
+  EXPECT_EQ(sample.position(sample.joint_names.back()), std::nullopt);
+}
+
 TEST(Problem, TakesSensorsAndBlocksBeforeSamplesOnly) {
   Problem problem = test::scene_problem();
   problem.add_block("b", PointToPoint{}, {"camera", "arm"});

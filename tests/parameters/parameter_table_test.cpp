@@ -30,6 +30,21 @@ TEST(FreeSet, GivesColumnsToFreeParametersOnly) {
   EXPECT_EQ(free.column(1), 1);
   EXPECT_EQ(free.column(0), -1);
   EXPECT_EQ(free.column(-1), -1);
+  EXPECT_EQ(free.table_size(), 5);
+}
+
+TEST(FreeSet, RefusesWhatTheTableDoesNotHaveAndWhatOccursTwice) {
+  EXPECT_THROW(FreeSet({5}, 3), std::invalid_argument);
+  EXPECT_THROW(FreeSet({-1}, 3), std::invalid_argument);
+  EXPECT_THROW(FreeSet({2, 2}, 3), std::invalid_argument);
+  EXPECT_EQ(FreeSet({}, 0).size(), 0);
+}
+
+TEST(ParameterTable, StartsAtInitialValues) {
+  ParameterTable table;
+  table.add({.name = "elbow", .initial = 0.25});
+  table.add({.name = "wrist", .initial = 0.25, .value = 0.5});
+  EXPECT_EQ(table.values(), Eigen::Vector2d(0.25, 0.5));
 }
 
 TEST(ChainParameters, AMimicJointMovesWithTheOffsetOfItsDriver) {

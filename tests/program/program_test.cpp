@@ -728,12 +728,68 @@ TEST_F(Program, RefusesAJointNamedLikeAParameterOfAFrame) {
                        HasSubstr("rename")));
 }
 
-TEST_F(Program, RefusesAJointTwiceInASample) {
+TEST_F(Program, TakesTheFirstPositionOfAJointThatASampleNamesTwice) {
+  const test::Outcome once = calibrate();
+  const std::string expected = read("out/calibration.yaml");
   auto all = samples();
-  all[3].joint_names.push_back("elbow");
-  all[3].joint_positions.push_back(0.3);
+  for (Sample& sample : all) {
+    sample.joint_names.push_back("elbow");
+    sample.joint_positions.push_back(*sample.position("elbow"));
+  }
   write_all(all);
-  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("joint 'elbow' occurs twice")));
+  const test::Outcome twice = calibrate();
+  EXPECT_EQ(twice.code, 0);
+  EXPECT_EQ(twice.err, once.err);
+  EXPECT_EQ(read("out/calibration.yaml"), expected);
+  all[3].joint_positions.back() += 0.5;
+  write_all(all);
+  const test::Outcome other = calibrate();
+  EXPECT_EQ(other.code, 0);
+  EXPECT_THAT(other.err, AllOf(HasSubstr("1 joint of a sample has a second position that differs"),
+                               HasSubstr("joint 'elbow' at")));
+  EXPECT_EQ(read("out/calibration.yaml"), expected);
+}
+
+/// Samples of the hand, and samples of the floor as old recordings hold them: the camera's points and
+/// an observation of "ground".
+std::vector<Sample> samples_with_ground() {
+  std::vector<Sample> all = samples();
+  const Robot robot = parse_urdf(kUrdf, "tiny.urdf");
+  const RuntimeChain camera = make_chain(robot, "base_link", "camera_optical_frame");
+  const Pose<double> camera_T_base =
+      forward_kinematics(camera, [](const std::string&) { return 0.0; }).inverse();
+  for (int n = 0; n < 4; ++n) {
+    Sample sample = all[static_cast<std::size_t>(n)];
+    Observation &seen = sample.observations[0], &ground = sample.observations[1];
+    seen.features.clear();
+    for (int i = 0; i < 5; ++i) {
+      const Vector3<double> p = camera_T_base * Vector3<double>(1.0 + 0.1 * i * n, 0.2 * i, 0.0);
+      seen.features.push_back({"camera_optical_frame", p});
+    }
+    ground = {"ground", {{"base_link", Vector3<double>::Zero()}}};
+    all.push_back(sample);
+  }
+  return all;
+}
+
+TEST_F(Program, TakesOnlySamplesOfTheGroundForAGroundThatTheBlockNames) {
+  write_all(samples_with_ground());
+  const std::string block = " - {name: floor, type: camera3d_to_ground, camera: camera, ground: ";
+  for (const char* more : {"ground}\n", "ground, samples: alone}\n"}) {
+    write("c.yaml", kConfig + block + more);
+    const Outcome result = calibrate();
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_THAT(result.err, Not(HasSubstr("floor")));
+    const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
+    EXPECT_EQ(report["error_blocks"][0]["count"].as<int>(), 60);
+    EXPECT_EQ(report["error_blocks"][1]["count"].as<int>(), 20);
+    EXPECT_NEAR(YAML::LoadFile((folder_ / "out/calibration.yaml").string())["elbow"].as<double>(),
+                0.02, 1e-9);
+  }
+  write("c.yaml", kConfig + block + "grund}\n");
+  EXPECT_THAT(calibrate().err,
+              HasSubstr("none has a sensor 'grund', which its key 'ground' names; did you mean "
+                        "'ground'?"));
 }
 
 TEST_F(Program, RefusesADistortionModelItDoesNotKnow) {

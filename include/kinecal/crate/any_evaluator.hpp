@@ -39,6 +39,7 @@ class AnyEvaluator {
   /// @param derivatives  compute the Jacobian, too
   /// @param at           where derivatives are taken
   /// @returns  the first undefined residual, if any; undefined residuals are not visited
+  /// @throws std::invalid_argument  if values are not as many as the table has parameters
   virtual std::optional<UndefinedResidual> evaluate(std::span<const double> values,
                                                     bool derivatives, const RowVisitor& visit,
                                                     Linearization at = Linearization::measured) = 0;
@@ -46,6 +47,7 @@ class AnyEvaluator {
   /// The cost and, with derivatives, gradient and Gauss-Newton Hessian.
   /// @param values  of all parameters of the table
   /// @returns  sums; their cost is not finite if a residual is undefined
+  /// @throws std::invalid_argument  if values are not as many as the table has parameters
   [[nodiscard]] virtual NormalEquations normal_equations(std::span<const double> values,
                                                          bool derivatives = true,
                                                          Losses losses = Losses::as_given) = 0;

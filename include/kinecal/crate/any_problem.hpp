@@ -53,6 +53,8 @@ class AnyProblem {
                             const TermOptions& options) = 0;
 
   /// Adds a prior.  It counts once for each sample.
+  /// @throws std::invalid_argument  if its joint or frame has no parameter in the table, with the
+  ///                                nearest name
   void add_prior(const std::string& name, const Prior& prior, const TermOptions& options = {});
 
   /// Adds a sample.  Sensors and blocks must have been added before.
@@ -83,12 +85,20 @@ class AnyProblem {
   [[nodiscard]] int samples_of(int term) const;
   /// Number of samples of a term to which another term applies as well.
   [[nodiscard]] int shared_samples(int term) const;
+  /// The joint, free frame or sensor (its prefix) to which each parameter of the table belongs;
+  /// empty for a parameter that belongs to none.
+  [[nodiscard]] std::vector<std::string> owners() const;
+  /// Checks that each free parameter belongs to a joint that moves, a free frame or a sensor.
+  /// @throws std::invalid_argument  if one does not, with the nearest name, or if the set is that of
+  ///                                another table
+  void check(const FreeSet& free) const;
   /// Table indices of the parameters on which some residual of the samples depends; ascending.
   [[nodiscard]] std::vector<int> touched_parameters() const;
 
   /// An evaluator of the problem.  The problem must outlive it; do not add samples meanwhile.
   /// @param free     the Jacobian's columns
   /// @param threads  number of threads that share the work; zero: one per core
+  /// @throws std::invalid_argument  as check()
   [[nodiscard]] virtual std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
                                                                 int threads = 1) const = 0;
 

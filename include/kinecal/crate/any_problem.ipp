@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "kinecal/crate/any_problem.hpp"
+#include "kinecal/crate/parameter_owners.ipp"
 namespace kinecal {
 
 KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTable table,
@@ -24,6 +25,14 @@ KINECAL_INLINE void AnyProblem::add_sensor(const Sensor& sensor) {
 
 KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& prior,
                                           const TermOptions& options) {
+  const auto rows = prior.parameters(table_);
+  if (std::all_of(rows.begin(), rows.end(), [](int parameter) { return parameter < 0; })) {
+    std::vector<std::string> names(frames_.begin(), frames_.end());
+    for (const Parameter& parameter : table_) names.push_back(parameter.name);
+    throw std::invalid_argument("prior '" + name +
+                                "': the table has no parameter of joint or frame '" + prior.param +
+                                "'" + did_you_mean(prior.param, names));
+  }
   priors_.push_back({name, prior, options});
 }
 
@@ -46,6 +55,11 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   Observations seen(sensors_.size());
   SampleShape shape;
   try {
+    if (sample.joint_names.size() != sample.joint_positions.size()) {
+      throw SampleError("it has " + std::to_string(sample.joint_names.size()) +
+                        " joint names, but positions of " +
+                        std::to_string(sample.joint_positions.size()));
+    }
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const Observation* observation = sample.observation(sensors_[s].sensor().name);
       if (observation == nullptr || observation->features.empty()) continue;
@@ -133,8 +147,11 @@ KINECAL_INLINE int AnyProblem::sensor_index(const std::string& name) const {
 
 KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sample,
                                         const Observations& observed) const {
-  const auto observing = std::count_if(sample.observations.begin(), sample.observations.end(),
-                                       [](const Observation& o) { return !o.features.empty(); });
+  const std::string& beside = term.options().beside;
+  if (!beside.empty() && sample.observation(beside) == nullptr) return false;
+  const auto observing = std::count_if(
+      sample.observations.begin(), sample.observations.end(),
+      [&](const Observation& o) { return !o.features.empty() && o.sensor != beside; });
   if (term.options().alone && observing != std::ssize(term.sensors())) return false;
   for (const int s : term.sensors()) {
     if (!observed[static_cast<std::size_t>(s)]) return false;

@@ -8,6 +8,8 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "kinecal/crate/any_evaluator.hpp"
 #include "kinecal/crate/parallel.hpp"
@@ -61,10 +63,15 @@ class Evaluator final : public AnyEvaluator {
   /// @param problem  must outlive the evaluator; do not add samples meanwhile
   /// @param free     the columns of the Jacobian
   /// @param threads  number of threads that share the work; zero: one per core
+  /// @throws std::invalid_argument  if a free parameter is not one of the problem
   Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 1)
       : problem_(problem), free_(free), workers_(static_cast<std::size_t>(pieces_of(threads))) {
+    problem.check(free);
     for (const SensorModel& sensor : problem.sensors()) states_.emplace_back(sensor, free);
   }
+
+  Evaluator(const BasicProblem<S>&&, const FreeSet&,
+            int = 1) = delete;  ///< it would not outlive it
 
   /// The problem that it evaluates.
   [[nodiscard]] const BasicProblem<S>& problem() const override { return problem_; }
@@ -98,6 +105,10 @@ class Evaluator final : public AnyEvaluator {
   };
 
   void set(std::span<const double> values) {
+    if (values.size() != static_cast<std::size_t>(problem_.table().size())) {
+      throw std::invalid_argument(std::to_string(values.size()) + " values for a table of " +
+                                  std::to_string(problem_.table().size()) + " parameters");
+    }
     for (std::size_t s = 0; s < states_.size(); ++s) states_[s].set(problem_.sensors()[s], values);
   }
 

@@ -22,6 +22,7 @@ inline void add_block(AnyProblem& problem, const BlockConfig& block) {
   TermOptions options;
   options.type = block.type;
   options.alone = block.alone;
+  options.beside = block.ground;
   options.loss = {loss_type(block.loss.type), block.loss.scale};
   options.weight = 1.0 / block.sigma;
   if (block.type == "chain3d_to_chain3d") {
@@ -49,10 +50,12 @@ inline void add_block(AnyProblem& problem, const BlockConfig& block) {
 }
 
 /// Reports a prior that is not for a free frame or a parameter of the table.
-inline void check_prior(const BlockConfig& block, const ParameterTable& table,
-                        const std::set<std::string>& frames, Diagnostics& diagnostics) {
+/// @returns  false if it is not
+[[nodiscard]] inline bool check_prior(const BlockConfig& block, const ParameterTable& table,
+                                      const std::set<std::string>& frames,
+                                      Diagnostics& diagnostics) {
   if (block.type != "outrageous" || frames.contains(block.param) || table.find(block.param) >= 0) {
-    return;
+    return true;
   }
   std::vector<std::string> names(frames.begin(), frames.end());
   for (const Parameter& parameter : table) names.push_back(parameter.name);
@@ -60,6 +63,7 @@ inline void check_prior(const BlockConfig& block, const ParameterTable& table,
                     fmt::format("error block '{}': param '{}' is neither a free joint nor a free "
                                 "frame{}",
                                 block.name, block.param, did_you_mean(block.param, names)));
+  return false;
 }
 
 inline void add_samples(AnyProblem& problem, std::span<const Sample> samples,
@@ -80,9 +84,22 @@ inline void add_samples(AnyProblem& problem, std::span<const Sample> samples,
   }
 }
 
+/// Says that no sample has an observation of a block's ground; empty if one has.
+[[nodiscard]] inline std::string missing_ground(const BlockConfig& block,
+                                                std::span<const Sample> samples) {
+  if (block.ground.empty()) return {};
+  std::set<std::string> recorded;
+  for (const Sample& sample : samples) {
+    for (const Observation& observation : sample.observations) recorded.insert(observation.sensor);
+  }
+  if (recorded.contains(block.ground)) return {};
+  return fmt::format("; none has a sensor '{}', which its key 'ground' names{}", block.ground,
+                     did_you_mean(block.ground, recorded));
+}
+
 /// Reports terms without samples, and plane blocks that also take the samples of another block.
 inline void check_terms(const StepConfig& step, const AnyProblem& problem,
-                        Diagnostics& diagnostics) {
+                        std::span<const Sample> samples, Diagnostics& diagnostics) {
   int total = 0;
   for (int t = 0; t < problem.num_terms(); ++t) {
     const AnyTerm& term = problem.term(t);
@@ -92,10 +109,11 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
     total += count;
     if (count == 0) {
       diagnostics.warning(block->place, fmt::format("error block '{}': no sample has usable "
-                                                    "features of all its sensors",
-                                                    term.name()));
-    } else if (const int paired = problem.shared_samples(t);
-               block->type == "chain3d_to_plane" && paired > 0 && paired < count) {
+                                                    "features of all its sensors{}",
+                                                    term.name(), missing_ground(*block, samples)));
+    } else if (const int paired = problem.shared_samples(t); block->type == "chain3d_to_plane" &&
+                                                             block->ground.empty() && paired > 0 &&
+                                                             paired < count) {
       diagnostics.warning(
           block->place,
           fmt::format("error block '{0}' also takes the {1} samples in which other sensors observe "
@@ -172,7 +190,7 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step,
   }
   if (diagnostics.errors.size() != before) return false;
   for (const BlockConfig& block : step.error_blocks) {
-    check_prior(block, problem.table(), frames, diagnostics);
+    if (!check_prior(block, problem.table(), frames, diagnostics)) continue;
     try {
       add_block(problem, block);
     } catch (const std::invalid_argument& e) {
@@ -205,6 +223,7 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
   detail::warn_of_unusable(samples, diagnostics);
   detail::warn_of_far_points(config, samples, diagnostics);
   detail::warn_of_changing_cameras(samples, diagnostics);
+  detail::warn_of_joints_with_two_positions(samples, diagnostics);
   for (const StepConfig& step : config.steps) {
     std::unique_ptr<AnyProblem> problem = make_problem(
         robot, config.base_link, detail::with_bounds(calibration.table, step, diagnostics), frames);
@@ -212,7 +231,7 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
     if (!detail::add_models(*problem, step, frames, diagnostics)) continue;
     detail::add_samples(*problem, samples, diagnostics);
     if (!diagnostics.errors.empty()) continue;
-    if (!samples.empty()) detail::check_terms(step, *problem, diagnostics);
+    if (!samples.empty()) detail::check_terms(step, *problem, samples, diagnostics);
     FreeSet free = detail::free_set(step, *problem, !samples.empty(), diagnostics);
     calibration.steps.push_back({step.name, step.max_num_iterations, std::move(problem),
                                  std::move(free), initial_assignments(step, calibration.table)});

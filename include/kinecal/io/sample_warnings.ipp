@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -85,6 +86,30 @@ inline void warn_of_changing_cameras(std::span<const Sample> samples, Diagnostic
                       sample.source, seen.sensor));
     }
   }
+}
+
+/// Warns of joints that a sample names twice with positions that differ.  robot_calibration records a
+/// joint once for each of its chains that moves it.
+inline void warn_of_joints_with_two_positions(std::span<const Sample> samples,
+                                              Diagnostics& diagnostics) {
+  constexpr double kSame = 1e-9;  // far below what an encoder resolves
+  std::size_t count = 0;
+  std::string first;
+  for (const Sample& sample : samples) {
+    const std::size_t joints = std::min(sample.joint_names.size(), sample.joint_positions.size());
+    for (std::size_t i = 0; i < joints; ++i) {
+      const std::string& joint = sample.joint_names[i];
+      const double position = sample.joint_positions[i], taken = *sample.position(joint);
+      if (std::abs(position - taken) <= kSame) continue;
+      if (count++ > 0) continue;
+      first = fmt::format("{}, joint '{}' at {} and {}", sample.source, joint, taken, position);
+    }
+  }
+  if (count == 0) return;
+  diagnostics.warnings.push_back(fmt::format(
+      "{} joint{} of a sample {} a second position that differs; the first one is used.  "
+      "The first is at {}",
+      count, count == 1 ? "" : "s", count == 1 ? "has" : "have", first));
 }
 
 /// Warns of models whose sensor is not in any sample: probably one of the names is misspelt.

@@ -34,7 +34,7 @@ struct Parameter {
   std::string name;                                         ///< unique in a table
   std::string unit = "rad";                                 ///< "rad", "m" or "1"
   double initial = 0.0;                                     ///< value before the first step
-  double value = 0.0;                                       ///< current value
+  double value = initial;                                   ///< current value
   double lower = -std::numeric_limits<double>::infinity();  ///< lower bound of the value
   double upper = std::numeric_limits<double>::infinity();   ///< upper bound of the value
 };

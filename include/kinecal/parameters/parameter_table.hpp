@@ -83,15 +83,28 @@ class FreeSet {
  public:
   /// @param parameters  indices in the table, in the order of the columns
   /// @param table_size  number of parameters in the table
+  /// @throws std::invalid_argument  if the table has no parameter with an index, or it occurs twice
   FreeSet(std::vector<int> parameters, int table_size)
       : parameters_(std::move(parameters)), columns_(static_cast<std::size_t>(table_size), -1) {
     for (std::size_t c = 0; c < parameters_.size(); ++c) {
-      columns_[static_cast<std::size_t>(parameters_[c])] = static_cast<int>(c);
+      const int parameter = parameters_[c];
+      if (parameter < 0 || parameter >= table_size) {
+        throw std::invalid_argument("a free set has parameter " + std::to_string(parameter) +
+                                    " of a table of " + std::to_string(table_size));
+      }
+      int& column = columns_[static_cast<std::size_t>(parameter)];
+      if (column >= 0) {
+        throw std::invalid_argument("a free set has parameter " + std::to_string(parameter) +
+                                    " twice");
+      }
+      column = static_cast<int>(c);
     }
   }
 
   /// Number of columns.
   [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
+  /// Number of parameters in the table.
+  [[nodiscard]] int table_size() const { return static_cast<int>(columns_.size()); }
   /// Table index of the parameter of each column.
   [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
 

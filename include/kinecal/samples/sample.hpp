@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -48,7 +49,8 @@ struct Sample {
 
   /// Measured position of a joint, radians or metres; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {
-    for (std::size_t i = 0; i < joint_names.size(); ++i) {
+    const std::size_t measured = std::min(joint_names.size(), joint_positions.size());
+    for (std::size_t i = 0; i < measured; ++i) {
       if (joint_names[i] == joint) return joint_positions[i];
     }
     return std::nullopt;

@@ -604,6 +604,7 @@ TEST(ReadConfig, AliasesOfOldVersionsAreRead) {
   BlockConfig plane = ground.step().error_blocks[0];
   EXPECT_EQ(plane.type, "chain3d_to_plane");
   EXPECT_THAT(plane.models, ElementsAre("camera"));
+  EXPECT_EQ(plane.ground, "g");
   EXPECT_EQ(plane.numbers["c"], 1.0);
   EXPECT_EQ(plane.numbers["scale"], 1.0);
 }
@@ -697,6 +698,19 @@ TEST(ReadConfig, Ros1StepsRunInAlphabeticalOrderAndTakeOverWhatTheyLeaveOut) {
   EXPECT_EQ(second.free_params.size(), 2u);
   EXPECT_EQ(second.free_frames.size(), 1u);
   EXPECT_EQ(second.error_blocks.size(), 1u);
+}
+
+TEST(ReadConfig, Ros1StepsAllStartTheirFreeFramesAtTheInitialValues) {
+  const std::string text = with(kRos1Steps, "    error_blocks:\n",
+                                "    free_frames_initial_values:\n     - {name: board, x: 0.1}\n"
+                                "    error_blocks:\n");
+  const Reading reading = read(text);
+  EXPECT_THAT(reading.errors, IsEmpty());
+  ASSERT_EQ(reading.config.steps.size(), 2u);
+  for (const StepConfig& step : reading.config.steps) {
+    ASSERT_EQ(step.frame_initial_values.size(), 1u) << step.name;
+    EXPECT_EQ(step.frame_initial_values[0].xyz.x(), 0.1) << step.name;
+  }
 }
 
 TEST(ReadConfig, ErrorsInListsThatStepsShareAreReportedOnce) {

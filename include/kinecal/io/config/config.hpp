@@ -79,6 +79,7 @@ struct BlockConfig {
   std::map<std::string, double> numbers;  ///< a b c d scale normal_scale offset_scale joint_scale
                                           ///< position_scale rotation_scale; defaults filled in
   bool alone = false;  ///< `samples: alone`: only samples without observations of other models
+  std::string ground;  ///< camera3d_to_ground: only samples with an observation of this sensor
   double sigma = 1.0;  ///< standard deviation, units of the residual
   LossConfig loss;     ///< of each feature
   Place place;         ///< where the file defines it

@@ -150,7 +150,7 @@ inline void read_block_weighting(ConfigMap& map, BlockConfig& block) {
   if (form->has_param) block.param = map.required_text("param").value_or("");
   read_block_numbers(map, *form, block);
   read_block_weighting(map, block);
-  if (form->type == "camera3d_to_ground") map.ignore({"ground"});
+  if (form->type == "camera3d_to_ground") block.ground = map.text("ground").value_or("");
   map.report_unknown();
   return block;
 }

@@ -3,7 +3,7 @@
 // ROS 1: the top-level keys are the only step, or there are several steps under `cal_steps`.  These
 // run in alphabetical order of their names, as ROS stores them.  A step without one of the lists
 // takes it from the step before it, the first step from the top-level keys: robot_calibration reads
-// each step on top of the last one.
+// each step on top of the last one.  So each step also starts its free frames at the initial values.
 //
 // ROS 2: `<node>: ros__parameters:` with the steps that `calibration_steps` names, in this order.
 // SPDX-License-Identifier: Apache-2.0
@@ -28,9 +28,9 @@ inline void read_ros1_steps(ConfigMap& file, ConfigMap& steps, ConfigProgress& p
   for (const std::string& name : names) {
     auto step = steps.map(*steps.use(name), "step '" + name + "'");
     if (!step) continue;
-    step->inherit(maps.empty() ? file : maps.back(),
-                  {"models", "free_params", "free_frames", "error_blocks"});
-    if (maps.empty()) step->inherit(file, {"free_frames_initial_values"});
+    step->inherit(
+        maps.empty() ? file : maps.back(),
+        {"models", "free_params", "free_frames", "free_frames_initial_values", "error_blocks"});
     read_step(*step, find_ros1_items, name, max_num_iterations, progress);
     maps.push_back(std::move(*step));
   }

@@ -104,12 +104,6 @@ class SampleBuilder {
       errors_.add(line, fmt::format("joint_states: {} name{} but {} position{}", names,
                                     names == 1 ? "" : "s", values, values == 1 ? "" : "s"));
     }
-    std::vector<std::string_view> sorted(sample_.joint_names.begin(), sample_.joint_names.end());
-    std::sort(sorted.begin(), sorted.end());
-    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-    if (twice != sorted.end()) {
-      errors_.add(line, fmt::format("joint_states: joint {} occurs twice", shown(*twice)));
-    }
   }
 
   void end_observation(int line) {
