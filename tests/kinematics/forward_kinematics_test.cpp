@@ -143,6 +143,14 @@ TEST(GeometricJacobian, OfAChainThatTheCompilerKnowsIsTheSame) {
   EXPECT_LE((forward_kinematics(Hand{}, q).translation - pose.translation).norm(), kRounding);
 }
 
+TEST(ForwardKinematics, RefusesOtherSizesThanTheChains) {
+  const RuntimeChain chain = make_chain(robot_from<test::StaticRobot>(), "base", "tip");
+  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, 3);
+  EXPECT_THROW((void)forward_kinematics(chain, Eigen::VectorXd::Zero(3)), std::invalid_argument);
+  EXPECT_THROW(geometric_jacobian(chain, Eigen::VectorXd::Zero(4), jacobian),
+               std::invalid_argument);
+}
+
 TEST(ForwardKinematics, TakesTheJetsOfCeres) {
   using J = ceres::Jet<double, 4>;
   const RuntimeChain chain = make_chain(robot_from<test::StaticRobot>(), "base", "tip");

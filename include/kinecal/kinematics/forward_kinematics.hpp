@@ -12,6 +12,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -47,25 +48,18 @@ struct MotionsAt {
 
 /// A Walker: also notes the axis of each joint and a point on it, as columns of the Jacobian.
 template <class S, class J>
-struct JacobianWalker {
+struct JacobianWalker : PoseWalker<S> {
   J& jacobian;
-  PoseWalker<S> walker = {};
 
-  template <class ConstantPose>
-  void fixed(const ConstantPose& transform) {
-    walker.fixed(transform);
-  }
-  template <class I, class Joint, class U>
-  void correct(I i, const Joint& joint, const JointCorrection<U>& correction) {
-    walker.correct(i, joint, correction);
-  }
+  explicit JacobianWalker(J& out) : jacobian(out) {}
+
   template <class I, class Joint, class U>
   void move(I i, const Joint& joint, const Motion<U>& motion) {
-    walker.move(i, joint, motion);  // a joint's axis is the same before and after it
-    Vector3<S> axis = walker.axis(joint);
+    PoseWalker<S>::move(i, joint, motion);  // a joint's axis is the same before and after it
+    Vector3<S> axis = this->axis(joint);
     if (joint.reversed) axis = -axis;
     const auto column = static_cast<Eigen::Index>(std::size_t(i));
-    const Vector3<S>& point = walker.pose.translation;
+    const Vector3<S>& point = this->pose.translation;
     const bool rotates = turns(joint.type);
     for (Eigen::Index k = 0; k < 3; ++k) {
       jacobian(k, column) = rotates ? point(k) : axis(k);
@@ -73,6 +67,15 @@ struct JacobianWalker {
     }
   }
 };
+
+/// @throws std::invalid_argument  if `size` is not the number of a chain's joints
+template <class Chain>
+void check_size(const Chain& chain, Eigen::Index size, const char* what) {
+  if (static_cast<std::size_t>(size) == joints_of(chain).size()) return;
+  throw std::invalid_argument(std::string(what) + " of size " + std::to_string(size) +
+                              " for a chain of " + std::to_string(joints_of(chain).size()) +
+                              " joints");
+}
 
 }  // namespace detail
 
@@ -88,10 +91,12 @@ template <class Chain>
 /// @param chain        a RuntimeChain or a Chain
 /// @param q            (joints of the chain) positions, radians or metres; any scalar
 /// @param corrections  JointCorrection of each joint of the chain, by index
+/// @throws std::invalid_argument  if q has another size
 template <class Chain, class Derived, class Corrected = detail::NoCorrections>
 [[nodiscard]] Pose<typename Derived::Scalar> forward_kinematics(const Chain& chain,
                                                                 const Eigen::MatrixBase<Derived>& q,
                                                                 const Corrected& corrections = {}) {
+  detail::check_size(chain, q.size(), "joint positions");
   PoseWalker<typename Derived::Scalar> walker;
   walk(chain, detail::MotionsAt<Derived>{q.derived()}, corrections, walker);
   return walker.pose;
@@ -102,18 +107,19 @@ template <class Chain, class Derived, class Corrected = detail::NoCorrections>
 /// @param jacobian  out (6 x joints): linear velocity of the tip's origin, metres per radian or
 ///                  metre; then angular velocity.  Columns of fixed joints are zero.
 /// @returns         base_T_tip
+/// @throws std::invalid_argument  if q or the Jacobian has another size
 /// Source: Siciliano et al., Robotics: Modelling, Planning and Control, 3.1.
 template <class Chain, class Derived, class J>
 Pose<typename Derived::Scalar> geometric_jacobian(const Chain& chain,
                                                   const Eigen::MatrixBase<Derived>& q,
                                                   J&& jacobian) {
   using S = typename Derived::Scalar;
-  detail::JacobianWalker<S, std::remove_reference_t<J>> walker{jacobian};
-  for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
-    for (Eigen::Index k = 0; k < 6; ++k) jacobian(k, i) = S(0.0);
-  }
+  detail::check_size(chain, q.size(), "joint positions");
+  detail::check_size(chain, jacobian.cols(), "columns of a Jacobian");
+  detail::JacobianWalker<S, std::remove_reference_t<J>> walker(jacobian);
+  jacobian.setZero();
   walk(chain, detail::MotionsAt<Derived>{q.derived()}, detail::NoCorrections{}, walker);
-  const Vector3<S>& tip = walker.walker.pose.translation;
+  const Vector3<S>& tip = walker.pose.translation;
   std::size_t i = 0;
   for (const auto& joint : joints_of(chain)) {
     const auto column = static_cast<Eigen::Index>(i++);
@@ -123,7 +129,7 @@ Pose<typename Derived::Scalar> geometric_jacobian(const Chain& chain,
     const Vector3<S> linear = cross(axis, Vector3<S>(tip - point));
     for (Eigen::Index k = 0; k < 3; ++k) jacobian(k, column) = linear(k);
   }
-  return walker.walker.pose;
+  return walker.pose;
 }
 /// The same for a chain that the compiler knows.
 /// @returns  (6 x joints) as above
