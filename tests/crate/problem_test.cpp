@@ -57,11 +57,12 @@ TEST(Problem, NamesTheNearestJointOrFrameForAMisspeltPrior) {
   Problem problem = test::scene_problem();
   problem.add_prior("keep", {"board", 1.0, 1.0, 1.0});
   problem.add_prior("keep", {"elbow", 1.0, 1.0, 1.0});
-  EXPECT_EQ(message_of<std::invalid_argument>([&] {
-              problem.add_prior("keep", {"elbw", 1.0, 1.0, 1.0});
-            }),
-            "prior 'keep': the table has no parameter of joint or frame 'elbw'; did you mean "
-            "'elbow'?");
+  EXPECT_EQ(
+      message_of<std::invalid_argument>([&] {
+        problem.add_prior("keep", {"elbw", 1.0, 1.0, 1.0});
+      }),
+      "error block 'keep': param 'elbw' is neither a free joint nor a free frame; did you mean "
+      "'elbow'?");
 }
 
 TEST(Problem, NamesTheNearestParameterForAMisspeltFreeOne) {

@@ -87,7 +87,7 @@ class AnyProblem {
   [[nodiscard]] int shared_samples(int term) const;
   /// The joint, free frame or sensor (its prefix) to which each parameter of the table belongs;
   /// empty for a parameter that belongs to none.
-  [[nodiscard]] std::vector<std::string> owners() const;
+  [[nodiscard]] const std::vector<std::string>& owners() const { return owners_; }
   /// Checks that each free parameter belongs to a joint that moves, a free frame or a sensor.
   /// @throws std::invalid_argument  if one does not, with the nearest name, or if the set is that of
   ///                                another table
@@ -132,6 +132,10 @@ class AnyProblem {
   [[nodiscard]] const SensorModel& model(int s) const {
     return sensors_[static_cast<std::size_t>(s)];
   }
+  void set_owners();
+  void set_owner(int parameter, const std::string& owner) {
+    if (parameter >= 0) owners_[static_cast<std::size_t>(parameter)] = owner;
+  }
   [[nodiscard]] int sensor_index(const std::string& name) const;
   [[nodiscard]] bool applies(const AnyTerm& term, const Sample& sample,
                              const Observations& observed) const;
@@ -142,6 +146,7 @@ class AnyProblem {
   std::string base_;
   ParameterTable table_;
   std::set<std::string> frames_;
+  std::vector<std::string> owners_;  ///< of each parameter
   std::vector<SensorModel> sensors_;
   std::vector<PriorTerm> priors_;
   int residuals_ = 0;                      ///< of all features

@@ -16,11 +16,15 @@ KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTa
       table_(std::move(table)),
       frames_(std::move(frames)) {
   (void)robot_.parent_joint(base_);
+  set_owners();
 }
 
 KINECAL_INLINE void AnyProblem::add_sensor(const Sensor& sensor) {
   check_no_samples();
   sensors_.emplace_back(robot_, base_, sensor, table_, frames_);
+  for (const int parameter : sensors_.back().camera_parameters()) {
+    set_owner(parameter, sensor.parameter_prefix());
+  }
 }
 
 KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& prior,
@@ -29,9 +33,9 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
   if (std::all_of(rows.begin(), rows.end(), [](int parameter) { return parameter < 0; })) {
     std::vector<std::string> names(frames_.begin(), frames_.end());
     for (const Parameter& parameter : table_) names.push_back(parameter.name);
-    throw std::invalid_argument("prior '" + name +
-                                "': the table has no parameter of joint or frame '" + prior.param +
-                                "'" + did_you_mean(prior.param, names));
+    throw std::invalid_argument("error block '" + name + "': param '" + prior.param +
+                                "' is neither a free joint nor a free frame" +
+                                did_you_mean(prior.param, names));
   }
   priors_.push_back({name, prior, options});
 }

@@ -49,23 +49,6 @@ inline void add_block(AnyProblem& problem, const BlockConfig& block) {
   }
 }
 
-/// Reports a prior that is not for a free frame or a parameter of the table.
-/// @returns  false if it is not
-[[nodiscard]] inline bool check_prior(const BlockConfig& block, const ParameterTable& table,
-                                      const std::set<std::string>& frames,
-                                      Diagnostics& diagnostics) {
-  if (block.type != "outrageous" || frames.contains(block.param) || table.find(block.param) >= 0) {
-    return true;
-  }
-  std::vector<std::string> names(frames.begin(), frames.end());
-  for (const Parameter& parameter : table) names.push_back(parameter.name);
-  diagnostics.error(block.place,
-                    fmt::format("error block '{}': param '{}' is neither a free joint nor a free "
-                                "frame{}",
-                                block.name, block.param, did_you_mean(block.param, names)));
-  return false;
-}
-
 inline void add_samples(AnyProblem& problem, std::span<const Sample> samples,
                         Diagnostics& diagnostics) {
   constexpr std::size_t kReported = 5;  // the first few show what is wrong
@@ -178,8 +161,7 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
 
 /// Adds the sensors and error blocks of a step.
 /// @return  false, with errors, if they do not fit the robot
-inline bool add_models(AnyProblem& problem, const StepConfig& step,
-                       const std::set<std::string>& frames, Diagnostics& diagnostics) {
+inline bool add_models(AnyProblem& problem, const StepConfig& step, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   for (const ModelConfig& model : step.models) {
     try {
@@ -190,7 +172,6 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step,
   }
   if (diagnostics.errors.size() != before) return false;
   for (const BlockConfig& block : step.error_blocks) {
-    if (!check_prior(block, problem.table(), frames, diagnostics)) continue;
     try {
       add_block(problem, block);
     } catch (const std::invalid_argument& e) {
@@ -228,7 +209,7 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
     std::unique_ptr<AnyProblem> problem = make_problem(
         robot, config.base_link, detail::with_bounds(calibration.table, step, diagnostics), frames);
     detail::warn_of_unknown_sensors(step, samples, diagnostics);
-    if (!detail::add_models(*problem, step, frames, diagnostics)) continue;
+    if (!detail::add_models(*problem, step, diagnostics)) continue;
     detail::add_samples(*problem, samples, diagnostics);
     if (!diagnostics.errors.empty()) continue;
     if (!samples.empty()) detail::check_terms(step, *problem, samples, diagnostics);

@@ -4,13 +4,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
@@ -88,6 +89,18 @@ inline void warn_of_changing_cameras(std::span<const Sample> samples, Diagnostic
   }
 }
 
+/// Indices of names that occur before, each with the first one of the same name.
+[[nodiscard]] inline std::vector<std::pair<std::size_t, std::size_t>> repeated(
+    const std::vector<std::string>& names) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  std::map<std::string_view, std::size_t> first;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto [known, is_new] = first.emplace(names[i], i);
+    if (!is_new) pairs.emplace_back(known->second, i);
+  }
+  return pairs;
+}
+
 /// Warns of joints that a sample names twice with positions that differ.  robot_calibration records a
 /// joint once for each of its chains that moves it.
 inline void warn_of_joints_with_two_positions(std::span<const Sample> samples,
@@ -95,14 +108,21 @@ inline void warn_of_joints_with_two_positions(std::span<const Sample> samples,
   constexpr double kSame = 1e-9;  // far below what an encoder resolves
   std::size_t count = 0;
   std::string first;
+  const std::vector<std::string>* names = nullptr;  // of the sample before: most have the same
+  std::vector<std::pair<std::size_t, std::size_t>>
+      twice;  // indices of a name and of its repetition
   for (const Sample& sample : samples) {
-    const std::size_t joints = std::min(sample.joint_names.size(), sample.joint_positions.size());
-    for (std::size_t i = 0; i < joints; ++i) {
-      const std::string& joint = sample.joint_names[i];
-      const double position = sample.joint_positions[i], taken = *sample.position(joint);
+    if (sample.joint_names.size() != sample.joint_positions.size()) continue;  // that is an error
+    if (names == nullptr || *names != sample.joint_names) {
+      names = &sample.joint_names;
+      twice = repeated(*names);
+    }
+    for (const auto& [i, again] : twice) {
+      const double taken = sample.joint_positions[i], position = sample.joint_positions[again];
       if (std::abs(position - taken) <= kSame) continue;
       if (count++ > 0) continue;
-      first = fmt::format("{}, joint '{}' at {} and {}", sample.source, joint, taken, position);
+      first =
+          fmt::format("{}, joint '{}' at {} and {}", sample.source, (*names)[i], taken, position);
     }
   }
   if (count == 0) return;

@@ -14,7 +14,7 @@ KINECAL_INLINE void CeresBridge::add(const AnyProblem& problem, const FreeSet& f
                                      const Eigen::VectorXd& values, Losses losses) {
   auto evaluator = problem.evaluator(free);  // checks the free set
   const ParameterTable& table = problem.table();
-  const std::vector<std::string> owners = problem.owners();
+  const std::vector<std::string>& owners = problem.owners();
   std::map<std::string, std::vector<int>> columns;
   for (int c = 0; c < free.size(); ++c) {
     const int parameter = free.parameters()[static_cast<std::size_t>(c)];
