@@ -101,19 +101,6 @@ KINECAL_INLINE int AnyProblem::shared_samples(int term) const {
   return n;
 }
 
-KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
-  std::set<int> touched;
-  for (const auto& [shape, of_shape] : shapes_) {
-    for (const int t : shape.terms) {
-      for (const int s : term(t).sensors()) {
-        add_touched(s, *shape.chains[static_cast<std::size_t>(s)], touched);
-      }
-    }
-  }
-  touched.erase(-1);
-  return {touched.begin(), touched.end()};
-}
-
 KINECAL_INLINE void AnyProblem::check_no_samples() const {
   if (sources_.empty()) return;
   throw std::logic_error("sensors and error blocks are added before the samples");
@@ -183,19 +170,6 @@ KINECAL_INLINE void AnyProblem::forget_unused(SampleShape& shape, Observations& 
   for (std::size_t s = 0; s < used.size(); ++s) {
     if (!used[s]) seen[s].reset();
     if (seen[s]) shape.chains[s] = seen[s]->chain;
-  }
-}
-
-/// @param chains  the chains of the features that the sensor observed
-KINECAL_INLINE void AnyProblem::add_touched(int s, const std::vector<std::size_t>& chains,
-                                            std::set<int>& touched) const {
-  const SensorModel& sensor = model(s);
-  touched.insert(sensor.camera_parameters().begin(), sensor.camera_parameters().end());
-  for (const std::size_t c : chains) {
-    for (const JointIndices& joint : sensor.parameters()[c]) {
-      touched.insert(joint.offset);
-      touched.insert(joint.frame.begin(), joint.frame.end());
-    }
   }
 }
 

@@ -1,4 +1,4 @@
-// What each parameter of a problem's table belongs to, and names that belong to nothing.
+// What each parameter of a problem's table belongs to, and which of them the samples touch.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -39,6 +39,32 @@ KINECAL_INLINE void AnyProblem::check(const FreeSet& free) const {
     throw std::invalid_argument("free parameter '" + name +
                                 "' belongs to no joint that moves, free frame or sensor" +
                                 did_you_mean(name, names));
+  }
+}
+
+KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
+  std::set<int> touched;
+  for (const auto& [shape, of_shape] : shapes_) {
+    for (const int t : shape.terms) {
+      for (const int s : term(t).sensors()) {
+        add_touched(s, *shape.chains[static_cast<std::size_t>(s)], touched);
+      }
+    }
+  }
+  touched.erase(-1);
+  return {touched.begin(), touched.end()};
+}
+
+/// @param chains  the chains of the features that the sensor observed
+KINECAL_INLINE void AnyProblem::add_touched(int s, const std::vector<std::size_t>& chains,
+                                            std::set<int>& touched) const {
+  const SensorModel& sensor = model(s);
+  touched.insert(sensor.camera_parameters().begin(), sensor.camera_parameters().end());
+  for (const std::size_t c : chains) {
+    for (const JointIndices& joint : sensor.parameters()[c]) {
+      touched.insert(joint.offset);
+      touched.insert(joint.frame.begin(), joint.frame.end());
+    }
   }
 }
 
