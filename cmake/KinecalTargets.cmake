@@ -109,13 +109,13 @@ target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
 
 # Explicit instances, in packets and in double; a level of KinecalLevels.cmake has packets only.
 file(GLOB KINECAL_PACKET_INSTANCES CONFIGURE_DEPENDS
-     ${PROJECT_SOURCE_DIR}/include/kinecal/crate/instances/*_packet.ipp)
+     ${PROJECT_SOURCE_DIR}/include/kinecal/evaluation/instances/*_packet.ipp)
 file(GLOB KINECAL_DOUBLE_INSTANCES CONFIGURE_DEPENDS
-     ${PROJECT_SOURCE_DIR}/include/kinecal/crate/instances/*_double.ipp)
+     ${PROJECT_SOURCE_DIR}/include/kinecal/evaluation/instances/*_double.ipp)
 
 kinecal_add_library(core
   INSTANCES ${KINECAL_PACKET_INSTANCES} ${KINECAL_DOUBLE_INSTANCES}
-  FOLDERS geometry kinematics parameters samples sensors errors crate core linkage
+  FOLDERS geometry kinematics parameters samples sensors errors problem evaluation crate core linkage
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(solve
   FOLDERS solve trust

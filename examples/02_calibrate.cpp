@@ -37,7 +37,7 @@ Sample measure(const ParameterTable& truth, SeededRandom& random) {
 }  // namespace
 
 int main() {
-  ParameterTable truth = Tracked::table({});
+  ParameterTable truth = Tracked().table({});
   truth["shoulder_lift_joint"].value = -2.0 * kDegree;
   truth["elbow_flex_joint"].value = 1.5 * kDegree;
   truth["gripper_axis_x"].value = 0.004;

@@ -56,8 +56,8 @@ Sample see(const std::string& link, const std::vector<Vector3<double>>& points,
 template <class C>
 int rank_of(const char* name, const std::vector<Sample>& samples) {
   C crate;
-  if constexpr (!std::is_same_v<C, HandEye>) crate.template block<"ground">().options.alone = true;
-  const ParameterTable table = C::table(samples);
+  if constexpr (!std::is_same_v<C, HandEye>) crate.template block<"ground">().options.exclusive = true;
+  const ParameterTable table = C().table(samples);
   Problem problem = crate.problem(table);
   for (const Sample& sample : samples) problem.add_sample(sample);
   const std::vector<double> drawn(static_cast<std::size_t>(table.size()), 0.0);
@@ -76,7 +76,7 @@ int rank_of(const char* name, const std::vector<Sample>& samples) {
 }  // namespace
 
 int main() {
-  ParameterTable truth = Both::table({});
+  ParameterTable truth = Both().table({});
   truth["head_tilt_joint"].value = -1.5 * kDegree;
   truth["head_pan_joint_b"].value = 0.5 * kDegree;
   truth["torso_lift_joint_b"].value = -1.0 * kDegree;
@@ -94,7 +94,7 @@ int main() {
   as_expected = rank_of<Both>("both", samples) == 11 && as_expected;
 
   Both both;
-  both.block<"ground">().options.alone = true;  // LEDs are not on the floor
+  both.block<"ground">().options.exclusive = true;  // LEDs are not on the floor
   const CrateResult<Both> result = calibrate(both, samples);
   const double lean = result.value<Torso>()(2), of_head = result.value<Head>()(4);
   std::printf("\ntorso leans by %.3f, head by %.3f degrees\n", lean / kDegree, of_head / kDegree);

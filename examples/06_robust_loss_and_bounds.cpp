@@ -41,7 +41,7 @@ ParameterTable calibrate_with(const Loss& loss, double bound, const std::vector<
   Tracked crate;
   crate.block<"tracking">().options.weight = 1.0 / kSigma;
   crate.block<"tracking">().options.loss = loss;
-  ParameterTable table = Tracked::table(samples);
+  ParameterTable table = Tracked().table(samples);
   table["gripper_axis_x"].lower = -bound;
   table["gripper_axis_x"].upper = bound;
   const CrateResult<Tracked> result = calibrate(crate, table, samples);
@@ -52,7 +52,7 @@ ParameterTable calibrate_with(const Loss& loss, double bound, const std::vector<
 }  // namespace
 
 int main() {
-  ParameterTable truth = Tracked::table({});
+  ParameterTable truth = Tracked().table({});
   truth["shoulder_lift_joint"].value = -2.0 * kDegree;
   truth["elbow_flex_joint"].value = 1.5 * kDegree;
   truth["gripper_axis_x"].value = 0.004;

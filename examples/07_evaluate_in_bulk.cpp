@@ -40,7 +40,7 @@ Sample measure(SeededRandom& random) {
 
 template <class S>
 BasicProblem<S> problem_of(std::span<const Sample> samples) {
-  BasicProblem<S> problem = Tracked().problem<S>(Tracked::table(samples));
+  BasicProblem<S> problem = Tracked().problem<S>(Tracked().table(samples));
   for (const Sample& sample : samples) problem.add_sample(sample);
   return problem;
 }

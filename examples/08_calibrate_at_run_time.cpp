@@ -6,7 +6,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "kinecal/solve.hpp"
 #include "simulation.hpp"
@@ -36,8 +36,8 @@ Problem make_problem() {
   for (const char* joint : {"shoulder_pan", "shoulder_lift", "elbow"}) table.add({.name = joint});
   table.add({.name = "elbow_x", .unit = "m"});  // along the upper arm: its length
   Problem problem(make_robot(), "base", table, {"elbow"});
-  problem.add_sensor({"arm", SensorType::chain3d, "tip", ""});
-  problem.add_sensor({"tracker", SensorType::chain3d, "base", ""});
+  problem.add_sensor(ChainPoint{}, {"arm", "tip"});
+  problem.add_sensor(ChainPoint{}, {"tracker", "base"});
   problem.add_block("tracking", PointToPoint{}, {"arm", "tracker"});
   return problem;
 }
@@ -47,12 +47,12 @@ Sample measure(const Problem& problem, const Eigen::VectorXd& truth, SeededRando
   Sample sample;
   sample.joint_names = {"shoulder_pan", "shoulder_lift", "elbow"};
   for (int i = 0; i < 3; ++i) sample.joint_positions.push_back(random.uniform(-1.2, 1.2));
-  const SensorModel& arm = problem.sensors()[0];
+  const MountedSensor& arm = problem.sensors()[0];
   const std::span<const double> values(truth.data(), static_cast<std::size_t>(truth.size()));
   Vector3<double> seen =
       forward_kinematics(
           arm.chains()[0], [&](const auto& name) { return *sample.position(name); },
-          corrections_for(arm.parameters()[0], values))
+          corrections_for(arm.chain_parameters()[0], values))
           .translation;
   for (int i = 0; i < 3; ++i) seen(i) += 1e-4 * random.normal();
   sample.observations = {{"arm", {{"tip", Vector3<double>::Zero()}}},

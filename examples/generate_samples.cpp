@@ -191,7 +191,7 @@ Sample ground_sample(const Simulated& simulated, SeededRandom& random) {
   Observation camera{"camera", {}, example_camera_info()};
   for (const double v : {-0.8, -0.3, 0.2, 0.7}) {  // of half the image
     for (const double u : {-0.8, -0.4, 0.0, 0.4, 0.8}) {
-      const DepthCamera<>& c = simulated.camera.driver();
+      const Intrinsics& c = simulated.camera.driver();
       const Vector3<double> ray(u * c.cx / c.fx, v * c.cy / c.fy, 1.0);
       const double down = -(base_T_camera.rotation.row(2) * ray).value();
       const double depth = base_T_camera.translation.z() / down;

@@ -98,8 +98,8 @@ ParameterTable random_truth(const Robot& robot, SeededRandom& random) {
                  .value = k < 3 ? shift(k) : turn(k - 3)});
     }
   }
-  for (std::size_t i = 0; i < kCameraParameters.size(); ++i) {
-    truth.add({.name = parameter_name("camera", kCameraParameters[i]),
+  for (std::size_t i = 0; i < DepthCamera::kParameters.size(); ++i) {
+    truth.add({.name = parameter_name("camera", DepthCamera::kParameters[i].name),
                .value = random.either_sign(0.0, i == 4 ? 0.008 : 0.015)});
   }
   return truth;
@@ -107,8 +107,8 @@ ParameterTable random_truth(const Robot& robot, SeededRandom& random) {
 
 Problem make_problem(const Robot& robot, const ParameterTable& table) {
   Problem problem(robot, "torso", table, kFrames);
-  problem.add_sensor({"arm", SensorType::chain3d, "gripper", ""});
-  problem.add_sensor({"camera", SensorType::camera3d, "optical", ""});
+  problem.add_sensor(ChainPoint{}, {"arm", "gripper"});
+  problem.add_sensor(DepthCamera{}, {"camera", "optical"});
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
   return problem;
 }

@@ -86,6 +86,14 @@ class SeededRandom {
   return info;
 }
 
+/// Focal lengths and principal point of a rectified image, pixels.
+struct Intrinsics {
+  double fx, fy, cx, cy;
+};
+[[nodiscard]] inline Intrinsics intrinsics_of(const CameraInfo& info) {
+  return {info.p[0], info.p[5], info.p[2], info.p[6]};
+}
+
 /// Noise of a depth camera.
 struct CameraNoise {
   double pixel = 0.6;    ///< standard deviation, pixels
@@ -93,11 +101,11 @@ struct CameraNoise {
 };
 
 /// The point that the driver reports, with noise: the true camera has parameters v, but the driver
-/// uses those of `camera`.  The inverse of DepthCamera::point.
+/// uses those of `camera`.  The inverse of DepthCamera::place.
 /// @param p_camera  (3) the point, metres, in the camera's true optical frame
 /// @param v         (6) fx fy cx cy z_offset z_scaling, as DepthCamera has them
 /// @returns         (3) metres
-[[nodiscard]] inline Vector3<double> recorded_point(const DepthCamera<>& camera,
+[[nodiscard]] inline Vector3<double> recorded_point(const Intrinsics& camera,
                                                     const Vector3<double>& p_camera,
                                                     const std::array<double, 6>& v,
                                                     const CameraNoise& noise,
@@ -113,7 +121,7 @@ struct CameraNoise {
 
 /// True if the point is in the camera's image, and not at its edge.
 /// @param p_camera  (3) metres, in the optical frame
-[[nodiscard]] inline bool is_in_image(const DepthCamera<>& camera,
+[[nodiscard]] inline bool is_in_image(const Intrinsics& camera,
                                       const Vector3<double>& p_camera) {
   constexpr double kUsed = 0.9;  // of the image
   return p_camera.z() > 0.0 &&
@@ -135,7 +143,7 @@ struct Look {
                                   const std::string& frame, const Pose<double>& frame_T_link,
                                   SeededRandom& random) {
   const CameraInfo info = example_camera_info();
-  const DepthCamera<> driver = DepthCamera<>::from(info);
+  const Intrinsics driver = intrinsics_of(info);
   Look look{{camera, {}, info}, {"", {}, {}}};
   for (const Vector3<double>& point : points) {
     const Vector3<double> p_camera = frame_T_link * point;

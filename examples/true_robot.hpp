@@ -79,9 +79,9 @@ class TrueCamera {
   /// @param truth  has its errors: camera_fx, ..., camera_z_scaling
   /// @param frame  its optical frame
   TrueCamera(const ParameterTable& truth, std::string frame)
-      : driver_(DepthCamera<>::from(example_camera_info())), frame_(std::move(frame)) {
+      : driver_(intrinsics_of(example_camera_info())), frame_(std::move(frame)) {
     for (std::size_t i = 0; i < errors_.size(); ++i) {
-      errors_[i] = truth[parameter_name("camera", kCameraParameters[i])].value;
+      errors_[i] = truth[parameter_name("camera", DepthCamera::kParameters[i].name)].value;
     }
   }
 
@@ -91,10 +91,10 @@ class TrueCamera {
     return {frame_, recorded_point(driver_, p_camera, errors_, {}, random)};
   }
 
-  [[nodiscard]] const DepthCamera<>& driver() const { return driver_; }
+  [[nodiscard]] const Intrinsics& driver() const { return driver_; }
 
  private:
-  DepthCamera<> driver_;
+  Intrinsics driver_;
   std::string frame_;
   std::array<double, 6> errors_{};
 };

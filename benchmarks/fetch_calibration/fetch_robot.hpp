@@ -25,11 +25,11 @@ inline const std::string kCameraLink = "head_camera_rgb_optical_frame";
 /// Joints with a frame correction.
 inline const std::set<std::string> kFreeFrames = {"head_camera_rgb_joint", "head_pan_joint"};
 
-[[nodiscard]] inline Sensor arm_sensor() {
-  return {"arm", SensorType::chain3d, kArmLink, ""};
+[[nodiscard]] inline Mount arm_mount() {
+  return {"arm", kArmLink};
 }
-[[nodiscard]] inline Sensor camera_sensor() {
-  return {"camera", SensorType::camera3d, kCameraLink, ""};
+[[nodiscard]] inline Mount camera_mount() {
+  return {"camera", kCameraLink};
 }
 
 [[nodiscard]] inline Robot fetch_robot() {
@@ -46,10 +46,8 @@ inline const std::set<std::string> kFreeFrames = {"head_camera_rgb_joint", "head
         "forearm_roll_joint", "wrist_flex_joint", "wrist_roll_joint", "head_tilt_joint"}) {
     table.add({.name = joint});
   }
-  const std::string camera = camera_sensor().parameter_prefix();
-  for (const auto part : kCameraParameters) {
-    table.add({.name = parameter_name(camera, part), .unit = part == "z_offset" ? "m" : "1"});
-  }
+  const std::string camera = camera_mount().parameter_prefix();
+  add_parameters(table, camera, DepthCamera::kParameters);
   for (const char* frame : {"head_camera_rgb_joint", "head_pan_joint"}) {
     for (std::size_t axis = 0; axis < 6; ++axis) {
       table.add({.name = parameter_name(frame, kFrameAxes[axis]), .unit = axis < 3 ? "m" : "rad"});

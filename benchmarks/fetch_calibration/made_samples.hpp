@@ -56,9 +56,9 @@ class MadeSamples {
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
     arm_corrections_ = corrections_for(chain_parameters(arm_, table), all);
     head_corrections_ = corrections_for(chain_parameters(head_, table), all);
-    const std::string prefix = camera_sensor().parameter_prefix();
+    const std::string prefix = camera_mount().parameter_prefix();
     for (std::size_t i = 0; i < depth_.size(); ++i) {
-      depth_[i] = values(table.index(parameter_name(prefix, kCameraParameters[i])));
+      depth_[i] = values(table.index(parameter_name(prefix, DepthCamera::kParameters[i].name)));
     }
   }
 
@@ -94,16 +94,16 @@ class MadeSamples {
     const Pose<double> camera_T_base =
         forward_kinematics(head_, position_of, head_corrections_).inverse();
     Observation camera{"camera", {}, head_camera_info()}, arm{"arm", {}};
-    const DepthCamera<> depth = DepthCamera<>::from(*camera.camera);
+    const auto [fx, fy, cx, cy, z_offset, z_scaling] = DepthCamera::settings(camera);
     for (const Vector3<double>& led : led_points()) {
       const Vector3<double> p = camera_T_base * (base_T_arm * led);
       if (p.z() < 0.5) return false;
       // The pixel and raw depth of this point in the true camera.
-      const double u = depth.fx * (1 + depth_[0]) * p.x() / p.z() + depth.cx * (1 + depth_[2]);
-      const double v = depth.fy * (1 + depth_[1]) * p.y() / p.z() + depth.cy * (1 + depth_[3]);
+      const double u = fx * (1 + depth_[0]) * p.x() / p.z() + cx * (1 + depth_[2]);
+      const double v = fy * (1 + depth_[1]) * p.y() / p.z() + cy * (1 + depth_[3]);
       const double z = p.z() / (1 + depth_[5]) - depth_[4];
       if (u < 0 || u > camera.camera->width || v < 0 || v > camera.camera->height) return false;
-      Vector3<double> seen((u - depth.cx) * z / depth.fx, (v - depth.cy) * z / depth.fy, z);
+      Vector3<double> seen((u - cx) * z / fx, (v - cy) * z / fy, z);
       for (int axis = 0; axis < 3; ++axis) seen(axis) += noise_(random_);
       camera.features.push_back({kCameraLink, seen});
       arm.features.push_back({kArmLink, led});

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors/point_to_point.hpp"
 #include "work.hpp"
 
@@ -13,8 +13,8 @@ template <class S, ErrorBlock B = PointToPoint>
 [[nodiscard]] BasicProblem<S> own_problem(const FetchWork& work, std::span<const Sample> samples,
                                           const TermOptions& options = {}) {
   BasicProblem<S> problem(work.robot, kBase, work.table, kFreeFrames);
-  problem.add_sensor(work.arm);
-  problem.add_sensor(work.camera);
+  problem.add_sensor(ChainPoint{}, work.arm);
+  problem.add_sensor(DepthCamera{}, work.camera);
   problem.add_block("hand_eye", B{}, {work.camera.name, work.arm.name}, options);
   for (const Sample& sample : samples) problem.add_sample(sample);
   return problem;

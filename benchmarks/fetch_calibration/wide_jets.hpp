@@ -24,13 +24,13 @@ using WideJet = ceres::Jet<double, kParameters>;
 template <class S>
 struct WalkState {
   Corrections<S> arm, camera;
-  std::array<S, DepthCamera<>::kParameters> depth;
+  std::array<S, 6> depth;
 };
 
 /// One sample as the walk needs it.
 struct WalkSample {
-  std::vector<Motion<double>> arm, camera;
-  DepthCamera<> depth_camera;
+  std::vector<JointState<double>> arm, camera;
+  std::array<double, 6> settings;
   std::array<Vector3<double>, kLeds> measured, on_arm;
 };
 
@@ -44,7 +44,7 @@ struct WalkModel {
         camera(chain_parameters(chains.camera, work.table)) {}
 
   [[nodiscard]] WalkSample pack(const Sighting& seen) const {
-    return {measured_motions(chains.arm, seen), measured_motions(chains.camera, seen), seen.camera,
+    return {measured_joint_states(chains.arm, seen), measured_joint_states(chains.camera, seen), seen.camera,
             seen.measured, seen.on_arm};
   }
 
@@ -61,10 +61,10 @@ struct WalkModel {
   /// @param residual  (12) metres
   template <class S>
   void residuals(const WalkState<S>& state, const WalkSample& sample, S* residual) const {
-    const auto tip = [](const RuntimeChain& chain, const std::vector<Motion<double>>& motions,
+    const auto tip = [](const RuntimeChain& chain, const std::vector<JointState<double>>& motions,
                         const Corrections<S>& corrections) {
       PoseWalker<S> walker;
-      walk(chain, std::span<const Motion<double>>(motions),
+      walk(chain, std::span<const JointState<double>>(motions),
            std::span<const JointCorrection<S>>(corrections), walker);
       return walker.pose;
     };
@@ -72,7 +72,7 @@ struct WalkModel {
     const Pose<S> base_T_camera = tip(chains.camera, sample.camera, state.camera);
     for (std::size_t i = 0; i < kLeds; ++i) {
       const Vector3<S> seen =
-          base_T_camera * sample.depth_camera.point(sample.measured[i], state.depth);
+          base_T_camera * DepthCamera{}.place(Measurement<DepthCamera, double>{.point = sample.measured[i], .settings = sample.settings}, state.depth);
       const Vector3<S> on_arm = base_T_arm * sample.on_arm[i];
       for (int axis = 0; axis < 3; ++axis) residual[3 * i + axis] = seen(axis) - on_arm(axis);
     }

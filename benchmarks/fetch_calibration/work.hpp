@@ -24,7 +24,7 @@ inline constexpr int kSamples = 100;
 /// One sample with names resolved; each method prepares it once.
 struct Sighting {
   const Sample* sample;
-  DepthCamera<> camera;                           ///< as recorded
+  std::array<double, 6> camera;                           ///< as recorded
   std::array<Vector3<double>, kLeds> measured{};  ///< pixel and raw depth: pixels, metres
   std::array<Vector3<double>, kLeds> on_arm{};    ///< metres, in wrist_roll_link
 
@@ -42,9 +42,9 @@ struct Sighting {
       arm->features.size() != kLeds) {
     throw std::invalid_argument(sample.source + ": not four LEDs seen by camera and arm");
   }
-  Sighting seen{&sample, DepthCamera<>::from(*camera->camera)};
+  Sighting seen{&sample, DepthCamera::settings(*camera)};
   for (std::size_t i = 0; i < kLeds; ++i) {
-    seen.measured[i] = seen.camera.measurement(camera->features[i].point);
+    seen.measured[i] = DepthCamera::measurement(camera->features[i].point, seen.camera);
     seen.on_arm[i] = arm->features[i].point;
   }
   return seen;
@@ -53,7 +53,7 @@ struct Sighting {
 struct FetchWork {
   Robot robot = fetch_robot();
   ParameterTable table = fetch_parameters(0.0, 1.0);
-  Sensor arm = arm_sensor(), camera = camera_sensor();
+  Mount arm = arm_mount(), camera = camera_mount();
   std::vector<Sample> samples;
   bool recorded = false;  ///< false if the samples are simulated
 
@@ -104,14 +104,14 @@ struct FetchWork {
 /// methods visit the same joints.
 struct FetchChains {
   RuntimeChain arm, camera;
-  std::array<int, 6> camera_parameters{};  ///< in the table, in the order of kCameraParameters
+  std::array<int, 6> camera_parameters{};  ///< in the table, in the order of DepthCamera
 
   explicit FetchChains(const FetchWork& work)
       : arm(make_chain(work.robot, kBase, work.arm.frame, kFreeFrames)),
         camera(make_chain(work.robot, kBase, work.camera.frame, kFreeFrames)) {
     for (std::size_t i = 0; i < camera_parameters.size(); ++i) {
       camera_parameters[i] =
-          work.table.index(parameter_name(work.camera.parameter_prefix(), kCameraParameters[i]));
+          work.table.index(parameter_name(work.camera.parameter_prefix(), DepthCamera::kParameters[i].name));
     }
   }
 };

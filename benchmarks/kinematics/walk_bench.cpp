@@ -14,8 +14,8 @@ struct Work {
   Robot robot = test::mobile_manipulator();
   RuntimeChain chain = make_chain(robot, "hand", "camera_optical_frame");
   Corrections<double> corrections = Corrections<double>(chain.joints.size());
-  std::vector<Motion<double>> motions =
-      measured_motions(chain, [](const std::string& joint) { return 0.1 * double(joint.size()); });
+  std::vector<JointState<double>> motions =
+      measured_joint_states(chain, [](const std::string& joint) { return 0.1 * double(joint.size()); });
 };
 
 /// The control: joint after joint, with trigonometry.
@@ -43,7 +43,7 @@ Eigen::Isometry3d by_hand(const Work& work) {
 
 template <class W>
 void walk_once(const Work& work, W& walker) {
-  walk(work.chain, std::span<const Motion<double>>(work.motions),
+  walk(work.chain, std::span<const JointState<double>>(work.motions),
        std::span<const JointCorrection<double>>(work.corrections), walker);
 }
 
@@ -83,7 +83,7 @@ void BM_twists_walk(benchmark::State& state) {
     benchmark::DoNotOptimize(work.motions.data());
     TwistWalker<double> walker{columns, twists};
     walk_once(work, walker);
-    benchmark::DoNotOptimize(twists.turns.data());
+    benchmark::DoNotOptimize(twists.rotational.data());
   }
 }
 BENCHMARK(BM_twists_walk);

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "commands.hpp"
-#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal::cli {
 

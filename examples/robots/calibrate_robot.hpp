@@ -13,7 +13,7 @@ namespace kinecal::examples {
 
 template <SensorPart S>
 [[nodiscard]] ExampleSensor describe_sensor() {
-  ExampleSensor example{.sensor = S::sensor()};
+  ExampleSensor example{.mount = S::mount(), .type = S::Model::kType};
   if constexpr (requires { S::kTarget; }) example.target = S::kTarget;
   if constexpr (requires { S::kMeasuring; }) example.measuring = S::kMeasuring;
   example.moves = S::Chain::kFirstMotion < S::Chain::kSize;
@@ -38,7 +38,7 @@ template <BlockPart B>
 [[nodiscard]] ExampleBlock describe_block() {
   ExampleBlock example{.name = std::string(B::kName)};
   for (const std::string_view sensor : B::kSensorNames) example.sensors.emplace_back(sensor);
-  if constexpr (PointBlock<typename B::Error>) example.plane = plane_of(B().error);
+  if constexpr (PointBlock<typename B::Error> && kParametersOfBlock<typename B::Error> == 0) example.plane = plane_of(B().error);
   return example;
 }
 
@@ -60,7 +60,7 @@ template <class C>
     if (kIsVirtual || P::kKind == ParameterKind::frame_offset) example.frames.emplace(P::kOwner);
   });
   example.problem = [crate](std::span<const Sample> samples) {
-    return std::make_unique<Problem>(crate.problem(C::table(samples)));
+    return std::make_unique<Problem>(crate.problem(crate.table(samples)));
   };
   example.free_set = &C::free;
   return example;

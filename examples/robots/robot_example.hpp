@@ -9,13 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/problem/any_problem.hpp"
 #include "simulated.hpp"
 
 namespace kinecal::examples {
 
 struct ExampleSensor {
-  Sensor sensor;
+  Mount mount;
+  std::string_view type;              ///< of the sensor, as in configurations
   std::optional<Target> target = {};  ///< if the crate names one
   std::optional<Measuring> measuring = {};
   bool moves = false;  ///< true if a joint of its chain moves

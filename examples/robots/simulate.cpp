@@ -36,11 +36,11 @@ double uniform_position(const Joint& joint, SeededRandom& random) {
 }
 
 bool is_camera(const ExampleSensor& sensor) {
-  return sensor.sensor.type != SensorType::chain3d;
+  return sensor.type != ChainPoint::kType;
 }
 
 Measuring measuring_of(const ExampleSensor& eye) {
-  return eye.measuring.value_or(eye.sensor.type == SensorType::camera2d ? kPinhole : Measuring{});
+  return eye.measuring.value_or(eye.type == PinholeCamera::kType ? kPinhole : Measuring{});
 }
 
 /// The target at the tip of a chain.
@@ -62,7 +62,7 @@ std::vector<Vector3<double>> points_of(const Target& target) {
 }
 
 /// Distance of a point from a camera's field of view: zero inside, growing outside.
-double outside(const DepthCamera<>& camera, const Measuring& measuring,
+double outside(const Intrinsics& camera, const Measuring& measuring,
                const Vector3<double>& p_camera) {
   const double z = p_camera.z();
   if (z < measuring.near) return 3.0 - p_camera.normalized().z() + measuring.near - z;
@@ -109,13 +109,13 @@ std::vector<Sample> Simulation::samples(int pairs, int planes) {
 
 double Simulation::metres_a_pixel(const std::string& camera) const {
   const auto& [sum, count] = depths_.at(camera);
-  return sum / count / DepthCamera<>::from(example_camera_info()).fx;
+  return sum / count / intrinsics_of(example_camera_info()).fx;
 }
 
 Simulation::Scene Simulation::scene_of(const ExampleBlock& block) const {
   std::vector<const ExampleSensor*> sensors;
   for (const std::string& name : block.sensors) {
-    const auto named = [&](const ExampleSensor& s) { return s.sensor.name == name; };
+    const auto named = [&](const ExampleSensor& s) { return s.mount.name == name; };
     sensors.push_back(&*std::find_if(example_.sensors.begin(), example_.sensors.end(), named));
   }
   if (block.plane && is_camera(*sensors[0])) return {sensors[0], nullptr, block.plane};
@@ -131,17 +131,17 @@ Simulation::Scene Simulation::scene_of(const ExampleBlock& block) const {
 }
 
 Pose<double> Simulation::tip(const ExampleSensor& sensor, const Positions& positions) const {
-  return robot_.pose(example_.base, sensor.sensor.frame, positions);
+  return robot_.pose(example_.base, sensor.mount.frame, positions);
 }
 
 double Simulation::target_violation(const Scene& scene, const Positions& positions) const {
   const Target target = target_of(*scene.carrier, *scene.eye);
   const Pose<double> base_T_target =
-      robot_.pose(example_.base, scene.carrier->sensor.frame, positions, example_.virtual_frame);
+      robot_.pose(example_.base, scene.carrier->mount.frame, positions, example_.virtual_frame);
   const Pose<double> eye_T_target = tip(*scene.eye, positions).inverse() * base_T_target;
   double violation = turned_away(target, eye_T_target);
   if (!is_camera(*scene.eye)) return violation;
-  const DepthCamera<> camera = DepthCamera<>::from(example_camera_info());
+  const Intrinsics camera = intrinsics_of(example_camera_info());
   for (const Vector3<double>& point : points_of(target)) {
     violation += outside(camera, measuring_of(*scene.eye), eye_T_target * point);
   }
@@ -160,7 +160,7 @@ std::vector<Vector3<double>> Simulation::plane_points(const Scene& scene,
                                                       const Positions& positions) const {
   const Pose<double> base_T_eye = tip(*scene.eye, positions);
   const double height = scene.plane->normal.dot(base_T_eye.translation) + scene.plane->distance;
-  const DepthCamera<> camera = DepthCamera<>::from(example_camera_info());
+  const Intrinsics camera = intrinsics_of(example_camera_info());
   const Measuring measuring = measuring_of(*scene.eye);
   std::vector<Vector3<double>> points;
   for (const double v : {-0.8, -0.3, 0.2, 0.7}) {  // of half the image
@@ -176,31 +176,31 @@ std::vector<Vector3<double>> Simulation::plane_points(const Scene& scene,
 Observation Simulation::observe(const ExampleSensor& eye,
                                 const std::vector<Vector3<double>>& points) {
   const Measuring measuring = measuring_of(eye);
-  Observation seen{eye.sensor.name, {}, {}};
+  Observation seen{eye.mount.name, {}, {}};
   std::array<double, 6> errors{};
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const int known = truth_.find(parameter_name(eye.sensor.name, kCameraParameters[i]));
+    const int known = truth_.find(parameter_name(eye.mount.name, DepthCamera::kParameters[i].name));
     if (known >= 0) errors[i] = truth_[known].value;
   }
   if (is_camera(eye)) seen.camera = example_camera_info();
-  auto& [depth, count] = depths_[eye.sensor.name];
+  auto& [depth, count] = depths_[eye.mount.name];
   for (const Vector3<double>& point : points) {
     depth += point.z();
     ++count;
     Vector3<double> reported = point;
-    if (eye.sensor.type == SensorType::camera3d) {
-      reported = recorded_point(DepthCamera<>::from(*seen.camera), point, errors,
+    if (eye.type == DepthCamera::kType) {
+      reported = recorded_point(intrinsics_of(*seen.camera), point, errors,
                                 {measuring.pixel, measuring.depth}, random_);
-    } else if (eye.sensor.type == SensorType::camera2d) {
+    } else if (eye.type == PinholeCamera::kType) {
       const Eigen::Vector2d pixel =
-          PinholeCamera<>::from(*seen.camera)
-              .project<double>(point, {errors[0], errors[1], errors[2], errors[3]});
+          PinholeCamera{}.predict(point, PinholeCamera::settings(seen),
+                                  std::array{errors[0], errors[1], errors[2], errors[3]});
       reported = {pixel.x() + measuring.pixel * random_.normal(),
                   pixel.y() + measuring.pixel * random_.normal(), 0.0};
     } else {
       for (int i = 0; i < 3; ++i) reported(i) += measuring.point * random_.normal();
     }
-    seen.features.push_back({eye.sensor.frame, reported});
+    seen.features.push_back({eye.mount.frame, reported});
   }
   return seen;
 }
@@ -220,7 +220,7 @@ Sample Simulation::sample_of(const ExampleBlock& block, const Scene& scene) {
     sample.observations = {observe(*scene.eye, plane_points(scene, positions))};
     return sample;
   }
-  const Sensor& carrier = scene.carrier->sensor;
+  const Mount& carrier = scene.carrier->mount;
   const std::string& frame =
       example_.virtual_frame.empty() ? carrier.frame : example_.virtual_frame;
   const Pose<double> eye_T_target =

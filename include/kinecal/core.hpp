@@ -4,8 +4,10 @@
 
 #include "kinecal/crate.hpp"
 #include "kinecal/errors.hpp"
+#include "kinecal/evaluation.hpp"
 #include "kinecal/geometry.hpp"
 #include "kinecal/kinematics.hpp"
 #include "kinecal/parameters.hpp"
+#include "kinecal/problem.hpp"
 #include "kinecal/samples.hpp"
 #include "kinecal/sensors.hpp"

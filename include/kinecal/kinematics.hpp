@@ -9,7 +9,7 @@
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/kinematics/joint.hpp"
 #include "kinecal/kinematics/known_name.hpp"
-#include "kinecal/kinematics/motion.hpp"
+#include "kinecal/kinematics/joint_state.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
 #include "kinecal/kinematics/pose_walker.hpp"
 #include "kinecal/kinematics/robot.hpp"

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/sensors/any_sensor.hpp"
+#include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/quantity.hpp"
 #include "kinecal/sensors/sensor.hpp"

@@ -18,8 +18,9 @@ const fs::path kHeaders = fs::path(KINECAL_SOURCE_DIR) / "include/kinecal";
 
 /// A folder may include those before it.
 const std::vector<std::string> kFolders = {"geometry", "kinematics", "parameters", "samples",
-                                           "sensors",  "errors",     "crate",      "solve",
-                                           "trust",    "io",         "report"};
+                                           "sensors",  "errors",     "problem",    "evaluation",
+                                           "crate",    "solve",      "trust",      "io",
+                                           "report"};
 
 struct Include {
   fs::path header;
@@ -142,12 +143,12 @@ constexpr int kMostLines = 200, kMostLinesOfAnException = 300;
 
 /// Sorted by name; what has become short enough is removed from here.
 constexpr LongSource kLongSources[] = {
-    {"crate/block_term.hpp",
+    {"evaluation/block_term.hpp",
      "one class template: a term evaluates, sums and lays out its rows alike"},
     {"crate/crate.hpp", "one class template: all that a Crate is"},
-    {"crate/difference_gram.hpp", "the derivation of the moments and its one class"},
-    {"crate/evaluator.hpp", "one class template: packs to views, rows and sums"},
-    {"crate/sensor_view.hpp", "one class template for poses, points and camera motions of a pack"},
+    {"evaluation/difference_gram.hpp", "the derivation of the moments and its one class"},
+    {"evaluation/evaluator.hpp", "one class template: packs to views, rows and sums"},
+    {"evaluation/sensor_view.hpp", "one class template for poses, points and camera motions of a pack"},
     {"geometry/jet.hpp", "one scalar with all its operators and functions"},
     {"geometry/packet.hpp", "a scalar and its functions for every instruction set"},
     {"io/assemble.ipp", "from all of a configuration to problems, in one pass"},

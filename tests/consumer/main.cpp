@@ -17,8 +17,8 @@ int main() {
   ParameterTable table;
   table.add({.name = "pivot"});
   Problem problem(robot, "world", table, {});
-  problem.add_sensor({"bob", SensorType::chain3d, "bob", ""});
-  problem.add_sensor({"tracker", SensorType::chain3d, "world", ""});
+  problem.add_sensor(ChainPoint{}, {"bob", "bob"});
+  problem.add_sensor(ChainPoint{}, {"tracker", "world"});
   problem.add_block("measured", PointToPoint{}, {"bob", "tracker"});
   for (double q : {0.0, 0.5, 1.0}) {
     const double true_q = q + 0.03;

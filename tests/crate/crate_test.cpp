@@ -45,13 +45,13 @@ static_assert(std::is_same_v<Crate<HandEye, HandEye>::Parameters, HandEye::Param
 /// The same calibration put together at run time.
 template <class S>
 BasicProblem<S> by_hand() {
-  ParameterTable table = All::table({});
+  ParameterTable table = All().table({});
   BasicProblem<S> problem(robot_from<StaticRobot>(), "base", table,
                           {"camera_joint", "mount", "board", "weight"});
-  problem.add_sensor({"arm", SensorType::chain3d, "tip", ""});
-  problem.add_sensor({"camera", SensorType::camera3d, "camera_frame", ""});
-  problem.add_sensor({"weight", SensorType::chain3d, "counterweight", ""});
-  problem.add_sensor({"eye", SensorType::camera2d, "base", ""});
+  problem.add_sensor(ChainPoint{}, {"arm", "tip"});
+  problem.add_sensor(DepthCamera{}, {"camera", "camera_frame"});
+  problem.add_sensor(ChainPoint{}, {"weight", "counterweight"});
+  problem.add_sensor(PinholeCamera{}, {"eye", "base"});
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
   problem.add_block("floor", PointToPlane(0, 0, 1, 0), {"camera"});
   problem.add_block("weight", PointToPoint{}, {"weight", "arm"});
@@ -105,7 +105,7 @@ std::vector<Sample> some_samples(int count) {
 
 template <class S>
 void expect_the_same(const FreeSet& free) {
-  BasicProblem<S> expected = by_hand<S>(), found = crate().problem<S>(All::table({}));
+  BasicProblem<S> expected = by_hand<S>(), found = crate().problem<S>(All().table({}));
   for (const Sample& sample : some_samples(3 * kLanes<S> + 2)) {
     expected.add_sample(sample);
     found.add_sample(sample);
@@ -130,7 +130,7 @@ void expect_the_same(const FreeSet& free) {
 
 template <class S>
 void expect_the_same() {
-  const ParameterTable table = All::table({});
+  const ParameterTable table = All().table({});
   expect_the_same<S>(All::free(table));
   // Not what its walks are compiled for: they give way.
   expect_the_same<S>(test::all_free(table));
@@ -147,7 +147,7 @@ TEST(Crate, EvaluatesAsTheSameProblemOfRunTimeInPackets) {
 }
 
 TEST(Crate, NamesItsParametersAsAConfigurationDoes) {
-  const ParameterTable table = All::table({});
+  const ParameterTable table = All().table({});
   std::vector<std::string> names;
   const FreeSet free = All::free(table);
   for (const int i : free.parameters()) names.push_back(table[i].name);
@@ -167,13 +167,13 @@ TEST(Crate, NamesItsParametersAsAConfigurationDoes) {
 
 TEST(Crate, StartsCamerasWhereTheirDriversWere) {
   const std::vector<Sample> samples = some_samples(1);
-  const ParameterTable table = All::table(samples);
+  const ParameterTable table = All().table(samples);
   EXPECT_EQ(table["camera_z_offset"].value, 0.01);
   EXPECT_EQ(table["camera_z_scaling"].initial, 1.02 - 1.0);
 }
 
 TEST(Crate, SaysWhatKindItsBlocksAre) {
-  const Problem problem = crate().problem(All::table({}));
+  const Problem problem = crate().problem(All().table({}));
   std::vector<std::string> kinds;
   for (const auto& term : problem.terms()) {
     kinds.push_back(term->name() + " " + term->options().type + " " + term->options().unit);
@@ -197,13 +197,13 @@ template <std::size_t I>
 CompiledWalk<Packet> counting(const CompiledWalk<Packet>& walk) {
   counted[I] = {walk};
   CompiledWalk<Packet> stand_in = walk;
-  stand_in.pose_only = [](const auto& start, const auto* motions, auto& tip) {
+  stand_in.pose_only = [](const auto& start, auto joints, auto& tip) {
     ++counted[I].pose_only;
-    counted[I].real.pose_only(start, motions, tip);
+    counted[I].real.pose_only(start, joints, tip);
   };
-  stand_in.with_twists = [](const auto& start, const auto* motions, auto& tip) {
+  stand_in.with_twists = [](const auto& start, auto joints, auto& tip) {
     ++counted[I].with_twists;
-    counted[I].real.with_twists(start, motions, tip);
+    counted[I].real.with_twists(start, joints, tip);
   };
   return stand_in;
 }
@@ -227,19 +227,25 @@ std::map<std::string, int> calls(const std::vector<std::string>& names, int Coun
 /// In each lane of a sample's pack the arm's features are in the hand or on the board: a sensor's
 /// walk to either is taken once for each pack with a feature at its end.
 TEST(Crate, WalksAreUsedWhereTheyFit) {
-  const Problem of_crate = crate().problem(All::table({}));
-  Problem problem(All::robot(), All::base(), All::table({}),
+  const Problem of_crate = crate().problem(All().table({}));
+  Problem problem(All::robot(), All::base(), All().table({}),
                   {"camera_joint", "mount", "board", "weight"});
   std::vector<std::string> names;
   for (std::size_t s = 0; s < of_crate.sensors().size(); ++s) {
-    const Sensor& sensor = of_crate.sensors()[s].sensor();
+    const MountedSensor& sensor = of_crate.sensors()[s];
     std::vector<CompiledWalk<Packet>> walks;
-    for (const CompiledWalk<Packet>& walk : of_crate.walks(s)) {
+    for (const CompiledWalk<Packet>& walk : of_crate.evaluation_of(s).walks) {
       ASSERT_LT(names.size(), kMostWalks);
       walks.push_back(counting(names.size(), walk));
-      names.push_back(sensor.name + " " + walk.tip);
+      names.push_back(sensor.mount().name + " " + walk.tip);
     }
-    problem.add_sensor(sensor, std::move(walks));
+    if (sensor.sensor().type() == ChainPoint::kType) {
+      problem.add_sensor(ChainPoint{}, sensor.mount(), std::move(walks));
+    } else if (sensor.sensor().type() == DepthCamera::kType) {
+      problem.add_sensor(DepthCamera{}, sensor.mount(), std::move(walks));
+    } else {
+      problem.add_sensor(PinholeCamera{}, sensor.mount(), std::move(walks));
+    }
   }
   EXPECT_THAT(names, testing::ElementsAre("arm tip", "arm board", "camera camera_frame",
                                           "weight counterweight", "weight board", "eye base"));
@@ -249,7 +255,7 @@ TEST(Crate, WalksAreUsedWhereTheyFit) {
   const int count = 6 * kLanes<Packet>;
   for (const Sample& sample : some_samples(count)) problem.add_sample(sample);
   // A sixth of the samples are on the board with an eye, a sixth without; a third each in the hand.
-  ASSERT_EQ(std::ssize(problem.packs()), 6);
+  ASSERT_EQ(test::count_batches(problem), 6);
   const std::map<std::string, int> fit = {{"arm tip", 4},
                                           {"arm board", 2},
                                           {"camera camera_frame", 6},

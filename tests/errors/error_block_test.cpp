@@ -28,7 +28,7 @@ struct NoCall {};
 
 static_assert(PointBlock<Height> && !PointPairBlock<Height>);
 static_assert(PointPairBlock<PointToPoint> && !PointBlock<PointToPoint>);
-static_assert(SightBlock<PointToPixel> && PlanePairBlock<PlaneToPlane>);
+static_assert(PixelBlock<PointToPixel> && PlanePairBlock<PlaneToPlane>);
 static_assert(kResiduals<PointToPoint> == 3 && kResiduals<PointToPixel> == 2);
 static_assert(PointBlock<PointToPlane> && kResiduals<PointToPlane> == 1);
 static_assert(kResiduals<PlaneToPlane> == 4);
@@ -55,9 +55,9 @@ TEST(ErrorBlock, PointToPlaneIsTheDistanceOnTheSideOfTheNormal) {
 }
 
 TEST(ErrorBlock, PointToPixelIsThePredictedPixelLessTheObservedOne) {
-  // x = 0.5, y = -0.25;  u = 500 * 1.1 * 0.5 + 320,  v = 400 * -0.25 + 240 * 0.5
-  const Sight<double> sight{{1, -0.5, 2}, {0.1, 0, 0, -0.5}, {500, 400, 320, 240, {}}, {590, 30}};
-  EXPECT_LE((PointToPixel{}(sight)-Eigen::Vector2d(5, -10)).norm(), 1e-12);
+
+  const PixelObservation<double> pixel{{595, 20}, {590, 30}};
+  EXPECT_LE((PointToPixel{}(pixel) - Eigen::Vector2d(5, -10)).norm(), 1e-12);
 }
 
 TEST(ErrorBlock, PlaneToPlaneIsTheTurnOfTheNormalsAndTheDistanceToTheSecond) {

@@ -35,7 +35,7 @@ TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
   Corrections<double> corrections(chain.joints.size());
   std::vector<JointIndices> columns(chain.joints.size());
   for (std::size_t i = 0; i < chain.joints.size(); ++i) {
-    corrections[i].offset = make_motion(0.01 * static_cast<double>(i));
+    corrections[i].offset = make_joint_state(0.01 * static_cast<double>(i));
     columns[i].offset = static_cast<int>(i);
     if (!chain.joints[i].corrected) continue;
     corrections[i].set_frame({0.01, -0.02, 0.03}, {0.1, 0.2, -0.3});
@@ -44,12 +44,12 @@ TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
   const std::span<const JointCorrection<double>> all(corrections);
 
   // One sample in each lane.
-  std::vector<std::vector<Motion<double>>> samples;
-  std::vector<Motion<Packet>> packed(chain.joints.size());
+  std::vector<std::vector<JointState<double>>> samples;
+  std::vector<JointState<Packet>> packed(chain.joints.size());
   for (std::size_t lane = 0; lane < Packet::size(); ++lane) {
     test::RandomPositions positions(static_cast<unsigned>(lane));
     samples.push_back(
-        measured_motions(chain, [&](const std::string& joint) { return positions(joint); }));
+        measured_joint_states(chain, [&](const std::string& joint) { return positions(joint); }));
     for (std::size_t i = 0; i < packed.size(); ++i) {
       packed[i].position.set(lane, samples[lane][i].position);
       packed[i].cos.set(lane, samples[lane][i].cos);
@@ -59,25 +59,25 @@ TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
   ChainTwists<Packet> packed_twists;
   twist_columns(chain, columns).resize(packed_twists);
   TwistWalker<Packet> at_once{columns, packed_twists};
-  walk(chain, std::span<const Motion<Packet>>(packed), all, at_once);
+  walk(chain, std::span<const JointState<Packet>>(packed), all, at_once);
 
   constexpr double kRounding = 1e-14;
   for (std::size_t lane = 0; lane < Packet::size(); ++lane) {
     ChainTwists<double> twists;
     twist_columns(chain, columns).resize(twists);
     TwistWalker<double> alone{columns, twists};
-    walk(chain, std::span<const Motion<double>>(samples[lane]), all, alone);
-    ASSERT_EQ(packed_twists.turns.size(), twists.turns.size());
-    ASSERT_EQ(packed_twists.shifts.size(), twists.shifts.size());
+    walk(chain, std::span<const JointState<double>>(samples[lane]), all, alone);
+    ASSERT_EQ(packed_twists.rotational.size(), twists.rotational.size());
+    ASSERT_EQ(packed_twists.translational.size(), twists.translational.size());
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(at_once.walker.pose.translation(k)[lane], alone.walker.pose.translation(k),
                   kRounding);
-      for (std::size_t t = 0; t < twists.turns.size(); ++t) {
-        EXPECT_NEAR(packed_twists.turns[t].linear(k)[lane], twists.turns[t].linear(k), kRounding);
-        EXPECT_NEAR(packed_twists.turns[t].angular(k)[lane], twists.turns[t].angular(k), kRounding);
+      for (std::size_t t = 0; t < twists.rotational.size(); ++t) {
+        EXPECT_NEAR(packed_twists.rotational[t].linear(k)[lane], twists.rotational[t].linear(k), kRounding);
+        EXPECT_NEAR(packed_twists.rotational[t].angular(k)[lane], twists.rotational[t].angular(k), kRounding);
       }
-      for (std::size_t t = 0; t < twists.shifts.size(); ++t) {
-        EXPECT_NEAR(packed_twists.shifts[t](k)[lane], twists.shifts[t](k), kRounding);
+      for (std::size_t t = 0; t < twists.translational.size(); ++t) {
+        EXPECT_NEAR(packed_twists.translational[t](k)[lane], twists.translational[t](k), kRounding);
       }
     }
   }

@@ -37,7 +37,7 @@ Corrections<double> some_corrections(std::size_t joints) {
   Corrections<double> corrections(joints);
   for (std::size_t i = 0; i < joints; ++i) {
     const double n = 0.01 * static_cast<double>(i + 1);
-    corrections[i].offset = make_motion(n);
+    corrections[i].offset = make_joint_state(n);
     corrections[i].set_frame({n, -2 * n, 0.5 * n}, {-n, 0.3 * n, 2 * n});
   }
   return corrections;
@@ -77,13 +77,13 @@ void expect_the_same_walk(const std::set<std::string>& frames) {
     for (int& axis : columns[i].frame) axis = next++;
   }
   const std::span<const JointCorrection<double>> all(corrections);
-  const auto motions = measured_motions(chain, Positions{});
+  const auto motions = measured_joint_states(chain, Positions{});
   const auto walked = [&](const auto& any_chain) {
     const TwistColumns order = twist_columns(chain, columns);
     ChainTwists<double> twists;
     order.resize(twists);
     TwistWalker<double> walker{columns, twists};
-    walk(any_chain, std::span<const Motion<double>>(motions), all, walker);
+    walk(any_chain, std::span<const JointState<double>>(motions), all, walker);
     return std::pair(walker.walker.pose, by_column(twists, order));
   };
   const auto [expected_pose, expected] = walked(chain);

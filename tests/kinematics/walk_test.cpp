@@ -90,7 +90,7 @@ TEST(Walk, CorrectionStandsBetweenOriginAndMotionAndOffsetAddsToThePosition) {
   Corrections<double> corrections(chain.joints.size());
   const Vector3<double> t(0.01, -0.02, 0.03), w(0.1, -0.2, 0.3);
   corrections[0].set_frame(t, w);
-  corrections[0].offset = make_motion(0.25);
+  corrections[0].offset = make_joint_state(0.25);
   const Joint& elbow = robot.joint("elbow");
   const Pose<double> motion{exp(Vector3<double>(elbow.axis * (0.7 + 0.25))), {0, 0, 0}};
   const Pose<double> expected =
@@ -108,7 +108,7 @@ TEST(Walk, ReversedChainIsTheInverseAlsoWithCorrections) {
   for (std::size_t i = 0; i < corrections.size(); ++i) {
     const double x = 0.1 * static_cast<double>(i + 1);
     if (there.joints[i].corrected) corrections[i].set_frame({x, -x, 2 * x}, {-x, x, 0.5 * x});
-    corrections[i].offset = make_motion(0.3 * x);
+    corrections[i].offset = make_joint_state(0.3 * x);
   }
   Corrections<double> reversed(corrections.rbegin(), corrections.rend());
   test::RandomPositions positions(4);
@@ -162,7 +162,7 @@ struct AxisChain {
                          c.reversed ? "base" : "tip",
                          c.corrected ? std::set<std::string>{"joint"} : kNone)),
         corrections(chain.joints.size()) {
-    corrections[0].offset = make_motion(0.2);
+    corrections[0].offset = make_joint_state(0.2);
     if (c.corrected) corrections[0].set_frame({0.01, 0.02, -0.03}, {0.1, -0.3, 0.2});
   }
   [[nodiscard]] Pose<double> pose(double position) const {
@@ -204,8 +204,8 @@ std::vector<std::pair<int, Twist<double>>> twists_of(const AxisChain& of_case, d
   order.resize(twists);
   TwistWalker<double> walker{columns, twists};
   const auto motions =
-      measured_motions(of_case.chain, [&](const std::string&) { return position; });
-  walk(of_case.chain, std::span<const Motion<double>>(motions),
+      measured_joint_states(of_case.chain, [&](const std::string&) { return position; });
+  walk(of_case.chain, std::span<const JointState<double>>(motions),
        std::span<const JointCorrection<double>>(of_case.corrections), walker);
   EXPECT_LE(difference(walker.walker.pose, of_case.pose(position)), 0.0);
   return by_column(twists, order);
@@ -246,16 +246,16 @@ struct Counter {
   int moved = 0;
   void fixed(const Pose<double>&) {}
   void correct(std::size_t, const ChainJoint&, const JointCorrection<double>&) {}
-  void move(std::size_t, const ChainJoint&, const Motion<double>&) { ++moved; }
+  void move(std::size_t, const ChainJoint&, const JointState<double>&) { ++moved; }
 };
 static_assert(Walker<Counter, double>);
 
 TEST(Walk, CallsAnyWalkerForEachMotion) {
   const RuntimeChain chain = make_chain(test::mobile_manipulator(), "base_link", "hand");
-  const std::vector<Motion<double>> motions(chain.joints.size());
+  const std::vector<JointState<double>> motions(chain.joints.size());
   const Corrections<double> corrections(chain.joints.size());
   Counter counter;
-  walk(chain, std::span<const Motion<double>>(motions),
+  walk(chain, std::span<const JointState<double>>(motions),
        std::span<const JointCorrection<double>>(corrections), counter);
   EXPECT_EQ(counter.moved, 5);
 }
@@ -337,7 +337,7 @@ Corrections<S> fill(const std::vector<JointIndices>& indices, const std::vector<
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const auto& f = indices[i].frame;
     if (indices[i].offset >= 0) {
-      corrections[i].offset = make_motion(S(at(indices[i].offset) * indices[i].gain));
+      corrections[i].offset = make_joint_state(S(at(indices[i].offset) * indices[i].gain));
     }
     if (f[0] >= 0) {
       corrections[i].set_frame({at(f[0]), at(f[1]), at(f[2])}, {at(f[3]), at(f[4]), at(f[5])});
@@ -380,9 +380,9 @@ TEST_P(Twists, AgreeWithAutodiffThroughTheWholeWalk) {
     ChainTwists<double> twists;
     twist_columns(chain, indices).resize(twists);
     TwistWalker<double> walker{indices, twists};
-    const auto motions = measured_motions(chain, position_of);
+    const auto motions = measured_joint_states(chain, position_of);
     const Corrections<double> corrections = fill(indices, x);
-    walk(chain, std::span<const Motion<double>>(motions),
+    walk(chain, std::span<const JointState<double>>(motions),
          std::span<const JointCorrection<double>>(corrections), walker);
     const Vector3<double> p_base = walker.walker.pose * p;
     Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, kMaxParameters);

@@ -28,7 +28,7 @@ using WithCamera =
 
 /// Samples of a robot with these values, in the order of the crate's slots.
 std::vector<Sample> exact_samples(const std::vector<double>& truth, int count) {
-  const ParameterTable table = Tracked::table({});
+  const ParameterTable table = Tracked().table({});
   Eigen::VectorXd values = Eigen::VectorXd::Zero(table.size());
   const FreeSet free = Tracked::free(table);
   for (int c = 0; c < free.size(); ++c) {
@@ -85,7 +85,7 @@ TEST(CalibrateCrate, TakesTheOptionsOfItsBlocksAndOfSolving) {
 TEST(CalibrateCrate, StartsFromTheValuesOfATableAndStaysWithinItsBounds) {
   const std::vector<double> truth = {0.02, -0.03, 0.004, -0.005, 0.006};
   const std::vector<Sample> samples = exact_samples(truth, 12);
-  ParameterTable table = Tracked::table(samples);
+  ParameterTable table = Tracked().table(samples);
   table["pan"].value = truth[0];
   table["elbow"].value = truth[1];
   const auto near = calibrate(Tracked(), table, samples), far = calibrate(Tracked(), samples);

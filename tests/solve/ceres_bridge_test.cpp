@@ -112,8 +112,8 @@ TEST(CeresBridge, HasTheBoundsOfTheTable) {
   ParameterTable table = test::scene_table();
   table["elbow"].upper = 0.01;
   Problem problem(test::mobile_manipulator(), "base_link", table, test::kSceneFrames);
-  problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
-  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
+  problem.add_sensor(ChainPoint{}, {"arm", "hand"});
+  problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
   for (const Sample& sample : samples()) problem.add_sample(sample);
   ceres::Problem ceres_problem;

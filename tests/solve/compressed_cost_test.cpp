@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "support/scene.hpp"
 

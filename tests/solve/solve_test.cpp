@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "support/scene.hpp"
 
@@ -119,8 +119,8 @@ Problem bounded_problem(const std::string& name, double lower, double upper,
   table[name].lower = lower;
   table[name].upper = upper;
   Problem problem(test::mobile_manipulator(), "base_link", table, test::kSceneFrames);
-  problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
-  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
+  problem.add_sensor(ChainPoint{}, {"arm", "hand"});
+  problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
   for (const Sample& sample : samples) problem.add_sample(sample);
   return problem;

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kinecal/crate/problem.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "support/check_sums.hpp"
 #include "support/scene.hpp"
 

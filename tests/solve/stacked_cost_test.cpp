@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/solve.hpp"
@@ -45,9 +45,9 @@ Problem problem_of(const Trial& trial) {
   table["camera_joint_x"].upper = trial.upper;
   table["elbow"].upper = trial.upper;
   Problem problem(test::mobile_manipulator(), "base_link", table, test::kSceneFrames);
-  problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
-  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
-  problem.add_sensor({"eye", SensorType::camera2d, "camera_optical_frame", ""});
+  problem.add_sensor(ChainPoint{}, {"arm", "hand"});
+  problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
+  problem.add_sensor(PinholeCamera{}, {"eye", "camera_optical_frame"});
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
                     {.weight = 2.0, .loss = trial.loss});
   problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"},

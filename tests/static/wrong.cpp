@@ -102,15 +102,15 @@ Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes::xyz>,
       FrameOffset<"head_pan_joint", Axes{.z = true, .c = true}>, HandEye>
     overlapping_axes;
 
-// expect: the crate does not have the camera in this parameter; add the camera or correct its name
+// expect: the crate does not have the sensor or block in this parameter; add it or correct its name
 // meant: camera
 Crate<Arm, Head, DepthIntrinsics<"camrea">, HandEye> misspelt_camera;
 
-// expect: the sensor in this parameter does not have these settings; a Camera3d or Camera2d has
+// expect: the sensor or block in this parameter does not declare it; a Camera3d or Camera2d has
 Crate<Arm, Pinhole, DepthIntrinsics<"pinhole">, Block<"pixels", PointToPixel, "arm", "pinhole">>
     depth_of_pinhole_camera;
 
-// expect: the sensor in this parameter does not have these settings; a Camera3d or Camera2d has
+// expect: the sensor or block in this parameter does not declare it; a Camera3d or Camera2d has
 Crate<Arm, Head, CameraIntrinsics<"arm">, HandEye> intrinsics_of_arm;
 
 // expect: no residual depends on this free parameter, because no error block has a sensor that it
@@ -148,10 +148,10 @@ Crate<Arm, Head, Block<"ground", PointToPlane, "camera", "arm">> too_many_sensor
 // expect: this error block is given too many or too few sensors; one whose residual takes a point
 Crate<Arm, Head, Block<"hand_eye", PointToPoint, "camera">> too_few_sensors;
 
-// expect: this error block is given a sensor of the wrong kind; a Camera2d stands second in a block
+// expect: this error block is given a sensor of the wrong kind, which does not deliver what its
 Crate<Arm, Pinhole, Block<"pixels", PointToPixel, "pinhole", "arm">> pinhole_camera_first;
 
-// expect: this error block is given a sensor of the wrong kind; a Camera2d stands second in a block
+// expect: this error block is given a sensor of the wrong kind, which does not deliver what its
 Crate<Arm, Pinhole, Block<"hand_eye", PointToPoint, "arm", "pinhole">> pixels_as_points;
 
 // ---- crates

@@ -100,7 +100,7 @@ OracleResiduals oracle_residual(const PointToPixel&, const OracleView& view,
                                 const OracleView& camera, std::size_t i) {
   const Vector3<OracleJet> p = camera.pose.inverse()(view.points[i]);
   const Eigen::Matrix<OracleJet, 2, 1> pixel =
-      oracle_pixel(*camera.seen->camera, p, camera.sensor->parameter_prefix(), *camera.values);
+      oracle_pixel(*camera.seen->camera, p, camera.sensor->mount.parameter_prefix(), *camera.values);
   const Vector3<double>& observed = camera.seen->features[i].point;
   return {pixel.x() - observed.x(), pixel.y() - observed.y()};
 }
@@ -117,7 +117,7 @@ OracleRows OracleProblem::rows(std::span<const double> x) const {
     std::map<std::string, OracleView> views;
     for (std::size_t t = 0; t < terms_.size(); ++t) {
       const Term& term = terms_[t];
-      if (!applies(term.sensors, term.options.alone, samples_[n])) continue;
+      if (!applies(term.sensors, term.options.exclusive, samples_[n])) continue;
       Views of_term;
       for (const std::string& name : term.sensors) {
         if (!views.contains(name)) views[name] = view(name, samples_[n], values);
@@ -153,28 +153,29 @@ NormalEquations OracleProblem::multiplied_out(const OracleRows& rows, std::span<
 OracleView OracleProblem::view(const std::string& name, const Sample& sample,
                                const OracleValues<OracleJet>& values) const {
   OracleView view;
-  for (const Sensor& sensor : sensors_) {
-    if (sensor.name == name) view.sensor = &sensor;
+  for (const OracleSensor& sensor : sensors_) {
+    if (sensor.mount.name == name) view.sensor = &sensor;
   }
   for (const Observation& seen : sample.observations) {
     if (seen.sensor == name) view.seen = &seen;
   }
   view.values = &values;
-  view.pose = oracle_pose(robot_, base_, view.sensor->frame, "", sample, values);
+  view.pose = oracle_pose(robot_, base_, view.sensor->mount.frame, "", sample, values);
   std::map<std::string, OraclePose<OracleJet>> poses = {{"", view.pose},
-                                                        {view.sensor->frame, view.pose}};
+                                                        {view.sensor->mount.frame, view.pose}};
   for (const Feature& feature : view.seen->features) {
     const Vector3<double>& p = feature.point;
     view.there.push_back(std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()));
     Vector3<OracleJet> point(OracleJet(p.x()), OracleJet(p.y()), OracleJet(p.z()));
-    if (view.sensor->type == SensorType::camera3d) {
-      point = oracle_depth_point(*view.seen->camera, p, view.sensor->parameter_prefix(), values);
+    if (view.sensor->type == "camera3d") {
+      point = oracle_depth_point(*view.seen->camera, p, view.sensor->mount.parameter_prefix(), values);
     }
     if (!poses.contains(feature.frame)) {
       poses[feature.frame] =
-          oracle_pose(robot_, base_, view.sensor->frame, feature.frame, sample, values);
+          oracle_pose(robot_, base_, view.sensor->mount.frame, feature.frame, sample, values);
     }
     view.points.push_back(poses[feature.frame](point));
+    view.frames.push_back(poses[feature.frame]);
   }
   return view;
 }

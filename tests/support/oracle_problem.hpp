@@ -21,13 +21,20 @@ namespace kinecal::test {
 using OracleJet = ceres::Jet<double, 54>;  ///< of all parameters of the widest table
 using OracleResiduals = std::vector<OracleJet>;
 
+/// A sensor of the code under test, as the oracle knows it.
+struct OracleSensor {
+  Mount mount;
+  std::string type;  ///< name in configurations
+};
+
 /// What a sensor saw, carried to the base.
 struct OracleView {
-  const Sensor* sensor = nullptr;
+  const OracleSensor* sensor = nullptr;
   const Observation* seen = nullptr;
   const OracleValues<OracleJet>* values = nullptr;
   OraclePose<OracleJet> pose;              ///< of the sensor's own frame in the base
   std::vector<Vector3<OracleJet>> points;  ///< of each feature, in the base
+  std::vector<OraclePose<OracleJet>> frames;  ///< of each feature, in the base
   std::vector<bool> there;                 ///< false for a feature that is not a number
 
   /// The plane through its features.
@@ -46,29 +53,97 @@ OracleResiduals oracle_residual(const PlaneToPlane& block, const OraclePlane<Ora
 /// Feature i of a view in the image of a camera.
 OracleResiduals oracle_residual(const PointToPixel& block, const OracleView& view,
                                 const OracleView& camera, std::size_t i);
-/// A block of the tests themselves.
-template <class B, class... Points>
-OracleResiduals oracle_residual(const B& block, const Points&... points) {
-  const auto r = block(points...);
+
+/// What a block takes of feature i of a view.
+template <Quantity Q>
+auto oracle_argument(const OracleView& view, std::size_t i) {
+  const auto value = [&](const char* part) {
+    return (*view.values)(view.sensor->mount.parameter_prefix() + "_" + part);
+  };
+  const Feature& feature = view.seen->features[i];
+  if constexpr (Q == Quantity::point) {
+    return view.points[i];
+  } else if constexpr (Q == Quantity::pose) {
+    const OraclePose<OracleJet> pose = view.frames[i].then(
+        {feature.rotation->template cast<OracleJet>(), feature.point.template cast<OracleJet>()});
+    return Pose<OracleJet>{pose.r, pose.t};
+  } else if constexpr (Q == Quantity::reading) {  // of the draw-wire of the tests
+    const OracleJet length = feature.point.x() * (value("scale") + 1.0) + value("zero");
+    return Reading<OracleJet>{view.pose.t, length};
+  } else {
+    const OracleJet fx = 550.0 * (value("fx") + 1.0), fy = 545.0 * (value("fy") + 1.0);
+    const Vector3<OracleJet> direction((feature.point.x() - 320.0 * (value("cx") + 1.0)) / fx,
+                                       (feature.point.y() - 240.0 * (value("cy") + 1.0)) / fy,
+                                       OracleJet(1.0));
+    const auto turned = [&](const Vector3<OracleJet>& v) {
+      return Vector3<OracleJet>(view.pose.r * v);
+    };
+    const OracleJet zero(0.0);
+    return Ray<OracleJet>{view.pose.t, turned(direction), turned({1.0 / fx, zero, zero}),
+                          turned({zero, 1.0 / fy, zero})};
+  }
+}
+
+/// The values of a block's own parameters.
+template <class B>
+auto oracle_own(const std::string& name, const std::vector<const OracleView*>& views) {
+  std::array<OracleJet, kParametersOfBlock<B>> own;
+  if constexpr (kParametersOfBlock<B> > 0) {
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      own[k] = (*views[0]->values)(name + "_" + std::string(B::kParameters[k].name));
+    }
+  }
+  return own;
+}
+
+/// Any other block, called with what its sensors saw.
+template <class B, Quantity... Qs>
+OracleResiduals oracle_residual(const B& block, const std::string& name,
+                                const std::vector<const OracleView*>& views, std::size_t i,
+                                Takes<Qs...>) {
+  const auto own = oracle_own<B>(name, views);
+  const auto r = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    if constexpr (kParametersOfBlock<B> > 0) {
+      return block(oracle_argument<Qs>(*views[I], i)..., own);
+    } else {
+      return block(oracle_argument<Qs>(*views[I], i)...);
+    }
+  }
+  (std::make_index_sequence<sizeof...(Qs)>{});
   return {r.data(), r.data() + r.size()};
 }
 
 /// All residuals of a block in one sample, features one after the other.
 template <ErrorBlock B>
-OracleResiduals oracle_residuals(const B& block, const std::vector<const OracleView*>& views) {
+OracleResiduals oracle_residuals(const B& block, const std::string& name,
+                                 const std::vector<const OracleView*>& views) {
   if constexpr (PlanePairBlock<B>) {
     return oracle_residual(block, views[0]->plane(), views[1]->plane());
   } else {
     OracleResiduals all;
     for (std::size_t i = 0; i < views[0]->there.size(); ++i) {
-      if (!views[0]->there[i] || !views.back()->there[i]) continue;
+      const auto is_there = [i](const OracleView* view) { return bool(view->there[i]); };
+      if (!std::all_of(views.begin(), views.end(), is_there)) continue;
       OracleResiduals r;
-      if constexpr (SightBlock<B>) {
+      if constexpr (std::same_as<B, PointToPixel>) {
         r = oracle_residual(block, *views[0], *views[1], i);
-      } else if constexpr (PointPairBlock<B>) {
+      } else if constexpr (PixelBlock<B>) {
+        const OracleResiduals error = oracle_residual(PointToPixel{}, *views[0], *views[1], i);
+        const Eigen::Vector2d seen = views[1]->seen->features[i].point.head<2>();
+        PixelObservation<OracleJet> pixel;
+        for (int k = 0; k < 2; ++k) {
+          pixel.predicted(k) = error[static_cast<std::size_t>(k)] + seen(k);
+          pixel.observed(k) = ValueOf<OracleJet>(seen(k));
+        }
+        const auto own = oracle_own<B>(name, views);
+        const auto of_pixel = block(pixel, own);
+        r = {of_pixel.data(), of_pixel.data() + of_pixel.size()};
+      } else if constexpr (std::same_as<B, PointToPoint>) {
         r = oracle_residual(block, views[0]->points[i], views[1]->points[i]);
-      } else {
+      } else if constexpr (std::same_as<B, PointToPlane>) {
         r = oracle_residual(block, views[0]->points[i]);
+      } else {
+        r = oracle_residual(block, name, views, i, typename detail::InputsOf<B>::type{});
       }
       all.insert(all.end(), r.begin(), r.end());
     }
@@ -82,17 +157,18 @@ using OracleRows = std::map<std::pair<int, int>, TermResiduals>;
 /// Filled as a BasicProblem is.
 class OracleProblem {
  public:
-  OracleProblem(Robot robot, std::string base, ParameterTable table, std::vector<Sensor> sensors)
+  OracleProblem(Robot robot, std::string base, ParameterTable table, std::vector<OracleSensor> sensors)
       : robot_(std::move(robot)),
         base_(std::move(base)),
         table_(std::move(table)),
         sensors_(std::move(sensors)) {}
 
   template <ErrorBlock B>
-  void add_block(const std::string&, const B& block, const std::vector<std::string>& sensors,
+  void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
-    terms_.push_back({sensors, options, kResiduals<B>,
-                      [block](const Views& views) { return oracle_residuals(block, views); }});
+    terms_.push_back({sensors, options, kResiduals<B>, [block, name](const Views& views) {
+                        return oracle_residuals(block, name, views);
+                      }});
   }
   void add_prior(const std::string&, const Prior& prior, const TermOptions& options = {}) {
     priors_.emplace_back(prior, options);
@@ -130,7 +206,7 @@ class OracleProblem {
   Robot robot_;
   std::string base_;
   ParameterTable table_;
-  std::vector<Sensor> sensors_;
+  std::vector<OracleSensor> sensors_;
   std::vector<Term> terms_;
   std::vector<std::pair<Prior, TermOptions>> priors_;
   std::vector<Sample> samples_;
@@ -139,8 +215,10 @@ class OracleProblem {
 /// The robot, sensors and parameters of a problem of the scene, without error blocks and samples.
 template <class S>
 OracleProblem oracle_of(const BasicProblem<S>& problem) {
-  std::vector<Sensor> sensors;
-  for (const SensorModel& model : problem.sensors()) sensors.push_back(model.sensor());
+  std::vector<OracleSensor> sensors;
+  for (const MountedSensor& mounted : problem.sensors()) {
+    sensors.push_back({mounted.mount(), std::string(mounted.sensor().type())});
+  }
   const std::string base = problem.sensors().front().chains().front().base;
   return {mobile_manipulator(), base, problem.table(), sensors};
 }

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "support/oracle.hpp"
 #include "support/robots.hpp"
 
@@ -31,9 +31,11 @@ inline ParameterTable scene_table() {
   for (const char* frame : {"head_pan", "camera_joint", "elbow_mount", "board"}) {
     for (auto axis : kFrameAxes) table.add({.name = parameter_name(frame, axis)});
   }
-  for (auto part : kCameraParameters) table.add({.name = parameter_name("camera", part)});
-  for (std::size_t i = 0; i < 4; ++i) {
-    table.add({.name = parameter_name("eye", kCameraParameters[i])});
+  for (const ParameterInfo& info : DepthCamera::kParameters) {
+    table.add({.name = parameter_name("camera", info.name)});
+  }
+  for (const ParameterInfo& info : PinholeCamera::kParameters) {
+    table.add({.name = parameter_name("eye", info.name)});
   }
   return table;
 }
@@ -45,10 +47,18 @@ inline const std::set<std::string> kSceneFrames = {"head_pan", "camera_joint", "
 template <class S = Packet>
 BasicProblem<S> scene_problem(const std::string& base = "base_link") {
   BasicProblem<S> problem(mobile_manipulator(), base, scene_table(), kSceneFrames);
-  problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
-  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
-  problem.add_sensor({"eye", SensorType::camera2d, "camera_optical_frame", ""});
+  problem.add_sensor(ChainPoint{}, {"arm", "hand"});
+  problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
+  problem.add_sensor(PinholeCamera{}, {"eye", "camera_optical_frame"});
   return problem;
+}
+
+/// Number of batches of all layouts.
+template <class S>
+std::ptrdiff_t count_batches(const BasicProblem<S>& problem) {
+  std::size_t n = 0;
+  for (const Batches<S>& batches : problem.batches()) n += batches.size();
+  return static_cast<std::ptrdiff_t>(n);
 }
 
 /// Random values of the scene's parameters.
@@ -72,9 +82,9 @@ inline std::vector<double> random_values(const ParameterTable& table, double sca
 template <class S>
 Pose<double> tip_pose(const BasicProblem<S>& problem, std::size_t sensor, const std::string& frame,
                       const Sample& sample, std::span<const double> values) {
-  const SensorModel& model = problem.sensors()[sensor];
+  const MountedSensor& model = problem.sensors()[sensor];
   const OraclePose<double> pose =
-      oracle_pose(mobile_manipulator(), model.chains().front().base, model.sensor().frame, frame,
+      oracle_pose(mobile_manipulator(), model.chains().front().base, model.mount().frame, frame,
                   sample, OracleValues<double>(problem.table(), values));
   return {pose.r, pose.t};
 }

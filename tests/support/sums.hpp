@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "support/oracle_problem.hpp"
 
 namespace kinecal::test {
@@ -16,7 +16,9 @@ inline ParameterTable wide_table() {
   ParameterTable table = scene_table();
   table.add({.name = "finger"});
   for (auto axis : kFrameAxes) table.add({.name = parameter_name("wrist_mimic", axis)});
-  for (auto part : kCameraParameters) table.add({.name = parameter_name("second", part)});
+  for (const ParameterInfo& info : DepthCamera::kParameters) {
+    table.add({.name = parameter_name("second", info.name)});
+  }
   return table;
 }
 
@@ -28,13 +30,13 @@ BasicProblem<S> wide_problem(const std::string& base = "base_link") {
   std::set<std::string> frames = kSceneFrames;
   frames.insert("wrist_mimic");
   BasicProblem<S> problem(mobile_manipulator(), base, wide_table(), frames);
-  problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
-  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
-  problem.add_sensor({"eye", SensorType::camera2d, "camera_optical_frame", ""});
-  problem.add_sensor({"finger", SensorType::chain3d, "finger_right", ""});
-  problem.add_sensor({"counterweight", SensorType::chain3d, "counterweight", ""});
-  problem.add_sensor({"second", SensorType::camera3d, "counterweight", ""});
-  problem.add_sensor({"twin", SensorType::camera3d, "camera_link", "camera"});
+  problem.add_sensor(ChainPoint{}, {"arm", "hand"});
+  problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
+  problem.add_sensor(PinholeCamera{}, {"eye", "camera_optical_frame"});
+  problem.add_sensor(ChainPoint{}, {"finger", "finger_right"});
+  problem.add_sensor(ChainPoint{}, {"counterweight", "counterweight"});
+  problem.add_sensor(DepthCamera{}, {"second", "counterweight"});
+  problem.add_sensor(DepthCamera{}, {"twin", "camera_link", "camera"});
   return problem;
 }
 

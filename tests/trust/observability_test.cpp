@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
@@ -151,8 +151,8 @@ TEST(Observability, EachCombinationHasAParameterOfItsOwn) {
   }
   Problem problem(test::mobile_manipulator(), "base_link", table,
                   {"head_tilt", "camera_joint", "camera_optical"});
-  problem.add_sensor({"arm", SensorType::chain3d, "hand", ""});
-  problem.add_sensor({"camera", SensorType::camera3d, "camera_optical_frame", ""});
+  problem.add_sensor(ChainPoint{}, {"arm", "hand"});
+  problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
   const Problem scene = test::scene_problem();
   const std::vector<double> zero(static_cast<std::size_t>(scene.table().size()), 0.0);

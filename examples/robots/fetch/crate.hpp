@@ -34,7 +34,7 @@ struct SameLeds : Block<"hand_eye", PointToPoint, "camera", "arm"> {
 struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
   OnFloor() {
     options.weight = 1.0 / 0.003;
-    options.alone = true;
+    options.exclusive = true;
   }
 };
 /// The head tilt trades with the pitch of the camera's frame, and a common yaw of arm and head is

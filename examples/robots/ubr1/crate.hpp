@@ -25,7 +25,7 @@ using Camera = Camera3d<"camera", To<"head_camera_rgb_optical_frame">>;
 /// away.
 struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
   OnFloor() {
-    options.alone = true;
+    options.exclusive = true;
     options.weight = 1.0 / 3.0;
   }
 };

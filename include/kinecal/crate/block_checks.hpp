@@ -28,11 +28,15 @@ struct PartNames<TypeList<Parts...>> {
   }
 };
 
+/// True if the sensor of this name delivers what a block takes.
 template <class... Sensors>
-[[nodiscard]] constexpr SensorType type_of_sensor(std::string_view name, TypeList<Sensors...>) {
-  SensorType type = SensorType::chain3d;
-  (void)((Sensors::kName == name ? (type = Sensors::kType, true) : false) || ...);
-  return type;
+[[nodiscard]] constexpr bool sensor_delivers(std::string_view name, Quantity quantity,
+                                             TypeList<Sensors...>) {
+  bool result = false;
+  (void)((Sensors::kName == name ? (result = delivers<typename Sensors::Model>(quantity), true)
+                                 : false) ||
+         ...);
+  return result;
 }
 
 template <class Residual, bool kIsTemplated = false>
@@ -54,15 +58,15 @@ template <class Block, bool kFits = false>
 struct NumberOfSensors {
   static_assert(
       kFits,
-      "kinecal: this error block is given too many or too few sensors; one whose residual "
-      "takes a point has one sensor, the others two");
+      "kinecal: this error block is given too many or too few sensors; it has one for each argument "
+      "of its residual, and two for a pixel");
 };
 
 template <class Block, bool kFit = false>
 struct KindsOfSensors {
   static_assert(kFit,
-                "kinecal: this error block is given a sensor of the wrong kind; a Camera2d stands "
-                "second in a block that takes a sight, and nowhere else");
+                "kinecal: this error block is given a sensor of the wrong kind, which does not "
+                "deliver what its residual takes; a camera that predicts pixels stands second");
 };
 
 template <ErrorBlock Residual>
@@ -76,10 +80,12 @@ template <class Residual>
 
 template <class Block, class Sensors>
 [[nodiscard]] constexpr bool kinds_fit() {
-  for (std::size_t i = 0; i < Block::kSensorNames.size(); ++i) {
-    const SensorType type = type_of_sensor(Block::kSensorNames[i], Sensors{});
-    const bool takes_pixels = SightBlock<typename Block::Error> && i == 1;
-    if ((type == SensorType::camera2d) != takes_pixels) return false;
+  using Error = typename Block::Error;
+  if constexpr (ErrorBlock<Error>) {
+    if (!takes<Error>(Block::kSensorNames.size())) return true;  // an earlier check fails
+    for (std::size_t i = 0; i < Block::kSensorNames.size(); ++i) {
+      if (!sensor_delivers(Block::kSensorNames[i], kQuantities<Error>[i], Sensors{})) return false;
+    }
   }
   return true;
 }

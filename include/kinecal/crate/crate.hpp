@@ -15,9 +15,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/camera_parameters.hpp"
 #include "kinecal/crate/crate_checks.hpp"
-#include "kinecal/crate/problem.hpp"
+#include "kinecal/evaluation/problem.hpp"
 
 namespace kinecal {
 
@@ -102,11 +101,17 @@ class Crate {
   /// The link at which all chains start and in which the sensors are compared.
   [[nodiscard]] static std::string base() { return std::string(BaseChain::kBase); }
 
-  /// All parameters: those of the cameras, the joint offsets, and all six of each free frame.
+  /// All parameters: those of sensors and blocks, the joint offsets, all six of each free frame.
   /// @param samples  a camera's parameters start from the settings its driver had while recording
-  [[nodiscard]] static ParameterTable table(std::span<const Sample> samples) {
+  [[nodiscard]] ParameterTable table(std::span<const Sample> samples) const {
     ParameterTable table;
-    for_each(Sensors{}, [&]<class P>(P*) { add_camera_parameters(table, P::sensor(), samples); });
+    for_each(Sensors{}, [&]<class P>(P*) {
+      add_sensor_parameters(table, *any_sensor(typename P::Model{}), P::mount(), samples);
+    });
+    for_each(Blocks{}, [&]<class P>(P*) {
+      const auto infos = parameters_of(std::get<P>(blocks_).error);
+      add_parameters(table, P::kName, infos);
+    });
     for_each(Parameters{}, [&]<class P>(P*) { add_parameter<P>(table); });
     return table;
   }
@@ -122,7 +127,9 @@ class Crate {
   template <class S = Packet>
   [[nodiscard]] BasicProblem<S> problem(ParameterTable table) const {
     BasicProblem<S> problem(robot(), base(), std::move(table), FramesHere::all());
-    for_each(Sensors{}, [&]<class P>(P*) { problem.add_sensor(P::sensor(), walks<S, P>()); });
+    for_each(Sensors{}, [&]<class P>(P*) { 
+      problem.add_sensor(typename P::Model{}, P::mount(), walks<S, P>());
+     });
     for_each(Blocks{}, [&]<class P>(P*) {
       const P& part = std::get<P>(blocks_);
       const auto& names = P::kSensorNames;
@@ -171,7 +178,7 @@ class Crate {
   [[nodiscard]] static std::vector<CompiledWalk<S>> walks() {
     std::vector<CompiledWalk<S>> walks = {
         compiled_walk<S, ChainWithFrames<typename Sensor::Chain>, Free>()};
-    if constexpr (Sensor::kType == SensorType::chain3d) {
+    if constexpr (!kIsInOwnFrame<typename Sensor::Model>) {
       for_each(Parameters{}, [&]<class P>(P*) {
         if constexpr (P::kKind == ParameterKind::virtual_frame) {
           walks.push_back(compiled_walk<S, ChainWithFrames<typename Sensor::Chain, P>, Free>());
@@ -193,14 +200,12 @@ class Crate {
     for (std::size_t i = 0; i < C::kSize; ++i) {
       const JointIndices& joint = kColumnsOf<C, Free>[i];
       for (std::size_t k = 0; k < 6; ++k) {
-        if (joint.frame[k] >= 0) ++(k < 3 ? size.shifts : size.turns);
+        if (joint.frame[k] >= 0) ++(k < 3 ? size.translational : size.rotational);
       }
-      if (joint.offset >= 0) ++(turns(C::kJoints[i].type) ? size.turns : size.shifts);
+      if (joint.offset >= 0) ++(turns(C::kJoints[i].type) ? size.rotational : size.translational);
     }
-    if (Sensor::kType != SensorType::chain3d) {
-      for (const std::string_view part : kCameraParameters) {
-        if (Free::find(Sensor::kName, part) >= 0) ++size.cameras;
-      }
+    for (const ParameterInfo& info : detail::declared_parameters<typename Sensor::Model>()) {
+      if (Free::find(Sensor::kName, info.name) >= 0) ++size.own;
     }
     return size;
   }

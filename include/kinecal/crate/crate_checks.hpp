@@ -91,7 +91,7 @@ struct CheckCrate<TypeList<Ss...>, TypeList<Ps...>, TypeList<Bs...>, TypeList<Qs
       Unless<Free::are_distinct(), NamesOfParameters<Free>>,
       Unless<(start_together<Base, typename Ss::Chain>() && ...), BaseOfCrate<Sensors>>,
       typename CheckBlock<typename Bs::Plain, Sensors>::type...,
-      typename CheckParameter<Ps, typename Base::Robot, Sensors>::type...,
+      typename CheckParameter<Ps, typename Base::Robot, Sensors, Blocks>::type...,
       Unless<kIsUsed<Ps>, UseOfParameter<Ps>>...,  //
       typename CheckPrior<Qs, Ps...>::type...>;
 };

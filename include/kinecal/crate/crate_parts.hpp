@@ -2,34 +2,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/term.hpp"
+#include "kinecal/errors/error_block.hpp"
 #include "kinecal/errors/prior.hpp"
-#include "kinecal/sensors/sensor.hpp"
+#include "kinecal/kinematics/static_chain.hpp"
+#include "kinecal/problem/any_term.hpp"
+#include "kinecal/sensors/chain_point.hpp"
+#include "kinecal/sensors/pinhole_camera.hpp"
 
 namespace kinecal {
 
-/// A sensor at the tip of a chain.
-template <FixedString Name, StaticChain C, SensorType Type>
+/// A sensor of any type at the tip of a chain.
+/// @tparam M  the sensor: one of sensors/, or your own struct
+template <FixedString Name, StaticChain C, Sensor M>
 struct SensorOn {
   using Chain = C;                                 ///< from the base to the sensor
+  using Model = M;                                 ///< the sensor
   static constexpr std::string_view kName = Name;  ///< as in the samples
-  static constexpr SensorType kType = Type;        ///< what it observes
 
-  /// The sensor as a Problem takes it.
-  [[nodiscard]] static Sensor sensor() {
-    return {std::string(kName), kType, std::string(C::kTip), ""};
-  }
+  /// Where it is, as a Problem takes it.
+  [[nodiscard]] static Mount mount() { return {std::string(kName), std::string(C::kTip)}; }
 };
 
 /// Points at known positions in the chain's tip.
 template <FixedString Name, StaticChain C>
-struct Chain3d : SensorOn<Name, C, SensorType::chain3d> {};
+struct Chain3d : SensorOn<Name, C, ChainPoint> {};
+/// Poses in the chain's tip.
+template <FixedString Name, StaticChain C>
+struct Chain6d : SensorOn<Name, C, ChainPose> {};
 /// A depth camera; its optical frame is the chain's tip.
 template <FixedString Name, StaticChain C>
-struct Camera3d : SensorOn<Name, C, SensorType::camera3d> {};
+struct Camera3d : SensorOn<Name, C, DepthCamera> {};
 /// A pinhole camera; its optical frame is the chain's tip.
 template <FixedString Name, StaticChain C>
-struct Camera2d : SensorOn<Name, C, SensorType::camera2d> {};
+struct Camera2d : SensorOn<Name, C, PinholeCamera> {};
 
 /// An error block between sensors, with a name, a weight and a loss.  Both can be set later:
 ///
@@ -73,7 +78,7 @@ struct PriorOn {
 template <class P>
 concept SensorPart = requires {
   typename P::Chain;
-  { P::kType } -> std::convertible_to<SensorType>;
+  typename P::Model;
 };
 /// A part of a crate that is an error block.
 template <class P>

@@ -40,17 +40,18 @@ struct NameOfVirtualFrame {
       "for the joint, or rename the frame");
 };
 template <class Parameter, class Found, bool kIsKnown = false>
-struct CameraOfParameter {
+struct OwnerOfParameter {
   static_assert(kIsKnown,
-                "kinecal: the crate does not have the camera in this parameter; add the camera or "
+                "kinecal: the crate does not have the sensor or block in this parameter; add it or "
                 "correct its name");
 };
-template <class Parameter, bool kSensorHasThem = false>
-struct SettingsOfCamera {
+template <class Parameter, bool kOwnerDeclaresThem = false>
+struct PartsOfParameter {
   static_assert(
-      kSensorHasThem,
-      "kinecal: the sensor in this parameter does not have these settings; a Camera3d or Camera2d "
-      "has intrinsics, a Camera3d also has depth offset and scaling");
+      kOwnerDeclaresThem,
+      "kinecal: the sensor or block in this parameter does not declare it; a Camera3d or Camera2d "
+      "has intrinsics, a Camera3d also has depth offset and scaling, others what their "
+      "kParameters name");
 };
 template <class Parameter, bool kFreesSome = false>
 struct AxesOfFrame {
@@ -59,11 +60,11 @@ struct AxesOfFrame {
 };
 
 /// Checks that the robot, or a sensor, has the free parameter.
-template <class P, RobotData R, class Sensors, ParameterKind = P::kKind>
+template <class P, RobotData R, class Sensors, class Blocks, ParameterKind = P::kKind>
 struct CheckParameter;
 
-template <class P, RobotData R, class Sensors>
-struct CheckParameter<P, R, Sensors, ParameterKind::joint_offset> {
+template <class P, RobotData R, class Sensors, class Blocks>
+struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
   using Found = LookedUp<P::kOwner, JointNames<R>>;
 
   [[nodiscard]] static constexpr JointData joint() {
@@ -75,41 +76,66 @@ struct CheckParameter<P, R, Sensors, ParameterKind::joint_offset> {
                        Unless<!joint().mimic.has_value(), DriveOfOffset<P>>>;
 };
 
-template <class P, RobotData R, class Sensors>
-struct CheckParameter<P, R, Sensors, ParameterKind::frame_offset> {
+template <class P, RobotData R, class Sensors, class Blocks>
+struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::frame_offset> {
   using Found = LookedUp<P::kOwner, JointNames<R>>;
   using type = FirstOf<Unless<Found::kExists, JointOfFrame<P, Found>>,
                        Unless<!P::kIds.empty(), AxesOfFrame<P>>>;
 };
 
-template <class P, RobotData R, class Sensors>
-struct CheckParameter<P, R, Sensors, ParameterKind::virtual_frame> {
+template <class P, RobotData R, class Sensors, class Blocks>
+struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::virtual_frame> {
   using type = FirstOf<Unless<joint_index<R>(P::kOwner) == kNowhere, NameOfVirtualFrame<P>>,
                        Unless<!P::kIds.empty(), AxesOfFrame<P>>>;
 };
 
-template <class P, class Sensors, bool kHasThem>
-struct CheckCamera {
-  using Found = LookedUp<P::kOwner, PartNames<Sensors>>;
-  using type = FirstOf<Unless<Found::kExists, CameraOfParameter<P, Found>>,
-                       Unless<kHasThem, SettingsOfCamera<P>>>;
+/// The parameters that a sensor or block declares.
+template <class M>
+[[nodiscard]] constexpr auto declared_parameters() {
+  if constexpr (requires { M::kParameters; }) {
+    return M::kParameters;
+  } else {
+    return std::array<ParameterInfo, 0>{};
+  }
+}
+/// True if the owner of a parameter declares all of its parts.
+template <class P, class Part, class M>
+[[nodiscard]] constexpr bool declares() {
+  if (Part::kName != P::kOwner) return false;
+  for (const ParameterId& id : P::kIds) {
+    bool found = false;
+    for (const ParameterInfo& info : declared_parameters<M>()) found |= info.name == id.part;
+    if (!found) return false;
+  }
+  return true;
+}
+template <class P, class... Parts>
+[[nodiscard]] constexpr bool one_declares(TypeList<Parts...>) {
+  if constexpr (P::kKind == ParameterKind::block) {
+    return (declares<P, Parts, typename Parts::Error>() || ...);
+  } else {
+    return (declares<P, Parts, typename Parts::Model>() || ...);
+  }
+}
+/// @tparam Owners  sensors or blocks
+template <class P, class Owners>
+struct CheckOwn {
+  using Found = LookedUp<P::kOwner, PartNames<Owners>>;
+  using type = FirstOf<Unless<Found::kExists, OwnerOfParameter<P, Found>>,
+                       Unless<one_declares<P>(Owners{}), PartsOfParameter<P>>>;
 };
-template <class P, RobotData R, class Sensors>
-struct CheckParameter<P, R, Sensors, ParameterKind::camera>
-    : CheckCamera<P, Sensors, type_of_sensor(P::kOwner, Sensors{}) != SensorType::chain3d> {};
-template <class P, RobotData R, class Sensors>
-struct CheckParameter<P, R, Sensors, ParameterKind::depth>
-    : CheckCamera<P, Sensors, type_of_sensor(P::kOwner, Sensors{}) == SensorType::camera3d> {};
+template <class P, RobotData R, class Sensors, class Blocks>
+struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::sensor> : CheckOwn<P, Sensors> {};
+template <class P, RobotData R, class Sensors, class Blocks>
+struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::block> : CheckOwn<P, Blocks> {};
 
 /// True if moving a parameter moves what a sensor observes.
 template <class P, class Sensor>
 [[nodiscard]] constexpr bool moves_sensor() {
   using Robot = typename Sensor::Chain::Robot;
   constexpr std::string_view owner = P::kOwner;
-  if (P::kKind == ParameterKind::camera || P::kKind == ParameterKind::depth) {
-    return Sensor::kName == owner;
-  }
-  if (P::kKind == ParameterKind::virtual_frame) return Sensor::kType == SensorType::chain3d;
+  if (P::kKind == ParameterKind::sensor) return Sensor::kName == owner;
+  if (P::kKind == ParameterKind::virtual_frame) return !kIsInOwnFrame<typename Sensor::Model>;
   for (std::string_view link = Sensor::Chain::kTip; link != Sensor::Chain::kBase;) {
     const std::size_t joint = joint_above<Robot>(link);
     if (joint == kNowhere) return true;  // the chain is wrong; its own check reports that
@@ -122,9 +148,10 @@ template <class P, class Sensor>
   return false;
 }
 
-/// True if a parameter moves what one of a block's sensors observes.
+/// True if a parameter is a block's own, or moves what one of its sensors observes; 
 template <class P, class Block, class... Sensors>
 [[nodiscard]] constexpr bool moves_block(TypeList<Sensors...>) {
+  if (P::kKind == ParameterKind::block) return Block::kName == P::kOwner;
   const auto& names = Block::kSensorNames;
   return ((std::find(names.begin(), names.end(), Sensors::kName) != names.end() &&
            moves_sensor<P, Sensors>()) ||
@@ -142,7 +169,7 @@ struct UseOfParameter {
 template <class... Ps>
 struct JointsAndFrames {
   [[nodiscard]] static constexpr bool is_one(ParameterKind kind) {
-    return kind != ParameterKind::camera && kind != ParameterKind::depth;
+    return kind != ParameterKind::sensor && kind != ParameterKind::block;
   }
   static constexpr auto kNames = [] {
     std::array<std::string_view, (std::size_t(0) + ... + (is_one(Ps::kKind) ? 1 : 0))> names;

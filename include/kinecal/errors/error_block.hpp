@@ -1,4 +1,4 @@
-// The concept of an error block: a small function of points, templated on the scalar.
+// The concept of an error block: a small function of what sensors observed, templated on the scalar.
 //
 // A block takes a feature of each of its sensors, transformed to the base, and returns its
 // residual.  Jets differentiate the block; twists propagate the derivative to joints and frames.
@@ -9,15 +9,27 @@
 //     double radius;
 //     template <class S>
 //     Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p_base) const {
-//       return Eigen::Matrix<S, 1, 1>((p_base - center.cast<S>()).norm() - S(radius));
+//       return Eigen::Matrix<S, 1, 1>((p_base - center).norm() - radius);
 //     }
 //   };
 //
-// There are four signatures:
-//   (point)              a feature of one sensor, in the base
-//   (point, point)       the same feature observed by two sensors, both in the base
-//   (sight)              a feature of one sensor, projected into another one, a pinhole camera
-//   (plane, plane)       the planes through all features of two sensors, in the base
+// Its arguments, one per sensor:
+//
+//   Vector3<S>            a point in the base, one to four of them
+//   Pose<S>, Ray<S>       poses or lines of sight in the base, one or two of them
+//   PixelObservation<S>   a pixel: of two sensors, the second one is a camera that should see the
+//                         point of the first one there
+//   Plane<S>, Plane<S>    the planes through all features of two sensors
+//
+// Other combinations, and readings, are declared: `using Inputs = Takes<Quantity::point,
+// Quantity::reading>;`.  All sensors of a block observe the same features in the same order.
+//
+// A block may have parameters of its own.  Their values are its last argument:
+//
+//   static constexpr std::array kParameters = {ParameterInfo{"radius", "m", 0.1}};
+//   template <class S> auto operator()(const Vector3<S>& p, const std::array<S, 1>& own) const;
+//
+// A member function initial() gives their values before the first step, if these are not constants.
 //
 // A scalar may be a packet with one sample per lane.  So a block does not branch on values: write
 // select(x < y, a, b) in place of x < y ? a : b.  (Planes are compared sample by sample and may
@@ -29,88 +41,174 @@
 #include <concepts>
 #include <type_traits>
 
-#include "kinecal/geometry/jet.hpp"
-#include "kinecal/geometry/rotation.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/parameters/parameter.hpp"
+#include "kinecal/sensors/quantity.hpp"
 
 namespace kinecal {
 
-/// A point in front of a pinhole camera and the pixel at which it was observed.
-template <class S>
-struct Sight {
-  Vector3<S> p_camera;                    ///< (3) metres, in the camera's optical frame
-  std::array<S, 4> parameters;            ///< (4) of the camera: fx fy cx cy, relative
-  PinholeCamera<ValueOf<S>> camera;       ///< as recorded
-  Eigen::Matrix<ValueOf<S>, 2, 1> pixel;  ///< (2) observed
-};
-
-/// The plane through some points, in the base.
-template <class S>
-struct Plane {
-  Vector3<S> centroid;  ///< (3) of the points, metres, in the base
-  Vector3<S> normal;    ///< (3) unit vector, in the base
+/// What a block takes of each of its sensors.
+template <Quantity... Qs>
+struct Takes {
+  static constexpr std::array<Quantity, sizeof...(Qs)> kAll = {Qs...};  ///< by sensor
 };
 
 namespace detail {
+
 using Probe = Jet<double, 1>;
+
+template <class B>
+[[nodiscard]] consteval std::size_t count_own() {
+  if constexpr (requires { B::kParameters; }) return B::kParameters.size();
+  return 0;
+}
+
+/// The argument of a block for a quantity.
+template <Quantity Q, class S>
+struct ArgumentOf {
+  using type = typename VectorsOf<Q>::template Type<S>;
+};
+template <class S>
+struct ArgumentOf<Quantity::pixel, S> {
+  using type = PixelObservation<S>;
+};
+template <class S>
+struct ArgumentOf<Quantity::plane, S> {
+  using type = Plane<S>;
+};
+template <Quantity Q, class S>
+using Argument = typename ArgumentOf<Q, S>::type;
+
 template <class R>
 inline constexpr bool kIsFixedColumn = (R::RowsAtCompileTime > 0) && (R::ColsAtCompileTime == 1);
 /// A vector of fixed size in the scalar of the points.  A block that is not templated returns
 /// another scalar.
 template <class R>
 concept ResidualVector = std::same_as<typename R::Scalar, Probe> && kIsFixedColumn<R>;
+
 }  // namespace detail
+
+/// Number of a block's own parameters: the size of B::kParameters, if it has them.
+template <class B>
+inline constexpr std::size_t kParametersOfBlock = detail::count_own<B>();
+
+namespace detail {
+
+/// Calls a block, with its own parameters if it has any.
+template <class B, class S, class... Arguments>
+[[nodiscard]] auto call_block(const B& block, const std::array<S, kParametersOfBlock<B>>& own,
+                              const Arguments&... arguments) {
+  if constexpr (kParametersOfBlock<B> > 0) {
+    return block(arguments..., own);
+  } else {
+    return block(arguments...);
+  }
+}
+
+/// A block that takes these arguments.
+template <class B, class... Arguments>
+concept Callable = (kParametersOfBlock<B> == 0 && requires(const B& block, const Arguments&... a) {
+  { block(a...) } -> ResidualVector;
+}) || (kParametersOfBlock<B> > 0 &&
+       requires(const B& block, const std::array<Probe, kParametersOfBlock<B>>& own,
+                const Arguments&... a) {
+  { block(a..., own) } -> ResidualVector;
+});
+
+template <class B, class Inputs>
+inline constexpr bool kTakes = false;
+template <class B, Quantity... Qs>
+inline constexpr bool kTakes<B, Takes<Qs...>> = Callable<B, Argument<Qs, Probe>...>;
+/// The point stays with the evaluation: a block receives only the pixel.
+template <class B>
+inline constexpr bool kTakes<B, Takes<Quantity::point, Quantity::pixel>> =
+    Callable<B, PixelObservation<Probe>>;
+
+struct NoInputs {};
+template <class B, class... Candidates>
+struct FirstTaken {
+  using type = NoInputs;
+};
+template <class B, class First, class... Rest>
+struct FirstTaken<B, First, Rest...>
+    : std::conditional_t<kTakes<B, First>, std::type_identity<First>, FirstTaken<B, Rest...>> {};
+
+template <class B>
+struct InputsOf
+    : FirstTaken<B, Takes<Quantity::point>, Takes<Quantity::point, Quantity::point>,
+                 Takes<Quantity::point, Quantity::pixel>, Takes<Quantity::plane, Quantity::plane>,
+                 Takes<Quantity::point, Quantity::point, Quantity::point>,
+                 Takes<Quantity::point, Quantity::point, Quantity::point, Quantity::point>,
+                 Takes<Quantity::pose>, Takes<Quantity::pose, Quantity::pose>,
+                 Takes<Quantity::ray>, Takes<Quantity::ray, Quantity::ray>> {};
+template <class B>
+requires requires { typename B::Inputs; }
+struct InputsOf<B> : FirstTaken<B, typename B::Inputs> {};
+
+}  // namespace detail
+
+/// A residual of what one to four sensors observed.
+template <class B>
+concept ErrorBlock = !std::same_as<typename detail::InputsOf<B>::type, detail::NoInputs>;
+
+/// The own parameters of a block, with their initial values.
+template <class B>
+[[nodiscard]] std::array<ParameterInfo, kParametersOfBlock<B>> parameters_of(const B& block) {
+  std::array<ParameterInfo, kParametersOfBlock<B>> infos{};
+  if constexpr (kParametersOfBlock<B> > 0) infos = B::kParameters;
+  if constexpr (requires { block.initial(); }) {
+    for (std::size_t i = 0; i < infos.size(); ++i) infos[i].initial = block.initial()[i];
+  }
+  return infos;
+}
+
+/// What a block takes of each of its sensors.
+template <ErrorBlock B>
+inline constexpr const auto& kQuantities = detail::InputsOf<B>::type::kAll;
+/// Number of sensors that a block compares; one for a point compared with a constant.
+template <ErrorBlock B>
+inline constexpr int kSensors = static_cast<int>(kQuantities<B>.size());
 
 /// block(p): p is a feature of one sensor, metres, in the base.
 template <class B>
-concept PointBlock = requires(const B& block, const Vector3<detail::Probe>& p) {
-  { block(p) } -> detail::ResidualVector;
-};
+concept PointBlock = std::same_as<typename detail::InputsOf<B>::type, Takes<Quantity::point>>;
 /// block(p_a, p_b): the same feature observed by two sensors, metres, in the base.
 template <class B>
-concept PointPairBlock = requires(const B& block, const Vector3<detail::Probe>& p) {
-  { block(p, p) } -> detail::ResidualVector;
-};
-/// block(sight): a feature of one sensor in front of another one, a pinhole camera.
+concept PointPairBlock = std::same_as<typename detail::InputsOf<B>::type,
+                                      Takes<Quantity::point, Quantity::point>>;
+/// block(pixel): a feature of one sensor in front of another one, a camera.
 template <class B>
-concept SightBlock = requires(const B& block, const Sight<detail::Probe>& s) {
-  { block(s) } -> detail::ResidualVector;
-};
+concept PixelBlock = std::same_as<typename detail::InputsOf<B>::type,
+                                  Takes<Quantity::point, Quantity::pixel>>;
 /// block(a, b): the planes through all features of two sensors, in the base.
 template <class B>
-concept PlanePairBlock = requires(const B& block, const Plane<detail::Probe>& p) {
-  { block(p, p) } -> detail::ResidualVector;
-};
-
-/// A residual with one of the four signatures.
-template <class B>
-concept ErrorBlock = PointBlock<B> || PointPairBlock<B> || SightBlock<B> || PlanePairBlock<B>;
-
-/// Number of sensors that a block compares; one for a point compared with a constant.
-template <ErrorBlock B>
-inline constexpr int kSensors = PointBlock<B> ? 1 : 2;
+concept PlanePairBlock = std::same_as<typename detail::InputsOf<B>::type,
+                                      Takes<Quantity::plane, Quantity::plane>>;
 
 namespace detail {
+
 /// From the signature only, so that a block is not compiled for a scalar in which nobody calls it.
 template <class B, class... Given>
-inline constexpr int kRows = std::invoke_result_t<const B&, const Given&...>::RowsAtCompileTime;
-
-template <ErrorBlock B>
-[[nodiscard]] consteval int residuals() {
-  if constexpr (PointBlock<B>) {
-    return kRows<B, Vector3<Probe>>;
-  } else if constexpr (PointPairBlock<B>) {
-    return kRows<B, Vector3<Probe>, Vector3<Probe>>;
-  } else if constexpr (SightBlock<B>) {
-    return kRows<B, Sight<Probe>>;
+[[nodiscard]] consteval int rows_of_call() {
+  if constexpr (kParametersOfBlock<B> > 0) {
+    using Own = std::array<Probe, kParametersOfBlock<B>>;
+    return std::invoke_result_t<const B&, const Given&..., const Own&>::RowsAtCompileTime;
   } else {
-    return kRows<B, Plane<Probe>, Plane<Probe>>;
+    return std::invoke_result_t<const B&, const Given&...>::RowsAtCompileTime;
   }
 }
+template <class B, Quantity... Qs>
+[[nodiscard]] consteval int residuals(Takes<Qs...>) {
+  if constexpr (PixelBlock<B>) {
+    return rows_of_call<B, PixelObservation<Probe>>();
+  } else {
+    return rows_of_call<B, Argument<Qs, Probe>...>();
+  }
+}
+
 }  // namespace detail
 
 /// Number of residuals of one feature, or of one pair of planes.
 template <ErrorBlock B>
-inline constexpr int kResiduals = detail::residuals<B>();
+inline constexpr int kResiduals = detail::residuals<B>(typename detail::InputsOf<B>::type{});
 
 }  // namespace kinecal

@@ -25,6 +25,12 @@ enum class LossType {
   tukey    ///< constant beyond the scale
 };
 
+/// Which losses an evaluation uses.
+enum class Losses {
+  as_given,  ///< those of the error blocks
+  convex     ///< their convex counterparts: see Loss::convex()
+};
+
 /// A robust loss of one feature.
 struct Loss {
   LossType type = LossType::none;  ///< which function rho is

@@ -1,6 +1,6 @@
 // Re-projection error (chain3d_to_camera2d): predicted pixel minus observed pixel.
 //
-//   r = project(p_camera) - pixel
+//   r = predicted - observed
 //
 // Source: Fetch paper, III-B.  sensors/pinhole_camera.hpp has the projection.
 // SPDX-License-Identifier: Apache-2.0
@@ -18,9 +18,8 @@ struct PointToPixel {
   /// The re-projection error.
   /// @returns  (2) pixels
   template <class S>
-  [[nodiscard]] Eigen::Matrix<S, 2, 1> operator()(const Sight<S>& sight) const {
-    const Eigen::Matrix<S, 2, 1> predicted = sight.camera.project(sight.p_camera, sight.parameters);
-    return {predicted.x() - sight.pixel.x(), predicted.y() - sight.pixel.y()};
+  [[nodiscard]] Eigen::Matrix<S, 2, 1> operator()(const PixelObservation<S>& pixel) const {
+    return {pixel.predicted.x() - pixel.observed.x(), pixel.predicted.y() - pixel.observed.y()};
   }
 };
 

@@ -17,36 +17,21 @@ namespace detail {
   return name == "tukey" ? LossType::tukey : LossType::none;
 }
 
+/// @throws std::exception  if the block's numbers are impossible or its sensors do not fit
 inline void add_block(AnyProblem& problem, const BlockConfig& block) {
-  const auto number = [&](const char* key) { return block.numbers.at(key); };
+  const BlockEntry* entry = registry().block(block.type);
+  if (entry == nullptr) throw std::invalid_argument("no type '" + block.type + "'");
   TermOptions options;
   options.type = block.type;
-  options.alone = block.alone;
+  options.unit = entry->unit;
+  options.exclusive = block.exclusive;
   options.beside = block.ground;
   options.loss = {loss_type(block.loss.type), block.loss.scale};
   options.weight = 1.0 / block.sigma;
-  if (block.type == "chain3d_to_chain3d") {
-    problem.add_built_in(block.name, PointToPoint{}, block.models, options);
-  } else if (block.type == "chain3d_to_camera2d") {
-    options.weight *= number("scale");
-    options.unit = "px";
-    problem.add_built_in(block.name, PointToPixel{}, block.models, options);
-  } else if (block.type == "chain3d_to_plane") {
-    options.weight *= number("scale");
-    problem.add_built_in(block.name,
-                         PointToPlane(number("a"), number("b"), number("c"), number("d")),
-                         block.models, options);
-  } else if (block.type == "plane_to_plane") {
-    options.unit = "1";
-    problem.add_built_in(block.name, PlaneToPlane{number("normal_scale"), number("offset_scale")},
-                         block.models, options);
-  } else {
-    options.unit = "1";
-    problem.add_prior(
-        block.name,
-        {block.param, number("joint_scale"), number("position_scale"), number("rotation_scale")},
-        options);
+  if (const auto scale = block.numbers.find("scale"); scale != block.numbers.end()) {
+    options.weight *= scale->second;
   }
+  entry->add(problem, block, options);
 }
 
 inline void add_samples(AnyProblem& problem, std::span<const Sample> samples,
@@ -118,7 +103,7 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
   const ParameterTable& table = problem.table();
   const std::vector<int> touched = problem.touched_parameters();
   std::vector<int> free;
-  const auto add = [&](const std::string& name, const Place& place) {
+  const auto add = [&](const std::string& name, const SourceLocation& place) {
     const int index = table.find(name);
     if (index < 0) return;
     if (have_samples && !std::binary_search(touched.begin(), touched.end(), index)) {
@@ -165,8 +150,8 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step, Diagnostics&
   const std::size_t before = diagnostics.errors.size();
   for (const ModelConfig& model : step.models) {
     try {
-      problem.add_sensor(sensor_from(model));
-    } catch (const RobotError& e) {
+      sensor_entry(model).add(problem, mount_from(model));
+    } catch (const std::exception& e) {
       diagnostics.error(model.place, fmt::format("model '{}': {}", model.name, e.what()));
     }
   }
@@ -174,8 +159,10 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step, Diagnostics&
   for (const BlockConfig& block : step.error_blocks) {
     try {
       add_block(problem, block);
-    } catch (const std::invalid_argument& e) {
-      diagnostics.error(block.place, e.what());
+    } catch (const std::exception& e) {
+      const std::string what = e.what(), subject = "error block '" + block.name + "'";
+      diagnostics.error(block.place,
+                        what.starts_with(subject) ? what : fmt::format("{}: {}", subject, what));
     }
   }
   return diagnostics.errors.size() == before;

@@ -15,7 +15,7 @@ struct InputError : std::runtime_error {
 };
 
 /// A line of a file, from 1; line 0 is the file as a whole.
-struct Place {
+struct SourceLocation {
   std::string file;  ///< path, as the user gave it
   int line = 0;      ///< from 1
 
@@ -31,11 +31,11 @@ struct Diagnostics {
   std::vector<std::string> warnings;  ///< what looks wrong but can be used
 
   /// Adds an error.
-  void error(const Place& place, const std::string& message) {
+  void error(const SourceLocation& place, const std::string& message) {
     errors.push_back(place.str() + ": " + message);
   }
   /// Adds a warning.
-  void warning(const Place& place, const std::string& message) {
+  void warning(const SourceLocation& place, const std::string& message) {
     warnings.push_back(place.str() + ": " + message);
   }
 

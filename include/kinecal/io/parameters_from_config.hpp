@@ -14,18 +14,25 @@
 #include "kinecal/linkage.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/sensors/sensor.hpp"
+#include "kinecal/io/registry.hpp"
 
 namespace kinecal {
 
-/// The sensor of a model.  A model of unknown type counts as a camera3d: this type has the most
+/// The type of a model.  A model of unknown type counts as a camera3d: this type has the most
 /// parameters, so a name among them is not reported as well.
-[[nodiscard]] Sensor sensor_from(const ModelConfig& model);
+[[nodiscard]] const SensorEntry& sensor_entry(const ModelConfig& model);
+
+/// Where the sensor of a model is, and its names.
+[[nodiscard]] Mount mount_from(const ModelConfig& model);
+
+/// The own parameters of an error block; none if its numbers are impossible.
+[[nodiscard]] std::vector<ParameterInfo> own_parameters(const BlockConfig& block);
 
 /// Names of all frames that are free in some step.
 [[nodiscard]] std::set<std::string> frames_of(const Config& config);
 
-/// The table of all parameters that some step names: all six of each frame, all of each camera.
+/// The table of all parameters that some step names: all six of each frame, all of each sensor and
+/// error block.
 /// @param samples      may be empty; then frames of features are unknown and not checked
 /// @param diagnostics  receives errors and warnings, each with "file:line: "
 [[nodiscard]] ParameterTable parameters_from(const Config& config, const Robot& robot,

@@ -6,17 +6,28 @@
 
 #include <algorithm>
 
-#include "kinecal/crate/camera_parameters.hpp"
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
 
 namespace kinecal {
 
-KINECAL_INLINE Sensor sensor_from(const ModelConfig& model) {
-  SensorType type = SensorType::camera3d;
-  if (model.type == "chain3d") type = SensorType::chain3d;
-  if (model.type == "camera2d") type = SensorType::camera2d;
-  return {model.name, type, model.frame, model.param_name};
+KINECAL_INLINE const SensorEntry& sensor_entry(const ModelConfig& model) {
+  const SensorEntry* entry = registry().sensor(model.type);
+  return entry != nullptr ? *entry : *registry().sensor(std::string(DepthCamera::kType));
+}
+
+KINECAL_INLINE Mount mount_from(const ModelConfig& model) {
+  return {model.name, model.frame, model.param_name};
+}
+
+KINECAL_INLINE std::vector<ParameterInfo> own_parameters(const BlockConfig& block) {
+  const BlockEntry* entry = registry().block(block.type);
+  if (entry == nullptr) return {};
+  try {
+    return entry->parameters(block);
+  } catch (const std::exception&) {  // reported where the block is read
+    return {};
+  }
 }
 
 namespace detail {
@@ -44,7 +55,7 @@ inline void add_frame(ParameterTable& table, const std::string& frame) {
 
 /// Adds the offset of a joint, or reports why it cannot have one.
 inline void add_joint(ParameterTable& table, const Robot& robot, const std::string& name,
-                      const Place& place, Diagnostics& diagnostics) {
+                      const SourceLocation& place, Diagnostics& diagnostics) {
   const Joint& joint = robot.joint(name);
   if (!moves(joint.type)) {
     diagnostics.error(place, fmt::format("joint '{}' is {} and has no offset; free its frame "
@@ -95,10 +106,13 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
     if (moves(joint.type) && !joint.mimic) names.push_back(joint.name);
   }
   for (const ModelConfig& model : step.models) {
-    const Sensor sensor = sensor_from(model);
-    for (int i = 0; i < sensor_parameters(sensor.type); ++i) {
-      names.push_back(parameter_name(sensor.parameter_prefix(),
-                                     kCameraParameters[static_cast<std::size_t>(i)]));
+    for (const ParameterInfo& info : sensor_entry(model).sensor->parameters()) {
+      names.push_back(parameter_name(mount_from(model).parameter_prefix(), info.name));
+    }
+  }
+  for (const BlockConfig& block : step.error_blocks) {
+    for (const ParameterInfo& info : own_parameters(block)) {
+      names.push_back(parameter_name(block.name, info.name));
     }
   }
   return names;
@@ -107,7 +121,7 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
 inline void add_params(ParameterTable& table, const Robot& robot, const StepConfig& step,
                        Diagnostics& diagnostics) {
   for (const FreeParamConfig& param : step.free_params) {
-    if (table.find(param.name) >= 0) continue;  // of a camera
+    if (table.find(param.name) >= 0) continue;  // of a sensor or block
     if (robot.has_joint(param.name)) {
       add_joint(table, robot, param.name, param.place, diagnostics);
       continue;
@@ -122,7 +136,7 @@ inline void add_params(ParameterTable& table, const Robot& robot, const StepConf
 
 inline void add_valued_joints(ParameterTable& table, const Robot& robot, const StepConfig& step,
                               Diagnostics& diagnostics) {
-  const auto check = [&](const std::string& name, const Place& place, const char* what) {
+  const auto check = [&](const std::string& name, const SourceLocation& place, const char* what) {
     if (table.find(name) >= 0) return;
     if (robot.has_joint(name)) {
       add_joint(table, robot, name, place, diagnostics);
@@ -137,10 +151,10 @@ inline void add_valued_joints(ParameterTable& table, const Robot& robot, const S
   for (const auto& bound : step.bounds) check(bound.name, bound.place, "bound:");
 }
 
-/// Reports a parameter of a frame or camera with the name of a joint: the name would be ambiguous.
+/// Reports a parameter of a frame, sensor or block with the name of a joint: the name would be ambiguous.
 inline void check_collisions(const ParameterTable& table, const Robot& robot, const Config& config,
                              Diagnostics& diagnostics) {
-  const auto check = [&](const std::string& name, const Place& place, const std::string& owner) {
+  const auto check = [&](const std::string& name, const SourceLocation& place, const std::string& owner) {
     if (table.find(name) < 0 || !robot.has_joint(name) || !moves(robot.joint(name).type)) return;
     diagnostics.error(place, fmt::format("parameter '{}' of {} has the name of a joint of the "
                                          "robot; rename one of them",
@@ -153,11 +167,15 @@ inline void check_collisions(const ParameterTable& table, const Robot& robot, co
       }
     }
     for (const ModelConfig& model : step.models) {
-      const Sensor sensor = sensor_from(model);
-      for (int i = 0; i < sensor_parameters(sensor.type); ++i) {
-        const auto part = kCameraParameters[static_cast<std::size_t>(i)];
-        check(parameter_name(sensor.parameter_prefix(), part), model.place,
+      for (const ParameterInfo& info : sensor_entry(model).sensor->parameters()) {
+        check(parameter_name(mount_from(model).parameter_prefix(), info.name), model.place,
               "model '" + model.name + "'");
+      }
+    }
+    for (const BlockConfig& block : step.error_blocks) {
+      for (const ParameterInfo& info : own_parameters(block)) {
+        check(parameter_name(block.name, info.name), block.place,
+              "error block '" + block.name + "'");
       }
     }
   }
@@ -180,7 +198,10 @@ KINECAL_INLINE ParameterTable parameters_from(const Config& config, const Robot&
   const std::set<std::string> recorded = detail::feature_frames(samples);
   for (const StepConfig& step : config.steps) {
     for (const ModelConfig& model : step.models) {
-      add_camera_parameters(table, sensor_from(model), samples);
+      add_sensor_parameters(table, *sensor_entry(model).sensor, mount_from(model), samples);
+    }
+    for (const BlockConfig& block : step.error_blocks) {
+      add_parameters(table, block.name, own_parameters(block));
     }
     for (const FreeFrameConfig& frame : step.free_frames) {
       detail::check_frame(frame, robot, recorded, !samples.empty(), diagnostics);

@@ -46,7 +46,8 @@ inline void warn_of_far_points(const Config& config, std::span<const Sample> sam
   std::set<std::string> in_pixels;
   for (const StepConfig& step : config.steps) {
     for (const ModelConfig& model : step.models) {
-      if (model.type == "camera2d") in_pixels.insert(model.name);
+      const SensorEntry* entry = registry().sensor(model.type);
+      if (entry != nullptr && !entry->sensor->delivers(Quantity::point)) in_pixels.insert(model.name);
     }
   }
   std::size_t count = 0;

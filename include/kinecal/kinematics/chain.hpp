@@ -28,14 +28,14 @@ namespace kinecal {
 /// A constant pose that knows whether it rotates.  Most origins of a URDF only translate, which is
 /// a quarter of the work.
 struct ConstantPose : Pose<double> {
-  bool turns = false;  ///< false if the rotation is the identity
+  bool rotates = false;  ///< false if the rotation is the identity
 
   ConstantPose() = default;
   /// Compares the rotation with the identity, exactly.
   ConstantPose(const Pose<double>& pose)  // NOLINT: any pose may be constant
       : Pose(pose) {
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) turns = turns || pose.rotation(i, j) != (i == j ? 1.0 : 0.0);
+      for (int j = 0; j < 3; ++j) rotates = rotates || pose.rotation(i, j) != (i == j ? 1.0 : 0.0);
     }
   }
 };

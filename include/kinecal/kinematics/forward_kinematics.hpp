@@ -38,11 +38,11 @@ struct NoCorrections {
 
 /// Joint positions as motions: sine and cosine are computed where the walk needs them.
 template <class Q>
-struct MotionsAt {
+struct JointStatesAt {
   const Q& q;
 
   [[nodiscard]] auto operator[](std::size_t i) const {
-    return make_motion(typename Q::Scalar(q(static_cast<Eigen::Index>(i))));
+    return make_joint_state(typename Q::Scalar(q(static_cast<Eigen::Index>(i))));
   }
 };
 
@@ -54,7 +54,7 @@ struct JacobianWalker : PoseWalker<S> {
   explicit JacobianWalker(J& out) : jacobian(out) {}
 
   template <class I, class Joint, class U>
-  void move(I i, const Joint& joint, const Motion<U>& motion) {
+  void move(I i, const Joint& joint, const JointState<U>& motion) {
     PoseWalker<S>::move(i, joint, motion);  // a joint's axis is the same before and after it
     Vector3<S> axis = this->axis(joint);
     if (joint.reversed) axis = -axis;
@@ -98,7 +98,7 @@ template <class Chain, class Derived, class Corrected = detail::NoCorrections>
                                                                 const Corrected& corrections = {}) {
   detail::check_size(chain, q.size(), "joint positions");
   PoseWalker<typename Derived::Scalar> walker;
-  walk(chain, detail::MotionsAt<Derived>{q.derived()}, corrections, walker);
+  walk(chain, detail::JointStatesAt<Derived>{q.derived()}, corrections, walker);
   return walker.pose;
 }
 
@@ -118,7 +118,7 @@ Pose<typename Derived::Scalar> geometric_jacobian(const Chain& chain,
   detail::check_size(chain, jacobian.cols(), "columns of a Jacobian");
   detail::JacobianWalker<S, std::remove_reference_t<J>> walker(jacobian);
   jacobian.setZero();
-  walk(chain, detail::MotionsAt<Derived>{q.derived()}, detail::NoCorrections{}, walker);
+  walk(chain, detail::JointStatesAt<Derived>{q.derived()}, detail::NoCorrections{}, walker);
   const Vector3<S>& tip = walker.pose.translation;
   std::size_t i = 0;
   for (const auto& joint : joints_of(chain)) {
@@ -149,7 +149,7 @@ requires detail::PositionByName<PositionOf>
 [[nodiscard]] Pose<S> forward_kinematics(const Chain& chain, PositionOf&& position_of,
                                          const Corrections<S>& corrections) {
   PoseWalker<S> walker;
-  walk(chain, measured_motions(chain, position_of), corrections, walker);
+  walk(chain, measured_joint_states(chain, position_of), corrections, walker);
   return walker.pose;
 }
 /// The same without corrections.
@@ -157,7 +157,7 @@ template <class Chain, class PositionOf>
 requires detail::PositionByName<PositionOf>
 [[nodiscard]] Pose<double> forward_kinematics(const Chain& chain, PositionOf&& position_of) {
   PoseWalker<double> walker;
-  walk(chain, measured_motions(chain, position_of), detail::NoCorrections{}, walker);
+  walk(chain, measured_joint_states(chain, position_of), detail::NoCorrections{}, walker);
   return walker.pose;
 }
 

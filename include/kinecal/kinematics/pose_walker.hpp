@@ -13,7 +13,7 @@ struct PoseWalker {
 
   /// Passes a constant transform.
   void fixed(const ConstantPose& transform) {
-    if (transform.turns) {
+    if (transform.rotates) {
       pose = pose * static_cast<const Pose<double>&>(transform);
     } else {
       pose.translation = pose * transform.translation;
@@ -34,7 +34,7 @@ struct PoseWalker {
 
   /// Passes a joint's motion.
   template <class Joint, class U>
-  void move(std::size_t, const Joint& joint, const Motion<U>& motion) {
+  void move(std::size_t, const Joint& joint, const JointState<U>& motion) {
     if (!turns(joint.type)) {
       pose.translation += axis(joint) * S(joint.reversed ? U(-motion.position) : motion.position);
     } else if (joint.principal < 0) {

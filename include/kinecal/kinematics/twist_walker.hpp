@@ -70,45 +70,46 @@ struct Twist {
 /// The twists of a chain.  Translational ones move all points alike and are kept apart.
 template <class S>
 struct ChainTwists {
-  std::vector<Twist<S>> turns;     ///< rotational twists
-  std::vector<Vector3<S>> shifts;  ///< (3) linear parts of translational twists
+  std::vector<Twist<S>> rotational;     ///< rotational twists
+  std::vector<Vector3<S>> translational;  ///< (3) linear parts of translational twists
 };
 
 /// A view of a chain's twists.
 template <class S>
 struct BodyTwists {
-  std::span<const Twist<S>> turns;     ///< rotational twists
-  std::span<const Vector3<S>> shifts;  ///< (3) linear parts of translational twists
+  std::span<const Twist<S>> rotational;     ///< rotational twists
+  std::span<const Vector3<S>> translational;  ///< (3) linear parts of translational twists
 
   BodyTwists() = default;
   /// Views two lists.
-  BodyTwists(std::span<const Twist<S>> rotational, std::span<const Vector3<S>> translational)
-      : turns(rotational), shifts(translational) {}
+  BodyTwists(std::span<const Twist<S>> of_rotations,
+             std::span<const Vector3<S>> of_translations)
+      : rotational(of_rotations), translational(of_translations) {}
   /// Views all twists of a chain.
-  explicit BodyTwists(const ChainTwists<S>& twists) : BodyTwists(twists.turns, twists.shifts) {}
+  explicit BodyTwists(const ChainTwists<S>& twists) : BodyTwists(twists.rotational, twists.translational) {}
 
   /// The rotational twists as an array, 6 numbers each: linear, angular.
-  [[nodiscard]] const S* turn_numbers() const {
+  [[nodiscard]] const S* rotational_numbers() const {
     static_assert(sizeof(Twist<S>) == 6 * sizeof(S));
-    return turns.empty() ? nullptr : turns[0].linear.data();
+    return rotational.empty() ? nullptr : rotational[0].linear.data();
   }
   /// The translational twists as an array, 3 numbers each.
-  [[nodiscard]] const S* shift_numbers() const {
+  [[nodiscard]] const S* translational_numbers() const {
     static_assert(sizeof(Vector3<S>) == 3 * sizeof(S));
-    return shifts.empty() ? nullptr : shifts[0].data();
+    return translational.empty() ? nullptr : translational[0].data();
   }
 };
 
 /// The Jacobian's columns of a chain's twists, in the order in which the walker computes them.
 struct TwistColumns {
-  std::vector<int> turns;   ///< of the rotational twists
-  std::vector<int> shifts;  ///< of the translational twists
+  std::vector<int> rotational;   ///< of the rotational twists
+  std::vector<int> translational;  ///< of the translational twists
 
   /// Makes room for one twist per column.
   template <class S>
   void resize(ChainTwists<S>& twists) const {
-    twists.turns.resize(turns.size());
-    twists.shifts.resize(shifts.size());
+    twists.rotational.resize(this->rotational.size());
+    twists.translational.resize(this->translational.size());
   }
 };
 
@@ -124,11 +125,11 @@ struct TwistColumns {
     const ChainJoint& joint = chain.joints[i];
     const auto frame = [&] {
       if (!joint.corrected) return;
-      for (std::size_t k = 0; k < 3; ++k) add(result.shifts, columns[i].frame[k]);
-      for (std::size_t k = 3; k < 6; ++k) add(result.turns, columns[i].frame[k]);
+      for (std::size_t k = 0; k < 3; ++k) add(result.translational, columns[i].frame[k]);
+      for (std::size_t k = 3; k < 6; ++k) add(result.rotational, columns[i].frame[k]);
     };
     if (!joint.reversed) frame();
-    if (moves(joint.type)) add(turns(joint.type) ? result.turns : result.shifts, columns[i].offset);
+    if (moves(joint.type)) add(turns(joint.type) ? result.rotational : result.translational, columns[i].offset);
     if (joint.reversed) frame();
   }
   return result;
@@ -147,7 +148,7 @@ struct TwistWalker {
   /// Starts at the base.
   /// @param twists  with the size that TwistColumns::resize() gives
   TwistWalker(const Columns& free, ChainTwists<S>& twists)
-      : columns(free), turn(twists.turns.data()), shift(twists.shifts.data()) {}
+      : columns(free), turn(twists.rotational.data()), shift(twists.translational.data()) {}
   /// Continues in the middle of a chain.
   TwistWalker(const Columns& free, Twist<S>* next_turn, Vector3<S>* next_shift, const Pose<S>& pose)
       : columns(free), turn(next_turn), shift(next_shift), walker{pose} {}
@@ -182,7 +183,7 @@ struct TwistWalker {
 
   /// Passes a joint's motion: one twist if its offset is free.
   template <class I, class Joint, class U>
-  void move(I i, const Joint& joint, const Motion<U>& motion) {
+  void move(I i, const Joint& joint, const JointState<U>& motion) {
     walker.move(i, joint, motion);  // a joint's axis is the same before and after it
     if (columns[i].offset < 0) return;
     const double gain = joint.reversed ? -columns[i].gain : columns[i].gain;
@@ -209,11 +210,11 @@ template <class S>
 [[nodiscard]] std::vector<std::pair<int, Twist<S>>> by_column(const ChainTwists<S>& twists,
                                                               const TwistColumns& columns) {
   std::vector<std::pair<int, Twist<S>>> result;
-  for (std::size_t i = 0; i < twists.turns.size(); ++i) {
-    result.emplace_back(columns.turns[i], twists.turns[i]);
+  for (std::size_t i = 0; i < twists.rotational.size(); ++i) {
+    result.emplace_back(columns.rotational[i], twists.rotational[i]);
   }
-  for (std::size_t i = 0; i < twists.shifts.size(); ++i) {
-    result.emplace_back(columns.shifts[i], Twist<S>{twists.shifts[i], Vector3<S>::Zero()});
+  for (std::size_t i = 0; i < twists.translational.size(); ++i) {
+    result.emplace_back(columns.translational[i], Twist<S>{twists.translational[i], Vector3<S>::Zero()});
   }
   return result;
 }

@@ -19,7 +19,7 @@ namespace kinecal {
 
 /// The visitor of a walk.  `i` is the joint's index in the chain.
 template <class W, class S>
-concept Walker = requires(W& w, std::size_t i, const ChainJoint& joint, const Motion<S>& motion,
+concept Walker = requires(W& w, std::size_t i, const ChainJoint& joint, const JointState<S>& motion,
                           const JointCorrection<S>& correction) {
   w.fixed(joint.fixed);
   w.correct(i, joint, correction);
@@ -100,7 +100,7 @@ void walk_on(const Chain& chain, std::size_t first, const Motions& motions,
 
 /// Walks a chain from base to tip.
 /// @param chain        a RuntimeChain or a Chain
-/// @param motions      measured Motion of each joint of the chain (any scalar), by index
+/// @param motions      JointState of each joint of the chain (any scalar), by index
 /// @param corrections  JointCorrection of each joint of the chain (any scalar), by index
 template <class Chain, class Motions, class Corrected, class W>
 void walk(const Chain& chain, const Motions& motions, const Corrected& corrections, W& walker) {

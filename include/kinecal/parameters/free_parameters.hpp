@@ -7,6 +7,8 @@
 //   CameraIntrinsics<"camera">                four: fx fy cx cy
 //   DepthCorrection<"camera">                 two: z_offset z_scaling
 //   DepthIntrinsics<"camera">                 all six of a depth camera
+//   SensorParameters<"wire", "scale">         what a sensor declares
+//   BlockParameters<"sphere", "radius">       what an error block declares
 //
 // parameter.hpp defines the names of the single numbers.
 // SPDX-License-Identifier: Apache-2.0
@@ -45,7 +47,7 @@ inline constexpr Axes Axes::abc = {false, false, false, true, true, true};
 
 /// One number of a free parameter.
 struct ParameterId {
-  std::string_view owner;  ///< joint, frame or camera
+  std::string_view owner;  ///< joint, frame, sensor or block
   std::string_view part;   ///< "x", "fx", ...; "" for a joint's offset
 
   /// As in parameter.hpp: "head_pan_joint_x".
@@ -76,8 +78,8 @@ enum class ParameterKind {
   joint_offset,   ///< the position of a joint
   frame_offset,   ///< the origin of a joint
   virtual_frame,  ///< a frame that no URDF has
-  camera,         ///< intrinsics
-  depth           ///< depth offset and scaling, with or without intrinsics
+  sensor,         ///< what a sensor declares: intrinsics, a scale factor
+  block           ///< what an error block declares: the unknown length of a bar
 };
 
 /// Offset of a joint: one number, radians or metres.
@@ -109,10 +111,6 @@ template <FixedString Owner, std::size_t Count, std::size_t N>
 template <FixedString Owner, Axes Chosen>
 inline constexpr auto kFrameIds = ids_of<Owner, count(Chosen.flags())>(kFrameAxes, Chosen.flags());
 
-template <FixedString Owner, bool Intrinsics, bool Depth>
-inline constexpr auto kCameraIds = ids_of<Owner, (Intrinsics ? 4 : 0) + (Depth ? 2 : 0)>(
-    kCameraParameters, std::array{Intrinsics, Intrinsics, Intrinsics, Intrinsics, Depth, Depth});
-
 }  // namespace detail
 
 /// Correction of a joint's origin: up to six numbers, metres and radians, in the joint's frame.
@@ -133,28 +131,37 @@ struct VirtualFrame {
   static constexpr auto kIds = detail::kFrameIds<Frame, Chosen>;        ///< its numbers
 };
 
+/// Parameters that a sensor declares.
+/// @tparam Parts  their names, as in the sensor's kParameters
+template <FixedString Sensor, FixedString... Parts>
+struct SensorParameters {
+  static constexpr ParameterKind kKind = ParameterKind::sensor;  ///< what it corrects
+  static constexpr std::string_view kOwner = Sensor;             ///< name of the sensor
+  static constexpr std::array<ParameterId, sizeof...(Parts)> kIds = {
+      ParameterId{Sensor, Parts}...};  ///< its numbers
+};
+
 /// Intrinsics of a camera: fx fy cx cy, relative.
 template <FixedString Camera>
-struct CameraIntrinsics {
-  static constexpr ParameterKind kKind = ParameterKind::camera;          ///< what it corrects
-  static constexpr std::string_view kOwner = Camera;                     ///< name of the sensor
-  static constexpr auto kIds = detail::kCameraIds<Camera, true, false>;  ///< its numbers
-};
+struct CameraIntrinsics : SensorParameters<Camera, "fx", "fy", "cx", "cy"> {};
 
 /// Depth correction of a depth camera: z_offset (metres) and z_scaling (relative).
 template <FixedString Camera>
-struct DepthCorrection {
-  static constexpr ParameterKind kKind = ParameterKind::depth;           ///< what it corrects
-  static constexpr std::string_view kOwner = Camera;                     ///< name of the sensor
-  static constexpr auto kIds = detail::kCameraIds<Camera, false, true>;  ///< its numbers
-};
+struct DepthCorrection : SensorParameters<Camera, "z_offset", "z_scaling"> {};
 
 /// Intrinsics and depth correction of a depth camera: six numbers.
 template <FixedString Camera>
-struct DepthIntrinsics {
-  static constexpr ParameterKind kKind = ParameterKind::depth;          ///< what it corrects
-  static constexpr std::string_view kOwner = Camera;                    ///< name of the sensor
-  static constexpr auto kIds = detail::kCameraIds<Camera, true, true>;  ///< its numbers
+struct DepthIntrinsics
+    : SensorParameters<Camera, "fx", "fy", "cx", "cy", "z_offset", "z_scaling"> {};
+
+/// Parameters that an error block declares.
+/// @tparam Parts  their names, as in the block's kParameters
+template <FixedString Block, FixedString... Parts>
+struct BlockParameters {
+  static constexpr ParameterKind kKind = ParameterKind::block;  ///< what it corrects
+  static constexpr std::string_view kOwner = Block;             ///< name of the block
+  static constexpr std::array<ParameterId, sizeof...(Parts)> kIds = {
+      ParameterId{Block, Parts}...};  ///< its numbers
 };
 
 /// A part of a crate that frees numbers.

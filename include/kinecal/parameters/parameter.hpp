@@ -8,6 +8,8 @@
 //   <camera>_fx _fy _cx _cy  relative change of an intrinsic: f = f0 (1 + v)  1
 //   <camera>_z_offset        z = (z0 + z_offset) (1 + z_scaling)              m
 //   <camera>_z_scaling                                                        1
+//   <sensor>_<parameter>     what a sensor declares
+//   <block>_<parameter>      what an error block declares
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,14 +22,21 @@ namespace kinecal {
 
 /// The parts of a frame correction: translation, rotation vector.
 inline constexpr std::array<std::string_view, 6> kFrameAxes = {"x", "y", "z", "a", "b", "c"};
-/// The parameters of a depth camera; a pinhole camera has the first four.
-inline constexpr std::array<std::string_view, 6> kCameraParameters = {
-    "fx", "fy", "cx", "cy", "z_offset", "z_scaling"};
 
-/// Name of one parameter of a frame or a camera: "head_pan_joint" + "x" -> "head_pan_joint_x".
+/// Name of one parameter of a frame, a sensor or an error block: "head_pan_joint" + "x" ->
+/// "head_pan_joint_x".
 [[nodiscard]] inline std::string parameter_name(std::string_view owner, std::string_view part) {
   return std::string(owner) + "_" + std::string(part);
 }
+
+/// A parameter that a sensor or an error block declares.
+struct ParameterInfo {
+  std::string_view name;        ///< after the owner's: "fx" of "camera_fx"
+  std::string_view unit = "1";  ///< "rad", "m" or "1"
+  double initial = 0.0;         ///< value before the first step
+  double lower = -std::numeric_limits<double>::infinity();  ///< lower bound of the value
+  double upper = std::numeric_limits<double>::infinity();   ///< upper bound of the value
+};
 
 /// A parameter of a calibration with its value and bounds.
 struct Parameter {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -77,6 +78,21 @@ class ParameterTable {
   std::vector<Parameter> parameters_;
   std::map<std::string, int> indices_;
 };
+
+/// Adds the parameters that a sensor or error block declares, as far as a table does not have them.
+inline void add_parameters(ParameterTable& table, std::string_view owner,
+                           std::span<const ParameterInfo> infos) {
+  for (const ParameterInfo& info : infos) {
+    const std::string name = parameter_name(owner, info.name);
+    if (table.find(name) >= 0) continue;
+    table.add({.name = name,
+               .unit = std::string(info.unit),
+               .initial = info.initial,
+               .value = info.initial,
+               .lower = info.lower,
+               .upper = info.upper});
+  }
+}
 
 /// Which parameters are free: the columns of the Jacobian.
 class FreeSet {

@@ -14,10 +14,12 @@
 
 namespace kinecal {
 
-/// One observed point.
+/// One observed point, pixel, pose or reading.
 struct Feature {
   std::string frame;                                ///< in which the point is given
-  Vector3<double> point = Vector3<double>::Zero();  ///< (3) metres; a pixel is (u, v, 0)
+  Vector3<double> point = Vector3<double>::Zero();  ///< (3) metres; a pixel is (u, v, 0), a reading
+                                                    ///< (value, 0, 0)
+  std::optional<Matrix3<double>> rotation = {};     ///< (3 x 3) of a pose: frame_R_feature
 };
 
 /// The settings of a camera while it recorded: sensor_msgs/CameraInfo and the depth driver's.

@@ -14,95 +14,153 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string>
 
-#include "kinecal/samples/sample.hpp"
+#include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
 
-/// A depth camera as it was recorded.
-template <class Q = double>
-struct DepthCamera {
-  static constexpr int kParameters = 6;  ///< fx fy cx cy z_offset z_scaling
+/// The settings of a camera, or an error without them.
+/// @throws SettingsError
+[[nodiscard]] inline const CameraInfo& camera_info_of(const Observation& seen) {
+  if (seen.camera) return *seen.camera;
+  throw SettingsError("it is a camera but has no camera_info");
+}
 
-  Q fx;              ///< recorded focal length, pixels
-  Q fy;              ///< recorded focal length, pixels
-  Q cx;              ///< recorded principal point, pixels
-  Q cy;              ///< recorded principal point, pixels
-  Q z_offset{0.0};   ///< recorded depth offset, metres
-  Q z_scaling{1.0};  ///< recorded depth scale, a factor
-
-  /// The camera of a rectified image, from P.
-  [[nodiscard]] static DepthCamera from(const CameraInfo& info) {
-    return {info.p[0], info.p[5], info.p[2], info.p[6], info.z_offset, info.z_scaling};
+/// Checks that settings are numbers and focal lengths are positive.
+/// @param settings  fx fy, then others
+/// @throws SettingsError
+inline void check_camera_settings(std::span<const double> settings) {
+  for (const double number : settings) {
+    if (!std::isfinite(number)) throw SettingsError("camera_info has a value that is not a number");
   }
+  if (!(settings[0] > 0.0 && settings[1] > 0.0)) {
+    throw SettingsError("the focal lengths in camera_info are not positive");
+  }
+}
 
+template <class Q>
+class CorrectedDepthCamera;
+
+/// A depth camera.
+struct DepthCamera {
+  static constexpr std::string_view kType = "camera3d";  ///< name in configurations
+  static constexpr std::array kParameters = {
+      ParameterInfo{"fx"}, ParameterInfo{"fy"},            ParameterInfo{"cx"},
+      ParameterInfo{"cy"}, ParameterInfo{"z_offset", "m"}, ParameterInfo{"z_scaling"}};
+  static constexpr std::size_t kSettings = 6;  ///< fx fy cx cy z_offset z_scaling, as recorded
+  static constexpr bool kOwnFrame = true;      ///< features are in the optical frame
+  /// Computes points and derivatives with what all points of a sample share.
+  template <class Q>
+  using Corrected = CorrectedDepthCamera<Q>;
+
+  /// The recorded settings: the camera of a rectified image, from P.
+  /// @throws SettingsError  if there are none or they are impossible
+  [[nodiscard]] static std::array<double, 6> settings(const Observation& seen) {
+    const CameraInfo& info = camera_info_of(seen);
+    const std::array<double, 6> s = {info.p[0], info.p[5],     info.p[2],
+                                     info.p[6], info.z_offset, info.z_scaling};
+    check_camera_settings(s);
+    if (!(s[5] > 0.0)) throw SettingsError("z_scaling is not positive");
+    return s;
+  }
+  /// Parameters with which a recorded point stays where it is.
+  [[nodiscard]] static std::array<double, 6> initial(const std::array<double, 6>& s) {
+    return {0.0, 0.0, 0.0, 0.0, s[4], s[5] - 1.0};
+  }
   /// The pixel and raw depth from which the driver computed a point.
   /// @param p  (3) recorded point, metres, in the camera's optical frame
+  /// @param s  settings
   /// @returns  (3) u, v, z0; pixels and metres
-  [[nodiscard]] Vector3<Q> measurement(const Vector3<Q>& p) const {
-    return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy, p.z() / z_scaling - z_offset};
+  /// @throws SettingsError  if the point is behind the camera
+  [[nodiscard]] static Vector3<double> measurement(const Vector3<double>& p,
+                                                   const std::array<double, 6>& s) {
+    if (!(p.z() > 0.0)) {
+      throw SettingsError("a point is behind the camera (z = " + std::to_string(p.z()) + " m)");
+    }
+    return {s[0] * p.x() / p.z() + s[2], s[1] * p.y() / p.z() + s[3], p.z() / s[5] - s[4]};
   }
 
   /// The point of a measurement with corrected settings.
-  /// @param m  (3) pixel and raw depth: measurement()
   /// @param v  (6) parameters in the order above
   /// @returns  (3) metres, in the camera's optical frame
-  template <class S>
-  [[nodiscard]] Vector3<S> point(const Vector3<Q>& m, const std::array<S, 6>& v) const {
-    const S z = (m.z() + v[4]) * (1.0 + v[5]);
-    return {(m.x() - cx * (1.0 + v[2])) * z / (fx * (1.0 + v[0])),
-            (m.y() - cy * (1.0 + v[3])) * z / (fy * (1.0 + v[1])), z};
+  template <class S, class Q>
+  [[nodiscard]] Vector3<S> place(const Measurement<DepthCamera, Q>& m,
+                                 const std::array<S, 6>& v) const {
+    const auto& s = m.settings;
+    const S z = (m.point.z() + v[4]) * (1.0 + v[5]);
+    return {(m.point.x() - s[2] * (1.0 + v[2])) * z / (s[0] * (1.0 + v[0])),
+            (m.point.y() - s[3] * (1.0 + v[3])) * z / (s[1] * (1.0 + v[1])), z};
   }
 };
 
-/// A depth camera with corrected settings; what all points of a sample share is computed once.
+/// A depth camera with corrected settings at a pose; what all points of a sample share is computed
+/// once.  Focal lengths and principal point move x or y only; offset and scaling move a point along
+/// its ray.
 template <class Q>
 class CorrectedDepthCamera {
  public:
-  /// A point depth (s, t, 1) in the optical frame and its derivatives.  Focal lengths and principal
-  /// point move x or y only; offset and scaling change the depth only.
-  struct Seen {
-    Q s;                 ///< x / depth
-    Q t;                 ///< y / depth
-    Q depth;             ///< z, metres
-    Q x_by_fx;           ///< dx / dfx, metres
-    Q y_by_fy;           ///< dy / dfy, metres
-    Q x_by_cx;           ///< dx / dcx, metres
-    Q y_by_cy;           ///< dy / dcy, metres
-    Q depth_by_offset;   ///< ddepth / dz_offset
-    Q depth_by_scaling;  ///< ddepth / dz_scaling, metres
-  };
-
-  /// @param v  (6) fx fy cx cy z_offset z_scaling: corrections of the recorded settings
-  CorrectedDepthCamera(const DepthCamera<Q>& recorded, const std::array<double, 6>& v)
-      : per_fx_(Q(1.0) / (recorded.fx * Q(1.0 + v[0]))),
-        per_fy_(Q(1.0) / (recorded.fy * Q(1.0 + v[1]))),
-        cx_(recorded.cx * Q(1.0 + v[2])),
-        cy_(recorded.cy * Q(1.0 + v[3])),
-        s_by_cx_(-(recorded.cx * per_fx_)),
-        t_by_cy_(-(recorded.cy * per_fy_)),
-        by_fx_(-(recorded.fx * per_fx_)),
-        by_fy_(-(recorded.fy * per_fy_)),
+  /// @param recorded  fx fy cx cy z_offset z_scaling: DepthCamera::settings()
+  /// @param v         (6) parameters: corrections of the recorded settings
+  CorrectedDepthCamera(const Pose<Q>& base_T_camera, const std::array<Q, 6>& recorded,
+                       std::span<const double> v)
+      : pose_(base_T_camera),
+        per_fx_(Q(1.0) / (recorded[0] * Q(1.0 + v[0]))),
+        per_fy_(Q(1.0) / (recorded[1] * Q(1.0 + v[1]))),
+        cx_(recorded[2] * Q(1.0 + v[2])),
+        cy_(recorded[3] * Q(1.0 + v[3])),
+        s_by_cx_(-(recorded[2] * per_fx_)),
+        t_by_cy_(-(recorded[3] * per_fy_)),
+        by_fx_(-(recorded[0] * per_fx_)),
+        by_fy_(-(recorded[1] * per_fy_)),
         offset_(v[4]),
         factor_(1.0 + v[5]) {}
 
-  /// The point of a measurement.
-  /// @param m  (3) pixel and raw depth: DepthCamera::measurement()
-  [[nodiscard]] Seen see(const Vector3<Q>& m) const {
+  /// The point of a measurement and its derivatives.
+  /// @param m        (3) pixel and raw depth: DepthCamera::measurement()
+  /// @param chosen   which parameters to differentiate by
+  /// @param changes  out, for each of them: (3) metres per unit, in the base
+  /// @returns        (3) metres, in the base
+  Vector3<Q> place(const Vector3<Q>& m, std::span<const int> chosen, Vector3<Q>* changes) const {
+    const Matrix3<Q>& r = pose_.rotation;
     const Q s = (m.x() - cx_) * per_fx_, t = (m.y() - cy_) * per_fy_;
     const Q raw = m.z() + offset_, depth = raw * factor_;
-    return {s,
-            t,
-            depth,
-            s * depth * by_fx_,
-            t * depth * by_fy_,
-            s_by_cx_ * depth,
-            t_by_cy_ * depth,
-            factor_,
-            raw};
+    const Vector3<Q> ray(r(0, 0) * s + r(0, 1) * t + r(0, 2), r(1, 0) * s + r(1, 1) * t + r(1, 2),
+                         r(2, 0) * s + r(2, 1) * t + r(2, 2));
+    const auto times = [](const auto& v, const Q& x) {
+      return Vector3<Q>(v(0) * x, v(1) * x, v(2) * x);
+    };
+    for (const int k : chosen) {
+      switch (k) {
+        case 0:
+          *changes++ = times(r.col(0), s * depth * by_fx_);
+          break;
+        case 1:
+          *changes++ = times(r.col(1), t * depth * by_fy_);
+          break;
+        case 2:
+          *changes++ = times(r.col(0), s_by_cx_ * depth);
+          break;
+        case 3:
+          *changes++ = times(r.col(1), t_by_cy_ * depth);
+          break;
+        case 4:
+          *changes++ = times(ray, factor_);
+          break;
+        default:
+          *changes++ = times(ray, raw);
+      }
+    }
+    Vector3<Q> p;
+    for (int i = 0; i < 3; ++i) p(i) = pose_.translation(i) + ray(i) * depth;
+    return p;
   }
 
  private:
+  Pose<Q> pose_;
   Q per_fx_, per_fy_, cx_, cy_, s_by_cx_, t_by_cy_, by_fx_, by_fy_, offset_, factor_;
 };
 

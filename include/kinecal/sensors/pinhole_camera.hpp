@@ -1,4 +1,4 @@
-// A pinhole camera (camera2d): where a point appears in the image.
+// A pinhole camera (camera2d): where a point appears in the image, and the ray to it.
 //
 //   x = X / Z,  y = Y / Z,  r2 = x^2 + y^2
 //   x' = x (1 + k1 r2 + k2 r2^2 + k3 r2^3) + 2 p1 x y + p2 (r2 + 2 x^2)
@@ -11,47 +11,86 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <array>
+#include <tuple>
 
-#include "kinecal/samples/sample.hpp"
+#include "kinecal/sensors/depth_camera.hpp"
 
 namespace kinecal {
 
-/// A pinhole camera as it was recorded.
-template <class Q = double>
+/// A pinhole camera.
 struct PinholeCamera {
-  static constexpr int kParameters = 4;  ///< fx fy cx cy
+  static constexpr std::string_view kType = "camera2d";  ///< name in configurations
+  static constexpr std::array kParameters = {ParameterInfo{"fx"}, ParameterInfo{"fy"},
+                                             ParameterInfo{"cx"}, ParameterInfo{"cy"}};
+  static constexpr std::size_t kSettings = 9;  ///< fx fy cx cy k1 k2 p1 p2 k3, as recorded
+  static constexpr bool kOwnFrame = true;      ///< features are in the optical frame
 
-  Q fx;                     ///< focal length, pixels
-  Q fy;                     ///< focal length, pixels
-  Q cx;                     ///< principal point, pixels
-  Q cy;                     ///< principal point, pixels
-  std::array<Q, 5> d = {};  ///< distortion: k1 k2 p1 p2 k3
-
-  /// The camera of a CameraInfo: from K and D if the image is distorted, else from P.
-  [[nodiscard]] static PinholeCamera from(const CameraInfo& info) {
-    const bool distorted =
-        std::any_of(info.d.begin(), info.d.end(), [](double v) { return v != 0.0; });
-    if (!distorted) return {info.p[0], info.p[5], info.p[2], info.p[6], {}};
-    PinholeCamera camera{info.k[0], info.k[4], info.k[2], info.k[5], {}};
-    std::copy_n(info.d.begin(), std::min<std::size_t>(info.d.size(), 5), camera.d.begin());
-    return camera;
+  /// The recorded settings: from K and D if the image is distorted, else from P.
+  /// @throws SettingsError  if there are none or they are impossible
+  [[nodiscard]] static std::array<double, 9> settings(const Observation& seen) {
+    const CameraInfo& info = camera_info_of(seen);
+    std::array<double, 9> s = {info.p[0], info.p[5], info.p[2], info.p[6]};
+    bool distorted = false;
+    for (std::size_t i = 0; i < info.d.size(); ++i) {
+      if (info.d[i] == 0.0) continue;
+      if (!info.distortion_model.empty() && info.distortion_model != "plumb_bob") {
+        throw SettingsError("distortion model '" + info.distortion_model +
+                            "' is not supported; rectify the images or use plumb_bob");
+      }
+      if (i >= 5 || !std::isfinite(info.d[i])) {
+        throw SettingsError("plumb_bob has five distortion coefficients, each a number");
+      }
+      distorted = true;
+      s[4 + i] = info.d[i];
+    }
+    if (distorted) std::tie(s[0], s[1], s[2], s[3]) = std::tie(info.k[0], info.k[4], info.k[2], info.k[5]);
+    check_camera_settings(s);
+    return s;
   }
 
   /// The pixel at which a point appears.
   /// @param p  (3) point, metres, in the camera's optical frame
+  /// @param s  (9) settings
   /// @param v  (4) fx fy cx cy: relative corrections of the recorded intrinsics
   /// @returns  (2) pixel
-  template <class S>
-  [[nodiscard]] Eigen::Matrix<S, 2, 1> project(const Vector3<S>& p,
+  template <class S, class Q>
+  [[nodiscard]] Eigen::Matrix<S, 2, 1> predict(const Vector3<S>& p, const std::array<Q, 9>& s,
                                                const std::array<S, 4>& v) const {
-    const S x = p.x() / p.z(), y = p.y() / p.z();
+    const Eigen::Matrix<S, 2, 1> seen = distorted(S(p.x() / p.z()), S(p.y() / p.z()), s);
+    return {s[0] * (1.0 + v[0]) * seen.x() + s[2] * (1.0 + v[2]),
+            s[1] * (1.0 + v[1]) * seen.y() + s[3] * (1.0 + v[3])};
+  }
+
+  /// The ray to the point of a pixel: direction (x, y, 1).
+  /// @param v  (4) as above
+  template <class S, class Q>
+  [[nodiscard]] Ray<S> place(const Measurement<PinholeCamera, Q>& m,
+                             const std::array<S, 4>& v) const {
+    const auto& s = m.settings;
+    const S fx = s[0] * (1.0 + v[0]), fy = s[1] * (1.0 + v[1]);
+    const S u = (m.point.x() - s[2] * (1.0 + v[2])) / fx;
+    const S w = (m.point.y() - s[3] * (1.0 + v[3])) / fy;
+    S x = u, y = w;
+    for (int i = 0; i < kUndistortions; ++i) {
+      const Eigen::Matrix<S, 2, 1> seen = distorted(x, y, s);
+      x = x + (u - seen.x());
+      y = y + (w - seen.y());
+    }
+    const S zero(0.0), one(1.0);
+    return {.direction = {x, y, one}, .by_u = {one / fx, zero, zero}, .by_v = {zero, one / fy, zero}};
+  }
+
+ private:
+  static constexpr int kUndistortions = 30;  ///< of a fixed-point iteration
+
+  template <class S, class Q>
+  [[nodiscard]] static Eigen::Matrix<S, 2, 1> distorted(const S& x, const S& y,
+                                                        const std::array<Q, 9>& s) {
     const S xx = x * x, yy = y * y, xy = x * y, r2 = xx + yy;
-    const S radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-    const S u = x * radial + 2.0 * (d[2] * xy) + d[3] * (r2 + 2.0 * xx);
-    const S w = y * radial + d[2] * (r2 + 2.0 * yy) + 2.0 * (d[3] * xy);
-    return {fx * (1.0 + v[0]) * u + cx * (1.0 + v[2]), fy * (1.0 + v[1]) * w + cy * (1.0 + v[3])};
+    const S radial = 1.0 + r2 * (s[4] + r2 * (s[5] + r2 * s[8]));
+    return {x * radial + 2.0 * (s[6] * xy) + s[7] * (r2 + 2.0 * xx),
+            y * radial + s[6] * (r2 + 2.0 * yy) + 2.0 * (s[7] * xy)};
   }
 };
 

@@ -1,49 +1,159 @@
-// A sensor: it is fixed to a link, and the samples list its observations.
+// The concept of a sensor: what it measured, turned into a point, a ray, a pose or a reading in its
+// own frame, for given parameters.
 //
-//   chain3d   points at known positions in its link: metres, in the link
-//   camera3d  a depth camera: metres, in its optical frame                    (depth_camera.hpp)
-//   camera2d  a pinhole camera: pixels                                        (pinhole_camera.hpp)
+// A sensor is a small value type.  Jets differentiate it by its parameters, twists carry the
+// derivative to joints and frames.  So a new sensor is a struct with a function or two:
+//
+//   struct DrawWire {  // a wire that is pulled out of a drum at the sensor's frame
+//     static constexpr std::string_view kType = "draw_wire";
+//     static constexpr std::array kParameters = {ParameterInfo{"scale"}, ParameterInfo{"zero", "m"}};
+//     template <class S, class Q>
+//     Reading<S> place(const Measurement<DrawWire, Q>& m, const std::array<S, 2>& v) const {
+//       return {.value = m.point.x() * (1.0 + v[0]) + v[1]};
+//     }
+//   };
+//
+// A camera may also, or instead, predict where it sees a point.  What else a sensor may define:
+//
+//   kSettings, settings(observation)     numbers that come with each observation: intrinsics
+//   initial(settings)                    values of its parameters before the first step
+//   measurement(point, settings)         what of a recorded point to keep, computed once
+//   kOwnFrame                            features are in the sensor's frame, never in a virtual one
+//   kOriented                            features have an orientation
+//   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels
+//   Corrected<Q>                         its own derivatives, in place of those by jets
+//
+// DepthCamera has all but predict().
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <concepts>
+#include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
-#include "kinecal/sensors/depth_camera.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/parameters/parameter.hpp"
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/sensors/quantity.hpp"
 
 namespace kinecal {
 
-/// Types of sensors, named as in configurations.
-enum class SensorType {
-  chain3d,   ///< points at known positions in a link
-  camera3d,  ///< a depth camera
-  camera2d   ///< a pinhole camera
+/// An observation whose settings a sensor cannot use.
+struct SettingsError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
 };
 
-/// The type's name in a configuration.
-[[nodiscard]] constexpr std::string_view to_string(SensorType type) {
-  constexpr std::string_view kNames[] = {"chain3d", "camera3d", "camera2d"};
-  return kNames[static_cast<int>(type)];
-}
-
-/// Number of the sensor's own parameters: the first ones of kCameraParameters.
-[[nodiscard]] constexpr int sensor_parameters(SensorType type) {
-  if (type == SensorType::camera3d) return DepthCamera<>::kParameters;
-  return type == SensorType::camera2d ? PinholeCamera<>::kParameters : 0;
-}
-
-/// A sensor of a calibration.
-struct Sensor {
-  std::string name;                       ///< as in the samples
-  SensorType type = SensorType::chain3d;  ///< what it observes
-  std::string frame;                      ///< the link to which it is fixed
-  std::string param_name;                 ///< prefix of its parameters; empty: its name
+/// Where a sensor is on the robot, and its names.
+struct Mount {
+  std::string name;             ///< of the sensor, as in the samples
+  std::string frame;            ///< the link to which it is fixed
+  std::string param_name = {};  ///< prefix of its parameters; empty: its name
 
   /// Prefix of its parameters: "camera" of "camera_fx".
   [[nodiscard]] const std::string& parameter_prefix() const {
     return param_name.empty() ? name : param_name;
   }
 };
+
+namespace detail {
+
+template <class M>
+[[nodiscard]] consteval std::size_t count_parameters() {
+  if constexpr (requires { M::kParameters; }) return M::kParameters.size();
+  return 0;
+}
+template <class M>
+[[nodiscard]] consteval std::size_t count_settings() {
+  if constexpr (requires { M::kSettings; }) return M::kSettings;
+  return 0;
+}
+template <class M>
+[[nodiscard]] consteval bool is_in_own_frame() {
+  if constexpr (requires { M::kOwnFrame; }) return M::kOwnFrame;
+  return false;
+}
+template <class M>
+[[nodiscard]] consteval bool is_oriented() {
+  if constexpr (requires { M::kOriented; }) return M::kOriented;
+  return false;
+}
+
+}  // namespace detail
+
+/// Number of a sensor's own parameters: the size of M::kParameters, if it has them.
+template <class M>
+inline constexpr std::size_t kParametersOf = detail::count_parameters<M>();
+/// Number of settings that come with each observation, M::kSettings: a camera's intrinsics.
+template <class M>
+inline constexpr std::size_t kSettingsOf = detail::count_settings<M>();
+/// True if features are in the sensor's own frame, never in a virtual one: M::kOwnFrame.
+template <class M>
+inline constexpr bool kIsInOwnFrame = detail::is_in_own_frame<M>();
+/// True if a feature has an orientation, M::kOriented.
+template <class M>
+inline constexpr bool kIsOriented = detail::is_oriented<M>();
+
+/// One measured feature with the settings of its observation.
+/// @tparam Q  scalar: a double, or a packet of several samples
+template <class M, class Q>
+struct Measurement {
+  Vector3<Q> point = Vector3<Q>::Zero();          ///< (3) as recorded, or as M::measurement() gives
+  Matrix3<Q> rotation = Matrix3<Q>::Identity();   ///< (3 x 3) of an oriented sensor
+  std::array<Q, kSettingsOf<M>> settings = {};    ///< of the observation
+};
+
+namespace detail {
+
+using Probe = Jet<double, 1>;
+
+template <class M, class S = Probe>
+using Placed = decltype(std::declval<const M&>().place(
+    std::declval<const Measurement<M, double>&>(),
+    std::declval<const std::array<S, kParametersOf<M>>&>()));
+template <class M, Quantity Q>
+concept PlacesOne = requires { typename Placed<M>; } &&
+    std::same_as<Placed<M>, typename VectorsOf<Q>::template Type<Probe>>;
+
+}  // namespace detail
+
+/// A sensor that delivers something in its frame: place(measurement, parameters).
+template <class M>
+concept PlacingSensor = detail::PlacesOne<M, Quantity::point> ||
+    detail::PlacesOne<M, Quantity::ray> || detail::PlacesOne<M, Quantity::pose> ||
+    detail::PlacesOne<M, Quantity::reading>;
+
+/// A camera that predicts the pixel of a point: predict(p, settings, parameters).
+template <class M>
+concept PredictingSensor =
+    requires(const M& model, const Vector3<detail::Probe>& p,
+             const std::array<double, kSettingsOf<M>>& settings,
+             const std::array<detail::Probe, kParametersOf<M>>& parameters) {
+  { model.predict(p, settings, parameters) } -> std::same_as<Eigen::Matrix<detail::Probe, 2, 1>>;
+};
+
+/// A sensor.
+template <class M>
+concept Sensor = requires { { M::kType } -> std::convertible_to<std::string_view>; } &&
+    (PlacingSensor<M> || PredictingSensor<M>);
+
+/// What place() delivers; nullopt if a sensor only predicts.
+template <Sensor M>
+[[nodiscard]] constexpr std::optional<Quantity> placed_quantity() {
+  if constexpr (detail::PlacesOne<M, Quantity::point>) return Quantity::point;
+  if constexpr (detail::PlacesOne<M, Quantity::ray>) return Quantity::ray;
+  if constexpr (detail::PlacesOne<M, Quantity::pose>) return Quantity::pose;
+  if constexpr (detail::PlacesOne<M, Quantity::reading>) return Quantity::reading;
+  return std::nullopt;
+}
+
+/// True if a sensor can deliver what a block takes.
+template <Sensor M>
+[[nodiscard]] constexpr bool delivers(Quantity quantity) {
+  if (quantity == Quantity::pixel) return PredictingSensor<M>;
+  return placed_quantity<M>() == (quantity == Quantity::plane ? Quantity::point : quantity);
+}
 
 }  // namespace kinecal

@@ -3,7 +3,7 @@
 //   const CrateResult<HandEye> result = calibrate(HandEye(), samples);
 //   const double elbow = result.value<JointOffset<"elbow_flex_joint">>();
 //
-//   ParameterTable table = HandEye::table(samples);     // for other initial values, or bounds
+//   ParameterTable table = HandEye().table(samples);     // for other initial values, or bounds
 //   table["elbow_flex_joint"].upper = 0.05;
 //   const CrateResult<HandEye> bounded = calibrate(HandEye(), table, samples);
 // SPDX-License-Identifier: Apache-2.0
@@ -40,7 +40,7 @@ struct CrateResult : CalibrationResult {
 
 /// The calibration that a crate describes.  Reports and result files can be made from it, as the
 /// program makes them.
-/// @param table  Crate::table(samples), perhaps with other initial values or bounds
+/// @param table  Crate().table(samples), perhaps with other initial values or bounds
 /// @throws SampleError, std::invalid_argument  as make_calibration() of a problem
 template <class... Parts>
 [[nodiscard]] Calibration make_calibration(const Crate<Parts...>& crate,
@@ -50,16 +50,16 @@ template <class... Parts>
   return make_calibration(std::make_unique<Problem>(crate.problem(table)),
                           Crate<Parts...>::free(table), samples, step);
 }
-/// The same with the initial values and bounds of Crate::table(samples).
+/// The same with the initial values and bounds of Crate().table(samples).
 template <class... Parts>
 [[nodiscard]] Calibration make_calibration(const Crate<Parts...>& crate,
                                            std::span<const Sample> samples,
                                            const std::string& step = "calibration") {
-  return make_calibration(crate, Crate<Parts...>::table(samples), samples, step);
+  return make_calibration(crate, crate.table(samples), samples, step);
 }
 
 /// Makes the calibration of a crate and solves it.
-/// @param table  Crate::table(samples), perhaps with other initial values or bounds
+/// @param table  Crate().table(samples), perhaps with other initial values or bounds
 /// @throws SampleError, std::invalid_argument  as make_calibration()
 template <class... Parts>
 [[nodiscard]] CrateResult<Crate<Parts...>> calibrate(const Crate<Parts...>& crate,
@@ -70,12 +70,12 @@ template <class... Parts>
   calibration.steps.front().max_num_iterations = options.max_num_iterations;
   return {calibrate(calibration, {}, options)};
 }
-/// The same with the initial values and bounds of Crate::table(samples).
+/// The same with the initial values and bounds of Crate().table(samples).
 template <class... Parts>
 [[nodiscard]] CrateResult<Crate<Parts...>> calibrate(const Crate<Parts...>& crate,
                                                      std::span<const Sample> samples,
                                                      const SolveOptions& options = {}) {
-  return calibrate(crate, Crate<Parts...>::table(samples), samples, options);
+  return calibrate(crate, crate.table(samples), samples, options);
 }
 
 }  // namespace kinecal

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {

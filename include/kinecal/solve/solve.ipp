@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/solve/minimize.ipp"
 #include "kinecal/solve/solve.hpp"
 #include "kinecal/solve/statistics.hpp"

@@ -12,7 +12,8 @@
 #include <optional>
 #include <span>
 
-#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {

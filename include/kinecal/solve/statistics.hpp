@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {

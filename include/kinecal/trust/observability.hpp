@@ -14,7 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/crate/any_problem.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {

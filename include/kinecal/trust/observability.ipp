@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/crate/evaluate.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/trust/observability.hpp"
 
 namespace kinecal {

@@ -133,7 +133,7 @@ std::string describe(const Config& config) {
       out << "bound " << b.name << " " << b.lower << " " << b.upper << "\n";
     }
     for (const auto& b : step.error_blocks) {
-      out << "block " << b.name << " " << b.type << " " << b.param << " " << b.alone << " "
+      out << "block " << b.name << " " << b.type << " " << b.param << " " << b.exclusive << " "
           << b.sigma << " " << b.loss.type << " " << b.loss.scale;
       for (const auto& model : b.models) out << " " << model;
       for (const auto& [name, number] : b.numbers) out << " " << name << "=" << number;

@@ -20,7 +20,7 @@
 #include "kinecal/io/urdf/urdf_text.ipp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
-#include "kinecal/kinematics/motion.hpp"
+#include "kinecal/kinematics/joint_state.hpp"
 #include "support/data.hpp"
 
 namespace kinecal {
@@ -117,7 +117,7 @@ std::vector<Pose<double>> corrected_kinematics(const Robot& robot,
       const ChainJoint& joint = chain.joints[i];
       corrections[i].frame = patch_of[joint.name].correction;
       corrections[i].offset =
-          make_motion(joint.drive.multiplier * patch_of[joint.drive.joint].offset);
+          make_joint_state(joint.drive.multiplier * patch_of[joint.drive.joint].offset);
     }
     const auto position_of = [&](const std::string& name) { return positions.at(name); };
     poses.push_back(forward_kinematics(chain, position_of, corrections));

@@ -94,7 +94,7 @@ bool read_camera_matrix(ConfigMap& map, const CameraKeys& keys, std::array<doubl
 
 /// R = 1 and P = [K 0] for files without them: pixels of an image that was rectified to the
 /// camera's own matrix.
-inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const Place& place,
+inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const SourceLocation& place,
                             Diagnostics& diagnostics) {
   const auto& k = camera.k;
   if (!has_r) camera.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -109,7 +109,7 @@ inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const Pl
 }
 
 /// Reports values that a pinhole camera cannot have.
-inline void check_camera(const CameraInfo& camera, const Place& place, Diagnostics& diagnostics) {
+inline void check_camera(const CameraInfo& camera, const SourceLocation& place, Diagnostics& diagnostics) {
   const auto& k = camera.k;
   if (!(k[0] > 0.0) || !(k[4] > 0.0)) {
     diagnostics.error(place,

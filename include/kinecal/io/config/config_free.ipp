@@ -33,7 +33,7 @@ inline void read_free_params(ConfigMap& map, StepConfig& step) {
 
 /// Reports a parameter that is freed twice, by its name or as an axis of a frame.
 inline void check_free_parameters(const ConfigMap& map, const StepConfig& step) {
-  std::map<std::string, Place> places;
+  std::map<std::string, SourceLocation> places;
   for (const FreeParamConfig& parameter : free_parameters(step)) {
     const auto [first, is_new] = places.emplace(parameter.name, parameter.place);
     if (is_new) continue;

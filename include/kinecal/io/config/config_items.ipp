@@ -24,7 +24,7 @@ namespace kinecal {
 struct ConfigItem {
   std::string name;
   std::optional<ConfigMap> map;
-  Place place;
+  SourceLocation place;
 };
 
 /// A list of a step, and the names of its items.
@@ -50,7 +50,7 @@ using FindConfigItems =
 /// Reports an item that has the name of an earlier one in the list.
 [[nodiscard]] inline bool occurs_twice(const std::vector<ConfigItem>& items,
                                        const std::string& name, const ConfigItemKind& kind,
-                                       const Place& place, const ConfigMap& step) {
+                                       const SourceLocation& place, const ConfigMap& step) {
   for (const ConfigItem& first : items) {
     if (first.name != name) continue;
     step.error(place, kind.subject(name) + " occurs twice; the first is in line " +
@@ -104,7 +104,7 @@ class FindRos2Items {
 
  private:
   ConfigItem item(ConfigMap& step, const ConfigItemKind& kind, const std::string& name,
-                  const Place& listed) {
+                  const SourceLocation& listed) {
     const std::string key = name + kind.suffix;
     const ConfigEntry* entry = step.use(key);
     if (entry == nullptr) {
@@ -122,7 +122,7 @@ class FindRos2Items {
 
   /// Suggests a map that does not belong to another item, and marks it as known.
   void report_missing(ConfigMap& step, const ConfigItemKind& kind, const std::string& name,
-                      const Place& listed) const {
+                      const SourceLocation& listed) const {
     const std::string key = name + kind.suffix;
     std::vector<std::string> maps;
     for (const ConfigEntry& entry : step.entries()) {

@@ -25,28 +25,28 @@ namespace kinecal {
 struct ConfigEntry {
   std::string key;
   const YamlNode& value;
-  Place place;
+  SourceLocation place;
 };
 
 class ConfigMap {
  public:
   /// @param map      a map; must outlive this
   /// @param subject  what the map describes, for messages: "model 'arm'"; may be empty
-  ConfigMap(const YamlNode& map, Place place, std::string subject, Diagnostics& diagnostics)
+  ConfigMap(const YamlNode& map, SourceLocation place, std::string subject, Diagnostics& diagnostics)
       : place_(std::move(place)), subject_(std::move(subject)), diagnostics_(&diagnostics) {
     for (std::size_t i = 0; i < map.keys.size(); ++i) add(map.keys[i], map.items[i]);
   }
-  ConfigMap(YamlNode&&, Place, std::string, Diagnostics&) = delete;
+  ConfigMap(YamlNode&&, SourceLocation, std::string, Diagnostics&) = delete;
 
-  [[nodiscard]] const Place& place() const { return place_; }
+  [[nodiscard]] const SourceLocation& place() const { return place_; }
   [[nodiscard]] const std::vector<ConfigEntry>& entries() const { return entries_; }
   [[nodiscard]] Diagnostics& diagnostics() const { return *diagnostics_; }
   void set_subject(std::string subject) { subject_ = std::move(subject); }
 
-  void error(const Place& place, const std::string& message) const {
+  void error(const SourceLocation& place, const std::string& message) const {
     diagnostics_->error(place, subject_.empty() ? message : subject_ + ": " + message);
   }
-  void warning(const Place& place, const std::string& message) const {
+  void warning(const SourceLocation& place, const std::string& message) const {
     diagnostics_->warning(place, subject_.empty() ? message : subject_ + ": " + message);
   }
 
@@ -164,7 +164,7 @@ class ConfigMap {
   }
 
  private:
-  [[nodiscard]] Place place_of(const YamlNode& node) const { return {place_.file, node.line}; }
+  [[nodiscard]] SourceLocation place_of(const YamlNode& node) const { return {place_.file, node.line}; }
 
   void append(ConfigEntry entry) {
     indices_.emplace(entry.key, entries_.size());
@@ -172,7 +172,7 @@ class ConfigMap {
   }
 
   void add(const YamlNode& key, const YamlNode& value) {
-    const Place place = place_of(key);
+    const SourceLocation place = place_of(key);
     const auto name = config_text(key);
     if (!name) {
       error(place, "a key is " + describe_config(key) + ", not a text");
@@ -196,7 +196,7 @@ class ConfigMap {
     return std::nullopt;
   }
 
-  Place place_;
+  SourceLocation place_;
   std::string subject_;
   Diagnostics* diagnostics_;
   std::vector<ConfigEntry> entries_;

@@ -24,7 +24,7 @@ struct ConfigProgress {
 inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress) {
   map.ignore({"verbose"});
   if (const auto link = map.text("base_link")) {
-    const Place place = map.find("base_link")->place;
+    const SourceLocation place = map.find("base_link")->place;
     if (!progress.config.base_link_place) {
       progress.config.base_link = *link;
       progress.config.base_link_place = place;
@@ -42,7 +42,9 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   ModelConfig model{item.name, "", "", item.name, item.place};
   if (!item.map) return model;
   ConfigMap& map = *item.map;
-  const std::vector<std::string> types = {"chain3d", "camera3d", "camera2d", "chain"};
+  std::vector<std::string> types;
+  for (const SensorEntry& entry : registry().sensors()) types.push_back(entry.type);
+  types.emplace_back("chain");
   const std::string type = map.required_text("type").value_or("");
   if (std::find(types.begin(), types.end(), type) != types.end()) {
     model.type = type == "chain" ? "chain3d" : type;

@@ -34,7 +34,7 @@ namespace kinecal {
 /// A column as the user names it.
 struct CsvColumn {
   std::string name;  ///< as in the header, or its number from 1
-  Place place;       ///< where the mapping names it
+  SourceLocation place;       ///< where the mapping names it
 };
 
 /// Columns to add up; usually one.

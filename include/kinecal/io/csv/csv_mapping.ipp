@@ -15,7 +15,7 @@ namespace detail {
 
 /// A column, or a list of them.
 [[nodiscard]] inline CsvSum read_csv_sum(const ConfigMap& map, const YamlNode& node,
-                                         const Place& place) {
+                                         const SourceLocation& place) {
   CsvSum sum;
   const auto add = [&](const YamlNode& column) {
     const auto name = config_text(column);

@@ -98,7 +98,7 @@ class CsvSamples {
   /// The sample of a row; nothing, and a warning, if a joint's position is missing.
   [[nodiscard]] std::optional<Sample> sample(const CsvRow& row) {
     Sample sample;
-    sample.source = Place{file_, row.line}.str();
+    sample.source = SourceLocation{file_, row.line}.str();
     bool complete = true;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const CsvJoint& joint = mapping_.joints[i];

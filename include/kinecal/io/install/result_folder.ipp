@@ -58,7 +58,7 @@ namespace detail {
                                            const std::string& values, const YamlNode& name) {
   const std::filesystem::path path = folder / name.text;
   if (!std::filesystem::exists(path)) {
-    throw InputError(Place{values, name.line}.str() + ": " + name.text +
+    throw InputError(SourceLocation{values, name.line}.str() + ": " + name.text +
                      " is not there; the result is incomplete");
   }
   return {path.filename().string(), read_text_file(path)};

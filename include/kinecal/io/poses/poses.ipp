@@ -96,7 +96,7 @@ KINECAL_INLINE std::vector<CapturePose> read_poses_yaml(const std::string& path,
     return poses;
   }
   for (const YamlNode& element : content.items) {
-    const Place place{path, element.line};
+    const SourceLocation place{path, element.line};
     const std::string subject = fmt::format("pose {}", poses.size() + 1);
     if (!element.is_map()) {
       diagnostics.error(place, subject + " is " + describe_config(element) + ", not a map");

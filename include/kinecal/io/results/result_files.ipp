@@ -23,27 +23,31 @@ namespace detail {
 
 /// The cameras of a calibration with their parameters applied to what was recorded.
 struct CalibratedCamera {
-  Sensor sensor;
+  Mount mount;
   CameraInfo info;
+  bool measures_depth = false;
 };
 
 [[nodiscard]] inline std::vector<CalibratedCamera> calibrated_cameras(
     const Calibration& calibration, const ParameterTable& table, std::span<const Sample> samples) {
   std::vector<CalibratedCamera> cameras;
   for (const CalibrationStep& step : calibration.steps) {
-    for (const SensorModel& model : step.problem->sensors()) {
-      const Sensor& sensor = model.sensor();
-      if (sensor.type == SensorType::chain3d) continue;
-      const auto same = [&](const auto& camera) { return camera.sensor.name == sensor.name; };
+    for (const MountedSensor& mounted : step.problem->sensors()) {
+      const Mount& mount = mounted.mount();
+      const auto same = [&](const auto& camera) { return camera.mount.name == mount.name; };
       if (std::any_of(cameras.begin(), cameras.end(), same)) continue;
-      const auto value = [&](std::size_t i) {
-        return table[parameter_name(sensor.parameter_prefix(), kCameraParameters[i])].value;
+      const auto find = [&](const char* part) {
+        return table.find(parameter_name(mount.parameter_prefix(), part));
       };
+      if (mounted.sensor().parameters().empty() || find("fx") < 0) continue;  // not a camera
+      const auto value = [&](const char* part) { return table[find(part)].value; };
       for (const Sample& sample : samples) {
-        const Observation* seen = sample.observation(sensor.name);
+        const Observation* seen = sample.observation(mount.name);
         if (seen == nullptr || !seen->camera) continue;
-        cameras.push_back({sensor, calibrated_camera_info(*seen->camera, value(0), value(1),
-                                                          value(2), value(3))});
+        cameras.push_back({mount,
+                           calibrated_camera_info(*seen->camera, value("fx"), value("fy"),
+                                                  value("cx"), value("cy")),
+                           find("z_scaling") >= 0});
         break;
       }
     }
@@ -79,10 +83,10 @@ KINECAL_INLINE std::string impossible_camera(const Calibration& calibration,
   Diagnostics diagnostics;
   for (const detail::CalibratedCamera& camera :
        detail::calibrated_cameras(calibration, table, samples)) {
-    const Place place{"camera '" + camera.sensor.name + "'", 0};
+    const SourceLocation place{"camera '" + camera.mount.name + "'", 0};
     detail::check_camera(camera.info, place, diagnostics);
-    const std::string scaling = parameter_name(camera.sensor.parameter_prefix(), "z_scaling");
-    if (camera.sensor.type == SensorType::camera3d && !(table[scaling].value > -1.0)) {
+    const std::string scaling = parameter_name(camera.mount.parameter_prefix(), "z_scaling");
+    if (camera.measures_depth && !(table[scaling].value > -1.0)) {
       diagnostics.error(
           place, fmt::format("depth scale must be positive, is {}", 1.0 + table[scaling].value));
     }
@@ -107,9 +111,9 @@ KINECAL_INLINE std::vector<OutputFile> result_files(
   };
   for (const detail::CalibratedCamera& camera :
        detail::calibrated_cameras(calibration, result.table, samples)) {
-    const std::string& name = camera.sensor.name;
+    const std::string& name = camera.mount.name;
     const std::string content = to_camera_info_yaml(camera.info, name);
-    if (camera.sensor.type == SensorType::camera3d) {
+    if (camera.measures_depth) {
       files.push_back({detail::camera_file("depth", name, options.date), content});
       refer("depth_info", name, files.back().name);
     }

@@ -38,7 +38,7 @@ class SampleBuilder {
       sample_ = {};
       sample_.joint_names.reserve(joints_);
       sample_.joint_positions.reserve(joints_);
-      sample_.source = Place{file_, line}.str();
+      sample_.source = SourceLocation{file_, line}.str();
     } else if (node == SampleNode::observation) {
       sample_.observations.emplace_back();
       camera_ = {};

@@ -15,7 +15,7 @@
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/io/urdf/patch_urdf.hpp"
 #include "kinecal/io/urdf/urdf_text.ipp"
-#include "kinecal/kinematics/motion.hpp"
+#include "kinecal/kinematics/joint_state.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {
@@ -170,7 +170,7 @@ inline void check_patch(const UrdfText& source, const Robot& robot, const JointP
       if (driven.joint != patch.joint) continue;
       Pose<double>& moved_by = changes[joint.name].moved_by;
       moved_by = moved_by *
-                 joint_pose(joint.type, joint.axis, make_motion(driven.multiplier * patch.offset));
+                 joint_pose(joint.type, joint.axis, make_joint_state(driven.multiplier * patch.offset));
     }
   }
   return changes;

@@ -41,7 +41,7 @@ namespace detail {
 /// Reports the errors of one joint for which urdfdom has no clear message.
 inline void check_urdf_joint(const UrdfText& source, pugi::xml_node joint,
                              Diagnostics& diagnostics) {
-  const Place place = source.place(joint);
+  const SourceLocation place = source.place(joint);
   const std::string name = joint.attribute("name").value(), type = joint.attribute("type").value();
   if (name.empty()) return diagnostics.error(place, "a joint has no name");
   if (const pugi::xml_node first = source.joint(name); first != joint) {

@@ -32,7 +32,7 @@ class UrdfText : public XmlText {
   }
 
   /// Place of the first joint, or else of the first link, that a message names in '' or [].
-  [[nodiscard]] Place place_of_name_in(std::string_view message) const {
+  [[nodiscard]] SourceLocation place_of_name_in(std::string_view message) const {
     for (const char* kind : {"joint", "link"}) {
       for (std::size_t open = message.find_first_of("'["); open != std::string_view::npos;
            open = message.find_first_of("'[", open + 1)) {

@@ -40,7 +40,7 @@ class XmlText {
         text_.data(), text_.size(), pugi::parse_default | pugi::parse_wnorm_attribute,
         pugi::encoding_utf8);
     if (!result) {
-      const Place place{file_, line(static_cast<std::size_t>(result.offset))};
+      const SourceLocation place{file_, line(static_cast<std::size_t>(result.offset))};
       throw InputError(place.str() + ": malformed XML: " + result.description());
     }
     if (root().name() != kind.root) {
@@ -59,7 +59,7 @@ class XmlText {
   }
 
   /// File and line of an element; the file as a whole for a null node.
-  [[nodiscard]] Place place(pugi::xml_node element) const {
+  [[nodiscard]] SourceLocation place(pugi::xml_node element) const {
     return {file_, element ? line(offset(element)) : 0};
   }
 

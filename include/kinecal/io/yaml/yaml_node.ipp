@@ -141,7 +141,7 @@ KINECAL_INLINE std::vector<YamlNode> parse_yaml(std::string_view text, const std
     }
     return trees.take();
   } catch (const YamlError& error) {
-    throw InputError(Place{path, error.line}.str() + ": " + error.what());
+    throw InputError(SourceLocation{path, error.line}.str() + ": " + error.what());
   }
 }
 

@@ -29,7 +29,7 @@ class McapMessages {
   /// @param place        named by warnings
   /// @param diagnostics  receives warnings; errors are thrown
   /// @throws BytesError  if it is not an MCAP file
-  McapMessages(ByteFile& file, const BagReader& reader, Place place, Diagnostics& diagnostics)
+  McapMessages(ByteFile& file, const BagReader& reader, SourceLocation place, Diagnostics& diagnostics)
       : file_(file), reader_(reader), place_(std::move(place)), diagnostics_(diagnostics) {
     const Bytes first = file_.read(std::min<std::uint64_t>(file_.size(), 16), buffer_);
     if (first.empty()) throw BytesError("is empty");
@@ -221,7 +221,7 @@ class McapMessages {
 
   ByteFile& file_;
   const BagReader& reader_;
-  Place place_;
+  SourceLocation place_;
   Diagnostics& diagnostics_;
   McapIndex index_;
   std::vector<std::byte> buffer_;   ///< of the file: a record, a chunk

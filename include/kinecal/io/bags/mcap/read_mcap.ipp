@@ -22,7 +22,7 @@ KINECAL_INLINE void read_mcap(std::istream& in, const std::string& name, const B
     try {
       if (!messages) {
         file.emplace(in);
-        messages.emplace(*file, reader, Place{name, 0}, diagnostics);
+        messages.emplace(*file, reader, SourceLocation{name, 0}, diagnostics);
       }
       return messages->next();
     } catch (const BytesError& e) {

@@ -35,7 +35,7 @@ class Db3Messages {
   /// @param place        named by warnings
   /// @param diagnostics  receives warnings; errors are thrown
   /// @throws BytesError  if it is not a bag, or is damaged
-  Db3Messages(const SqliteDatabase& database, const BagReader& reader, const Place& place,
+  Db3Messages(const SqliteDatabase& database, const BagReader& reader, const SourceLocation& place,
               Diagnostics& diagnostics)
       : database_(database) {
     demand("topics", {"id", "name", "type", "serialization_format"});
@@ -182,7 +182,7 @@ inline void read_db3_database(const std::function<SqliteDatabase()>& open, const
     try {
       if (!messages) {
         database.emplace(open());
-        messages.emplace(*database, reader, Place{name, 0}, diagnostics);
+        messages.emplace(*database, reader, SourceLocation{name, 0}, diagnostics);
       }
       return messages->next();
     } catch (const BytesError& e) {

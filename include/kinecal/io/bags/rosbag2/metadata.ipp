@@ -45,7 +45,7 @@ struct Ros2Metadata {
     if (compression != nullptr) metadata.compression = compression->text;
     for (const YamlNode& listed : paths->items) {
       if (!listed.is_scalar())
-        throw InputError(Place{path, listed.line}.str() + ": is not the name of a file");
+        throw InputError(SourceLocation{path, listed.line}.str() + ": is not the name of a file");
       metadata.files.push_back(listed.text);
     }
     return metadata;

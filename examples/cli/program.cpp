@@ -1,0 +1,298 @@
+// The program kinecal: its commands and their options.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "kinecal/program.hpp"
+
+namespace {
+
+using namespace kinecal::cli;
+
+void add_input(CLI::App& command, std::string& urdf, std::string& config) {
+  command.add_option("--urdf", urdf, "the robot's URDF; default: /robot_description of the bag")
+      ->type_name("FILE");
+  command
+      .add_option("--config", config,
+                  "what to calibrate: a configuration of robot_calibration, ROS 1 or ROS 2")
+      ->required()
+      ->type_name("FILE");
+}
+
+void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
+  command
+      .add_option(
+          "--camera", cameras,
+          "intrinsics of a sensor that was recorded without camera_info: camera_info, Kalibr "
+          "or OpenCV YAML; FILE:cam1 for one of several")
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
+}
+
+void add_calibrate(CLI::App& command, CalibrateOptions& options) {
+  add_input(command, options.urdf, options.config);
+  command
+      .add_option("--samples", options.samples,
+                  "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
+      ->required()
+      ->type_name("FILE");
+  add_cameras(command, options.cameras);
+  command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
+  command
+      .add_option(
+          "--offsets", options.offsets,
+          "where joint offsets go: rising adds them to <calibration rising>, origin puts them "
+          "into the joints' <origin>, for drivers that ignore <calibration>")
+      ->check(CLI::IsMember({"rising", "origin"}))
+      ->capture_default_str();
+  command.add_flag("--upstream-names", options.upstream_names,
+                   "name the files as robot_calibration does, with the date");
+  command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
+  command
+      .add_option("--threads", options.threads,
+                  "number of threads, default: one per core; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--cost", options.cost,
+                  "how Ceres gets the samples: compressed sums them, stacked keeps every feature "
+                  "(slower, for comparison)")
+      ->check(CLI::IsMember({"compressed", "stacked"}))
+      ->capture_default_str();
+}
+
+void add_init(CLI::App& command, InitOptions& options) {
+  command.add_option("--urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+  command.add_option("--output", options.output, "the configuration to write")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--target", options.targets,
+          "what the robot is measured against: leds, checkerboard (in the gripper), "
+          "world_checkerboard, tracker or ground; ground also goes with another: leds,ground")
+      ->delimiter(',')
+      ->type_name("TARGET");
+  command
+      .add_option(
+          "--target-frame", options.target_frame,
+          "frame_id of the board's corners or of the reflector in the samples, not a link of "
+          "the URDF; default: 'checkerboard' or 'smr'")
+      ->type_name("NAME");
+  command
+      .add_option("--tracker-frame", options.tracker_frame,
+                  "frame_id of the points of a tracker, default: 'tracker_frame'")
+      ->type_name("NAME");
+  command.add_option("--arm", options.arm, "link at the end of the arm")->type_name("LINK");
+  command.add_option("--camera", options.camera, "the camera's optical frame")->type_name("LINK");
+  command
+      .add_option("--camera-type", options.camera_type,
+                  "camera3d (points in metres), the default, or camera2d (pixels)")
+      ->type_name("TYPE");
+  command
+      .add_option("--robot-camera-name", options.camera_name,
+                  "sensor_name of the camera in the samples, default: 'camera'")
+      ->type_name("NAME");
+  command
+      .add_option("--base", options.base,
+                  "link in which measurements are compared, default: the highest one")
+      ->type_name("LINK");
+  command.add_flag("--force", options.force, "replace the file that is there");
+}
+
+void add_convert(CLI::App& command, ConvertOptions& options) {
+  command
+      .add_option("input", options.input,
+                  "samples or poses in YAML, a ROS 1 bag, MCAP, a ROS 2 bag, or a table")
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option("output", options.output,
+                  "the file to write, in the format of its name: .yaml, .bag (ROS 1) or .mcap")
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option("--columns", options.columns,
+                  "read the input as a table; this YAML file says what its columns mean")
+      ->type_name("FILE");
+  command.add_flag("--drop-clouds", options.drop_clouds,
+                   "leave out point clouds and images; YAML never has them");
+  command.add_flag("--force", options.force, "replace the file that is there");
+}
+
+void add_camera(CLI::App& command, CameraOptions& options) {
+  command.add_option("file", options.file, "camera_info, Kalibr or OpenCV YAML; FILE:cam1")
+      ->required()
+      ->type_name("FILE");
+  CLI::Option* output =
+      command
+          .add_option("--output", options.output, "write the camera to this file, as camera_info")
+          ->type_name("FILE");
+  command
+      .add_option("--keys", options.keys,
+                  "file: keys as in files of camera drivers; message: as in the ROS 2 message")
+      ->check(CLI::IsMember({"file", "message"}))
+      ->needs(output)
+      ->capture_default_str();
+  command.add_option("--name", options.name, "camera_name in the file")
+      ->needs(output)
+      ->capture_default_str();
+  command.add_flag("--force", options.force, "replace the file that is there")->needs(output);
+}
+
+/// The arguments as the parser expects them, the last one first.  The parser takes -.5 for an option,
+/// so the numbers of rpy become -0.5.
+std::vector<std::string> arguments_of(int argc, char** argv) {
+  const bool are_numbers = argc > 1 && std::string("rpy") == argv[1];
+  std::vector<std::string> arguments;
+  for (int i = argc - 1; i > 0; --i) {
+    const std::string text = argv[i];
+    const bool cut = are_numbers && text.starts_with("-.");
+    arguments.push_back(cut ? "-0" + text.substr(1) : text);
+  }
+  return arguments;
+}
+
+void add_install(CLI::App& command, InstallOptions& installing) {
+  CLI::Option* result =
+      command.add_option("result", installing.result, "folder that calibrate wrote")
+          ->type_name("DIR");
+  command.add_option("--to", installing.folder, "folder of the robot's launch file")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--launch", installing.launch, "name of the launch file")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--name", installing.names,
+          "set another name in the launch file than Fetch's: z_offset_mm=camera/z_offset_mm; "
+          "KEY= leaves the key out")
+      ->type_name("KEY=NAME")
+      ->allow_extra_args(false);
+  command.add_flag(
+      "--force", installing.force,
+      "install a result that did not converge; restore a version whose files are gone");
+  CLI::Option* restore =
+      command.add_flag("--restore", installing.restore, "put the previous version back")
+          ->excludes(result);
+  command.add_flag("--date", installing.date, "print the date of the installed version")
+      ->excludes(result)
+      ->excludes(restore);
+}
+
+void add_check(CLI::App& command, CheckOptions& options) {
+  add_input(command, options.urdf, options.config);
+  command.add_option("--samples", options.samples, "recorded samples")->type_name("FILE");
+  add_cameras(command, options.cameras);
+}
+
+void add_inspect(CLI::App& command, std::vector<std::string>& samples) {
+  command.add_option("samples", samples, "recorded samples")->required()->type_name("FILE");
+}
+
+void add_rpy(CLI::App& command, RpyOptions& options) {
+  command.add_option("numbers", options.numbers, "A B C, or R P Y; radians")
+      ->required()
+      ->expected(3);
+  command.add_flag("--to-vector", options.to_vector, "the numbers are roll, pitch, yaw");
+}
+
+/// The commands of the program, and which of them the arguments call.
+class Commands {
+ public:
+  explicit Commands(CLI::App& app) : app_(app) {}
+
+  /// @param describe  adds the options to the command
+  /// @param run       runs the command
+  template <class Options>
+  void add(const char* name, const char* says, void (*describe)(CLI::App&, Options&),
+           int (*run)(const Options&)) {
+    const auto options = std::make_shared<Options>();
+    names_.push_back(name);
+    CLI::App* const command = app_.add_subcommand(name, says);
+    describe(*command, *options);
+    command->callback([this, options, run] { called_ = [=] { return run(*options); }; });
+  }
+
+  [[nodiscard]] int run_called() const { return called_(); }
+
+  /// The message about wrong arguments.
+  [[nodiscard]] std::string refusal(const std::string& first, const CLI::Error& error) const {
+    std::string names;
+    for (const std::string& name : names_) {
+      if (name == first) {
+        return std::string("error: ") + error.what() + "; 'kinecal " + name +
+               " --help' lists its options\n";
+      }
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    return "error: " +
+           (first.empty() ? "no command is given" : "'" + first + "' is not a command") +
+           "; use one of " + names + "\n";
+  }
+
+ private:
+  CLI::App& app_;
+  std::vector<std::string> names_;
+  std::function<int()> called_;
+};
+
+int run(int argc, char** argv) {
+  CLI::App app("Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.",
+               "kinecal");
+  app.set_version_flag("--version", version());
+  app.require_subcommand(1);
+  app.footer("'kinecal COMMAND --help' lists the options of a command.");
+  Commands commands(app);
+  commands.add("init",
+               "write a first configuration from a URDF; asks for what the options leave open",
+               add_init, init);
+  commands.add("check", "list every error in the input at once, without calibrating", add_check,
+               check);
+  commands.add("calibrate", "calibrate the robot and write its corrected URDF and camera files",
+               add_calibrate, calibrate);
+  commands.add("install", "copy a result to the robot and set it in the launch file; or go back",
+               add_install, install);
+  commands.add("inspect", "show what is in recordings: topics, sensors, features, joints, gaps",
+               add_inspect, inspect);
+  commands.add("convert", "write samples or poses in another format", add_convert, convert);
+  commands.add("camera", "show a camera file, and write it as camera_info", add_camera, camera);
+  commands.add(
+      "rpy",
+      "convert a rotation vector (a b c of a free frame) to roll, pitch, yaw (a URDF's), or back",
+      add_rpy, rpy);
+  try {
+    app.parse(arguments_of(argc, argv));
+  } catch (const CLI::ParseError& e) {
+    const std::string first = argc > 1 ? argv[1] : "";
+    app.failure_message(
+        [&](const CLI::App*, const CLI::Error& error) { return commands.refusal(first, error); });
+    return app.exit(e) == 0 ? kDone : kBadInput;
+  }
+  const int code = commands.run_called();
+  if (std::fflush(stdout) == 0) return code;
+  std::fprintf(stderr, "error: cannot write to the standard output\n");
+  return kBadInput;
+}
+
+}  // namespace
+
+namespace kinecal {
+
+int run_program(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "error: %s\n", e.what());
+  }
+  return cli::kBadInput;
+}
+
+}  // namespace kinecal

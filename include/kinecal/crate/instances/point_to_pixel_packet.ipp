@@ -1,9 +1,0 @@
-// The error block PointToPixel in packets.
-// SPDX-License-Identifier: Apache-2.0
-#include "kinecal/crate/problem.hpp"
-
-namespace kinecal {
-
-template class BlockTerm<PointToPixel, Packet>;
-
-}  // namespace kinecal

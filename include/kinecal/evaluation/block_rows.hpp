@@ -1,0 +1,284 @@
+// Residual and derivatives of one feature: jets differentiate the error block by its arguments.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "kinecal/errors/error_block.hpp"
+#include "kinecal/evaluation/plane_rows.hpp"
+#include "kinecal/problem/any_term.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// Solves A x = b for a symmetric positive definite A, lane by lane; not a number where A is
+/// singular.  Source: Golub and Van Loan, Matrix Computations, 4.1 (L D L^T).
+template <class S, int N>
+[[nodiscard]] Eigen::Matrix<S, N, 1> solve_positive(Eigen::Matrix<S, N, N> a,
+                                                    Eigen::Matrix<S, N, 1> b) {
+  for (int k = 0; k < N; ++k) {
+    const S inverse = S(1.0) / a(k, k);
+    for (int i = k + 1; i < N; ++i) {
+      const S factor = a(i, k) * inverse;
+      for (int j = k + 1; j < N; ++j) a(i, j) -= factor * a(k, j);
+      b(i) -= factor * b(k);
+    }
+  }
+  for (int k = N - 1; k >= 0; --k) {
+    for (int j = k + 1; j < N; ++j) b(k) -= a(k, j) * b(j);
+    b(k) /= a(k, k);
+  }
+  return b;
+}
+
+/// The shortest step of V variables that makes r + D x zero, or the least r if V < M.
+template <class S, int M, int V>
+[[nodiscard]] Eigen::Matrix<S, V, 1> shortest_step(const Eigen::Matrix<S, M, 1>& r,
+                                                   const Eigen::Matrix<S, M, V>& d) {
+  if constexpr (M <= V) {
+    const Eigen::Matrix<S, M, M> normal = d * d.transpose();
+    const Eigen::Matrix<S, M, 1> scaled = solve_positive<S, M>(normal, r);
+    return -(d.transpose() * scaled);
+  } else {
+    const Eigen::Matrix<S, V, V> normal = d.transpose() * d;
+    const Eigen::Matrix<S, V, 1> gradient = d.transpose() * r;
+    return -solve_positive<S, V>(normal, gradient);
+  }
+}
+
+}  // namespace detail
+
+/// Computes the rows of features of an error block of type B.
+template <ErrorBlock B, class S>
+class BlockRows {
+ public:
+  static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
+  static constexpr std::size_t kBodies = static_cast<std::size_t>(kSensors<B>);  ///< one per sensor
+  using Views = TermViews<S>;                                     ///< one view per sensor
+  using Rows = FeatureRows<S, kSize, static_cast<int>(kBodies)>;  ///< the result
+
+  /// Number of features that are compared; a plane through all features counts as one.
+  [[nodiscard]] static std::size_t features(const Views& views) {
+    return PlanePairBlock<B> ? 1 : views[0].observation().size();
+  }
+
+  /// The chain of each body of feature i.
+  [[nodiscard]] static BodyChains chains(const Views& views, std::size_t i) {
+    BodyChains result{};
+    for (std::size_t s = 0; s < kBodies; ++s) result[s] = views[s].observation().chain(i);
+    return result;
+  }
+
+  /// One if all sensors observed feature i, else zero; lane by lane.
+  [[nodiscard]] static S weight(const Views& views, std::size_t i) {
+    S all = views[0].observation().usable(i);
+    for (std::size_t s = 1; s < kBodies; ++s) all *= views[s].observation().usable(i);
+    return all;
+  }
+
+  /// Residual of feature i, with derivatives if kDerivatives is true.
+  template <bool kDerivatives>
+  static void rows(const B& block, const Views& views, std::size_t i, Linearization at,
+                   Rows& rows) {
+    if constexpr (PlanePairBlock<B>) {
+      plane_rows<B, S>(block, views, kDerivatives, rows);
+    } else {
+      rows.own = 0;
+      rows.weight = weight(views, i);
+      if constexpr (PixelBlock<B>) {
+        pixel_rows<kDerivatives>(block, views, i, rows);
+      } else {
+        placed_rows<kDerivatives>(block, views, i, at, rows);
+      }
+      // A missing feature may give NaN; it must not count.
+      const auto missing = rows.weight == S(0.0);
+      for (int m = 0; m < kSize; ++m) {
+        rows.residual(m) = select(missing, S(0.0), rows.residual(m));
+      }
+    }
+  }
+
+ private:
+  using Residual = Eigen::Matrix<S, kSize, 1>;
+  using By3 = Eigen::Matrix<S, kSize, 3>;
+  static constexpr std::size_t kOwn = kParametersOfBlock<B>;
+  static constexpr auto kInputs = kQuantities<B>;
+
+  [[nodiscard]] static std::array<S, kOwn> own_values(const Views& views) {
+    return detail::own_constants<kOwn, S>(views.own->values);
+  }
+  /// Adds the columns of the block's own parameters.
+  /// @param first  variable of the first of them
+  template <class R>
+  static void add_own(const Views& views, const R& r, int first, Rows& rows) {
+    for (const int k : views.own->free) {
+      for (int m = 0; m < kSize; ++m) rows.by_own[rows.own](m) = r(m).v(first + k);
+      ++rows.own;
+    }
+  }
+
+  template <std::size_t I>
+  using Vectors = detail::VectorsOf<kInputs[I]>;
+  /// The first variable of each sensor, then of the block's own parameters; then their number.
+  static constexpr std::array<int, kBodies + 2> kFirst = [] {
+    std::array<int, kBodies + 2> first{};
+    for (std::size_t s = 0; s < kBodies; ++s) {
+      const int variables = kInputs[s] == Quantity::ray ? 12 : kInputs[s] == Quantity::point ? 3 : 6;
+      first[s + 1] = first[s] + variables;
+    }
+    first[kBodies + 1] = first[kBodies] + static_cast<int>(kOwn);
+    return first;
+  }();
+  using J = Jet<S, kFirst[kBodies + 1]>;
+  /// The vectors of all sensors.
+  using Values = std::array<const Vector3<S>*, kBodies>;
+
+  [[nodiscard]] static auto call(const B& block, const Values& values, const Views& views) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      return detail::call_block<B, S>(block, own_values(views),
+                                      Vectors<I>::template plain<S>(values[I])...);
+    }
+    (std::make_index_sequence<kBodies>{});
+  }
+  [[nodiscard]] static auto call_jets(const B& block, const Values& values, const Views& views) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      return detail::call_block<B, J>(
+          block, detail::own_jets<kOwn, J, S>(views.own->values, kFirst[kBodies]),
+          Vectors<I>::template jets<J, S>(values[I], kFirst[I])...);
+    }
+    (std::make_index_sequence<kBodies>{});
+  }
+
+  template <bool kDerivatives>
+  static void placed_rows(const B& block, const Views& views, std::size_t i, Linearization at,
+                          Rows& rows) {
+    Values values;
+    for (std::size_t s = 0; s < kBodies; ++s) values[s] = views[s].values(i);
+    if constexpr (!kDerivatives) {
+      rows.residual = call(block, values, views);
+    } else {
+      std::array<Vector3<S>, 4> moved;
+      if (at == Linearization::error_free) take_residual_away(block, views, values, moved);
+      const auto r = call_jets(block, values, views);
+      rows.residual = values_of(r);
+      [&]<std::size_t... I>(std::index_sequence<I...>) {
+        (add_sensor<I>(views[I], i, values[I], r, rows), ...);
+      }
+      (std::make_index_sequence<kBodies>{});
+      add_own(views, r, kFirst[kBodies], rows);
+    }
+  }
+
+  /// Adds what sensor I contributes: by its body and by its own parameters.
+  template <std::size_t I, class R>
+  static void add_sensor(const SensorView<S>& view, std::size_t i, const Vector3<S>* values,
+                         const R& r, Rows& rows) {
+    constexpr auto& kChanges = Vectors<I>::kVariables;
+    std::array<By3, kChanges.size()> by;
+    for (std::size_t v = 0; v < kChanges.size(); ++v) {
+      by[v] = derivatives_by<3>(r, kFirst[I] + 3 * static_cast<int>(v));
+    }
+    if constexpr (kChanges.size() == 1) {
+      rows.set_point(I, values[0], by[0]);
+    } else {
+      rows.by_body[I].setZero();
+      for (std::size_t v = 0; v < kChanges.size(); ++v) {
+        rows.add_vector(I, kChanges[v], values[v], by[v]);
+      }
+    }
+    const Vector3<S>* change = view.changes(i);
+    for (std::size_t k = 0; k < view.own().free.size(); ++k, change += kChanges.size()) {
+      rows.by_own[rows.own] = by[0] * change[0];
+      for (std::size_t v = 1; v < kChanges.size(); ++v) {
+        rows.by_own[rows.own] += by[v] * change[v];
+      }
+      ++rows.own;
+    }
+  }
+
+  /// Changes what was measured so that the residual becomes zero: one Newton step, exact if the
+  /// block is linear.  It is the measurement of the first sensor that has parameters, else of the
+  /// last one.
+  static void take_residual_away(const B& block, const Views& views, Values& values,
+                                 std::array<Vector3<S>, 4>& moved) {
+    std::size_t measuring = 0;
+    while (measuring + 1 < kBodies && !views[measuring].code().measures()) ++measuring;
+    const auto r = call_jets(block, values, views);
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (void)((I == measuring ? (move<I>(r, values[I], moved), true) : false) || ...);
+    }
+    (std::make_index_sequence<kBodies>{});
+    values[measuring] = moved.data();
+  }
+  template <std::size_t I, class R>
+  static void move(const R& r, const Vector3<S>* values, std::array<Vector3<S>, 4>& moved) {
+    std::copy_n(values, Vectors<I>::kValues, moved.begin());
+    constexpr Quantity kInput = kInputs[I];
+    // Of a ray the direction is measured, of a reading the number.
+    constexpr int kFrom = kFirst[I] + (kInput == Quantity::ray || kInput == Quantity::reading ? 3 : 0);
+    constexpr int kCount = kInput == Quantity::pose ? 6 : kInput == Quantity::reading ? 1 : 3;
+    auto step = detail::shortest_step<S, kSize, kCount>(values_of(r),
+                                                        derivatives_by<kCount>(r, kFrom));
+    const S zero = (step - step).sum();  // NaN where the residual does not depend on it
+    for (int k = 0; k < kCount; ++k) step(k) = select(zero == S(0.0), step(k), S(0.0));
+    if constexpr (kInput == Quantity::reading) {
+      moved[1].x() += step(0);
+    } else if constexpr (kInput == Quantity::pose) {
+      moved[0] += step.template head<3>();
+      for (int i = 0; i < kLanes<S>; ++i) {  // exp() branches
+        const Matrix3<double> rotation =
+            exp(Vector3<double>(lane(step(3), i), lane(step(4), i), lane(step(5), i)));
+        for (std::size_t c = 1; c < 4; ++c) {
+          const Vector3<double> turned = rotation * detail::lane_of(moved[c], i);
+          for (int k = 0; k < 3; ++k) set_lane(moved[c](k), i, turned(k));
+        }
+      }
+    } else {
+      moved[kInput == Quantity::ray ? 1 : 0] += step;
+    }
+  }
+
+  /// A point of the first sensor in front of the second one, a camera.
+  template <bool kDerivatives>
+  static void pixel_rows(const B& block, const Views& views, std::size_t i, Rows& rows) {
+    const SensorView<S>& camera = views[1];
+    const Vector3<S>& p_base = *views[0].values(i);
+    const Pose<S> camera_T_base = camera.pose().inverse();
+    const Vector3<S> p_camera = camera_T_base * p_base;
+    const S* seen = camera.observation().measured(i);
+    const Eigen::Matrix<S, 2, 1> observed(seen[0], seen[1]);
+    PredictedPixel<S> pixel;
+    camera.code().predict(camera.observation(), p_camera, camera.own().values, camera.own().free,
+                          kDerivatives, pixel);
+    if constexpr (!kDerivatives) {
+      rows.residual = detail::call_block<B, S>(block, own_values(views),
+                                               PixelObservation<S>{pixel.value, observed});
+    } else {
+      using J = Jet<S, 2 + static_cast<int>(kOwn)>;
+      const Eigen::Matrix<J, 2, 1> predicted(J(pixel.value(0), 0), J(pixel.value(1), 1));
+      const auto r =
+          detail::call_block<B, J>(block, detail::own_jets<kOwn, J, S>(views.own->values, 2),
+                                   PixelObservation<J>{predicted, observed});
+      rows.residual = values_of(r);
+      const Eigen::Matrix<S, kSize, 2> by_pixel = derivatives_by<2>(r, 0);
+      const By3 by_base_point = By3(by_pixel * pixel.by_point) * camera_T_base.rotation;
+      rows.set_point(0, p_base, by_base_point);
+      rows.set_point(1, p_base, -by_base_point);  // moving the camera moves the point the other way
+      const Vector3<S>* change = views[0].changes(i);
+      for (std::size_t k = 0; k < views[0].own().free.size(); ++k) {
+        rows.by_own[rows.own++] = by_base_point * change[k];
+      }
+      for (const auto& by_own : pixel.by_own) rows.by_own[rows.own++] = by_pixel * by_own;
+      add_own(views, r, 2, rows);
+    }
+    const S behind(std::numeric_limits<double>::quiet_NaN());
+    for (int m = 0; m < kSize; ++m) {
+      rows.residual(m) = select(p_camera.z() > S(0.0), rows.residual(m), behind);
+    }
+  }
+};
+
+}  // namespace kinecal

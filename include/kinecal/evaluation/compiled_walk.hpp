@@ -1,0 +1,85 @@
+// The walk of one chain, compiled for that chain and its free parameters.
+//
+// The compiler knows the chains of a crate.  A problem that a crate fills uses these walks in place
+// of those of a RuntimeChain; both give the same result.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/geometry/packet.hpp"
+#include "kinecal/parameters/free_parameters.hpp"
+#include "kinecal/problem/batch.hpp"
+
+namespace kinecal {
+
+/// The state of a walk before the first moving joint: the same for all samples of an evaluation.
+template <class S>
+struct WalkStart {
+  Pose<S> pose;                                          ///< before the first moving joint
+  std::size_t joint = 0;                                 ///< index of that joint
+  const JointCorrection<double>* corrections = nullptr;  ///< of all joints
+  Twist<S>* turn = nullptr;     ///< where the next rotational twist is written, if any
+  Vector3<S>* shift = nullptr;  ///< where the next translational twist is written, if any
+};
+
+/// The walk of one chain as functions.
+template <class S>
+struct CompiledWalk {
+  /// Walks from the first moving joint on and sets the tip's pose.
+  /// @param joints  states of all joints
+  using Walk = void (*)(const WalkStart<S>&, JointStates<S> joints, Pose<S>& tip);
+
+  std::string tip;                    ///< of the chain
+  std::vector<JointIndices> columns;  ///< for which with_twists is compiled
+  Walk pose_only;                     ///< computes the pose
+  Walk with_twists;                   ///< computes the pose and the twists of free parameters
+};
+
+namespace detail {
+
+/// The columns of each joint as constants.
+template <class C, class F>
+struct StaticColumns {
+  [[nodiscard]] constexpr const JointIndices& operator[](std::size_t joint) const {
+    return kColumnsOf<C, F>[joint];
+  }
+};
+
+template <class S, class C, class F>
+struct WalkOf {
+  KINECAL_FLATTEN static void pose_only(const WalkStart<S>& start, JointStates<S> joints,
+                                        Pose<S>& tip) {
+    PoseWalker<S> walker{start.pose};
+    go_on(start, joints, walker);
+    tip = walker.pose;
+  }
+  KINECAL_FLATTEN static void with_twists(const WalkStart<S>& start, JointStates<S> joints,
+                                          Pose<S>& tip) {
+    TwistWalker<S, StaticColumns<C, F>> walker({}, start.turn, start.shift, start.pose);
+    go_on(start, joints, walker);
+    tip = walker.walker.pose;
+  }
+
+ private:
+  template <class W>
+  static void go_on(const WalkStart<S>& start, JointStates<S> joints, W& walker) {
+    walk_on(C{}, C::kFirstMotion, joints,
+            std::span(start.corrections, C::kSize), walker);
+  }
+};
+
+}  // namespace detail
+
+/// Compiles the walk of a chain.
+/// @tparam C  a Chain
+/// @tparam F  a FreeParameters
+template <class S, StaticChain C, class F>
+[[nodiscard]] CompiledWalk<S> compiled_walk() {
+  const auto& columns = kColumnsOf<C, F>;
+  const std::string_view tip = C::kVirtual.empty() ? C::kTip : C::kVirtual;
+  return {std::string(tip),
+          {columns.begin(), columns.end()},
+          &detail::WalkOf<S, C, F>::pose_only,
+          &detail::WalkOf<S, C, F>::with_twists};
+}
+
+}  // namespace kinecal

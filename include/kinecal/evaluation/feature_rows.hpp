@@ -1,0 +1,99 @@
+// The residual of one feature and its derivatives, before kinematics enters: the one format of rows.
+//
+// Whatever an error block compares, a residual changes only because rigid bodies move (one per
+// sensor: everything at the end of its chain) and because parameters of sensors or of the block
+// itself change:
+//
+//   dr = sum over bodies of  by_body (v, w)  +  sum over own parameters of  by_own dk
+//
+// with the twist (v, w) of the body in the base.  A point p with dr = D dp gives by_body =
+// D [I, -[p]x]: a row d of D becomes (d, p x d).  The free parameters of a chain enter later, once
+// for all features: see local_sums.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "kinecal/evaluation/sensor_view.hpp"
+
+namespace kinecal {
+
+/// The most parameters of its own and of its sensors on which an error block may depend.
+inline constexpr std::size_t kMostOwn = 32;
+
+/// Residual of one feature and its derivatives.
+template <class S, int M, int Bodies>
+struct FeatureRows {
+  S weight{1.0};                    ///< one, or zero where the feature is missing
+  Eigen::Matrix<S, M, 1> residual;  ///< (M) unweighted
+  std::array<Eigen::Matrix<S, M, 6>, Bodies> by_body;  ///< by linear, by angular
+  std::array<Eigen::Matrix<S, M, 1>, kMostOwn> by_own;  ///< by each free parameter of sensors and
+                                                        ///< block
+  std::size_t own = 0;                                  ///< number of them
+
+  /// Adds to the rows of a body what a vector of three numbers contributes.
+  /// @param change  how it changes with the body
+  /// @param x       (3) the vector, in the base
+  /// @param by_x    (M x 3) derivative of the residual with respect to it: D
+  void add_vector(std::size_t body, detail::Change change, const Vector3<S>& x,
+                  const Eigen::Matrix<S, M, 3>& by_x) {
+    for (int row = 0; row < M; ++row) {
+      const Vector3<S> d = by_x.row(row);
+      auto of_body = by_body[body].row(row);
+      if (change == detail::Change::point) of_body.template head<3>() += d.transpose();
+      if (change == detail::Change::point || change == detail::Change::direction) {
+        of_body.template tail<3>() += cross(x, d).transpose();
+      }
+      if (change == detail::Change::rotation) of_body.template tail<3>() += d.transpose();
+    }
+  }
+  /// Sets the rows of a body with one point.
+  void set_point(std::size_t body, const Vector3<S>& p, const Eigen::Matrix<S, M, 3>& by_point) {
+    for (int row = 0; row < M; ++row) {
+      const Vector3<S> d = by_point.row(row);
+      by_body[body].row(row) << d.transpose(), cross(p, d).transpose();
+    }
+  }
+};
+
+/// The most sensors of an error block.
+inline constexpr std::size_t kMostBodies = 4;
+/// The bodies of a feature: the chain at whose end it is, for each sensor of an error block.
+using BodyChains = std::array<std::size_t, kMostBodies>;
+
+/// A term's sensors as they see a batch, and its own parameters.
+template <class S>
+struct TermViews {
+  std::span<const SensorView<S>* const> sensors;  ///< of the term, in its order
+  const OwnParameters* own = nullptr;             ///< of the block itself
+
+  [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
+  [[nodiscard]] std::size_t size() const { return sensors.size(); }
+
+  /// Number of free parameters of sensors and block on which a feature depends.
+  [[nodiscard]] std::size_t num_own() const {
+    std::size_t n = own->free.size();
+    for (const SensorView<S>* view : sensors) n += view->own().free.size();
+    return n;
+  }
+  /// Columns of the whole Jacobian on which a feature depends, in this order: those of each body
+  /// (rotational, then translational), those of the sensors' parameters, those of the block.  A
+  /// parameter that moves several bodies occurs several times.
+  void columns(const BodyChains& chains, std::vector<int>& all) const {
+    all.clear();
+    const auto append = [&](const std::vector<int>& more) {
+      all.insert(all.end(), more.begin(), more.end());
+    };
+    for (std::size_t s = 0; s < sensors.size(); ++s) {
+      const TwistColumns& twists = sensors[s]->state().twist_columns[chains[s]];
+      append(twists.rotational);
+      append(twists.translational);
+    }
+    for (const SensorView<S>* view : sensors) append(view->own().columns);
+    append(own->columns);
+  }
+};
+
+}  // namespace kinecal

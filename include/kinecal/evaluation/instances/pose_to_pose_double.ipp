@@ -1,0 +1,9 @@
+// The error block PoseToPose in double.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/evaluation/problem.hpp"
+
+namespace kinecal {
+
+template class BlockTerm<PoseToPose, double>;
+
+}  // namespace kinecal

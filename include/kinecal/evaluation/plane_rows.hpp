@@ -1,0 +1,116 @@
+// Planes through the points of two sensors: residual and derivatives, one lane after the other.
+//
+// The normal of a plane is an eigenvector.  Its iteration stops at a different step for each
+// sample, so it does not run in packets.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "kinecal/errors/error_block.hpp"
+#include "kinecal/errors/plane_fit.hpp"
+#include "kinecal/evaluation/feature_rows.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+template <class S>
+[[nodiscard]] Vector3<double> lane_of(const Vector3<S>& p, int i) {
+  return {lane(p.x(), i), lane(p.y(), i), lane(p.z(), i)};
+}
+
+/// The planes of one lane and their derivatives.
+template <PlanePairBlock B, class S>
+class PlaneLane {
+ public:
+  static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
+  static_assert(kParametersOfBlock<B> == 0, "kinecal: a block of planes has no own parameters");
+  using Rows = FeatureRows<double, kSize, 2>;
+
+  PlaneLane(const B& block, const TermViews<S>& views, int lane)
+      : views_(views), lane_(lane) {
+    std::array<Plane<J>, 2> planes;
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (std::size_t i = 0; i < views[s].points().size(); ++i) {
+        if (kinecal::lane(views[s].observation().usable(i), lane) == 0.0) continue;
+        features_[s].push_back(i);
+        points_[s].push_back(lane_of(views[s].points()[i], lane));
+      }
+      if (points_[s].empty()) return;  // a lane without a sample
+      const PlaneFit<LaneOf<S>>& fit = fits_.emplace_back(points_[s]);
+      determined_ = fit.determined() && (s == 0 || determined_);
+      const int first = 6 * static_cast<int>(s);
+      planes[s] = {point_jets<J>(fit.plane().centroid, first),
+                   point_jets<J>(fit.plane().normal, first + 3)};
+    }
+    residual_ = block(planes[0], planes[1]);
+    empty_ = false;
+  }
+
+  [[nodiscard]] Rows rows(bool derivatives) const {
+    Rows rows;
+    rows.weight = empty_ ? 0.0 : 1.0;
+    rows.residual.setZero();
+    for (auto& body : rows.by_body) body.setZero();
+    for (auto& of_own : rows.by_own) of_own.setZero();
+    if (empty_) return rows;
+    rows.residual = values_of(residual_);
+    if (!determined_) rows.residual.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (!derivatives || !determined_) return rows;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const int variable = 6 * static_cast<int>(s);
+      const auto by_centroid = derivatives_by<3>(residual_, variable);
+      const auto by_normal = derivatives_by<3>(residual_, variable + 3);
+      for (std::size_t n = 0; n < features_[s].size(); ++n) {
+        const Vector3<double>& p = points_[s][n];
+        const Eigen::Matrix<double, kSize, 3> by_point =
+            by_centroid * fits_[s].centroid_by_point() + by_normal * fits_[s].normal_by_point(p);
+        Rows of_point;
+        of_point.set_point(s, p, by_point);
+        rows.by_body[s] += of_point.by_body[s];
+        const SensorView<S>& view = views_[s];
+        const std::size_t first = s == 0 ? 0 : views_[0].own().free.size();
+        for (std::size_t k = 0; k < view.own().free.size(); ++k) {
+          rows.by_own[first + k] += by_point * lane_of(view.changes(features_[s][n])[k], lane_);
+        }
+      }
+    }
+    return rows;
+  }
+
+ private:
+  using J = Jet<double, 12>;
+
+  const TermViews<S>& views_;
+  int lane_;
+  std::array<std::vector<std::size_t>, 2> features_;
+  std::array<std::vector<Vector3<double>>, 2> points_;
+  std::vector<PlaneFit<LaneOf<S>>> fits_;
+  Eigen::Matrix<J, kSize, 1> residual_;
+  bool empty_ = true, determined_ = false;
+};
+
+}  // namespace detail
+
+/// Residual and derivatives of the planes through all features of two sensors.
+template <PlanePairBlock B, class S>
+void plane_rows(const B& block, const TermViews<S>& views, bool derivatives,
+                FeatureRows<S, kResiduals<B>, 2>& rows) {
+  rows.own = derivatives ? views.num_own() : 0;
+  for (int i = 0; i < kLanes<S>; ++i) {
+    const auto one = detail::PlaneLane<B, S>(block, views, i).rows(derivatives);
+    set_lane(rows.weight, i, one.weight);
+    for (int m = 0; m < kResiduals<B>; ++m) {
+      set_lane(rows.residual(m), i, one.residual(m));
+      for (std::size_t s = 0; s < 2; ++s) {
+        for (int k = 0; k < 6; ++k) set_lane(rows.by_body[s](m, k), i, one.by_body[s](m, k));
+      }
+      for (std::size_t c = 0; c < rows.own; ++c) {
+        set_lane(rows.by_own[c](m), i, one.by_own[c](m));
+      }
+    }
+  }
+}
+
+}  // namespace kinecal

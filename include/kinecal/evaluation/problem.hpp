@@ -1,0 +1,108 @@
+// A calibration problem with its samples in batches for evaluation.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/evaluation/block_term.hpp"
+#include "kinecal/evaluation/evaluator.hpp"
+#include "kinecal/evaluation/sized_block_term.hpp"
+#include "kinecal/problem/any_problem.hpp"
+
+namespace kinecal {
+
+/// A calibration problem.  Add sensors, then error blocks and priors, then samples.
+/// @tparam S  scalar of the evaluation: a packet, or double for one sample at a time
+template <class S>
+class BasicProblem final : public AnyProblem {
+ public:
+  using AnyProblem::AnyProblem;
+
+  /// Adds a sensor.
+  /// @param walks  compiled walks along its chains, if there are any
+  /// @throws  as AnyProblem::add_built_in()
+  template <Sensor M>
+  void add_sensor(const M& sensor, const Mount& mount, std::vector<CompiledWalk<S>> walks = {}) {
+    this->mount(any_sensor(sensor), mount);
+    auto& of_sensor = evaluations_.emplace_back();
+    of_sensor.code = std::make_unique<detail::SensorCodeOf<M, S>>(sensor);
+    for (const RuntimeChain& chain : sensors().back().chains()) {  // in the order of the chains
+      const auto walk = std::find_if(walks.begin(), walks.end(),
+                                     [&](const auto& w) { return w.tip == chain.tip; });
+      if (walk == walks.end()) break;
+      of_sensor.walks.push_back(*walk);
+    }
+  }
+  /// The same, for a sensor of the built-in types.
+  void add_built_in(const BuiltInSensor& sensor, const Mount& mount) override {
+    std::visit([&](const auto& of_type) { add_sensor(of_type, mount); }, sensor);
+  }
+
+  /// Adds an error block between sensors that have been added.
+  /// @tparam Known  KnownSizes of its two bodies, where the compiler knows them
+  /// @throws  as AnyProblem::add_built_in()
+  template <class Known = void, ErrorBlock B>
+  void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
+                 const TermOptions& options = {}) {
+    std::vector<int> indices = sensors_of_block(name, sensors, kQuantities<B>);
+    std::vector<int> own;
+    if constexpr (kParametersOfBlock<B> > 0) own = parameters_of_block(name, B::kParameters);
+    using Type = typename TermOf<B, Known>::type;
+    terms_.push_back(
+        std::make_unique<Type>(name, block, std::move(indices), std::move(own), options));
+  }
+  /// The same, for a block of the built-in types.
+  void add_built_in(const std::string& name, const BuiltInBlock& block,
+                    const std::vector<std::string>& sensors, const TermOptions& options) override {
+    std::visit([&](const auto& of_type) { add_block(name, of_type, sensors, options); }, block);
+  }
+
+  /// The terms of the error blocks, in the order in which blocks were added.
+  [[nodiscard]] const std::vector<std::unique_ptr<Term<S>>>& terms() const { return terms_; }
+  /// Number of error blocks, without priors.
+  [[nodiscard]] int num_terms() const override { return static_cast<int>(terms_.size()); }
+  /// The term of an error block.
+  [[nodiscard]] const AnyTerm& term(int index) const override {
+    return *terms_[static_cast<std::size_t>(index)];
+  }
+  /// How a sensor is evaluated.
+  [[nodiscard]] const SensorEvaluation<S>& evaluation_of(std::size_t sensor) const {
+    return evaluations_[sensor];
+  }
+  /// The samples, by layout.
+  [[nodiscard]] const std::vector<Batches<S>>& batches() const { return batches_; }
+
+  [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
+                                                        int threads = 1) const override {
+    return std::make_unique<Evaluator<S>>(*this, free, threads);
+  }
+
+ private:
+  template <class B, class Known>
+  struct TermOf {
+    using type = BlockTerm<B, S>;
+  };
+  template <PointPairBlock B, class Known>
+  requires(!std::is_void_v<Known>) struct TermOf<B, Known> {
+    using type = SizedBlockTerm<B, S, Known>;
+  };
+
+  void add_to_batch(std::size_t layout, const SampleLayout& of_sample,
+                    const SampleNumbers& seen) override {
+    if (layout == batches_.size()) batches_.emplace_back(of_sample.terms, seen);
+    batches_[layout].add(num_samples(), seen);
+  }
+
+  std::vector<SensorEvaluation<S>> evaluations_;  ///< of each sensor
+  std::vector<std::unique_ptr<Term<S>>> terms_;
+  std::vector<Batches<S>> batches_;  ///< by layout
+};
+
+/// A problem evaluated in packets as wide as the instruction set it is compiled for.
+using Problem = BasicProblem<Packet>;
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/evaluation/problem.ipp"
+#else
+#include "kinecal/evaluation/instances.hpp"
+#endif

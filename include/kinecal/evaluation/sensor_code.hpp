@@ -1,0 +1,203 @@
+// A sensor's functions in the scalar S, behind one interface: what it delivers for each feature of a
+// batch, in the base, with derivatives by its own parameters.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/problem/batch.hpp"
+#include "kinecal/sensors/sensor.hpp"
+
+namespace kinecal {
+
+/// The pixel at which a camera should see a point, with derivatives.
+template <class S>
+struct PredictedPixel {
+  Eigen::Matrix<S, 2, 1> value;                ///< (2) pixels
+  Eigen::Matrix<S, 2, 3> by_point;             ///< pixels per metre, in the camera's frame
+  std::vector<Eigen::Matrix<S, 2, 1>> by_own;  ///< by each free parameter
+};
+
+/// A sensor's own parameters in an evaluation.
+struct OwnParameters {
+  std::vector<double> values;  ///< of all of them
+  std::vector<int> free;       ///< which are free
+  std::vector<int> columns;    ///< their columns of the Jacobian
+
+  /// @param parameters  table indices; -1 for one that the table does not have
+  OwnParameters(const std::vector<int>& parameters, const FreeSet& set)
+      : values(parameters.size(), 0.0) {
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const int column = set.column(parameters[i]);
+      if (column < 0) continue;
+      free.push_back(static_cast<int>(i));
+      columns.push_back(column);
+    }
+  }
+
+  /// Takes over new values.
+  /// @param all  of all parameters of the table
+  void set(const std::vector<int>& parameters, std::span<const double> all) {
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      if (parameters[i] >= 0) values[i] = all[static_cast<std::size_t>(parameters[i])];
+    }
+  }
+};
+
+/// A sensor of any type, evaluated in S.
+template <class S>
+class SensorCode {
+ public:
+  virtual ~SensorCode() = default;
+
+  /// Number of vectors of a feature: its values, and its variables that change.
+  [[nodiscard]] virtual std::size_t num_values() const = 0;
+  [[nodiscard]] virtual std::size_t num_variables() const = 0;  ///< as above
+  /// True if its measurement is what errors are in, as that of a camera: see
+  /// Linearization::error_free.
+  [[nodiscard]] virtual bool measures() const = 0;
+
+  /// Places all features of a batch in the base.
+  /// @param poses    of each chain's tip
+  /// @param chosen   the free parameters to differentiate by
+  /// @param values   out: num_values() vectors of each feature
+  /// @param changes  out: num_variables() vectors of each chosen parameter of each feature
+  virtual void place(const BatchObservation<S>& seen, std::span<const Pose<S>> poses,
+                     std::span<const double> own, std::span<const int> chosen, Vector3<S>* values,
+                     Vector3<S>* changes) const = 0;
+
+  /// Predicts where a camera sees a point of its frame; metres.
+  virtual void predict(const BatchObservation<S>& seen, const Vector3<S>& p,
+                       std::span<const double> own, std::span<const int> chosen, bool derivatives,
+                       PredictedPixel<S>& out) const = 0;
+};
+
+namespace detail {
+
+template <std::size_t N, class J>
+[[nodiscard]] std::array<J, N> own_constants(std::span<const double> own) {
+  std::array<J, N> all{};
+  for (std::size_t i = 0; i < N; ++i) all[i] = J(own[i]);
+  return all;
+}
+template <std::size_t N, class J, class S>
+[[nodiscard]] std::array<J, N> own_jets(std::span<const double> own, int first) {
+  std::array<J, N> all{};
+  for (std::size_t i = 0; i < N; ++i) all[i] = J(S(own[i]), first + static_cast<int>(i));
+  return all;
+}
+
+/// A sensor of type M, evaluated in S.
+template <Sensor M, class S>
+class SensorCodeOf final : public SensorCode<S> {
+ public:
+  explicit SensorCodeOf(M model) : model_(std::move(model)) {}
+
+  [[nodiscard]] std::size_t num_values() const override { return Vectors::kValues; }
+  [[nodiscard]] std::size_t num_variables() const override { return Vectors::kVariables.size(); }
+  [[nodiscard]] bool measures() const override { return kParametersOf<M> > 0; }
+
+  KINECAL_FLATTEN void place(const BatchObservation<S>& seen, std::span<const Pose<S>> poses,
+                             std::span<const double> own, std::span<const int> chosen,
+                             Vector3<S>* values, Vector3<S>* changes) const override {
+    if constexpr (kGivesDerivatives) {
+      const typename M::template Corrected<S> corrected(poses[0], settings(seen), own);
+      for (std::size_t i = 0; i < seen.size(); ++i, changes += chosen.size()) {
+        *values++ = corrected.place(point(seen, i), chosen, changes);
+      }
+    } else if constexpr (PlacingSensor<M>) {
+      for (std::size_t i = 0; i < seen.size(); ++i, values += Vectors::kValues) {
+        const Measurement<M, S> m = measurement(seen, i);
+        const Pose<S>& pose = poses[seen.chain(i)];
+        if (kOwn == 0 || chosen.empty()) {
+          Vectors::to_base(pose, model_.place(m, own_constants<kOwn, S>(own)), values);
+          continue;
+        }
+        if constexpr (kOwn > 0) {
+          using J = Jet<S, static_cast<int>(kOwn)>;
+          const auto placed = model_.place(m, own_jets<kOwn, J, S>(own, 0));
+          Vectors::to_base(pose, value_of_jets(placed), values);
+          for (const int k : chosen) {
+            Vectors::change(pose, placed, k, changes);
+            changes += Vectors::kVariables.size();
+          }
+        }
+      }
+    }
+  }
+
+  void predict(const BatchObservation<S>& seen, const Vector3<S>& p, std::span<const double> own,
+               std::span<const int> chosen, bool derivatives,
+               PredictedPixel<S>& out) const override {
+    if constexpr (PredictingSensor<M>) {
+      if (!derivatives) {
+        out.value = model_.predict(p, settings(seen), own_constants<kOwn, S>(own));
+        return;
+      }
+      using J = Jet<S, 3 + static_cast<int>(kOwn)>;
+      const auto pixel =
+          model_.predict(point_jets<J>(p, 0), settings(seen), own_jets<kOwn, J, S>(own, 3));
+      out.value = values_of(pixel);
+      out.by_point = derivatives_by<3>(pixel, 0);
+      out.by_own.resize(chosen.size());
+      for (std::size_t k = 0; k < chosen.size(); ++k) {
+        out.by_own[k] = {pixel(0).v(3 + chosen[k]), pixel(1).v(3 + chosen[k])};
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kOwn = kParametersOf<M>;
+  static constexpr bool kGivesDerivatives = requires { typename M::template Corrected<S>; };
+  using Vectors = VectorsOf<placed_quantity<M>().value_or(Quantity::point)>;
+
+  [[nodiscard]] static Vector3<S> point(const BatchObservation<S>& seen, std::size_t i) {
+    const S* m = seen.measured(i);
+    return {m[0], m[1], m[2]};
+  }
+  [[nodiscard]] static std::array<S, kSettingsOf<M>> settings(const BatchObservation<S>& seen) {
+    std::array<S, kSettingsOf<M>> all;
+    std::copy_n(seen.settings(), kSettingsOf<M>, all.begin());
+    return all;
+  }
+  [[nodiscard]] static Measurement<M, S> measurement(const BatchObservation<S>& seen,
+                                                     std::size_t i) {
+    Measurement<M, S> m;
+    m.point = point(seen, i);
+    m.settings = settings(seen);
+    if constexpr (kIsOriented<M>) std::copy_n(seen.measured(i) + 3, 9, m.rotation.data());
+    return m;
+  }
+
+  template <class J>
+  [[nodiscard]] static Vector3<S> value_of_jets(const Vector3<J>& p) {
+    return {p.x().a, p.y().a, p.z().a};
+  }
+  template <class J>
+  [[nodiscard]] static Ray<S> value_of_jets(const Ray<J>& ray) {
+    return {value_of_jets(ray.origin), value_of_jets(ray.direction), value_of_jets(ray.by_u),
+            value_of_jets(ray.by_v)};
+  }
+  template <class J>
+  [[nodiscard]] static Reading<S> value_of_jets(const Reading<J>& reading) {
+    return {value_of_jets(reading.origin), reading.value.a};
+  }
+  template <class J>
+  [[nodiscard]] static Pose<S> value_of_jets(const Pose<J>& pose) {
+    Pose<S> plain;
+    plain.translation = value_of_jets(pose.translation);
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) plain.rotation(r, c) = pose.rotation(r, c).a;
+    }
+    return plain;
+  }
+
+  M model_;
+};
+
+}  // namespace detail
+
+}  // namespace kinecal

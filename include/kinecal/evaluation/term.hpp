@@ -1,0 +1,106 @@
+// A term of the cost: an error block with the sensors it compares, its weight and its loss.
+//
+// The compiler knows the block; the term hides its type, so that one problem can hold terms of
+// different blocks.  One virtual call evaluates a whole batch of samples, so hiding costs nothing.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "kinecal/errors/difference.hpp"
+#include "kinecal/evaluation/difference_gram.hpp"
+#include "kinecal/evaluation/feature_gram.hpp"
+#include "kinecal/evaluation/local_sums.hpp"
+#include "kinecal/problem/any_term.hpp"
+
+namespace kinecal {
+
+/// Residuals of one term in a batch of samples, and their derivatives.
+template <class S>
+struct BatchRows {
+  /// Consecutive features on the same chains.
+  struct Run {
+    std::size_t features = 0;  ///< number of them
+    std::vector<int> columns;  ///< of the whole Jacobian: TermViews::columns()
+    std::size_t jacobian = 0;  ///< index in `jacobian` of its first value
+  };
+  std::vector<Run> runs;     ///< only the first `num_runs` are valid
+  std::size_t num_runs = 0;  ///< (vectors keep their memory for the next batch)
+  std::vector<S> weight;     ///< of each feature: one, or zero where it is missing
+  std::vector<S> residual;   ///< of each feature, unweighted
+  std::vector<S> jacobian;   ///< row-major, run after run; values after the last run are stale
+
+  /// Begins the next run, whose memory may be used again.
+  [[nodiscard]] Run& next_run() {
+    if (num_runs == runs.size()) runs.emplace_back();
+    runs[num_runs].features = 0;
+    return runs[num_runs++];
+  }
+
+  /// The rows of one lane, without the features that are missing in it.
+  /// @param columns  of the whole Jacobian; negative: residuals only
+  void unpack(int feature_size, int lane_index, int columns, TermResiduals& out) const {
+    Eigen::Index present = 0;
+    for (const S& w : weight) present += lane(w, lane_index) > 0.0 ? 1 : 0;
+    out.resize(present * feature_size, columns);
+    Eigen::Index row = 0;
+    std::size_t feature = 0, value = 0;
+    for (std::size_t r = 0; r < num_runs; ++r) {
+      for (const std::size_t end = feature + runs[r].features; feature < end; ++feature) {
+        const bool there = lane(weight[feature], lane_index) > 0.0;
+        for (int m = 0; m < feature_size; ++m) {
+          const std::size_t i = feature * static_cast<std::size_t>(feature_size) + std::size_t(m);
+          if (there) out.residual(row) = lane(residual[i], lane_index);
+          if (columns >= 0) {
+            for (const int column : runs[r].columns) {
+              const double derivative = lane(jacobian[value++], lane_index);
+              if (there) out.jacobian(row, column) += derivative;
+            }
+          }
+          if (there) ++row;
+        }
+      }
+    }
+  }
+};
+
+/// The normal equations of one term, summed lane by lane, with the memory for one batch.
+template <class S>
+struct TermSums {
+  S twice_cost{0.0};  ///< sum of rho
+  /// Sums over the columns of each combination of chains, sorted by chains.
+  std::vector<std::pair<BodyChains, LocalSums<S>>> by_chains;
+  FeatureGram<S> gram;                ///< of the current run of features
+  DifferenceGram<S> difference;       ///< the same for a block that is a difference
+  std::vector<S> weights;             ///< of the current run's features, for `difference`
+  std::vector<Vector3<S>> residuals;  ///< of the current run's features, for `difference`
+
+  /// Starts new sums; memory is kept.
+  void set_zero() {
+    twice_cost = S(0.0);
+    for (auto& [chains, local] : by_chains) local.set_zero();
+  }
+};
+
+/// A term, evaluated in S.
+template <class S>
+class Term : public AnyTerm {
+ public:
+  using Views = TermViews<S>;  ///< the term's sensors as they see a batch, and its parameters
+  using AnyTerm::AnyTerm;
+
+  /// Adds the cost of a batch of samples.  It is not finite where a residual is undefined, such as
+  /// that of a point behind a camera.
+  virtual void add_cost(const Views& views, const Loss& loss, TermSums<S>& sums) const = 0;
+  /// Adds the cost and the normal equations of a batch of samples.
+  virtual void add_normal_equations(const Views& views, const Loss& loss,
+                                    TermSums<S>& sums) const = 0;
+  /// Residuals of a batch of samples.
+  /// @param derivatives  compute the Jacobian, too
+  virtual void evaluate(const Views& views, bool derivatives, Linearization at,
+                        BatchRows<S>& out) const = 0;
+};
+
+}  // namespace kinecal

@@ -1,0 +1,108 @@
+// How far a joint has moved, with its sine and cosine, so that the walk needs no trigonometry.
+//
+// The sine and cosine of a measured position are computed once per sample, those of an offset once
+// per evaluation.  The walk combines the two by angle addition:
+//
+//   cos(q + d) = cos q cos d - sin q sin d      sin(q + d) = sin q cos d + cos q sin d
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "kinecal/kinematics/joint.hpp"
+
+namespace kinecal {
+
+/// A joint's position with its cosine and sine.
+template <class S>
+struct JointState {
+  S position{0.0};  ///< radians or metres
+  S cos{1.0};       ///< of the position; unused by prismatic joints
+  S sin{0.0};       ///< of the position; unused by prismatic joints
+
+  /// The same way back.
+  [[nodiscard]] JointState inverse() const { return {-position, cos, -sin}; }
+};
+
+/// The motion to a position, radians or metres.
+template <class S>
+[[nodiscard]] JointState<S> make_joint_state(const S& position) {
+  using std::cos, std::sin;
+  return {position, cos(position), sin(position)};
+}
+
+/// One motion after the other: positions add up.
+template <class S, class U>
+[[nodiscard]] auto operator+(const JointState<S>& a, const JointState<U>& b) {
+  using R = decltype(a.cos * b.cos);
+  return JointState<R>{a.position + b.position, a.cos * b.cos - a.sin * b.sin,
+                   a.sin * b.cos + a.cos * b.sin};
+}
+
+/// (3 x 3) rotation by a motion about a unit axis a: cos I + sin [a]x + (1 - cos) a a^T.
+template <class S>
+[[nodiscard]] Matrix3<S> axis_rotation(const Vector3<double>& a, const JointState<S>& motion) {
+  const S& c = motion.cos;
+  const S& s = motion.sin;
+  const S d = S(1.0) - c;
+  Matrix3<S> r;
+  r << c + d * (a.x() * a.x()), d * (a.x() * a.y()) - s * a.z(), d * (a.x() * a.z()) + s * a.y(),
+      d * (a.x() * a.y()) + s * a.z(), c + d * (a.y() * a.y()), d * (a.y() * a.z()) - s * a.x(),
+      d * (a.x() * a.z()) - s * a.y(), d * (a.y() * a.z()) + s * a.x(), c + d * (a.z() * a.z());
+  return r;
+}
+
+/// Pose of a joint that has moved: rotated about its axis or shifted along it.
+/// @param axis  (3) unit vector, in the joint's frame
+template <class S>
+[[nodiscard]] Pose<S> joint_pose(JointType type, const Vector3<double>& axis,
+                                 const JointState<S>& motion) {
+  Pose<S> pose;
+  if (turns(type)) pose.rotation = axis_rotation(axis, motion);
+  if (type == JointType::prismatic) {
+    for (int i = 0; i < 3; ++i) pose.translation(i) = motion.position * axis(i);
+  }
+  return pose;
+}
+
+/// rotation = rotation * axis_rotation(axis, motion).
+/// @param axis  (3) any unit vector, in the rotated frame
+template <class S, class U>
+void turn_about(Matrix3<S>& rotation, const Vector3<double>& axis, const JointState<U>& motion) {
+  const Matrix3<U> turn = axis_rotation(axis, motion);
+  for (int row = 0; row < 3; ++row) {
+    const Vector3<S> r = rotation.row(row);
+    for (int c = 0; c < 3; ++c) {
+      rotation(row, c) = r(0) * turn(0, c) + r(1) * turn(1, c) + r(2) * turn(2, c);
+    }
+  }
+}
+
+namespace detail {
+/// A rotation about axis K mixes the two other columns.
+template <int K, class S, class U>
+void turn_columns(Matrix3<S>& rotation, const JointState<U>& motion) {
+  constexpr int kI = (K + 1) % 3, kJ = (K + 2) % 3;
+  for (int row = 0; row < 3; ++row) {
+    const S x = rotation(row, kI), y = rotation(row, kJ);
+    rotation(row, kI) = x * motion.cos + y * motion.sin;
+    rotation(row, kJ) = y * motion.cos - x * motion.sin;
+  }
+}
+}  // namespace detail
+
+/// The same about a principal axis of the rotated frame.
+/// @param principal  0, 1, 2 for x, y, z
+template <class S, class U>
+void turn_about(Matrix3<S>& rotation, int principal, const JointState<U>& motion) {
+  switch (principal) {
+    case 0:
+      return detail::turn_columns<0>(rotation, motion);
+    case 1:
+      return detail::turn_columns<1>(rotation, motion);
+    default:
+      return detail::turn_columns<2>(rotation, motion);
+  }
+}
+
+}  // namespace kinecal

@@ -1,0 +1,9 @@
+// Umbrella header of problem/: what a calibration is: sensors on a robot, batches of samples, terms.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/problem/any_problem.hpp"
+#include "kinecal/problem/any_term.hpp"
+#include "kinecal/problem/batch.hpp"
+#include "kinecal/problem/mounted_sensor.hpp"
+#include "kinecal/problem/prior_term.hpp"

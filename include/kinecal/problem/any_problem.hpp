@@ -1,0 +1,197 @@
+// A calibration problem, independent of the scalar that evaluates it: a robot's sensors, its samples
+// and the terms of the cost.
+//
+// Names are resolved when sensors, blocks and samples are added; evaluation works on numbers only.
+// BasicProblem (evaluation/problem.hpp) adds the samples, in batches.  solve/, trust/ and report/
+// use only this interface, so they are compiled once for all instruction sets.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "kinecal/errors/plane_to_plane.hpp"
+#include "kinecal/errors/point_distance.hpp"
+#include "kinecal/errors/point_to_line.hpp"
+#include "kinecal/errors/point_to_pixel.hpp"
+#include "kinecal/errors/point_to_plane.hpp"
+#include "kinecal/errors/point_to_point.hpp"
+#include "kinecal/errors/point_to_sphere.hpp"
+#include "kinecal/errors/pose_to_pose.hpp"
+#include "kinecal/errors/ray_to_ray.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_term.hpp"
+#include "kinecal/problem/mounted_sensor.hpp"
+#include "kinecal/problem/prior_term.hpp"
+#include "kinecal/sensors/chain_point.hpp"
+#include "kinecal/sensors/pinhole_camera.hpp"
+
+namespace kinecal {
+
+class AnyEvaluator;
+
+/// The sensors that the library has compiled.
+using BuiltInSensor = std::variant<ChainPoint, ChainPose, DepthCamera, PinholeCamera>;
+/// The error blocks that the library has compiled.
+using BuiltInBlock = 
+    std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
+                 PointToSphere, PoseToPose, RayToRay>;
+
+/// A calibration problem.  Add sensors, then error blocks and priors, then samples.
+class AnyProblem {
+ public:
+  /// A problem without sensors, terms and samples.
+  /// @param base    the link in which the sensors are compared
+  /// @param frames  names of the free frames: joints of the robot or virtual frames
+  /// @throws RobotError  if the link does not exist
+  AnyProblem(Robot robot, std::string base, ParameterTable table, std::set<std::string> frames);
+  virtual ~AnyProblem() = default;
+
+  /// Adds a sensor of a built-in type.
+  /// @throws RobotError        if no chain leads from the base to the sensor
+  /// @throws std::logic_error  if samples have been added already
+  virtual void add_built_in(const BuiltInSensor& sensor, const Mount& mount) = 0;
+
+  /// Adds an error block of a built-in type between sensors that have been added.
+  /// @throws std::invalid_argument  if a sensor does not exist, their number or kind is wrong, or the
+  ///                                table does not have a parameter of the block
+  /// @throws std::logic_error       if samples have been added already
+  virtual void add_built_in(const std::string& name, const BuiltInBlock& block,
+                            const std::vector<std::string>& sensors,
+                            const TermOptions& options) = 0;
+
+  /// Adds a prior.  It counts once for each sample.
+  /// @throws std::invalid_argument  if its joint or frame has no parameter in the table, with the
+  ///                                nearest name
+  void add_prior(const std::string& name, const Prior& prior, const TermOptions& options = {});
+
+  /// Adds a sample.  Sensors and blocks must have been added before.
+  /// @throws SampleError  with the sample and what is missing or wrong; the sample is not added
+  void add_sample(const Sample& sample);
+
+  /// All parameters with their initial values and bounds.
+  [[nodiscard]] const ParameterTable& table() const { return table_; }
+  /// The sensors in the order in which they were added.
+  [[nodiscard]] const std::vector<MountedSensor>& sensors() const { return sensors_; }
+  /// The priors in the order in which they were added.
+  [[nodiscard]] const std::vector<PriorTerm>& priors() const { return priors_; }
+  /// Number of error blocks, without priors.
+  [[nodiscard]] virtual int num_terms() const = 0;
+  /// The term of an error block, from 0 in the order in which blocks were added.
+  [[nodiscard]] virtual const AnyTerm& term(int index) const = 0;
+  /// Number of samples that were added.
+  [[nodiscard]] int num_samples() const { return static_cast<int>(sources_.size()); }
+  /// Source location of a sample: "samples.yaml:37".
+  [[nodiscard]] const std::string& source(int sample) const {
+    return sources_[static_cast<std::size_t>(sample)];
+  }
+  /// Number of residuals: those of all features, and those of each prior once.
+  [[nodiscard]] int num_residuals() const {
+    return residuals_ + static_cast<int>(priors_.size()) * Prior::kRows;
+  }
+  /// Number of samples to which a term applies.
+  [[nodiscard]] int samples_of(int term) const;
+  /// Number of samples of a term to which another term applies as well.
+  [[nodiscard]] int shared_samples(int term) const;
+  /// The joint, free frame, sensor (its prefix) or error block to which each parameter of the table belongs;
+  /// empty for a parameter that belongs to none.
+  [[nodiscard]] const std::vector<std::string>& owners() const { return owners_; }
+  /// Checks that each free parameter belongs to a joint that moves, a free frame, a
+  /// sensor or an error block.
+  /// @throws std::invalid_argument  if one does not, with the nearest name, or if the set is that of
+  ///                                another table
+  void check(const FreeSet& free) const;
+  /// Table indices of the parameters on which some residual of the samples depends; ascending.
+  [[nodiscard]] std::vector<int> touched_parameters() const;
+
+  /// An evaluator of the problem.  The problem must outlive it; do not add samples meanwhile.
+  /// @param free     the Jacobian's columns
+  /// @param threads  number of threads that share the work; zero: one per core
+  /// @throws std::invalid_argument  as check()
+  [[nodiscard]] virtual std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
+                                                                int threads = 1) const = 0;
+
+ protected:
+  /// Derived classes can be moved.
+  AnyProblem(AnyProblem&&) = default;
+  /// Derived classes can be moved.
+  AnyProblem& operator=(AnyProblem&&) = default;
+
+  /// Adds a sensor, apart from what evaluates it.
+  void mount(std::shared_ptr<const AnySensor> sensor, const Mount& mount);
+  /// @throws std::logic_error  if samples have been added already
+  void check_no_samples() const;
+  /// The sensors of an error block, by name.
+  /// @throws std::invalid_argument  as add_built_in()
+  [[nodiscard]] std::vector<int> sensors_of_block(const std::string& name,
+                                                  const std::vector<std::string>& sensors,
+                                                  std::span<const Quantity> quantities) const;
+  /// Table indices of the own parameters of an error block, which belong to it from now on.
+  /// @throws std::invalid_argument  if the table does not have one
+  [[nodiscard]] std::vector<int> parameters_of_block(const std::string& name,
+                                                     std::span<const ParameterInfo> infos);
+
+ private:
+  /// Takes the sample num_samples() into batches.
+  /// @param layout  index of its layout; layouts are numbered as they occur
+  virtual void add_to_batch(std::size_t layout, const SampleLayout& of_sample,
+                            const SampleNumbers& seen) = 0;
+
+  [[nodiscard]] const MountedSensor& sensor(int s) const {
+    return sensors_[static_cast<std::size_t>(s)];
+  }
+  void set_owners();
+  void set_owner(int parameter, const std::string& owner) {
+    if (parameter >= 0) owners_[static_cast<std::size_t>(parameter)] = owner;
+  }
+  [[nodiscard]] int sensor_index(const std::string& name) const;
+  [[nodiscard]] bool applies(const AnyTerm& term, const Sample& sample,
+                             const SampleNumbers& observed) const;
+  [[nodiscard]] std::string why_no_plane(int s, const ObservationNumbers& seen) const;
+  void forget_unused(SampleLayout& layout, SampleNumbers& seen) const;
+  void add_touched(int s, const std::vector<std::size_t>& chains, std::set<int>& touched) const;
+
+  Robot robot_;
+  std::string base_;
+  ParameterTable table_;
+  std::set<std::string> frames_;
+  std::vector<std::string> owners_;  ///< of each parameter
+  std::vector<MountedSensor> sensors_;
+  std::vector<PriorTerm> priors_;
+  int residuals_ = 0;                      ///< of all features
+  std::vector<std::string> sources_;  ///< of each sample
+
+  /// Samples of one layout.
+  struct OfLayout {
+    std::size_t index = 0;  ///< in the order in which layouts occurred
+    int samples = 0;        ///< number of them
+  };
+  std::map<SampleLayout, OfLayout> layouts_;
+};
+
+/// A problem that the library evaluates in packets, as wide as its instruction set allows.
+/// Parameters as those of the constructor of AnyProblem.
+[[nodiscard]] std::unique_ptr<AnyProblem> make_problem(Robot robot, std::string base,
+                                                       ParameterTable table,
+                                                       std::set<std::string> frames);
+
+/// How the library evaluates problems.
+struct Evaluation {
+  std::string_view instruction_set;  ///< what its packets are compiled for: "x86-64-v3"
+  int lanes = 1;                     ///< samples evaluated at a time
+};
+/// How the library that this program is linked with evaluates problems.
+[[nodiscard]] Evaluation evaluation_of_library();
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/evaluation/problem.hpp"  // make_problem()
+#include "kinecal/problem/any_problem.ipp"
+#endif

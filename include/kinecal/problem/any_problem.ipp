@@ -1,0 +1,203 @@
+// Definitions of any_problem.hpp: names, samples and shapes.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "kinecal/errors/plane_fit.hpp"
+#include "kinecal/problem/any_problem.hpp"
+#include "kinecal/problem/parameter_owners.ipp"
+
+namespace kinecal {
+
+KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTable table,
+                                      std::set<std::string> frames)
+    : robot_(std::move(robot)),
+      base_(std::move(base)),
+      table_(std::move(table)),
+      frames_(std::move(frames)) {
+  (void)robot_.parent_joint(base_);
+  set_owners();
+}
+
+KINECAL_INLINE void AnyProblem::mount(std::shared_ptr<const AnySensor> sensor,
+                                      const Mount& mount) {
+  check_no_samples();
+  for (const MountedSensor& known : sensors_) {
+    if (known.mount().name == mount.name) {
+      throw std::invalid_argument("two sensors have the name '" + mount.name + "'");
+    }
+  }
+  sensors_.emplace_back(robot_, base_, mount, std::move(sensor), table_, frames_);
+  for (const int parameter : sensors_.back().parameters()) {
+    set_owner(parameter, mount.parameter_prefix());
+  }
+}
+
+KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& prior,
+                                          const TermOptions& options) {
+  const auto rows = prior.parameters(table_);
+  if (std::all_of(rows.begin(), rows.end(), [](int parameter) { return parameter < 0; })) {
+    std::vector<std::string> names(frames_.begin(), frames_.end());
+    for (const Parameter& parameter : table_) names.push_back(parameter.name);
+    throw std::invalid_argument("error block '" + name + "': param '" + prior.param +
+                                "' is neither a free joint nor a free frame" +
+                                did_you_mean(prior.param, names));
+  }
+  priors_.push_back({name, prior, options});
+}
+
+namespace detail {
+
+[[nodiscard]] inline std::vector<const ObservationNumbers*> observations_of(
+    const AnyTerm& term, const SampleNumbers& observed) {
+  std::vector<const ObservationNumbers*> seen;
+  for (const int s : term.sensors()) seen.push_back(&*observed[static_cast<std::size_t>(s)]);
+  return seen;
+}
+
+[[nodiscard]] inline bool has_term(const SampleLayout& layout, int term) {
+  return std::find(layout.terms.begin(), layout.terms.end(), term) != layout.terms.end();
+}
+
+}  // namespace detail
+
+KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
+  SampleNumbers seen(sensors_.size());
+  SampleLayout layout;
+  try {
+    if (sample.joint_names.size() != sample.joint_positions.size()) {
+      throw SampleError("it has " + std::to_string(sample.joint_names.size()) +
+                        " joint names, but positions of " +
+                        std::to_string(sample.joint_positions.size()));
+    }
+    for (std::size_t s = 0; s < sensors_.size(); ++s) {
+      const Observation* observation = sample.observation(sensors_[s].mount().name);
+      if (observation == nullptr || observation->features.empty()) continue;
+      seen[s] = sensors_[s].numbers(sample, *observation);
+    }
+    for (int t = 0; t < num_terms(); ++t) {
+      if (applies(term(t), sample, seen)) layout.terms.push_back(t);
+    }
+  } catch (const SampleError& e) {
+    throw SampleError(sample.source + ": " + e.what());
+  }
+  for (const int t : layout.terms) {
+    residuals_ += term(t).count(detail::observations_of(term(t), seen)) * term(t).feature_size();
+  }
+  forget_unused(layout, seen);
+  auto& [of_sample, of_layout] =
+      *layouts_.try_emplace(std::move(layout), OfLayout{layouts_.size()}).first;
+  add_to_batch(of_layout.index, of_sample, seen);
+  ++of_layout.samples;
+  sources_.push_back(sample.source);
+}
+
+KINECAL_INLINE int AnyProblem::samples_of(int term) const {
+  int n = 0;
+  for (const auto& [layout, of_layout] : layouts_) {
+    if (detail::has_term(layout, term)) n += of_layout.samples;
+  }
+  return n;
+}
+
+KINECAL_INLINE int AnyProblem::shared_samples(int term) const {
+  int n = 0;
+  for (const auto& [layout, of_layout] : layouts_) {
+    if (layout.terms.size() > 1 && detail::has_term(layout, term)) n += of_layout.samples;
+  }
+  return n;
+}
+
+KINECAL_INLINE void AnyProblem::check_no_samples() const {
+  if (sources_.empty()) return;
+  throw std::logic_error("sensors and error blocks are added before the samples");
+}
+
+KINECAL_INLINE std::vector<int> AnyProblem::sensors_of_block(
+    const std::string& name, const std::vector<std::string>& sensors,
+    std::span<const Quantity> quantities) const {
+  check_no_samples();
+  std::vector<int> indices;
+  for (const std::string& of_block : sensors) indices.push_back(sensor_index(of_block));
+  if (indices.size() != quantities.size()) {
+    throw std::invalid_argument("error block '" + name + "' takes " +
+                                std::to_string(quantities.size()) + " sensors, not " +
+                                std::to_string(indices.size()));
+  }
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const AnySensor& of_block = sensor(indices[i]).sensor();
+    if (of_block.delivers(quantities[i])) continue;
+    throw std::invalid_argument("error block '" + name + "': sensor '" + sensors[i] + "', a " +
+                                std::string(of_block.type()) + ", does not deliver " +
+                                std::string(to_string(quantities[i])));
+  }
+  return indices;
+}
+
+KINECAL_INLINE int AnyProblem::sensor_index(const std::string& name) const {
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < sensors_.size(); ++s) {
+    names.push_back(sensors_[s].mount().name);
+    if (names.back() == name) return static_cast<int>(s);
+  }
+  throw std::invalid_argument("no sensor '" + name + "'" + did_you_mean(name, names));
+}
+
+KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sample,
+                                        const SampleNumbers& observed) const {
+  const std::string& beside = term.options().beside;
+  if (!beside.empty() && sample.observation(beside) == nullptr) return false;
+  const auto observing = std::count_if(
+      sample.observations.begin(), sample.observations.end(),
+      [&](const Observation& o) { return !o.features.empty() && o.sensor != beside; });
+  if (term.options().exclusive && observing != std::ssize(term.sensors())) return false;
+  for (const int s : term.sensors()) {
+    if (!observed[static_cast<std::size_t>(s)]) return false;
+  }
+  const auto seen = detail::observations_of(term, observed);
+  const auto name = [&](std::size_t i) { return sensor(term.sensors()[i]).mount().name; };
+  for (std::size_t i = 1; i < seen.size() && term.pairs_features(); ++i) {
+    if (seen[i]->usable.size() == seen[0]->usable.size()) continue;
+    throw SampleError("error block '" + term.name() + "': sensor '" + name(0) + "' has " +
+                      std::to_string(seen[0]->usable.size()) + " features, sensor '" + name(i) +
+                      "' has " + std::to_string(seen[i]->usable.size()));
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (term.quantities()[i] != Quantity::plane) continue;
+    if (const std::string why = why_no_plane(term.sensors()[i], *seen[i]); !why.empty()) {
+      throw SampleError("error block '" + term.name() + "': " + why);
+    }
+  }
+  return term.count(seen) > 0;
+}
+
+/// Why the features of a sensor in one sample do not determine a plane; empty if they do.
+KINECAL_INLINE std::string AnyProblem::why_no_plane(int s, const ObservationNumbers& seen) const {
+  std::vector<Vector3<double>> points;
+  for (std::size_t i = 0; i < seen.usable.size(); ++i) {
+    if (seen.usable[i] == 0.0) continue;
+    if (seen.chain[i] != seen.chain[0]) return "the points of a plane are in several frames";
+    const double* measured = &seen.measured[3 * i];
+    points.push_back(
+        sensor(s).sensor().point({measured[0], measured[1], measured[2]}, seen.settings));
+  }
+  if (points.size() < 3) return "a plane takes three points or more";
+  return PlaneFit<double>(points).determined() ? "" : "its points span no plane";
+}
+
+/// Drops the observations that no term uses, so that they are not evaluated.
+KINECAL_INLINE void AnyProblem::forget_unused(SampleLayout& layout, SampleNumbers& seen) const {
+  std::vector<bool> used(sensors_.size(), false);
+  for (const int t : layout.terms) {
+    for (const int s : term(t).sensors()) used[static_cast<std::size_t>(s)] = true;
+  }
+  layout.chains.resize(sensors_.size());
+  for (std::size_t s = 0; s < used.size(); ++s) {
+    if (!used[s]) seen[s].reset();
+    if (seen[s]) layout.chains[s] = seen[s]->chain;
+  }
+}
+
+}  // namespace kinecal

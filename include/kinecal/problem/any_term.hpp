@@ -1,0 +1,92 @@
+// A term of the cost, independent of the scalar: an error block's name, sensors, weight and loss.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/errors/loss.hpp"
+#include "kinecal/problem/batch.hpp"
+#include "kinecal/sensors/quantity.hpp"
+
+namespace kinecal {
+
+/// How a term enters the cost and reports.
+struct TermOptions {
+  double weight = 1.0;  ///< factor of the residual: scale / sigma
+  Loss loss = {};       ///< of each feature's weighted residual
+  bool exclusive = false;   ///< use only samples in which no other sensor observes anything
+  /// Use only samples with an observation of this sensor, too; empty: all samples.  It need not be a
+  /// sensor of the problem, and does not count for `exclusive`: "ground" marks samples of the floor.
+  std::string beside = {};
+  std::string type = {};   ///< for reports: "chain3d_to_chain3d"
+  std::string unit = "m";  ///< of the unweighted residual, for reports: "m", "px" or "1"
+
+  /// The loss, or its convex substitute.
+  [[nodiscard]] Loss loss_for(Losses losses) const {
+    return losses == Losses::convex ? loss.convex() : loss;
+  }
+};
+
+/// Residuals of one term in one sample, feature after feature, and their derivatives.
+struct TermResiduals {
+  Eigen::VectorXd residual;  ///< unweighted
+  Eigen::MatrixXd jacobian;  ///< (residuals x free parameters); empty if not asked for
+
+  /// Sets the residual (rows) to zero, and the Jacobian (rows x columns); columns < 0: no Jacobian.
+  void resize(Eigen::Index rows, int columns) {
+    residual.setZero(rows);
+    jacobian.setZero(columns >= 0 ? rows : 0, columns >= 0 ? columns : 0);
+  }
+};
+
+/// At which points derivatives are taken.
+enum class Linearization {
+  measured,   ///< the points that the sensors measured
+  error_free  ///< measurements replaced by the model's prediction.  A residual that is not zero
+              ///< turns with the robot, so a parameter combination that no measurement determines
+              ///< would still look observable.  Planes are taken as they are.
+};
+
+/// A term, independent of the scalar: its name, its sensors, and which samples it takes.
+class AnyTerm {
+ public:
+  /// What the sensors of the term observed in one sample, in their order.
+  using Observations = std::span<const ObservationNumbers* const>;
+
+  /// @param sensors     indices of the sensors in the problem
+  /// @param parameters  table indices of the block's own parameters
+  AnyTerm(std::string name, std::vector<int> sensors, std::vector<int> parameters,
+          TermOptions options)
+      : name_(std::move(name)),
+        sensors_(std::move(sensors)),
+        parameters_(std::move(parameters)),
+        options_(std::move(options)) {}
+  virtual ~AnyTerm() = default;
+
+  [[nodiscard]] const std::string& name() const { return name_; }  ///< of the error block
+  /// Indices in the problem of the sensors that are compared.
+  [[nodiscard]] const std::vector<int>& sensors() const { return sensors_; }
+  /// Table indices of the block's own parameters.
+  [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
+  [[nodiscard]] const TermOptions& options() const { return options_; }  ///< weight, loss, names
+
+  /// What the block takes of each of its sensors.
+  [[nodiscard]] virtual std::span<const Quantity> quantities() const = 0;
+  /// Number of residuals of one feature.
+  [[nodiscard]] virtual int feature_size() const = 0;
+  /// True if feature i of each sensor is the same one.
+  [[nodiscard]] virtual bool pairs_features() const = 0;
+  /// Number of features that can be compared, given what the sensors observed.
+  [[nodiscard]] virtual int count(Observations seen) const = 0;
+
+ private:
+  std::string name_;
+  std::vector<int> sensors_;
+  std::vector<int> parameters_;
+  TermOptions options_;
+};
+
+}  // namespace kinecal

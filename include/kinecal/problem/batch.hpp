@@ -1,0 +1,185 @@
+// Samples as they are evaluated: as many at once as a packet has lanes.
+//
+// A sample is prepared once, as a row of numbers: sine and cosine of its joints, measurements as
+// the sensors need them.  Samples of one layout (the same sensors observed the same number of
+// features in the same frames, and the same terms apply) share batches, one lane each: a structure
+// of arrays.  All batches of a layout lie one after the other in memory.  A lane without a sample
+// repeats the first one with weight zero; a feature that is NaN repeats another one with weight
+// zero.  So one code path evaluates everything, without a remainder loop.
+// Source: ARCHITECTURE.md, ideas 4 (no trigonometry in the loop) and 5 (packets over samples).
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "kinecal/geometry/packet.hpp"
+#include "kinecal/kinematics/joint_state.hpp"
+
+namespace kinecal {
+
+/// What one sensor observed in one sample.
+struct ObservationNumbers {
+  std::vector<std::size_t> chain;           ///< of each feature: the sensor's chain to it
+  std::vector<double> usable;               ///< of each feature: one, or zero if it is NaN
+  std::vector<double> measured;             ///< of each feature: 3, or 12 with an orientation
+  std::vector<double> settings;             ///< see AnySensor::settings()
+  std::vector<std::vector<double>> joints;  ///< of each chain to a feature: position, cosine and
+                                            ///< sine of each joint; empty for other chains
+};
+
+/// What the sensors of a problem observed in one sample.
+using SampleNumbers = std::vector<std::optional<ObservationNumbers>>;
+
+/// What samples must have in common to share batches.
+struct SampleLayout {
+  std::vector<std::optional<std::vector<std::size_t>>> chains;  ///< of each feature, by sensor
+  std::vector<int> terms;                                       ///< indices of the terms that apply
+
+  /// Any strict order, for a map.
+  auto operator<=>(const SampleLayout&) const = default;  // NOLINT(modernize-use-nullptr)
+};
+
+/// Where the numbers of an observation are in a batch.
+struct ObservationLayout {
+  std::vector<std::size_t> chain;   ///< of each feature
+  std::vector<std::size_t> joints;  ///< first number of each chain's joints; kNoJoints if none
+  std::size_t usable = 0;           ///< first number
+  std::size_t measured = 0;         ///< first number
+  std::size_t settings = 0;         ///< first number
+  std::size_t width = 3;            ///< numbers of each feature in `measured`
+
+  static constexpr std::size_t kNoJoints = static_cast<std::size_t>(-1);  ///< no feature is there
+};
+
+/// The joint states of a chain in a batch, by index of the joint.
+template <class S>
+struct JointStates {
+  const S* numbers;  ///< position, cosine and sine of each joint
+
+  /// The state of a joint.
+  [[nodiscard]] JointState<S> operator[](std::size_t joint) const {
+    const S* of_joint = numbers + 3 * joint;
+    return {of_joint[0], of_joint[1], of_joint[2]};
+  }
+};
+
+/// What one sensor observed in the samples of a batch.
+template <class S>
+struct BatchObservation {
+  const S* numbers = nullptr;                 ///< of the batch
+  const ObservationLayout* layout = nullptr;  ///< where the sensor's are
+
+  /// Number of features.
+  [[nodiscard]] std::size_t size() const { return layout->chain.size(); }
+  /// The sensor's chain to a feature.
+  [[nodiscard]] std::size_t chain(std::size_t feature) const { return layout->chain[feature]; }
+  /// One if a feature was observed, else zero; lane by lane.
+  [[nodiscard]] const S& usable(std::size_t feature) const {
+    return numbers[layout->usable + feature];
+  }
+  /// The numbers of a feature: 3, or 12 with an orientation (column by column).
+  [[nodiscard]] const S* measured(std::size_t feature) const {
+    return numbers + layout->measured + feature * layout->width;
+  }
+  /// The settings of the observation.
+  [[nodiscard]] const S* settings() const { return numbers + layout->settings; }
+  /// True if a chain leads to a feature.
+  [[nodiscard]] bool has_joints(std::size_t chain) const {
+    return layout->joints[chain] != ObservationLayout::kNoJoints;
+  }
+  /// The joint states of a chain that leads to a feature.
+  [[nodiscard]] JointStates<S> joints(std::size_t chain) const {
+    return {numbers + layout->joints[chain]};
+  }
+};
+
+/// All samples of one layout.
+template <class S>
+class Batches {
+ public:
+  /// @param first  a sample of the layout
+  Batches(std::vector<int> terms, const SampleNumbers& first) : terms_(std::move(terms)) {
+    for (const auto& seen : first) {
+      auto& layout = layouts_.emplace_back();
+      if (!seen) continue;
+      layout.emplace();
+      layout->chain = seen->chain;
+      for (const auto& joints : seen->joints) {
+        layout->joints.push_back(joints.empty() ? ObservationLayout::kNoJoints : reserve(joints));
+      }
+      layout->settings = reserve(seen->settings);
+      layout->measured = reserve(seen->measured);
+      layout->usable = reserve(seen->usable);
+      if (!seen->chain.empty()) layout->width = seen->measured.size() / seen->chain.size();
+    }
+  }
+
+  /// Adds a sample.
+  /// @param sample  its index in the problem
+  void add(int sample, const SampleNumbers& seen) {
+    const int lane = static_cast<int>(samples_.size() % kLanes<S>);
+    if (lane == 0) numbers_.resize(numbers_.size() + size_);
+    S* const batch = numbers_.data() + (numbers_.size() - size_);
+    samples_.push_back(sample);
+    for (std::size_t s = 0; s < seen.size(); ++s) {
+      if (!seen[s]) continue;
+      const ObservationLayout& layout = *layouts_[s];
+      for (std::size_t c = 0; c < layout.joints.size(); ++c) {
+        if (!seen[s]->joints[c].empty()) set(seen[s]->joints[c], lane, batch + layout.joints[c]);
+      }
+      set(seen[s]->settings, lane, batch + layout.settings);
+      set(seen[s]->measured, lane, batch + layout.measured);
+      set(seen[s]->usable, lane, batch + layout.usable);
+      if (lane > 0) continue;
+      for (int other = 1; other < kLanes<S>; ++other) {
+        for (std::size_t i = 0; i < layout.chain.size(); ++i) {
+          set_lane(batch[layout.usable + i], other, 0.0);
+        }
+      }
+    }
+  }
+
+  /// Indices of the terms that apply.
+  [[nodiscard]] const std::vector<int>& terms() const { return terms_; }
+  /// Number of batches.
+  [[nodiscard]] std::size_t size() const { return numbers_.size() / std::max<std::size_t>(size_, 1); }
+  /// Indices in the problem of the samples of a batch, by lane.
+  [[nodiscard]] std::span<const int> samples(std::size_t batch) const {
+    const std::size_t first = batch * kLanes<S>;
+    return std::span(samples_).subspan(first, std::min<std::size_t>(kLanes<S>, samples_.size() - first));
+  }
+  /// True if a sensor observed something.
+  [[nodiscard]] bool has(std::size_t sensor) const { return layouts_[sensor].has_value(); }
+  /// What a sensor observed in the samples of a batch.
+  [[nodiscard]] BatchObservation<S> observation(std::size_t batch, std::size_t sensor) const {
+    return {numbers_.data() + batch * size_, &*layouts_[sensor]};
+  }
+
+ private:
+  [[nodiscard]] std::size_t reserve(const std::vector<double>& numbers) {
+    const std::size_t first = size_;
+    size_ += numbers.size();
+    return first;
+  }
+  /// Sets a lane; the first one sets all.
+  static void set(const std::vector<double>& from, int lane, S* to) {
+    for (const double number : from) {
+      if (lane == 0) {
+        *to++ = S(number);
+      } else {
+        set_lane(*to++, lane, number);
+      }
+    }
+  }
+
+  std::vector<int> terms_;
+  std::vector<std::optional<ObservationLayout>> layouts_;  ///< by sensor
+  std::size_t size_ = 0;                                   ///< numbers of a batch
+  std::vector<S> numbers_;                                 ///< of all batches
+  std::vector<int> samples_;                               ///< of all batches, by lane
+};
+
+}  // namespace kinecal

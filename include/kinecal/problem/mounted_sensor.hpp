@@ -1,0 +1,158 @@
+// A sensor on its robot: its parameters and the chains from the base to what it observes.
+//
+// A feature is given in the sensor's own frame or in a virtual frame (a checkerboard, a tracker)
+// beyond it; each of these frames has its own chain.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/problem/batch.hpp"
+#include "kinecal/sensors/any_sensor.hpp"
+
+namespace kinecal {
+
+/// A sample that cannot be used with this robot and these sensors.
+struct SampleError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+/// A sensor with its chains and the table indices of its parameters.
+class MountedSensor {
+ public:
+  /// @param frames  names of all free frames: names of joints correct these joints, the others are
+  ///                virtual frames
+  /// @throws RobotError  if no chain leads from the base to the sensor's frame
+  MountedSensor(const Robot& robot, const std::string& base, Mount mount,
+                std::shared_ptr<const AnySensor> sensor, const ParameterTable& table,
+                const std::set<std::string>& frames)
+      : mount_(std::move(mount)), sensor_(std::move(sensor)) {
+    const RuntimeChain chain = make_chain(robot, base, mount_.frame, frames);
+    add_chain(chain, table);
+    for (const std::string& frame : frames) {
+      if (!robot.has_joint(frame)) add_chain(with_virtual_frame(chain, frame), table);
+    }
+    for (const ParameterInfo& info : sensor_->parameters()) {
+      parameters_.push_back(table.find(parameter_name(mount_.parameter_prefix(), info.name)));
+    }
+  }
+
+  /// Where it is and how it is named.
+  [[nodiscard]] const Mount& mount() const { return mount_; }
+  /// The sensor itself.
+  [[nodiscard]] const AnySensor& sensor() const { return *sensor_; }
+  /// The chain to the sensor's frame, then those to virtual frames.
+  [[nodiscard]] const std::vector<RuntimeChain>& chains() const { return chains_; }
+  /// Table indices of each chain's parameters.
+  [[nodiscard]] const std::vector<std::vector<JointIndices>>& chain_parameters() const {
+    return chain_parameters_;
+  }
+  /// Table indices of the sensor's own parameters; -1 if the table does not have them.
+  [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
+
+  /// What the sensor observed in a sample, as numbers.
+  /// @throws SampleError  with what is missing or wrong
+  [[nodiscard]] ObservationNumbers numbers(const Sample& sample, const Observation& seen) const {
+    ObservationNumbers all;
+    all.joints.resize(chains_.size());
+    try {
+      all.settings = sensor_->settings(seen);
+      for (const Feature& feature : seen.features) {
+        const std::size_t chain = chain_to(feature.frame);
+        if (all.joints[chain].empty()) all.joints[chain] = joints(sample, chains_[chain]);
+        all.chain.push_back(chain);
+        add_feature(feature, all);
+      }
+    } catch (const SettingsError& e) {
+      throw SampleError("sensor '" + mount_.name + "': " + e.what());
+    }
+    replace_unusable(all);
+    return all;
+  }
+
+ private:
+  void add_chain(const RuntimeChain& chain, const ParameterTable& table) {
+    chain_by_frame_.emplace(chain.tip, chains_.size());
+    chains_.push_back(chain);
+    chain_parameters_.push_back(kinecal::chain_parameters(chain, table));
+  }
+
+  void add_feature(const Feature& feature, ObservationNumbers& all) const {
+    bool usable = feature.point.allFinite();
+    Matrix3<double> rotation = Matrix3<double>::Identity();
+    if (sensor_->is_oriented()) {
+      if (!feature.rotation) throw SettingsError("a feature has no orientation");
+      usable = usable && feature.rotation->allFinite();
+      rotation = *feature.rotation;
+    }
+    const Vector3<double> point =
+        usable ? sensor_->measurement(feature.point, all.settings) : feature.point;
+    all.usable.push_back(usable ? 1.0 : 0.0);
+    all.measured.insert(all.measured.end(), point.begin(), point.end());
+    if (sensor_->is_oriented()) {
+      all.measured.insert(all.measured.end(), rotation.data(), rotation.data() + rotation.size());
+    }
+  }
+
+  [[nodiscard]] std::size_t chain_to(const std::string& frame) const {
+    if (frame.empty()) return 0;  // a header without frame_id: the sensor's own frame
+    const auto it = chain_by_frame_.find(frame);
+    const bool own = sensor_->in_own_frame();
+    if (it != chain_by_frame_.end() && !(own && it->second != 0)) return it->second;
+    std::vector<std::string> known;
+    for (const auto& [name, chain] : chain_by_frame_) known.push_back(name);
+    throw SampleError("sensor '" + mount_.name + "': a feature is in frame '" + frame +
+                      "', which is not the sensor's frame '" + mount_.frame + "'" +
+                      (own ? "" : " and not a free frame") + did_you_mean(frame, known));
+  }
+
+  /// Position, cosine and sine of each joint of a chain.
+  [[nodiscard]] std::vector<double> joints(const Sample& sample, const RuntimeChain& chain) const {
+    const auto states = measured_joint_states(chain, [&](const std::string& joint) {
+      const std::optional<double> position = sample.position(joint);
+      if (!position) {
+        throw SampleError("joint '" + joint + "' is not in the sample; sensor '" + mount_.name +
+                          "' needs it" + did_you_mean(joint, sample.joint_names));
+      }
+      if (!std::isfinite(*position)) {
+        throw SampleError("the position of joint '" + joint + "' is not a number");
+      }
+      return *position;
+    });
+    std::vector<double> numbers;
+    for (const auto& state : states) {
+      numbers.insert(numbers.end(), {state.position, state.cos, state.sin});
+    }
+    return numbers;
+  }
+
+  /// Replaces NaN features, whose weight is zero, by another one: zero times NaN is NaN.
+  static void replace_unusable(ObservationNumbers& all) {
+    const auto first = std::find(all.usable.begin(), all.usable.end(), 1.0);
+    if (first == all.usable.end()) return;  // no error block uses the observation then
+    const auto width = std::ssize(all.measured) / std::ssize(all.usable);
+    const auto stand_in = all.measured.begin() + (first - all.usable.begin()) * width;
+    for (std::ptrdiff_t i = 0; i < std::ssize(all.usable); ++i) {
+      if (all.usable[static_cast<std::size_t>(i)] > 0.0) continue;
+      std::copy_n(stand_in, width, all.measured.begin() + i * width);
+    }
+  }
+
+  Mount mount_;
+  std::shared_ptr<const AnySensor> sensor_;
+  std::vector<int> parameters_;
+  std::vector<RuntimeChain>
+      chains_;  ///< [0] ends at the sensor's frame, the others at virtual frames
+  std::vector<std::vector<JointIndices>> chain_parameters_;
+  std::map<std::string, std::size_t> chain_by_frame_;
+};
+
+}  // namespace kinecal

@@ -1,0 +1,89 @@
+// What each parameter of a problem's table belongs to, and which of them the samples touch.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+
+#include "kinecal/problem/any_problem.hpp"
+
+namespace kinecal {
+
+/// Of joints and frames; sensors and blocks set those of their own.
+KINECAL_INLINE void AnyProblem::set_owners() {
+  owners_.resize(static_cast<std::size_t>(table_.size()));
+  for (const Joint& joint : robot_.joints()) {
+    if (moves(joint.type)) set_owner(table_.find(joint.name), joint.name);
+  }
+  for (const std::string& frame : frames_) {
+    for (const std::string_view axis : kFrameAxes) {
+      set_owner(table_.find(parameter_name(frame, axis)), frame);
+    }
+  }
+}
+
+KINECAL_INLINE std::vector<int> AnyProblem::parameters_of_block(
+    const std::string& name, std::span<const ParameterInfo> infos) {
+  std::vector<int> indices;
+  for (const ParameterInfo& info : infos) {
+    indices.push_back(table_.index(parameter_name(name, info.name)));
+    std::string& owner = owners_[static_cast<std::size_t>(indices.back())];
+    if (!owner.empty() && owner != name) {
+      throw std::invalid_argument("error block '" + name + "': its parameter '" +
+                                  parameter_name(name, info.name) + "' is also one of '" + owner +
+                                  "'; rename the block");
+    }
+    owner = name;
+  }
+  return indices;
+}
+
+KINECAL_INLINE void AnyProblem::check(const FreeSet& free) const {
+  if (free.table_size() != table_.size()) {
+    throw std::invalid_argument("a free set of a table of " + std::to_string(free.table_size()) +
+                                " parameters; the problem's has " + std::to_string(table_.size()));
+  }
+  for (const int parameter : free.parameters()) {
+    if (!owners_[static_cast<std::size_t>(parameter)].empty()) continue;
+    std::vector<std::string> names;
+    for (const Joint& joint : robot_.joints()) {
+      if (moves(joint.type)) names.push_back(joint.name);
+    }
+    for (int i = 0; i < table_.size(); ++i) {
+      if (!owners_[static_cast<std::size_t>(i)].empty()) names.push_back(table_[i].name);
+    }
+    const std::string& name = table_[parameter].name;
+    throw std::invalid_argument("free parameter '" + name +
+                                "' belongs to no joint that moves, free frame, sensor "
+                                "or error block" +
+                                did_you_mean(name, names));
+  }
+}
+
+KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
+  std::set<int> touched;
+  for (const auto& [layout, of_layout] : layouts_) {
+    for (const int t : layout.terms) {
+      touched.insert(term(t).parameters().begin(), term(t).parameters().end());
+      for (const int s : term(t).sensors()) {
+        add_touched(s, *layout.chains[static_cast<std::size_t>(s)], touched);
+      }
+    }
+  }
+  touched.erase(-1);
+  return {touched.begin(), touched.end()};
+}
+
+/// @param chains  the chains of the features that the sensor observed
+KINECAL_INLINE void AnyProblem::add_touched(int s, const std::vector<std::size_t>& chains,
+                                            std::set<int>& touched) const {
+  const MountedSensor& mounted = sensor(s);
+  touched.insert(mounted.parameters().begin(), mounted.parameters().end());
+  for (const std::size_t c : chains) {
+    for (const JointIndices& joint : mounted.chain_parameters()[c]) {
+      touched.insert(joint.offset);
+      touched.insert(joint.frame.begin(), joint.frame.end());
+    }
+  }
+}
+
+}  // namespace kinecal

@@ -1,0 +1,14 @@
+// The program `kinecal` as a function: link kinecal::program.
+//
+// A program of your own registers its sensors and error blocks (io/register.hpp) and calls it.  It
+// then has all commands of kinecal, with configurations that may name these types.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace kinecal {
+
+/// Runs the program, with the arguments of main().
+/// @returns  the exit code: 0 done, 1 bad input, 2 not converged
+int run_program(int argc, char** argv);
+
+}  // namespace kinecal

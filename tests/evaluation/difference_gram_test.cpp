@@ -1,0 +1,95 @@
+#include "kinecal/evaluation/difference_gram.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinecal/errors.hpp"
+#include "support/blocks.hpp"
+#include "support/sums.hpp"
+
+namespace kinecal {
+namespace {
+
+/// Moments against the products of rows that jets made: the same normal equations.
+/// @param first  the features from this one on
+/// @param all_count  false: the features of the first lane have weight zero
+template <class S>
+void expect_products_of_rows(const std::vector<std::string>& sensors, const FreeSet& free,
+                             std::size_t first = 0, bool all_count = true) {
+  BasicProblem<S> problem = test::wide_problem<S>();
+  problem.add_block("b", PointToPoint{}, sensors, {});
+  const auto x = test::random_values(problem.table(), 0.05, 3);
+  for (const Sample& s : test::wide_samples(problem, x, 2 * kLanes<S> + 1)) problem.add_sample(s);
+  using Rows = BlockRows<test::HiddenDifference, S>;
+  int packs = 0;
+  Evaluator<S>(problem, free).for_each_term(x, true, [&](int, auto&, const auto& views, auto) {
+    ++packs;
+    const auto chains = Rows::chains(views, first);
+    std::vector<int> columns;
+    views.columns(chains, columns);
+    const std::array twists = {BodyTwists<S>(views[0].twists(chains[0])),
+                               BodyTwists<S>(views[1].twists(chains[1]))};
+    FeatureGram<S> gram;
+    gram.resize(2, views.num_own());
+    std::vector<S> weights;
+    std::vector<Vector3<S>> residuals;
+    for (std::size_t i = first; i < Rows::features(views); ++i) {
+      weights.push_back(views[0].points()[i].x() + S(2.0));  // another one in each lane
+      if (!all_count) set_lane(weights.back(), 0, 0.0);
+      typename Rows::Rows rows;
+      Rows::template rows<true>(test::HiddenDifference{}, views, i, Linearization::measured, rows);
+      if (i == first) {
+        gram.set(rows, weights.back());
+      } else {
+        gram.add(rows, weights.back());
+      }
+      residuals.push_back(rows.residual);
+    }
+    gram.complete();
+    LocalSums<S> of_rows(columns), of_moments(columns);
+    of_rows.expand(gram, twists);
+    DifferenceGram<S> difference;
+    const auto side = [&](std::size_t k) {
+      return typename DifferenceGram<S>::Side{views[k].values(first), views[k].changes(first),
+                                              views[k].own().free.size()};
+    };
+    difference.set(side(0), side(1), weights, residuals);
+    of_moments.expand(difference, difference.centered(twists));
+    NormalEquations expected(free.size()), found(free.size());
+    of_rows.add_to(expected);
+    of_moments.add_to(found);
+    // Some features, their points a metre or two from the base, their weights up to four.
+    constexpr double kRounding = 1e-12;
+    EXPECT_TRUE(found.hessian.allFinite() && found.gradient.allFinite());
+    EXPECT_TRUE(expected.hessian.norm() > 0.0 || !all_count);
+    EXPECT_LE((found.hessian - expected.hessian).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_LE((found.gradient - expected.gradient).cwiseAbs().maxCoeff(), kRounding);
+  });
+  EXPECT_EQ(packs, 3);
+}
+
+template <class S>
+void check_sensors() {
+  const ParameterTable table = test::wide_table();
+  for (const auto& sensors : std::vector<std::vector<std::string>>{
+           {"camera", "arm"}, {"arm", "camera"}, {"arm", "finger"}, {"second", "camera"}}) {
+    SCOPED_TRACE(sensors[0] + " and " + sensors[1]);
+    expect_products_of_rows<S>(sensors, test::all_free(table));
+    expect_products_of_rows<S>(sensors, test::all_free(table), 2);  // features two and three
+    expect_products_of_rows<S>(sensors, test::all_free(table), 3);  // one feature, its own center
+    expect_products_of_rows<S>(sensors, test::all_free(table), 0, false);
+    expect_products_of_rows<S>(
+        sensors, test::free_of(table, {"wrist", "elbow", "second_cy", "camera_fx", "second_fx"}));
+    expect_products_of_rows<S>(sensors, test::free_of(table, {"elbow", "wrist"}));
+  }
+}
+
+TEST(DifferenceGram, IsThatOfRowsOfDoubles) {
+  check_sensors<double>();
+}
+
+TEST(DifferenceGram, IsThatOfRowsOfPackets) {
+  check_sensors<Packet>();
+}
+
+}  // namespace
+}  // namespace kinecal

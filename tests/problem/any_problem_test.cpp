@@ -1,0 +1,266 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/errors.hpp"
+#include "support/scene.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+
+/// The message of what a call throws.
+template <class Error, class Call>
+std::string message_of(Call&& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "nothing was thrown";
+}
+
+std::vector<Sample> samples(int count = 3) {
+  const Problem problem = test::scene_problem();
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  return test::exact_samples(problem, zero, count);
+}
+
+TEST(Problem, NamesTheNearestSensorForAMisspeltOne) {
+  Problem problem = test::scene_problem();
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+              problem.add_block("b", PointToPoint{}, {"camra", "arm"});
+            }),
+            "no sensor 'camra'; did you mean 'camera'?");
+}
+
+TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
+  Problem problem = test::scene_problem();
+  EXPECT_THAT(
+      message_of<std::invalid_argument>([&] { problem.add_block("b", PointToPoint{}, {"arm"}); }),
+      HasSubstr("takes 2 sensors, not 1"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] {
+                problem.add_block("b", PointToPoint{}, {"arm", "eye"});
+              }),
+              HasSubstr("sensor 'eye' observes pixels"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] {
+                problem.add_block("b", PointToPixel{}, {"arm", "camera"});
+              }),
+              HasSubstr("sensor 'camera' observes points"));
+}
+
+TEST(Problem, NamesTheNearestJointOrFrameForAMisspeltPrior) {
+  Problem problem = test::scene_problem();
+  problem.add_prior("keep", {"board", 1.0, 1.0, 1.0});
+  problem.add_prior("keep", {"elbow", 1.0, 1.0, 1.0});
+  EXPECT_EQ(
+      message_of<std::invalid_argument>([&] {
+        problem.add_prior("keep", {"elbw", 1.0, 1.0, 1.0});
+      }),
+      "error block 'keep': param 'elbw' is neither a free joint nor a free frame; did you mean "
+      "'elbow'?");
+}
+
+TEST(Problem, NamesTheNearestParameterForAMisspeltFreeOne) {
+  ParameterTable table = test::scene_table();
+  table.add({.name = "elbw"});
+  table.add({.name = "camera_fz"});
+  Problem problem(test::mobile_manipulator(), "base_link", table, test::kSceneFrames);
+  problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
+  const auto free = [&](const char* name) { return FreeSet({table.index(name)}, table.size()); };
+  for (const char* name : {"elbow", "camera_fx", "board_c"}) {
+    EXPECT_NO_THROW((void)problem.evaluator(free(name))) << name;
+  }
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { (void)problem.evaluator(free("elbw")); }),
+            "free parameter 'elbw' belongs to no joint that moves, free frame or sensor; did you "
+            "mean 'elbow'?");
+  EXPECT_THAT(
+      message_of<std::invalid_argument>([&] { (void)problem.evaluator(free("camera_fz")); }),
+      HasSubstr("free parameter 'camera_fz' belongs to no"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] { (void)problem.evaluator(FreeSet({0}, 3)); }),
+              HasSubstr("a free set of a table of 3 parameters; the problem's has"));
+}
+
+TEST(Problem, RefusesFewerPositionsThanJoints) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  Sample sample = samples()[0];
+  sample.source = "s.yaml:3";
+  sample.joint_positions.pop_back();
+  EXPECT_THAT(
+      message_of<SampleError>([&] { problem.add_sample(sample); }),
+      testing::MatchesRegex("s.yaml:3: it has [0-9]+ joint names, but positions of [0-9]+"));
+  EXPECT_EQ(sample.position(sample.joint_names.back()), std::nullopt);
+}
+
+TEST(Problem, TakesSensorsAndBlocksBeforeSamplesOnly) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  problem.add_sample(samples()[0]);
+  EXPECT_THROW(problem.add_block("c", PointToPoint{}, {"camera", "arm"}), std::logic_error);
+  EXPECT_THROW(problem.add_sensor(ChainPoint{}, {"again", "hand"}), std::logic_error);
+}
+
+TEST(Problem, ARefusedSampleIsNotAdded) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  Sample sample = samples()[0];
+  sample.source = "s.yaml:3";
+  sample.observations[0].features.pop_back();
+  EXPECT_THAT(message_of<SampleError>([&] { problem.add_sample(sample); }),
+              testing::AllOf(HasSubstr("s.yaml:3"), HasSubstr("sensor 'camera' has 4 features"),
+                             HasSubstr("sensor 'arm' has 3")));
+  EXPECT_EQ(problem.num_samples(), 0);
+}
+
+TEST(Problem, RefusesPointsThatSpanNoPlane) {
+  Problem problem = test::scene_problem();
+  problem.add_block("floor", PlaneToPlane{}, {"camera", "arm"});
+  Sample line = samples()[0], few = samples()[1];
+  line.source = "s.yaml:9";
+  for (std::size_t i = 0; i < 4; ++i) {
+    line.observations[1].features[i].point =
+        Vector3<double>(0.1, 0.2, 1.0) * (1.0 + 0.1 * double(i));
+  }
+  EXPECT_EQ(message_of<SampleError>([&] { problem.add_sample(line); }),
+            "s.yaml:9: error block 'floor': its points span no plane");
+  few.observations[0].features.resize(2);
+  EXPECT_THAT(message_of<SampleError>([&] { problem.add_sample(few); }),
+              HasSubstr("a plane takes three points or more"));
+  problem.add_sample(samples()[2]);
+  EXPECT_EQ(problem.samples_of(0), 1);
+}
+
+TEST(Problem, ABlockAppliesToTheSamplesThatHaveItsSensors) {
+  Problem problem = test::scene_problem();
+  TermOptions alone;
+  alone.exclusive = true;
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  problem.add_block("floor", PointToPlane(0, 0, 1, 0), {"camera"});
+  problem.add_block("floor_alone", PointToPlane(0, 0, 1, 0), {"camera"}, alone);
+  auto all = samples(4);
+  all[1].observations.erase(all[1].observations.begin());  // the arm
+  all[2].observations = {all[2].observations[1]};          // the camera alone
+  for (const Sample& sample : all) problem.add_sample(sample);
+  EXPECT_EQ(problem.samples_of(0), 2);
+  EXPECT_EQ(problem.samples_of(1), 4);
+  EXPECT_EQ(problem.samples_of(2), 1);
+  EXPECT_EQ(problem.shared_samples(1), 3);
+}
+
+TEST(Problem, KnowsWhichParametersItsSamplesTouch) {
+  Problem problem = test::scene_problem();
+  problem.add_block("floor", PointToPlane(0, 0, 1, 0), {"camera"});
+  for (const Sample& sample : samples()) problem.add_sample(sample);
+  std::vector<std::string> names;
+  for (int i : problem.touched_parameters()) names.push_back(problem.table()[i].name);
+  EXPECT_THAT(names, testing::Contains("head_tilt"));
+  EXPECT_THAT(names, testing::Contains("camera_z_offset"));
+  EXPECT_THAT(names, testing::Not(testing::Contains("elbow")));
+  EXPECT_THAT(names, testing::Not(testing::Contains("board_x")));
+}
+
+TEST(Problem, FeaturesThatAreNoNumbersAreLeftOutEverywhere) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  Sample sample = samples()[0];
+  sample.observations[1].features[2].point.z() = std::nan("");
+  problem.add_sample(sample);
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  Eigen::Index rows = 0;
+  (void)evaluate(problem, zero, nullptr, [&](int, int, const TermResiduals& out) {
+    rows = out.residual.size();
+    EXPECT_TRUE(out.residual.allFinite());
+  });
+  EXPECT_EQ(rows, 9);
+}
+
+/// Camera against arm, the arm in the image, planes through both, the camera on the ground.
+Problem four_blocks() {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"});
+  problem.add_block("ground", PointToPlane(0, 0, 1, 0), {"camera"});
+  problem.add_prior("restrict", {"camera_joint", 0.0, 1.0, 1.0});
+  return problem;
+}
+
+TEST(Problem, CountsResidualsAndSamplesOfMixedShapesWithMissingFeatures) {
+  const double nan = std::nan("");
+  Problem problem = four_blocks();
+  auto all = samples(6);
+  // Samples: as they are; a feature missing in camera and another in the arm; no arm; no camera;
+  // no feature that camera and arm share; nothing but no-numbers in the eye.
+  all[1].observations[1].features[0].point.x() = nan;
+  all[1].observations[0].features[3].point.z() = nan;
+  all[2].observations.erase(all[2].observations.begin());
+  all[3].observations.erase(all[3].observations.begin() + 1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    all[4].observations[0].features[i].point.setConstant(nan);
+    all[4].observations[1].features[i + 2].point.setConstant(nan);
+  }
+  for (Feature& f : all[5].observations[2].features) f.point.setConstant(nan);
+  for (const Sample& sample : all) problem.add_sample(sample);
+  const int hand_eye = 3 * (4 + 2 + 0 + 0 + 0 + 4);
+  const int reprojection = 2 * (4 + 3 + 0 + 4 + 2 + 0);
+  const int ground = 1 * (4 + 3 + 4 + 0 + 2 + 4);
+  EXPECT_EQ(problem.num_residuals(), hand_eye + reprojection + ground + Prior::kRows);
+  EXPECT_EQ(problem.samples_of(0), 3);
+  EXPECT_EQ(problem.samples_of(1), 4);
+  EXPECT_EQ(problem.samples_of(2), 5);
+  // With another block: hand_eye always; reprojection but for the sample without a camera; ground
+  // but for the one without an arm.
+  EXPECT_EQ(problem.shared_samples(0), 3);
+  EXPECT_EQ(problem.shared_samples(1), 3);
+  EXPECT_EQ(problem.shared_samples(2), 4);
+  EXPECT_EQ(problem.num_samples(), 6);
+
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  std::array<Eigen::Index, 3> rows = {};
+  EXPECT_EQ(evaluate(problem, zero, nullptr,
+                     [&](int t, int, const TermResiduals& out) {
+                       rows[static_cast<std::size_t>(t)] += out.residual.size();
+                     }),
+            std::nullopt);
+  EXPECT_EQ(rows, (std::array<Eigen::Index, 3>{hand_eye, reprojection, ground}));
+}
+
+TEST(Problem, CountsTheSameInPacketsAndInDoubles) {
+  Problem packets = test::scene_problem();
+  BasicProblem<double> numbers = test::scene_problem<double>();
+  packets.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  numbers.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  auto all = samples(7);
+  all[2].observations.pop_back();
+  all[3].observations.erase(all[3].observations.begin());
+  all[5].observations[1].features[2].point.x() = std::nan("");
+  for (const Sample& sample : all) {
+    packets.add_sample(sample);
+    numbers.add_sample(sample);
+  }
+  EXPECT_EQ(packets.num_residuals(), 3 * (6 * 4 - 1));
+  EXPECT_EQ(packets.num_residuals(), numbers.num_residuals());
+  EXPECT_EQ(packets.samples_of(0), numbers.samples_of(0));
+  EXPECT_EQ(packets.touched_parameters(), numbers.touched_parameters());
+  EXPECT_EQ(test::count_batches(numbers), 6);  // none for the sample that no block takes
+}
+
+/// What points into the problem goes where it goes.
+TEST(Problem, MayBeMoved) {
+  Problem problem = four_blocks();
+  for (const Sample& sample : samples(5)) problem.add_sample(sample);
+  const std::vector<double> x = test::random_values(problem.table(), 0.01, 3);
+  const double cost = normal_equations(problem, x, nullptr).cost;
+  Problem moved = std::move(problem);
+  EXPECT_EQ(normal_equations(moved, x, nullptr).cost, cost);
+  for (const Sample& sample : samples(5)) moved.add_sample(sample);  // its packs take more
+  constexpr double kSums = 1e-13;
+  EXPECT_NEAR(normal_equations(moved, x, nullptr).cost, 2.0 * cost, kSums * cost);
+}
+
+}  // namespace
+}  // namespace kinecal

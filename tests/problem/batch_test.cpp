@@ -1,0 +1,175 @@
+#include "kinecal/problem/batch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "kinecal/errors.hpp"
+#include "support/scene.hpp"
+
+namespace kinecal {
+namespace {
+
+constexpr int kLanesOfPacket = kLanes<Packet>;
+
+/// What camera and eye saw in samples that differ in all their numbers; the arm is absent.
+std::vector<SampleNumbers> seen_in_samples(int count) {
+  const Problem problem = test::scene_problem();
+  const auto x = test::random_values(problem.table(), 0.02, 5);
+  std::vector<SampleNumbers> all;
+  for (Sample& sample : test::exact_samples(problem, x, count)) {
+    const double n = static_cast<double>(all.size());
+    for (Observation& observation : sample.observations) {
+      if (!observation.camera) continue;
+      observation.camera->p[0] += n;
+      observation.camera->p[6] -= n;
+      observation.camera->z_offset = 0.01 * n;
+      observation.camera->z_scaling = 1.0 + 0.02 * n;
+      if (observation.sensor == "eye") observation.camera->d = {0.01 * (n + 1), 0.02, 0.0, n, 0.0};
+    }
+    SampleNumbers& seen = all.emplace_back(3);
+    for (std::size_t s = 1; s < 3; ++s) {
+      seen[s] = problem.sensors()[s].numbers(sample, sample.observations[s]);
+    }
+  }
+  return all;
+}
+
+template <class S>
+void expect_lane(const BatchObservation<S>& batch, int i, const ObservationNumbers& one,
+                 double weight) {
+  ASSERT_EQ(one.usable.size(), 4u);
+  ASSERT_EQ(batch.size(), one.usable.size());
+  ASSERT_EQ(one.measured.size(), 12u);
+  for (std::size_t f = 0; f < 4; ++f) {
+    EXPECT_EQ(batch.chain(f), one.chain[f]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(lane(batch.measured(f)[k], i), one.measured[3 * f + k]);
+    }
+    EXPECT_EQ(lane(batch.usable(f), i), weight * one.usable[f]);
+  }
+  for (std::size_t k = 0; k < one.settings.size(); ++k) {
+    EXPECT_EQ(lane(batch.settings()[k], i), one.settings[k]);
+  }
+  for (std::size_t c = 0; c < one.joints.size(); ++c) {
+    ASSERT_EQ(batch.has_joints(c), !one.joints[c].empty());
+    for (std::size_t j = 0; 3 * j < one.joints[c].size(); ++j) {
+      const JointState<S> state = batch.joints(c)[j];
+      EXPECT_EQ(lane(state.position, i), one.joints[c][3 * j]);
+      EXPECT_EQ(lane(state.cos, i), one.joints[c][3 * j + 1]);
+      EXPECT_EQ(lane(state.sin, i), one.joints[c][3 * j + 2]);
+    }
+  }
+}
+
+TEST(Batches, HoldASampleInEachLane) {
+  const std::vector<SampleNumbers> seen = seen_in_samples(2 * kLanesOfPacket + 1);
+  Batches<Packet> batches({3, 5}, seen[0]);
+  for (int n = 0; n < std::ssize(seen); ++n) {
+    batches.add(10 + 3 * n, seen[static_cast<std::size_t>(n)]);
+  }
+  EXPECT_EQ(batches.terms(), (std::vector<int>{3, 5}));
+  ASSERT_EQ(batches.size(), 3u);
+  EXPECT_EQ(batches.samples(2).size(), 1u);
+  EXPECT_FALSE(batches.has(0)) << "nothing was seen by the arm";
+  for (std::size_t b = 0; b < 2; ++b) {
+    ASSERT_EQ(std::ssize(batches.samples(b)), kLanesOfPacket);
+    for (int i = 0; i < kLanesOfPacket; ++i) {
+      const std::size_t n = b * kLanesOfPacket + static_cast<std::size_t>(i);
+      EXPECT_EQ(batches.samples(b)[static_cast<std::size_t>(i)], 10 + 3 * static_cast<int>(n));
+      for (const std::size_t s : {1u, 2u}) {
+        ASSERT_TRUE(batches.has(s));
+        expect_lane(batches.observation(b, s), i, *seen[n][s], 1.0);
+      }
+    }
+  }
+}
+
+/// They must be numbers and defined wherever the first sample is.
+TEST(Batches, LanesWithoutASampleRepeatTheFirstWithWeightZero) {
+  const std::vector<SampleNumbers> seen = seen_in_samples(1);
+  Batches<Packet> batches({}, seen[0]);
+  batches.add(0, seen[0]);
+  for (const std::size_t s : {1u, 2u}) {
+    expect_lane(batches.observation(0, s), 0, *seen[0][s], 1.0);
+    for (int i = 1; i < kLanesOfPacket; ++i) {
+      expect_lane(batches.observation(0, s), i, *seen[0][s], 0.0);
+    }
+  }
+}
+
+TEST(Batches, OfDoublesHoldOneSample) {
+  const std::vector<SampleNumbers> seen = seen_in_samples(2);
+  Batches<double> batches({}, seen[0]);
+  batches.add(4, seen[0]);
+  batches.add(5, seen[1]);
+  ASSERT_EQ(batches.size(), 2u);
+  for (const std::size_t b : {0u, 1u}) {
+    EXPECT_EQ(batches.samples(b)[0], static_cast<int>(4 + b));
+    expect_lane(batches.observation(b, 1), 0, *seen[b][1], 1.0);
+  }
+}
+
+TEST(Batches, AFeatureThatIsNotANumberRepeatsAnotherWithWeightZero) {
+  const Problem problem = test::scene_problem();
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  Sample sample = test::exact_samples(problem, zero, 1)[0];
+  sample.observations[0].features[0].point.y() = std::numeric_limits<double>::quiet_NaN();
+  sample.observations[0].features[2].point.z() = std::numeric_limits<double>::infinity();
+  const ObservationNumbers seen = problem.sensors()[0].numbers(sample, sample.observations[0]);
+  EXPECT_EQ(seen.usable, (std::vector<double>{0.0, 1.0, 0.0, 1.0}));
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(seen.measured[k], seen.measured[3 + k]);
+    EXPECT_EQ(seen.measured[6 + k], seen.measured[3 + k]);
+  }
+}
+
+/// Samples share batches only where sensors, features, their frames and terms agree.
+TEST(Batches, AreOfOneLayoutEach) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
+  problem.add_block("ground", PointToPlane(0, 0, 1, 0), {"camera"});
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  const auto in_hand = test::exact_samples(problem, zero, 10);
+  const auto on_board = test::exact_samples(problem, zero, 10, "board");
+  for (std::size_t n = 0; n < 10; ++n) {
+    Sample fewer = in_hand[n], no_arm = in_hand[n], both = in_hand[n];
+    for (Observation& seen : fewer.observations) seen.features.pop_back();
+    no_arm.observations.erase(no_arm.observations.begin());
+    both.observations[0].features[1] = on_board[n].observations[0].features[1];
+    for (const Sample& sample : {in_hand[n], on_board[n], fewer, no_arm, both}) {
+      problem.add_sample(sample);
+    }
+  }
+  ASSERT_EQ(problem.batches().size(), 5u);
+  std::vector<int> samples;
+  for (const auto& batches : problem.batches()) {
+    EXPECT_EQ(std::ssize(problem.batches()[0].samples(0)), std::min(10, kLanesOfPacket));
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+      for (const int n : batches.samples(b)) {
+        EXPECT_EQ(n % 5, batches.samples(0)[0] % 5);
+        samples.push_back(n);
+      }
+    }
+  }
+  std::sort(samples.begin(), samples.end());
+  ASSERT_EQ(samples.size(), 50u);
+  for (int n = 0; n < 50; ++n) EXPECT_EQ(samples[static_cast<std::size_t>(n)], n);
+}
+
+/// What no block takes is not evaluated and keeps no samples apart.
+TEST(Batches, WhatNoBlockTakesDoesNotKeepSamplesApart) {
+  Problem problem = test::scene_problem();
+  problem.add_block("ground", PointToPlane(0, 0, 1, 0), {"camera"});
+  const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);
+  auto samples = test::exact_samples(problem, zero, kLanesOfPacket);
+  samples.back().observations.erase(samples.back().observations.begin());  // the arm
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  ASSERT_EQ(problem.batches().size(), 1u);
+  EXPECT_EQ(problem.batches()[0].size(), 1u);
+  EXPECT_FALSE(problem.batches()[0].has(0));
+  EXPECT_TRUE(problem.batches()[0].has(1));
+}
+
+}  // namespace
+}  // namespace kinecal
