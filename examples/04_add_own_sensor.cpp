@@ -36,14 +36,13 @@ struct WireLength {
   }
 };
 
-// The drum turns with the torso link; its axis is 0.9 m in front of it.
+// The drum is at the robot's base.  (On the axis of the pan joint, so its zero is not free.)
 using Robot = mobile_manipulator::Robot;
 using Arm = Chain3d<"arm", Chain<Robot, "base_link", "gripper_link">>;
 using Wire = SensorOn<"wire", Chain<Robot, "base_link", "base_link">, DrawWire>;
 using Measured =
-    Crate<Arm, Wire, JointOffset<"shoulder_pan_joint">, JointOffset<"shoulder_lift_joint">,
-          JointOffset<"elbow_flex_joint">, SensorParameters<"wire", "scale", "zero">,
-          Block<"length", WireLength, "arm", "wire">>;
+    Crate<Arm, Wire, JointOffset<"shoulder_lift_joint">, JointOffset<"elbow_flex_joint">,
+          SensorParameters<"wire", "scale", "zero">, Block<"length", WireLength, "arm", "wire">>;
 
 /// A sample at a random pose; the encoder's noise is 0.2 mm.
 Sample measure(const ParameterTable& truth, SeededRandom& random) {
@@ -51,8 +50,7 @@ Sample measure(const ParameterTable& truth, SeededRandom& random) {
   Sample sample = random_pose(robot, random);
   const Pose<double> gripper = true_pose(robot, truth, "base_link", "gripper_link", sample);
   const double length = gripper.translation.norm() + 2e-4 * random.normal();
-  const double reading =
-      (length - truth["wire_zero"].value) / (1.0 + truth["wire_scale"].value);
+  const double reading = (length - truth["wire_zero"].value) / (1.0 + truth["wire_scale"].value);
   sample.observations = {{"arm", {{"gripper_link", Vector3<double>::Zero()}}},
                          {"wire", {{"base_link", {reading, 0.0, 0.0}}}}};
   return sample;

@@ -56,7 +56,8 @@ Sample see(const std::string& link, const std::vector<Vector3<double>>& points,
 template <class C>
 int rank_of(const char* name, const std::vector<Sample>& samples) {
   C crate;
-  if constexpr (!std::is_same_v<C, HandEye>) crate.template block<"ground">().options.exclusive = true;
+  if constexpr (!std::is_same_v<C, HandEye>)
+    crate.template block<"ground">().options.exclusive = true;
   const ParameterTable table = C().table(samples);
   Problem problem = crate.problem(table);
   for (const Sample& sample : samples) problem.add_sample(sample);

@@ -6,8 +6,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/solve.hpp"
 #include "simulation.hpp"
 

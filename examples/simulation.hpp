@@ -121,8 +121,7 @@ struct CameraNoise {
 
 /// True if the point is in the camera's image, and not at its edge.
 /// @param p_camera  (3) metres, in the optical frame
-[[nodiscard]] inline bool is_in_image(const Intrinsics& camera,
-                                      const Vector3<double>& p_camera) {
+[[nodiscard]] inline bool is_in_image(const Intrinsics& camera, const Vector3<double>& p_camera) {
   constexpr double kUsed = 0.9;  // of the image
   return p_camera.z() > 0.0 &&
          std::abs(camera.fx * p_camera.x()) < kUsed * camera.cx * p_camera.z() &&

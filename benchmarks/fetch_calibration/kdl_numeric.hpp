@@ -124,7 +124,8 @@ class KdlResiduals {
     std::array<double, 6> depth;
     for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = x[model_.chains.camera_parameters[i]];
     for (std::size_t i = 0; i < kLeds; ++i) {
-      const KDL::Vector seen = to_kdl(DepthCamera{}.place(Measurement<DepthCamera, double>{.point = measured_[i], .settings = camera_}, depth));
+      const KDL::Vector seen = to_kdl(DepthCamera{}.place(
+          Measurement<DepthCamera, double>{.point = measured_[i], .settings = camera_}, depth));
       const KDL::Vector r = base_T_camera * seen - base_T_arm * on_arm_[i];
       for (int axis = 0; axis < 3; ++axis) residual[3 * i + axis] = r[axis];
     }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors/point_to_point.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "work.hpp"
 
 namespace kinecal::bench {

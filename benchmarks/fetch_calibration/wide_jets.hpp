@@ -44,8 +44,8 @@ struct WalkModel {
         camera(chain_parameters(chains.camera, work.table)) {}
 
   [[nodiscard]] WalkSample pack(const Sighting& seen) const {
-    return {measured_joint_states(chains.arm, seen), measured_joint_states(chains.camera, seen), seen.camera,
-            seen.measured, seen.on_arm};
+    return {measured_joint_states(chains.arm, seen), measured_joint_states(chains.camera, seen),
+            seen.camera, seen.measured, seen.on_arm};
   }
 
   /// @param x  (26) parameters in any scalar
@@ -72,7 +72,10 @@ struct WalkModel {
     const Pose<S> base_T_camera = tip(chains.camera, sample.camera, state.camera);
     for (std::size_t i = 0; i < kLeds; ++i) {
       const Vector3<S> seen =
-          base_T_camera * DepthCamera{}.place(Measurement<DepthCamera, double>{.point = sample.measured[i], .settings = sample.settings}, state.depth);
+          base_T_camera *
+          DepthCamera{}.place(Measurement<DepthCamera, double>{.point = sample.measured[i],
+                                                               .settings = sample.settings},
+                              state.depth);
       const Vector3<S> on_arm = base_T_arm * sample.on_arm[i];
       for (int axis = 0; axis < 3; ++axis) residual[3 * i + axis] = seen(axis) - on_arm(axis);
     }

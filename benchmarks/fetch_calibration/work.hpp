@@ -24,7 +24,7 @@ inline constexpr int kSamples = 100;
 /// One sample with names resolved; each method prepares it once.
 struct Sighting {
   const Sample* sample;
-  std::array<double, 6> camera;                           ///< as recorded
+  std::array<double, 6> camera;                   ///< as recorded
   std::array<Vector3<double>, kLeds> measured{};  ///< pixel and raw depth: pixels, metres
   std::array<Vector3<double>, kLeds> on_arm{};    ///< metres, in wrist_roll_link
 
@@ -110,8 +110,8 @@ struct FetchChains {
       : arm(make_chain(work.robot, kBase, work.arm.frame, kFreeFrames)),
         camera(make_chain(work.robot, kBase, work.camera.frame, kFreeFrames)) {
     for (std::size_t i = 0; i < camera_parameters.size(); ++i) {
-      camera_parameters[i] =
-          work.table.index(parameter_name(work.camera.parameter_prefix(), DepthCamera::kParameters[i].name));
+      camera_parameters[i] = work.table.index(
+          parameter_name(work.camera.parameter_prefix(), DepthCamera::kParameters[i].name));
     }
   }
 };

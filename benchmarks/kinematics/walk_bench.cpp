@@ -14,8 +14,8 @@ struct Work {
   Robot robot = test::mobile_manipulator();
   RuntimeChain chain = make_chain(robot, "hand", "camera_optical_frame");
   Corrections<double> corrections = Corrections<double>(chain.joints.size());
-  std::vector<JointState<double>> motions =
-      measured_joint_states(chain, [](const std::string& joint) { return 0.1 * double(joint.size()); });
+  std::vector<JointState<double>> motions = measured_joint_states(
+      chain, [](const std::string& joint) { return 0.1 * double(joint.size()); });
 };
 
 /// The control: joint after joint, with trigonometry.

@@ -1,5 +1,7 @@
 // The program kinecal: its commands and their options.
 // SPDX-License-Identifier: Apache-2.0
+#include "kinecal/program.hpp"
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -10,7 +12,6 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "kinecal/program.hpp"
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "commands.hpp"
+#include "kinecal/evaluation/make_problem.hpp"
 #include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal::cli {

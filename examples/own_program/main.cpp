@@ -38,9 +38,8 @@ struct WireLength {
 
 int main(int argc, char** argv) {
   register_sensor(DrawWire{});
-  register_block<WireLength>({{"model"}, {"wire"}}, {{"hook", 0.0}},
-                             [](const BlockNumbers& numbers) {
-                               return WireLength{numbers.at("hook")};
-                             });
+  register_block<WireLength>(
+      {{"model"}, {"wire"}}, {{"hook", 0.0}},
+      [](const BlockNumbers& numbers) { return WireLength{numbers.at("hook")}; });
   return run_program(argc, argv);
 }

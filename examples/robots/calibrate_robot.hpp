@@ -38,7 +38,8 @@ template <BlockPart B>
 [[nodiscard]] ExampleBlock describe_block() {
   ExampleBlock example{.name = std::string(B::kName)};
   for (const std::string_view sensor : B::kSensorNames) example.sensors.emplace_back(sensor);
-  if constexpr (PointBlock<typename B::Error> && kParametersOfBlock<typename B::Error> == 0) example.plane = plane_of(B().error);
+  if constexpr (PointBlock<typename B::Error> && kParametersOfBlock<typename B::Error> == 0)
+    example.plane = plane_of(B().error);
   return example;
 }
 

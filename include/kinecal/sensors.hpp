@@ -7,4 +7,5 @@
 #include "kinecal/sensors/depth_camera.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
 #include "kinecal/sensors/quantity.hpp"
+#include "kinecal/sensors/quantity_vectors.hpp"
 #include "kinecal/sensors/sensor.hpp"

@@ -55,9 +55,8 @@ TEST(ErrorBlock, PointToPlaneIsTheDistanceOnTheSideOfTheNormal) {
 }
 
 TEST(ErrorBlock, PointToPixelIsThePredictedPixelLessTheObservedOne) {
-
   const PixelObservation<double> pixel{{595, 20}, {590, 30}};
-  EXPECT_LE((PointToPixel{}(pixel) - Eigen::Vector2d(5, -10)).norm(), 1e-12);
+  EXPECT_LE((PointToPixel{}(pixel)-Eigen::Vector2d(5, -10)).norm(), 1e-12);
 }
 
 TEST(ErrorBlock, PlaneToPlaneIsTheTurnOfTheNormalsAndTheDistanceToTheSecond) {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/errors.hpp"
-#include "support/oracle_problem.hpp"
 #include "support/open_scene.hpp"
+#include "support/oracle_problem.hpp"
 #include "support/sums.hpp"
 
 namespace kinecal {
@@ -68,7 +68,7 @@ TEST(OpenBlocks, RayToRay) {
   check_block(RayToRay{}, {"eye", "left"});
 }
 TEST(OpenBlocks, PointDistance) {
-  check_block(PointDistance{0.3}, {"camera", "arm"}, "board");
+  check_block(PointDistance{0.3}, {"camera", "elbow_point"});
 }
 TEST(OpenBlocks, PointToSphere) {
   check_block(PointToSphere{{0.1, 0.2, 0.3}, 0.4}, {"camera"});
@@ -103,7 +103,8 @@ TEST(OpenBlocks, RaysToOnePointMeet) {
         Observation& seen = sample.observations[which];
         const Vector3<double> q = pose.inverse() * p;
         const Eigen::Vector2d pixel = test::oracle_pixel(
-            *seen.camera, Vector3<double>(q.x() / q.z() * 0.1, q.y() / q.z() * 0.1, 0.1), name, value);
+            *seen.camera, Vector3<double>(q.x() / q.z() * 0.1, q.y() / q.z() * 0.1, 0.1), name,
+            value);
         seen.features[i].point = {pixel.x(), pixel.y(), 0.0};
       };
       look(4, left, "left");

@@ -73,8 +73,10 @@ TEST(Packet, WalksAsManySamplesAtOnceAsItHasLanes) {
       EXPECT_NEAR(at_once.walker.pose.translation(k)[lane], alone.walker.pose.translation(k),
                   kRounding);
       for (std::size_t t = 0; t < twists.rotational.size(); ++t) {
-        EXPECT_NEAR(packed_twists.rotational[t].linear(k)[lane], twists.rotational[t].linear(k), kRounding);
-        EXPECT_NEAR(packed_twists.rotational[t].angular(k)[lane], twists.rotational[t].angular(k), kRounding);
+        EXPECT_NEAR(packed_twists.rotational[t].linear(k)[lane], twists.rotational[t].linear(k),
+                    kRounding);
+        EXPECT_NEAR(packed_twists.rotational[t].angular(k)[lane], twists.rotational[t].angular(k),
+                    kRounding);
       }
       for (std::size_t t = 0; t < twists.translational.size(); ++t) {
         EXPECT_NEAR(packed_twists.translational[t](k)[lane], twists.translational[t](k), kRounding);

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "support/scene.hpp"
 
 namespace kinecal {
@@ -46,11 +46,11 @@ TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
   EXPECT_THAT(message_of<std::invalid_argument>([&] {
                 problem.add_block("b", PointToPoint{}, {"arm", "eye"});
               }),
-              HasSubstr("sensor 'eye' observes pixels"));
+              HasSubstr("sensor 'eye', a camera2d, does not deliver points"));
   EXPECT_THAT(message_of<std::invalid_argument>([&] {
                 problem.add_block("b", PointToPixel{}, {"arm", "camera"});
               }),
-              HasSubstr("sensor 'camera' observes points"));
+              HasSubstr("sensor 'camera', a camera3d, does not deliver pixels"));
 }
 
 TEST(Problem, NamesTheNearestJointOrFrameForAMisspeltPrior) {
@@ -76,7 +76,8 @@ TEST(Problem, NamesTheNearestParameterForAMisspeltFreeOne) {
     EXPECT_NO_THROW((void)problem.evaluator(free(name))) << name;
   }
   EXPECT_EQ(message_of<std::invalid_argument>([&] { (void)problem.evaluator(free("elbw")); }),
-            "free parameter 'elbw' belongs to no joint that moves, free frame or sensor; did you "
+            "free parameter 'elbw' belongs to no joint that moves, free frame, sensor or error "
+            "block; did you "
             "mean 'elbow'?");
   EXPECT_THAT(
       message_of<std::invalid_argument>([&] { (void)problem.evaluator(free("camera_fz")); }),

@@ -25,8 +25,8 @@ TEST(DepthCamera, GivesBackTheRecordedPointWithTheRecordedSettings) {
 }
 
 TEST(DepthCamera, FollowsTheDriversDepthFormula) {
-  const Vector3<double> p = point<double>({550, 545, 320, 240, 0.0, 1.0}, {320, 240, 2.0},
-                                          {0, 0, 0, 0, 0.01, -0.1});
+  const Vector3<double> p =
+      point<double>({550, 545, 320, 240, 0.0, 1.0}, {320, 240, 2.0}, {0, 0, 0, 0, 0.01, -0.1});
   EXPECT_LE((p - Vector3<double>(0, 0, 2.01 * 0.9)).norm(), 1e-15);
 }
 
@@ -102,8 +102,7 @@ void expect_the_jets_of_a_depth_camera(const std::array<double, 6>& v, unsigned 
     const Vector3<double> p_base = views.poses[n] * p;
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(lane(found(k), i), p_base(k), kRounding);
     for (int parameter = 0; parameter < 6; ++parameter) {
-      const Vector3<double> by(jets.x().v(parameter), jets.y().v(parameter),
-                               jets.z().v(parameter));
+      const Vector3<double> by(jets.x().v(parameter), jets.y().v(parameter), jets.z().v(parameter));
       const Vector3<double> expected = views.poses[n].rotation * by;
       for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(lane(changes[static_cast<std::size_t>(parameter)](k), i), expected(k),
@@ -153,8 +152,9 @@ TEST(PinholeCamera, DistortsAsPlumbBobDoes) {
 /// The ray to a pixel goes through the points that appear there, also through a lens.
 TEST(PinholeCamera, SeesAlongTheRayToItsPixel) {
   const std::array<double, 4> v{0.02, -0.01, 0.03, -0.02};
-  for (const auto& camera : {std::array<double, 9>{500, 510, 320, 240},
-                             std::array<double, 9>{500, 510, 320, 240, -0.2, 0.05, 1e-3, -2e-3, 0.0}}) {
+  for (const auto& camera :
+       {std::array<double, 9>{500, 510, 320, 240},
+        std::array<double, 9>{500, 510, 320, 240, -0.2, 0.05, 1e-3, -2e-3, 0.0}}) {
     const Vector3<double> p(0.3, -0.2, 1.0);
     const Eigen::Vector2d pixel = PinholeCamera{}.predict(p, camera, v);
     const Measurement<PinholeCamera, double> m{.point = {pixel.x(), pixel.y(), 0.0},

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "support/scene.hpp"
 
 namespace kinecal {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/solve.hpp"
 #include "support/sums.hpp"

@@ -142,10 +142,32 @@ struct Height {
 };
 Crate<Head, Block<"ground", Height, "camera">> residual_not_templated;
 
-// expect: this error block is given too many or too few sensors; one whose residual takes a point
+// expect: the residual of this error block is not a vector of fixed size in the scalar of its
+struct AnySize {
+  template <class S>
+  Eigen::Matrix<S, Eigen::Dynamic, 1> operator()(const Vector3<S>& p) const {
+    return p;
+  }
+};
+Crate<Head, Block<"ground", AnySize, "camera">> residual_of_any_size;
+
+// expect: no sensors deliver the arguments of this error block; write template <class S>
+struct OfFlags {
+  template <class S>
+  Vector3<S> operator()(const Vector3<S>& p, bool flag) const {
+    return flag ? p : -p;
+  }
+};
+Crate<Head, Block<"ground", OfFlags, "camera">> residual_of_flags;
+
+// expect: the sensor or block in this parameter does not declare it; a Camera3d or Camera2d has
+Crate<Head, Block<"ground", PointToPlane, "camera">, BlockParameters<"ground", "height">>
+    parameter_that_no_block_has;
+
+// expect: this error block is given too many or too few sensors; it has one for each argument of
 Crate<Arm, Head, Block<"ground", PointToPlane, "camera", "arm">> too_many_sensors;
 
-// expect: this error block is given too many or too few sensors; one whose residual takes a point
+// expect: this error block is given too many or too few sensors; it has one for each argument of
 Crate<Arm, Head, Block<"hand_eye", PointToPoint, "camera">> too_few_sensors;
 
 // expect: this error block is given a sensor of the wrong kind, which does not deliver what its

@@ -38,8 +38,8 @@ struct BetweenPoints {
   static constexpr std::array kParameters = {ParameterInfo{"part", "1", 0.5}};
 
   template <class S>
-  [[nodiscard]] Vector3<S> operator()(const Vector3<S>& a, const Vector3<S>& b,
-                                      const Vector3<S>& c, const std::array<S, 1>& own) const {
+  [[nodiscard]] Vector3<S> operator()(const Vector3<S>& a, const Vector3<S>& b, const Vector3<S>& c,
+                                      const std::array<S, 1>& own) const {
     Vector3<S> r;
     for (int k = 0; k < 3; ++k) r(k) = a(k) + (c(k) - a(k)) * own[0] - b(k);
     return r;
@@ -79,8 +79,8 @@ BasicProblem<S> open_problem(const B& block, const std::vector<std::string>& sen
   problem.add_sensor(ChainPoint{}, {"elbow_point", "forearm"});
   problem.add_sensor(PinholeCamera{}, {"left", "forearm"});
   problem.add_sensor(ChainPose{}, {"body", "hand"});
-  problem.add_sensor(ChainPose{}, {"tracker", "torso_link"});
-  problem.add_sensor(DrawWire{}, {"wire", "torso_link"});
+  problem.add_sensor(ChainPose{}, {"tracker", "torso"});
+  problem.add_sensor(DrawWire{}, {"wire", "torso"});
   problem.add_block("block", block, sensors, options);
   return problem;
 }

@@ -99,8 +99,8 @@ OracleResiduals oracle_residual(const PlaneToPlane& block, const OraclePlane<Ora
 OracleResiduals oracle_residual(const PointToPixel&, const OracleView& view,
                                 const OracleView& camera, std::size_t i) {
   const Vector3<OracleJet> p = camera.pose.inverse()(view.points[i]);
-  const Eigen::Matrix<OracleJet, 2, 1> pixel =
-      oracle_pixel(*camera.seen->camera, p, camera.sensor->mount.parameter_prefix(), *camera.values);
+  const Eigen::Matrix<OracleJet, 2, 1> pixel = oracle_pixel(
+      *camera.seen->camera, p, camera.sensor->mount.parameter_prefix(), *camera.values);
   const Vector3<double>& observed = camera.seen->features[i].point;
   return {pixel.x() - observed.x(), pixel.y() - observed.y()};
 }
@@ -168,7 +168,8 @@ OracleView OracleProblem::view(const std::string& name, const Sample& sample,
     view.there.push_back(std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()));
     Vector3<OracleJet> point(OracleJet(p.x()), OracleJet(p.y()), OracleJet(p.z()));
     if (view.sensor->type == "camera3d") {
-      point = oracle_depth_point(*view.seen->camera, p, view.sensor->mount.parameter_prefix(), values);
+      point =
+          oracle_depth_point(*view.seen->camera, p, view.sensor->mount.parameter_prefix(), values);
     }
     if (!poses.contains(feature.frame)) {
       poses[feature.frame] =

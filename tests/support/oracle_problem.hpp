@@ -32,10 +32,10 @@ struct OracleView {
   const OracleSensor* sensor = nullptr;
   const Observation* seen = nullptr;
   const OracleValues<OracleJet>* values = nullptr;
-  OraclePose<OracleJet> pose;              ///< of the sensor's own frame in the base
-  std::vector<Vector3<OracleJet>> points;  ///< of each feature, in the base
+  OraclePose<OracleJet> pose;                 ///< of the sensor's own frame in the base
+  std::vector<Vector3<OracleJet>> points;     ///< of each feature, in the base
   std::vector<OraclePose<OracleJet>> frames;  ///< of each feature, in the base
-  std::vector<bool> there;                 ///< false for a feature that is not a number
+  std::vector<bool> there;                    ///< false for a feature that is not a number
 
   /// The plane through its features.
   [[nodiscard]] OraclePlane<OracleJet> plane() const;
@@ -88,7 +88,7 @@ auto oracle_argument(const OracleView& view, std::size_t i) {
 template <class B>
 auto oracle_own(const std::string& name, const std::vector<const OracleView*>& views) {
   std::array<OracleJet, kParametersOfBlock<B>> own;
-  if constexpr (kParametersOfBlock<B> > 0) {
+  if constexpr (kParametersOfBlock < B >> 0) {
     for (std::size_t k = 0; k < own.size(); ++k) {
       own[k] = (*views[0]->values)(name + "_" + std::string(B::kParameters[k].name));
     }
@@ -103,7 +103,7 @@ OracleResiduals oracle_residual(const B& block, const std::string& name,
                                 Takes<Qs...>) {
   const auto own = oracle_own<B>(name, views);
   const auto r = [&]<std::size_t... I>(std::index_sequence<I...>) {
-    if constexpr (kParametersOfBlock<B> > 0) {
+    if constexpr (kParametersOfBlock < B >> 0) {
       return block(oracle_argument<Qs>(*views[I], i)..., own);
     } else {
       return block(oracle_argument<Qs>(*views[I], i)...);
@@ -157,7 +157,8 @@ using OracleRows = std::map<std::pair<int, int>, TermResiduals>;
 /// Filled as a BasicProblem is.
 class OracleProblem {
  public:
-  OracleProblem(Robot robot, std::string base, ParameterTable table, std::vector<OracleSensor> sensors)
+  OracleProblem(Robot robot, std::string base, ParameterTable table,
+                std::vector<OracleSensor> sensors)
       : robot_(std::move(robot)),
         base_(std::move(base)),
         table_(std::move(table)),

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/errors.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
 #include "support/oracle_problem.hpp"

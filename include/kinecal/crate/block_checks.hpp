@@ -45,6 +45,34 @@ struct ResidualOfBlock {
                 "kinecal: this error block is not a residual templated on its scalar; write "
                 "template <class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const");
 };
+template <class Residual, bool kIsVector = false>
+struct VectorOfBlock {
+  static_assert(kIsVector,
+                "kinecal: the residual of this error block is not a vector of fixed size in the "
+                "scalar of its arguments; return an Eigen::Matrix<S, N, 1>");
+};
+template <class Residual, bool kAreDelivered = false>
+struct ArgumentsOfBlock {
+  static_assert(kAreDelivered,
+                "kinecal: no sensors deliver the arguments of this error block; write template "
+                "<class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const, or "
+                "declare its Inputs");
+};
+
+/// A block that can be called with points in a scalar, whatever it returns.
+template <class B, class S>
+concept CalledWithPoints = requires(const B& block, const Vector3<S>& p) {
+  block(p);
+}
+|| requires(const B& block, const Vector3<S>& p) {
+  block(p, p);
+};
+
+/// What is wrong with a block that is not an ErrorBlock.
+template <class B>
+using WhyNoBlock = std::conditional_t<
+    CalledWithPoints<B, Probe>, VectorOfBlock<B>,
+    std::conditional_t<CalledWithPoints<B, double>, ResidualOfBlock<B>, ArgumentsOfBlock<B>>>;
 
 /// @tparam Found  the result of LookedUp: Known or DidYouMean
 template <class Block, FixedString Sensor, class Found, bool kIsInCrate = false>
@@ -56,10 +84,10 @@ struct SensorOfBlock {
 
 template <class Block, bool kFits = false>
 struct NumberOfSensors {
-  static_assert(
-      kFits,
-      "kinecal: this error block is given too many or too few sensors; it has one for each argument "
-      "of its residual, and two for a pixel");
+  static_assert(kFits,
+                "kinecal: this error block is given too many or too few sensors; it has one for "
+                "each argument "
+                "of its residual, and two for a pixel");
 };
 
 template <class Block, bool kFit = false>
@@ -84,7 +112,9 @@ template <class Block, class Sensors>
   if constexpr (ErrorBlock<Error>) {
     if (!takes<Error>(Block::kSensorNames.size())) return true;  // an earlier check fails
     for (std::size_t i = 0; i < Block::kSensorNames.size(); ++i) {
-      if (!sensor_delivers(Block::kSensorNames[i], kQuantities<Error>[i], Sensors{})) return false;
+      if (!sensor_delivers(
+              Block::kSensorNames[i], kQuantities<Error>[i], Sensors {}))
+        return false;
     }
   }
   return true;
@@ -102,7 +132,7 @@ struct CheckBlock;
 template <FixedString Name, class Residual, FixedString... Of, class Sensors>
 struct CheckBlock<Block<Name, Residual, Of...>, Sensors> {
   using B = Block<Name, Residual, Of...>;
-  using type = FirstOf<Unless<ErrorBlock<Residual>, ResidualOfBlock<Residual>>,
+  using type = FirstOf<Unless<ErrorBlock<Residual>, WhyNoBlock<Residual>>,
                        typename CheckSensorOfBlock<B, Of, Sensors>::type...,
                        Unless<takes<Residual>(sizeof...(Of)), NumberOfSensors<B>>,
                        Unless<kinds_fit<B, Sensors>(), KindsOfSensors<B>>>;

@@ -127,9 +127,9 @@ class Crate {
   template <class S = Packet>
   [[nodiscard]] BasicProblem<S> problem(ParameterTable table) const {
     BasicProblem<S> problem(robot(), base(), std::move(table), FramesHere::all());
-    for_each(Sensors{}, [&]<class P>(P*) { 
+    for_each(Sensors{}, [&]<class P>(P*) {
       problem.add_sensor(typename P::Model{}, P::mount(), walks<S, P>());
-     });
+    });
     for_each(Blocks{}, [&]<class P>(P*) {
       const P& part = std::get<P>(blocks_);
       const auto& names = P::kSensorNames;

@@ -148,7 +148,7 @@ template <class P, class Sensor>
   return false;
 }
 
-/// True if a parameter is a block's own, or moves what one of its sensors observes; 
+/// True if a parameter is a block's own, or moves what one of its sensors observes;
 template <class P, class Block, class... Sensors>
 [[nodiscard]] constexpr bool moves_block(TypeList<Sensors...>) {
   if (P::kKind == ParameterKind::block) return Block::kName == P::kOwner;

@@ -42,7 +42,7 @@
 #include <type_traits>
 
 #include "kinecal/parameters/parameter.hpp"
-#include "kinecal/sensors/quantity.hpp"
+#include "kinecal/sensors/quantity_vectors.hpp"
 
 namespace kinecal {
 
@@ -97,7 +97,7 @@ namespace detail {
 template <class B, class S, class... Arguments>
 [[nodiscard]] auto call_block(const B& block, const std::array<S, kParametersOfBlock<B>>& own,
                               const Arguments&... arguments) {
-  if constexpr (kParametersOfBlock<B> > 0) {
+  if constexpr (kParametersOfBlock < B >> 0) {
     return block(arguments..., own);
   } else {
     return block(arguments...);
@@ -106,13 +106,15 @@ template <class B, class S, class... Arguments>
 
 /// A block that takes these arguments.
 template <class B, class... Arguments>
-concept Callable = (kParametersOfBlock<B> == 0 && requires(const B& block, const Arguments&... a) {
-  { block(a...) } -> ResidualVector;
-}) || (kParametersOfBlock<B> > 0 &&
-       requires(const B& block, const std::array<Probe, kParametersOfBlock<B>>& own,
-                const Arguments&... a) {
-  { block(a..., own) } -> ResidualVector;
-});
+concept Callable = (kParametersOfBlock<B> == 0 &&
+                    requires(const B& block, const Arguments&... a) {
+                      { block(a...) } -> ResidualVector;
+                    }) ||
+                   (kParametersOfBlock<B> > 0 &&
+                    requires(const B& block, const std::array<Probe, kParametersOfBlock<B>>& own,
+                             const Arguments&... a) {
+                      { block(a..., own) } -> ResidualVector;
+                    });
 
 template <class B, class Inputs>
 inline constexpr bool kTakes = false;
@@ -138,10 +140,12 @@ struct InputsOf
                  Takes<Quantity::point, Quantity::pixel>, Takes<Quantity::plane, Quantity::plane>,
                  Takes<Quantity::point, Quantity::point, Quantity::point>,
                  Takes<Quantity::point, Quantity::point, Quantity::point, Quantity::point>,
-                 Takes<Quantity::pose>, Takes<Quantity::pose, Quantity::pose>,
-                 Takes<Quantity::ray>, Takes<Quantity::ray, Quantity::ray>> {};
+                 Takes<Quantity::pose>, Takes<Quantity::pose, Quantity::pose>, Takes<Quantity::ray>,
+                 Takes<Quantity::ray, Quantity::ray>> {};
 template <class B>
-requires requires { typename B::Inputs; }
+requires requires {
+  typename B::Inputs;
+}
 struct InputsOf<B> : FirstTaken<B, typename B::Inputs> {};
 
 }  // namespace detail
@@ -154,7 +158,7 @@ concept ErrorBlock = !std::same_as<typename detail::InputsOf<B>::type, detail::N
 template <class B>
 [[nodiscard]] std::array<ParameterInfo, kParametersOfBlock<B>> parameters_of(const B& block) {
   std::array<ParameterInfo, kParametersOfBlock<B>> infos{};
-  if constexpr (kParametersOfBlock<B> > 0) infos = B::kParameters;
+  if constexpr (kParametersOfBlock < B >> 0) infos = B::kParameters;
   if constexpr (requires { block.initial(); }) {
     for (std::size_t i = 0; i < infos.size(); ++i) infos[i].initial = block.initial()[i];
   }
@@ -173,23 +177,23 @@ template <class B>
 concept PointBlock = std::same_as<typename detail::InputsOf<B>::type, Takes<Quantity::point>>;
 /// block(p_a, p_b): the same feature observed by two sensors, metres, in the base.
 template <class B>
-concept PointPairBlock = std::same_as<typename detail::InputsOf<B>::type,
-                                      Takes<Quantity::point, Quantity::point>>;
+concept PointPairBlock =
+    std::same_as<typename detail::InputsOf<B>::type, Takes<Quantity::point, Quantity::point>>;
 /// block(pixel): a feature of one sensor in front of another one, a camera.
 template <class B>
-concept PixelBlock = std::same_as<typename detail::InputsOf<B>::type,
-                                  Takes<Quantity::point, Quantity::pixel>>;
+concept PixelBlock =
+    std::same_as<typename detail::InputsOf<B>::type, Takes<Quantity::point, Quantity::pixel>>;
 /// block(a, b): the planes through all features of two sensors, in the base.
 template <class B>
-concept PlanePairBlock = std::same_as<typename detail::InputsOf<B>::type,
-                                      Takes<Quantity::plane, Quantity::plane>>;
+concept PlanePairBlock =
+    std::same_as<typename detail::InputsOf<B>::type, Takes<Quantity::plane, Quantity::plane>>;
 
 namespace detail {
 
 /// From the signature only, so that a block is not compiled for a scalar in which nobody calls it.
 template <class B, class... Given>
 [[nodiscard]] consteval int rows_of_call() {
-  if constexpr (kParametersOfBlock<B> > 0) {
+  if constexpr (kParametersOfBlock < B >> 0) {
     using Own = std::array<Probe, kParametersOfBlock<B>>;
     return std::invoke_result_t<const B&, const Given&..., const Own&>::RowsAtCompileTime;
   } else {

@@ -24,7 +24,8 @@ class PointToLine {
   /// @param direction  (3) of the line, of any length, in the base
   /// @throws std::invalid_argument  if the direction is zero
   PointToLine(const Vector3<double>& point, const Vector3<double>& direction) : point_(point) {
-    if (!(direction.norm() > 0.0)) throw std::invalid_argument("the line's direction (a, b, c) has length zero");
+    if (!(direction.norm() > 0.0))
+      throw std::invalid_argument("the line's direction (a, b, c) has length zero");
     int least = 0;
     direction.cwiseAbs().minCoeff(&least);
     u_ = cross<double>(direction, Vector3<double>::Unit(least)).normalized();

@@ -24,7 +24,8 @@ class PointToPlane {
   /// @throws std::invalid_argument  if (a, b, c) is zero
   PointToPlane(double a, double b, double c, double d) : normal_(a, b, c), d_(d) {
     const double length = normal_.norm();
-    if (!(length > 0.0)) throw std::invalid_argument("the plane's normal (a, b, c) has length zero");
+    if (!(length > 0.0))
+      throw std::invalid_argument("the plane's normal (a, b, c) has length zero");
     normal_ /= length;
     d_ /= length;
   }

@@ -15,9 +15,9 @@ namespace kinecal {
 struct PointToSphere {
   static constexpr const char* kType = "point_to_sphere";  ///< name in configurations
   static constexpr const char* kUnit = "m";                ///< of the residual
-  static constexpr std::array kParameters = {
-      ParameterInfo{"x", "m"}, ParameterInfo{"y", "m"}, ParameterInfo{"z", "m"},
-      ParameterInfo{"radius", "m", 0.0, 0.0}};
+  static constexpr std::array kParameters = {ParameterInfo{"x", "m"}, ParameterInfo{"y", "m"},
+                                             ParameterInfo{"z", "m"},
+                                             ParameterInfo{"radius", "m", 0.0, 0.0}};
 
   Vector3<double> center = Vector3<double>::Zero();  ///< (3) metres, in the base
   double radius = 0.0;                               ///< metres

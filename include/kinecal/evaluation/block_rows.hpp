@@ -126,7 +126,9 @@ class BlockRows {
   static constexpr std::array<int, kBodies + 2> kFirst = [] {
     std::array<int, kBodies + 2> first{};
     for (std::size_t s = 0; s < kBodies; ++s) {
-      const int variables = kInputs[s] == Quantity::ray ? 12 : kInputs[s] == Quantity::point ? 3 : 6;
+      const int variables = kInputs[s] == Quantity::ray     ? 12
+                            : kInputs[s] == Quantity::point ? 3
+                                                            : 6;
       first[s + 1] = first[s] + variables;
     }
     first[kBodies + 1] = first[kBodies] + static_cast<int>(kOwn);
@@ -218,10 +220,11 @@ class BlockRows {
     std::copy_n(values, Vectors<I>::kValues, moved.begin());
     constexpr Quantity kInput = kInputs[I];
     // Of a ray the direction is measured, of a reading the number.
-    constexpr int kFrom = kFirst[I] + (kInput == Quantity::ray || kInput == Quantity::reading ? 3 : 0);
+    constexpr int kFrom =
+        kFirst[I] + (kInput == Quantity::ray || kInput == Quantity::reading ? 3 : 0);
     constexpr int kCount = kInput == Quantity::pose ? 6 : kInput == Quantity::reading ? 1 : 3;
-    auto step = detail::shortest_step<S, kSize, kCount>(values_of(r),
-                                                        derivatives_by<kCount>(r, kFrom));
+    auto step =
+        detail::shortest_step<S, kSize, kCount>(values_of(r), derivatives_by<kCount>(r, kFrom));
     const S zero = (step - step).sum();  // NaN where the residual does not depend on it
     for (int k = 0; k < kCount; ++k) step(k) = select(zero == S(0.0), step(k), S(0.0));
     if constexpr (kInput == Quantity::reading) {

@@ -41,7 +41,8 @@ class BlockTerm : public Term<S> {
 
   void add_normal_equations(const Views& views, const Loss& loss, TermSums<S>& sums) const override;
 
-  void evaluate(const Views& views, bool derivatives, Linearization at, BatchRows<S>& out) const override;
+  void evaluate(const Views& views, bool derivatives, Linearization at,
+                BatchRows<S>& out) const override;
 
  protected:
   using Block = BlockRows<B, S>;                          ///< computes rows of one feature
@@ -55,8 +56,8 @@ class BlockTerm : public Term<S> {
   /// Residuals and Jacobian of the features from `first` to `end`; the block is a difference.
   /// @param sizes     how many columns each body has
   /// @param jacobian  (kSize features x columns) where its rows go
-  KINECAL_FLATTEN virtual void write_differences(const Views& views, std::size_t first, std::size_t end,
-                                                 const Twists& twists,
+  KINECAL_FLATTEN virtual void write_differences(const Views& views, std::size_t first,
+                                                 std::size_t end, const Twists& twists,
                                                  const std::array<BodySizes, kBodies>& sizes,
                                                  BatchRows<S>& out, S* jacobian) const;
 
@@ -77,20 +78,23 @@ class BlockTerm : public Term<S> {
     if constexpr (kMayBeDifference) {
       if (!is_difference_) return false;
       const BodyChains chains = Block::chains(views, first);
+      const Twists of_run = twists(views, chains);
+      typename PointWrenches<S>::Sides sides;
+      for (std::size_t s = 0; s < 2; ++s) {
+        const std::size_t own = views[s].own().free.size();
+        sides[s] = {{views[s].values(first), end - first},
+                    {views[s].changes(first), own * (end - first)},
+                    own,
+                    of_run[s]};
+      }
       sums.weights.resize(end - first);
       sums.residuals.resize(end - first);
-      for (std::size_t i = first; i < end; ++i) {
-        Vector3<S>& r = sums.residuals[i - first];
-        r = block_(views[0].points()[i], views[1].points()[i]);
-        sums.weights[i - first] = add_cost(r, Block::weight(views, i), loss, sums);
+      for (std::size_t i = 0; i < end - first; ++i) {
+        sums.residuals[i] = block_(sides[0].points[i], sides[1].points[i]);
+        sums.weights[i] = add_cost(sums.residuals[i], Block::weight(views, first + i), loss, sums);
       }
-      const auto side = [&](const SensorView<S>& view) {
-        return typename DifferenceGram<S>::Side{view.values(first), view.changes(first),
-                                                view.own().free.size()};
-      };
-      sums.difference.set(side(views[0]), side(views[1]), sums.weights, sums.residuals);
-      const auto centered = sums.difference.centered(twists(views, chains));
-      sums_of(views, chains, sums).expand(sums.difference, centered);
+      sums.point_wrenches.set(sides, sums.weights, sums.residuals);
+      sums_of(views, chains, sums).add(sums.point_wrenches);
     }
     return kMayBeDifference;
   }
@@ -109,7 +113,7 @@ class BlockTerm : public Term<S> {
 
   /// Number of columns on which features of these chains depend.
   [[nodiscard]] static std::array<BodySizes, kBodies> sizes_of(const Views& views,
-                                                              const BodyChains& chains) {
+                                                               const BodyChains& chains) {
     std::array<BodySizes, kBodies> sizes;
     for (std::size_t s = 0; s < kBodies; ++s) {
       const SensorState& state = views[s].state();
@@ -140,14 +144,13 @@ class BlockTerm : public Term<S> {
     return result;
   }
 
-  [[nodiscard]] static LocalSums<S>& sums_of(const Views& views, const BodyChains& chains, TermSums<S>& sums) {
+  [[nodiscard]] static LocalSums<S>& sums_of(const Views& views, const BodyChains& chains,
+                                             TermSums<S>& sums) {
     // Sorted by chains, so that sums are added in the same order whichever chains came first.
     const auto place = std::find_if(sums.by_chains.begin(), sums.by_chains.end(),
                                     [&](const auto& known) { return !(known.first < chains); });
     if (place != sums.by_chains.end() && place->first == chains) return place->second;
-    std::vector<int> columns;
-    views.columns(chains, columns);
-    return sums.by_chains.emplace(place, chains, LocalSums<S>(std::move(columns)))->second;
+    return sums.by_chains.emplace(place, chains, LocalSums<S>(views.sum_columns(chains)))->second;
   }
 
   /// Residual and Jacobian of a feature.
@@ -191,24 +194,21 @@ void BlockTerm<B, S>::add_cost(const Views& views, const Loss& loss, TermSums<S>
 }
 
 template <ErrorBlock B, class S>
-void BlockTerm<B, S>::add_normal_equations(const Views& views, const Loss& loss, TermSums<S>& sums) const {
+void BlockTerm<B, S>::add_normal_equations(const Views& views, const Loss& loss,
+                                           TermSums<S>& sums) const {
   for (std::size_t first = 0, end = 0; first < Block::features(views); first = end) {
     end = end_of_run(views, first);
     const BodyChains chains = Block::chains(views, first);
     if (add_difference(views, first, end, loss, sums)) continue;
-    sums.gram.resize(kBodies, views.num_own());
+    const Twists of_run = twists(views, chains);
+    sums.wrenches.start(of_run, views.num_own());
     Rows rows;
     for (std::size_t i = first; i < end; ++i) {
       Block::template rows<true>(block_, views, i, Linearization::measured, rows);
-      const S weight = add_cost(rows.residual, rows.weight, loss, sums);
-      if (i == first) {
-        sums.gram.set(rows, weight);
-      } else {
-        sums.gram.add(rows, weight);
-      }
+      sums.wrenches.add(rows, add_cost(rows.residual, rows.weight, loss, sums));
     }
-    sums.gram.complete();
-    sums_of(views, chains, sums).expand(sums.gram, twists(views, chains));
+    sums.wrenches.finish();
+    sums_of(views, chains, sums).add(sums.wrenches);
   }
 }
 

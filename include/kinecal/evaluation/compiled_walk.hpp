@@ -62,8 +62,7 @@ struct WalkOf {
  private:
   template <class W>
   static void go_on(const WalkStart<S>& start, JointStates<S> joints, W& walker) {
-    walk_on(C{}, C::kFirstMotion, joints,
-            std::span(start.corrections, C::kSize), walker);
+    walk_on(C{}, C::kFirstMotion, joints, std::span(start.corrections, C::kSize), walker);
   }
 };
 

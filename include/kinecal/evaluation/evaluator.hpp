@@ -69,7 +69,8 @@ class Evaluator final : public AnyEvaluator {
 
   /// Number of batches in a piece; it does not depend on the number of threads.
   [[nodiscard]] std::size_t piece_size() const {
-    return std::max<std::size_t>(kSamplesOfPiece / kLanes<S>, (num_batches_ + kMaxPieces - 1) / kMaxPieces);
+    return std::max<std::size_t>(kSamplesOfPiece / kLanes<S>,
+                                 (num_batches_ + kMaxPieces - 1) / kMaxPieces);
   }
   [[nodiscard]] std::size_t num_pieces() const {
     return (num_batches_ + piece_size() - 1) / piece_size();

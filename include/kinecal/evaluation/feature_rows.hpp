@@ -28,7 +28,7 @@ template <class S, int M, int Bodies>
 struct FeatureRows {
   S weight{1.0};                    ///< one, or zero where the feature is missing
   Eigen::Matrix<S, M, 1> residual;  ///< (M) unweighted
-  std::array<Eigen::Matrix<S, M, 6>, Bodies> by_body;  ///< by linear, by angular
+  std::array<Eigen::Matrix<S, M, 6>, Bodies> by_body;   ///< by linear, by angular
   std::array<Eigen::Matrix<S, M, 1>, kMostOwn> by_own;  ///< by each free parameter of sensors and
                                                         ///< block
   std::size_t own = 0;                                  ///< number of them
@@ -93,6 +93,22 @@ struct TermViews {
     }
     for (const SensorView<S>* view : sensors) append(view->own().columns);
     append(own->columns);
+  }
+  /// The same columns in the order of LocalSums: own parameters, rotational twists of each body,
+  /// translational twists of each body.
+  [[nodiscard]] std::vector<int> sum_columns(const BodyChains& chains) const {
+    std::vector<int> all;
+    const auto append = [&](const std::vector<int>& more) {
+      all.insert(all.end(), more.begin(), more.end());
+    };
+    for (const SensorView<S>* view : sensors) append(view->own().columns);
+    append(own->columns);
+    for (const auto twists : {&TwistColumns::rotational, &TwistColumns::translational}) {
+      for (std::size_t s = 0; s < sensors.size(); ++s) {
+        append(sensors[s]->state().twist_columns[chains[s]].*twists);
+      }
+    }
+    return all;
   }
 };
 

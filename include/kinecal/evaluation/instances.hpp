@@ -12,8 +12,8 @@ namespace kinecal {
 
 extern template class SensorView<Packet>;
 extern template class LocalSums<Packet>;
-extern template class DifferenceGram<Packet>;
-extern template class FeatureGram<Packet>;
+extern template class PointWrenches<Packet>;
+extern template class FeatureWrenches<Packet>;
 extern template class Evaluator<Packet>;
 extern template class BasicProblem<Packet>;
 extern template class BlockTerm<PointToPoint, Packet>;
@@ -28,8 +28,8 @@ extern template class BlockTerm<RayToRay, Packet>;
 
 extern template class SensorView<double>;
 extern template class LocalSums<double>;
-extern template class DifferenceGram<double>;
-extern template class FeatureGram<double>;
+extern template class PointWrenches<double>;
+extern template class FeatureWrenches<double>;
 extern template class Evaluator<double>;
 extern template class BasicProblem<double>;
 extern template class BlockTerm<PointToPoint, double>;

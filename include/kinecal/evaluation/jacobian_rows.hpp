@@ -31,9 +31,9 @@ void write_rows(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, S* 
 
 /// Number of columns of a body and its sensor.
 struct BodySizes {
-  std::size_t rotational = 0;    ///< rotational twists
-  std::size_t translational = 0;   ///< translational twists
-  std::size_t own = 0;  ///< free parameters of the sensor
+  std::size_t rotational = 0;     ///< rotational twists
+  std::size_t translational = 0;  ///< translational twists
+  std::size_t own = 0;            ///< free parameters of the sensor
 
   /// Number of all columns.
   [[nodiscard]] constexpr std::size_t columns() const { return rotational + translational + own; }
@@ -57,11 +57,13 @@ struct Sizes {
 /// @param out    (3 features x columns), row-major
 /// @param visit  callable (feature, p_a, p_b), called for each feature
 template <class S, class AnySizes, class Visit>
-void write_differences(const TermViews<S>& views, std::size_t first,
-                       std::size_t end, const std::array<BodyTwists<S>, 2>& twists,
-                       const AnySizes& sizes, S* out, Visit&& visit) {
-  const Twist<S>*rotational_a = twists[0].rotational.data(), *rotational_b = twists[1].rotational.data();
-  const Vector3<S>*translational_a = twists[0].translational.data(), *translational_b = twists[1].translational.data();
+void write_differences(const TermViews<S>& views, std::size_t first, std::size_t end,
+                       const std::array<BodyTwists<S>, 2>& twists, const AnySizes& sizes, S* out,
+                       Visit&& visit) {
+  const Twist<S>*rotational_a = twists[0].rotational.data(),
+        *rotational_b = twists[1].rotational.data();
+  const Vector3<S>*translational_a = twists[0].translational.data(),
+        *translational_b = twists[1].translational.data();
   const Vector3<S>*points_a = views[0].points().data(), *points_b = views[1].points().data();
   const std::size_t width = sizes.a.columns() + sizes.b.columns();
   const auto write = [&out, width](const Vector3<S>& v) {
@@ -75,7 +77,8 @@ void write_differences(const TermViews<S>& views, std::size_t first,
     visit(i, a, b);
     for (std::size_t k = 0; k < sizes.a.rotational; ++k) write(rotational_a[k].velocity(a));
     for (std::size_t k = 0; k < sizes.a.translational; ++k) write(translational_a[k]);
-    for (std::size_t k = 0; k < sizes.b.rotational; ++k) write(rotational_b[k].opposite_velocity(b));
+    for (std::size_t k = 0; k < sizes.b.rotational; ++k)
+      write(rotational_b[k].opposite_velocity(b));
     for (std::size_t k = 0; k < sizes.b.translational; ++k) write(-translational_b[k]);
     const Vector3<S>*change_a = views[0].changes(i), *change_b = views[1].changes(i);
     for (std::size_t k = 0; k < sizes.a.own; ++k) write(change_a[k]);

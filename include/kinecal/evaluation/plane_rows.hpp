@@ -28,8 +28,7 @@ class PlaneLane {
   static_assert(kParametersOfBlock<B> == 0, "kinecal: a block of planes has no own parameters");
   using Rows = FeatureRows<double, kSize, 2>;
 
-  PlaneLane(const B& block, const TermViews<S>& views, int lane)
-      : views_(views), lane_(lane) {
+  PlaneLane(const B& block, const TermViews<S>& views, int lane) : views_(views), lane_(lane) {
     std::array<Plane<J>, 2> planes;
     for (std::size_t s = 0; s < 2; ++s) {
       for (std::size_t i = 0; i < views[s].points().size(); ++i) {

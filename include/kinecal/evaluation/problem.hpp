@@ -44,7 +44,7 @@ class BasicProblem final : public AnyProblem {
                  const TermOptions& options = {}) {
     std::vector<int> indices = sensors_of_block(name, sensors, kQuantities<B>);
     std::vector<int> own;
-    if constexpr (kParametersOfBlock<B> > 0) own = parameters_of_block(name, B::kParameters);
+    if constexpr (kParametersOfBlock < B >> 0) own = parameters_of_block(name, B::kParameters);
     using Type = typename TermOf<B, Known>::type;
     terms_.push_back(
         std::make_unique<Type>(name, block, std::move(indices), std::move(own), options));
@@ -101,8 +101,6 @@ using Problem = BasicProblem<Packet>;
 
 }  // namespace kinecal
 
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/evaluation/problem.ipp"
-#else
+#ifndef KINECAL_HEADER_ONLY
 #include "kinecal/evaluation/instances.hpp"
 #endif

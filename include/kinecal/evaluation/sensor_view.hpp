@@ -8,6 +8,7 @@
 
 #include "kinecal/evaluation/compiled_walk.hpp"
 #include "kinecal/evaluation/sensor_code.hpp"
+#include "kinecal/parameters/own_parameters.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
 
 namespace kinecal {

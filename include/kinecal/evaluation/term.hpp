@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "kinecal/errors/difference.hpp"
-#include "kinecal/evaluation/difference_gram.hpp"
-#include "kinecal/evaluation/feature_gram.hpp"
+#include "kinecal/evaluation/feature_wrenches.hpp"
 #include "kinecal/evaluation/local_sums.hpp"
+#include "kinecal/evaluation/point_wrenches.hpp"
 #include "kinecal/problem/any_term.hpp"
 
 namespace kinecal {
@@ -72,10 +72,10 @@ struct TermSums {
   S twice_cost{0.0};  ///< sum of rho
   /// Sums over the columns of each combination of chains, sorted by chains.
   std::vector<std::pair<BodyChains, LocalSums<S>>> by_chains;
-  FeatureGram<S> gram;                ///< of the current run of features
-  DifferenceGram<S> difference;       ///< the same for a block that is a difference
-  std::vector<S> weights;             ///< of the current run's features, for `difference`
-  std::vector<Vector3<S>> residuals;  ///< of the current run's features, for `difference`
+  FeatureWrenches<S> wrenches;        ///< of the current run of features
+  PointWrenches<S> point_wrenches;    ///< the same for a block that is a difference
+  std::vector<S> weights;             ///< of the current run's features, for `point_wrenches`
+  std::vector<Vector3<S>> residuals;  ///< of the current run's features, for `point_wrenches`
 
   /// Starts new sums; memory is kept.
   void set_zero() {

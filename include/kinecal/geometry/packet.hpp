@@ -209,15 +209,23 @@ void set_lane(S& x, [[maybe_unused]] int i, double value) {
   }
 }
 
-/// Sum of all lanes.
+/// Sum of all lanes: of the sums of both halves' lanes.
 template <class S>
 [[nodiscard]] double sum_of_lanes(const S& x) {
   if constexpr (kLanes<S> == 1) {
     return static_cast<double>(x);
   } else {
-    double sum = 0.0;
-    for (int i = 0; i < kLanes<S>; ++i) sum += lane(x, i);
-    return sum;
+    constexpr int kHalf = kLanes<S> / 2;
+    return [&]<int... I>(std::integer_sequence<int, I...>) {
+      const auto lanes = x.lanes();
+      if constexpr (kHalf == 1) {
+        return lanes[0] + lanes[1];
+      } else {
+        return sum_of_lanes(PacketOf<kHalf>(__builtin_shufflevector(lanes, lanes, I...) +
+                                            __builtin_shufflevector(lanes, lanes, I + kHalf...)));
+      }
+    }
+    (std::make_integer_sequence<int, kHalf>{});
   }
 }
 

@@ -123,6 +123,17 @@ template <class S>
 
 }  // namespace detail
 
+/// (3 x 3) rotation of a unit quaternion (x y z w).
+template <class S>
+[[nodiscard]] Matrix3<S> rotation_from_quaternion(const Eigen::Matrix<S, 4, 1>& q) {
+  const S x = q(0), y = q(1), z = q(2), w = q(3), two(2);
+  Matrix3<S> r;
+  r << S(1) - two * (y * y + z * z), two * (x * y - z * w), two * (x * z + y * w),
+      two * (x * y + z * w), S(1) - two * (x * x + z * z), two * (y * z - x * w),
+      two * (x * z - y * w), two * (y * z + x * w), S(1) - two * (x * x + y * y);
+  return r;
+}
+
 /// Rotation vector of a rotation matrix, angle in [0, pi]; exact at zero and at pi.  At exactly pi
 /// the matrix determines the axis only up to its sign; one of the two is returned.
 template <class S>

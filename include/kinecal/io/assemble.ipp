@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/evaluation/make_problem.hpp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/config/config_free.ipp"
 #include "kinecal/io/parameters_from_config.hpp"

@@ -10,11 +10,11 @@
 
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/registry.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/io/registry.hpp"
 
 namespace kinecal {
 

@@ -154,7 +154,8 @@ inline void add_valued_joints(ParameterTable& table, const Robot& robot, const S
 /// Reports a parameter of a frame, sensor or block with the name of a joint: the name would be ambiguous.
 inline void check_collisions(const ParameterTable& table, const Robot& robot, const Config& config,
                              Diagnostics& diagnostics) {
-  const auto check = [&](const std::string& name, const SourceLocation& place, const std::string& owner) {
+  const auto check = [&](const std::string& name, const SourceLocation& place,
+                         const std::string& owner) {
     if (table.find(name) < 0 || !robot.has_joint(name) || !moves(robot.joint(name).type)) return;
     diagnostics.error(place, fmt::format("parameter '{}' of {} has the name of a joint of the "
                                          "robot; rename one of them",

@@ -39,15 +39,13 @@ void register_sensor(const M& model) {
 /// @param make     the block with given numbers; may throw std::invalid_argument
 /// @throws std::invalid_argument  if the name is taken, or the keys are not one for each sensor
 template <ErrorBlock B>
-void register_block(const std::vector<std::vector<std::string>>& keys,
-                    std::vector<std::pair<std::string, double>> numbers = {},
-                    std::function<B(const BlockNumbers&)> make = [](const BlockNumbers&) {
-                      return B{};
-                    }) {
+void register_block(
+    const std::vector<std::vector<std::string>>& keys,
+    std::vector<std::pair<std::string, double>> numbers = {},
+    std::function<B(const BlockNumbers&)> make = [](const BlockNumbers&) { return B{}; }) {
   if (keys.size() != kQuantities<B>.size()) {
     throw std::invalid_argument(std::string(B::kType) + ": keys of " + std::to_string(keys.size()) +
-                                " sensors for a block of " +
-                                std::to_string(kQuantities<B>.size()));
+                                " sensors for a block of " + std::to_string(kQuantities<B>.size()));
   }
   BlockEntry entry;
   entry.type = entry.read_as = B::kType;

@@ -32,8 +32,8 @@ struct SensorEntry {
 
 /// A sensor of an error block in configurations.
 struct BlockSensorEntry {
-  std::vector<std::string> keys;         ///< the usual one first: "model_a"
-  Quantity quantity = Quantity::point;   ///< what the block takes of it
+  std::vector<std::string> keys;        ///< the usual one first: "model_a"
+  Quantity quantity = Quantity::point;  ///< what the block takes of it
 };
 
 /// A type of error block in configurations.
@@ -44,7 +44,7 @@ struct BlockEntry {
   std::vector<BlockSensorEntry> sensors;                ///< in the order of the block's arguments
   std::vector<std::pair<std::string, double>> numbers;  ///< keys and defaults; "scale" is a factor
                                                         ///< of the residual in every block
-  bool has_param = false;  ///< it has a key `param`: a prior
+  bool has_param = false;                               ///< it has a key `param`: a prior
   /// The block's own parameters.
   /// @throws std::exception  if the numbers of the block are impossible
   std::function<std::vector<ParameterInfo>(const BlockConfig&)> parameters;

@@ -51,10 +51,10 @@ template <ErrorBlock B, class Make>
   entry.parameters = [](const BlockConfig&) { return std::vector<ParameterInfo>(); };
   entry.add = [](AnyProblem& problem, const BlockConfig& block, const TermOptions& options) {
     const auto number = [&](const char* key) { return block.numbers.at(key); };
-    problem.add_prior(block.name,
-                      {block.param, number("joint_scale"), number("position_scale"),
-                       number("rotation_scale")},
-                      options);
+    problem.add_prior(
+        block.name,
+        {block.param, number("joint_scale"), number("position_scale"), number("rotation_scale")},
+        options);
   };
   return entry;
 }
@@ -92,10 +92,9 @@ KINECAL_INLINE Registry::Registry() {
         return PlaneToPlane{number(block, "normal_scale"), number(block, "offset_scale")};
       }));
   add(detail::prior_entry());
-  add(built_in_block<PointDistance>(pair, {{"length", 0.0}, {"scale", 1.0}},
-                                    [number](const BlockConfig& block) {
-                                      return PointDistance{number(block, "length")};
-                                    }));
+  add(built_in_block<PointDistance>(
+      pair, {{"length", 0.0}, {"scale", 1.0}},
+      [number](const BlockConfig& block) { return PointDistance{number(block, "length")}; }));
   add(built_in_block<PointToLine>(
       {{"model", "model_a"}},
       {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"a", 0.0}, {"b", 0.0}, {"c", 1.0}, {"scale", 1.0}},
@@ -104,8 +103,7 @@ KINECAL_INLINE Registry::Registry() {
                            {number(block, "a"), number(block, "b"), number(block, "c")});
       }));
   add(built_in_block<PointToSphere>(
-      {{"model", "model_a"}},
-      {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"radius", 0.0}, {"scale", 1.0}},
+      {{"model", "model_a"}}, {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"radius", 0.0}, {"scale", 1.0}},
       [number](const BlockConfig& block) {
         return PointToSphere{{number(block, "x"), number(block, "y"), number(block, "z")},
                              number(block, "radius")};

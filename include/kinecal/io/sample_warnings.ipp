@@ -47,7 +47,8 @@ inline void warn_of_far_points(const Config& config, std::span<const Sample> sam
   for (const StepConfig& step : config.steps) {
     for (const ModelConfig& model : step.models) {
       const SensorEntry* entry = registry().sensor(model.type);
-      if (entry != nullptr && !entry->sensor->delivers(Quantity::point)) in_pixels.insert(model.name);
+      if (entry != nullptr && !entry->sensor->delivers(Quantity::point))
+        in_pixels.insert(model.name);
     }
   }
   std::size_t count = 0;

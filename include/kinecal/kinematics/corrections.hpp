@@ -17,7 +17,7 @@ namespace kinecal {
 /// The correction of one joint: an offset of its position and a correction of its frame.
 template <class S>
 struct JointCorrection {
-  JointState<S> offset;                                   ///< added to the measured position
+  JointState<S> offset;                               ///< added to the measured position
   Pose<S> frame;                                      ///< between the joint's origin and its motion
   Matrix3<S> left_jacobian = Matrix3<S>::Identity();  ///< of the frame's rotation vector
 
@@ -49,14 +49,15 @@ template <StaticChain C>
 /// @param position_of  callable: name of a joint -> its measured position, radians or metres
 template <class Chain, class PositionOf>
 [[nodiscard]] std::vector<JointState<double>> measured_joint_states(const Chain& chain,
-                                                           PositionOf&& position_of) {
+                                                                    PositionOf&& position_of) {
   std::vector<JointState<double>> motions;
   motions.reserve(joints_of(chain).size());
   for (const auto& joint : joints_of(chain)) {
     const auto& drive = joint.drive;
     motions.push_back(
         moves(joint.type)
-            ? make_joint_state(drive.multiplier * position_of(std::string(drive.joint)) + drive.offset)
+            ? make_joint_state(drive.multiplier * position_of(std::string(drive.joint)) +
+                               drive.offset)
             : JointState<double>{});
   }
   return motions;

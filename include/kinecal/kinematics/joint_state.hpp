@@ -36,7 +36,7 @@ template <class S, class U>
 [[nodiscard]] auto operator+(const JointState<S>& a, const JointState<U>& b) {
   using R = decltype(a.cos * b.cos);
   return JointState<R>{a.position + b.position, a.cos * b.cos - a.sin * b.sin,
-                   a.sin * b.cos + a.cos * b.sin};
+                       a.sin * b.cos + a.cos * b.sin};
 }
 
 /// (3 x 3) rotation by a motion about a unit axis a: cos I + sin [a]x + (1 - cos) a a^T.

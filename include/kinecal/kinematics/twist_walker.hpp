@@ -70,23 +70,23 @@ struct Twist {
 /// The twists of a chain.  Translational ones move all points alike and are kept apart.
 template <class S>
 struct ChainTwists {
-  std::vector<Twist<S>> rotational;     ///< rotational twists
+  std::vector<Twist<S>> rotational;       ///< rotational twists
   std::vector<Vector3<S>> translational;  ///< (3) linear parts of translational twists
 };
 
 /// A view of a chain's twists.
 template <class S>
 struct BodyTwists {
-  std::span<const Twist<S>> rotational;     ///< rotational twists
+  std::span<const Twist<S>> rotational;       ///< rotational twists
   std::span<const Vector3<S>> translational;  ///< (3) linear parts of translational twists
 
   BodyTwists() = default;
   /// Views two lists.
-  BodyTwists(std::span<const Twist<S>> of_rotations,
-             std::span<const Vector3<S>> of_translations)
+  BodyTwists(std::span<const Twist<S>> of_rotations, std::span<const Vector3<S>> of_translations)
       : rotational(of_rotations), translational(of_translations) {}
   /// Views all twists of a chain.
-  explicit BodyTwists(const ChainTwists<S>& twists) : BodyTwists(twists.rotational, twists.translational) {}
+  explicit BodyTwists(const ChainTwists<S>& twists)
+      : BodyTwists(twists.rotational, twists.translational) {}
 
   /// The rotational twists as an array, 6 numbers each: linear, angular.
   [[nodiscard]] const S* rotational_numbers() const {
@@ -102,7 +102,7 @@ struct BodyTwists {
 
 /// The Jacobian's columns of a chain's twists, in the order in which the walker computes them.
 struct TwistColumns {
-  std::vector<int> rotational;   ///< of the rotational twists
+  std::vector<int> rotational;     ///< of the rotational twists
   std::vector<int> translational;  ///< of the translational twists
 
   /// Makes room for one twist per column.
@@ -129,7 +129,8 @@ struct TwistColumns {
       for (std::size_t k = 3; k < 6; ++k) add(result.rotational, columns[i].frame[k]);
     };
     if (!joint.reversed) frame();
-    if (moves(joint.type)) add(turns(joint.type) ? result.rotational : result.translational, columns[i].offset);
+    if (moves(joint.type))
+      add(turns(joint.type) ? result.rotational : result.translational, columns[i].offset);
     if (joint.reversed) frame();
   }
   return result;
@@ -214,7 +215,8 @@ template <class S>
     result.emplace_back(columns.rotational[i], twists.rotational[i]);
   }
   for (std::size_t i = 0; i < twists.translational.size(); ++i) {
-    result.emplace_back(columns.translational[i], Twist<S>{twists.translational[i], Vector3<S>::Zero()});
+    result.emplace_back(columns.translational[i],
+                        Twist<S>{twists.translational[i], Vector3<S>::Zero()});
   }
   return result;
 }

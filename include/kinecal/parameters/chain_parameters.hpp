@@ -50,7 +50,8 @@ void set_corrections(const std::vector<JointIndices>& indices, std::span<const S
   corrections.resize(indices.size());
   for (std::size_t j = 0; j < indices.size(); ++j) {
     const JointIndices& joint = indices[j];
-    if (joint.offset >= 0) corrections[j].offset = make_joint_state(S(value(joint.offset) * joint.gain));
+    if (joint.offset >= 0)
+      corrections[j].offset = make_joint_state(S(value(joint.offset) * joint.gain));
     bool corrected = false;
     for (int axis : joint.frame) corrected = corrected || axis >= 0;
     if (!corrected) continue;

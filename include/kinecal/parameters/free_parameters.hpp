@@ -151,8 +151,8 @@ struct DepthCorrection : SensorParameters<Camera, "z_offset", "z_scaling"> {};
 
 /// Intrinsics and depth correction of a depth camera: six numbers.
 template <FixedString Camera>
-struct DepthIntrinsics
-    : SensorParameters<Camera, "fx", "fy", "cx", "cy", "z_offset", "z_scaling"> {};
+struct DepthIntrinsics : SensorParameters<Camera, "fx", "fy", "cx", "cy", "z_offset", "z_scaling"> {
+};
 
 /// Parameters that an error block declares.
 /// @tparam Parts  their names, as in the block's kParameters

@@ -39,9 +39,8 @@ class AnyEvaluator;
 /// The sensors that the library has compiled.
 using BuiltInSensor = std::variant<ChainPoint, ChainPose, DepthCamera, PinholeCamera>;
 /// The error blocks that the library has compiled.
-using BuiltInBlock = 
-    std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
-                 PointToSphere, PoseToPose, RayToRay>;
+using BuiltInBlock = std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane,
+                                  PointDistance, PointToLine, PointToSphere, PoseToPose, RayToRay>;
 
 /// A calibration problem.  Add sensors, then error blocks and priors, then samples.
 class AnyProblem {
@@ -164,7 +163,7 @@ class AnyProblem {
   std::vector<std::string> owners_;  ///< of each parameter
   std::vector<MountedSensor> sensors_;
   std::vector<PriorTerm> priors_;
-  int residuals_ = 0;                      ///< of all features
+  int residuals_ = 0;                 ///< of all features
   std::vector<std::string> sources_;  ///< of each sample
 
   /// Samples of one layout.
@@ -175,23 +174,8 @@ class AnyProblem {
   std::map<SampleLayout, OfLayout> layouts_;
 };
 
-/// A problem that the library evaluates in packets, as wide as its instruction set allows.
-/// Parameters as those of the constructor of AnyProblem.
-[[nodiscard]] std::unique_ptr<AnyProblem> make_problem(Robot robot, std::string base,
-                                                       ParameterTable table,
-                                                       std::set<std::string> frames);
-
-/// How the library evaluates problems.
-struct Evaluation {
-  std::string_view instruction_set;  ///< what its packets are compiled for: "x86-64-v3"
-  int lanes = 1;                     ///< samples evaluated at a time
-};
-/// How the library that this program is linked with evaluates problems.
-[[nodiscard]] Evaluation evaluation_of_library();
-
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/evaluation/problem.hpp"  // make_problem()
 #include "kinecal/problem/any_problem.ipp"
 #endif

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/problem/parameter_owners.ipp"
+#include "kinecal/problem/term_applies.ipp"
 
 namespace kinecal {
 
@@ -21,8 +21,7 @@ KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTa
   set_owners();
 }
 
-KINECAL_INLINE void AnyProblem::mount(std::shared_ptr<const AnySensor> sensor,
-                                      const Mount& mount) {
+KINECAL_INLINE void AnyProblem::mount(std::shared_ptr<const AnySensor> sensor, const Mount& mount) {
   check_no_samples();
   for (const MountedSensor& known : sensors_) {
     if (known.mount().name == mount.name) {
@@ -49,13 +48,6 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
 }
 
 namespace detail {
-
-[[nodiscard]] inline std::vector<const ObservationNumbers*> observations_of(
-    const AnyTerm& term, const SampleNumbers& observed) {
-  std::vector<const ObservationNumbers*> seen;
-  for (const int s : term.sensors()) seen.push_back(&*observed[static_cast<std::size_t>(s)]);
-  return seen;
-}
 
 [[nodiscard]] inline bool has_term(const SampleLayout& layout, int term) {
   return std::find(layout.terms.begin(), layout.terms.end(), term) != layout.terms.end();
@@ -143,48 +135,6 @@ KINECAL_INLINE int AnyProblem::sensor_index(const std::string& name) const {
     if (names.back() == name) return static_cast<int>(s);
   }
   throw std::invalid_argument("no sensor '" + name + "'" + did_you_mean(name, names));
-}
-
-KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sample,
-                                        const SampleNumbers& observed) const {
-  const std::string& beside = term.options().beside;
-  if (!beside.empty() && sample.observation(beside) == nullptr) return false;
-  const auto observing = std::count_if(
-      sample.observations.begin(), sample.observations.end(),
-      [&](const Observation& o) { return !o.features.empty() && o.sensor != beside; });
-  if (term.options().exclusive && observing != std::ssize(term.sensors())) return false;
-  for (const int s : term.sensors()) {
-    if (!observed[static_cast<std::size_t>(s)]) return false;
-  }
-  const auto seen = detail::observations_of(term, observed);
-  const auto name = [&](std::size_t i) { return sensor(term.sensors()[i]).mount().name; };
-  for (std::size_t i = 1; i < seen.size() && term.pairs_features(); ++i) {
-    if (seen[i]->usable.size() == seen[0]->usable.size()) continue;
-    throw SampleError("error block '" + term.name() + "': sensor '" + name(0) + "' has " +
-                      std::to_string(seen[0]->usable.size()) + " features, sensor '" + name(i) +
-                      "' has " + std::to_string(seen[i]->usable.size()));
-  }
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (term.quantities()[i] != Quantity::plane) continue;
-    if (const std::string why = why_no_plane(term.sensors()[i], *seen[i]); !why.empty()) {
-      throw SampleError("error block '" + term.name() + "': " + why);
-    }
-  }
-  return term.count(seen) > 0;
-}
-
-/// Why the features of a sensor in one sample do not determine a plane; empty if they do.
-KINECAL_INLINE std::string AnyProblem::why_no_plane(int s, const ObservationNumbers& seen) const {
-  std::vector<Vector3<double>> points;
-  for (std::size_t i = 0; i < seen.usable.size(); ++i) {
-    if (seen.usable[i] == 0.0) continue;
-    if (seen.chain[i] != seen.chain[0]) return "the points of a plane are in several frames";
-    const double* measured = &seen.measured[3 * i];
-    points.push_back(
-        sensor(s).sensor().point({measured[0], measured[1], measured[2]}, seen.settings));
-  }
-  if (points.size() < 3) return "a plane takes three points or more";
-  return PlaneFit<double>(points).determined() ? "" : "its points span no plane";
 }
 
 /// Drops the observations that no term uses, so that they are not evaluated.

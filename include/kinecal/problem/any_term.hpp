@@ -15,9 +15,9 @@ namespace kinecal {
 
 /// How a term enters the cost and reports.
 struct TermOptions {
-  double weight = 1.0;  ///< factor of the residual: scale / sigma
-  Loss loss = {};       ///< of each feature's weighted residual
-  bool exclusive = false;   ///< use only samples in which no other sensor observes anything
+  double weight = 1.0;     ///< factor of the residual: scale / sigma
+  Loss loss = {};          ///< of each feature's weighted residual
+  bool exclusive = false;  ///< use only samples in which no other sensor observes anything
   /// Use only samples with an observation of this sensor, too; empty: all samples.  It need not be a
   /// sensor of the problem, and does not count for `exclusive`: "ground" marks samples of the floor.
   std::string beside = {};

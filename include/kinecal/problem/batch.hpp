@@ -22,12 +22,12 @@ namespace kinecal {
 
 /// What one sensor observed in one sample.
 struct ObservationNumbers {
-  std::vector<std::size_t> chain;           ///< of each feature: the sensor's chain to it
-  std::vector<double> usable;               ///< of each feature: one, or zero if it is NaN
-  std::vector<double> measured;             ///< of each feature: 3, or 12 with an orientation
-  std::vector<double> settings;             ///< see AnySensor::settings()
-  std::vector<std::vector<double>> joints;  ///< of each chain to a feature: position, cosine and
-                                            ///< sine of each joint; empty for other chains
+  std::vector<std::size_t> chain;  ///< of each feature: the sensor's chain to it
+  std::vector<double> usable;      ///< of each feature: one, or zero if it is NaN
+  std::vector<double> measured;    ///< of each feature: 3, or 12 with an orientation
+  std::vector<double> settings;    ///< see AnySensor::settings()
+  /// Of each chain to a feature: position, cosine and sine of each joint.
+  std::vector<std::optional<std::vector<double>>> joints;
 };
 
 /// What the sensors of a problem observed in one sample.
@@ -45,7 +45,7 @@ struct SampleLayout {
 /// Where the numbers of an observation are in a batch.
 struct ObservationLayout {
   std::vector<std::size_t> chain;   ///< of each feature
-  std::vector<std::size_t> joints;  ///< first number of each chain's joints; kNoJoints if none
+  std::vector<std::size_t> joints;  ///< first number of each chain's joints, or kNoJoints
   std::size_t usable = 0;           ///< first number
   std::size_t measured = 0;         ///< first number
   std::size_t settings = 0;         ///< first number
@@ -108,7 +108,7 @@ class Batches {
       layout.emplace();
       layout->chain = seen->chain;
       for (const auto& joints : seen->joints) {
-        layout->joints.push_back(joints.empty() ? ObservationLayout::kNoJoints : reserve(joints));
+        layout->joints.push_back(joints ? reserve(*joints) : ObservationLayout::kNoJoints);
       }
       layout->settings = reserve(seen->settings);
       layout->measured = reserve(seen->measured);
@@ -128,7 +128,7 @@ class Batches {
       if (!seen[s]) continue;
       const ObservationLayout& layout = *layouts_[s];
       for (std::size_t c = 0; c < layout.joints.size(); ++c) {
-        if (!seen[s]->joints[c].empty()) set(seen[s]->joints[c], lane, batch + layout.joints[c]);
+        if (seen[s]->joints[c]) set(*seen[s]->joints[c], lane, batch + layout.joints[c]);
       }
       set(seen[s]->settings, lane, batch + layout.settings);
       set(seen[s]->measured, lane, batch + layout.measured);
@@ -145,11 +145,14 @@ class Batches {
   /// Indices of the terms that apply.
   [[nodiscard]] const std::vector<int>& terms() const { return terms_; }
   /// Number of batches.
-  [[nodiscard]] std::size_t size() const { return numbers_.size() / std::max<std::size_t>(size_, 1); }
+  [[nodiscard]] std::size_t size() const {
+    return numbers_.size() / std::max<std::size_t>(size_, 1);
+  }
   /// Indices in the problem of the samples of a batch, by lane.
   [[nodiscard]] std::span<const int> samples(std::size_t batch) const {
     const std::size_t first = batch * kLanes<S>;
-    return std::span(samples_).subspan(first, std::min<std::size_t>(kLanes<S>, samples_.size() - first));
+    return std::span(samples_).subspan(first,
+                                       std::min<std::size_t>(kLanes<S>, samples_.size() - first));
   }
   /// True if a sensor observed something.
   [[nodiscard]] bool has(std::size_t sensor) const { return layouts_[sensor].has_value(); }

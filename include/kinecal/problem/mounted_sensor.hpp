@@ -67,7 +67,7 @@ class MountedSensor {
       all.settings = sensor_->settings(seen);
       for (const Feature& feature : seen.features) {
         const std::size_t chain = chain_to(feature.frame);
-        if (all.joints[chain].empty()) all.joints[chain] = joints(sample, chains_[chain]);
+        if (!all.joints[chain]) all.joints[chain] = joints(sample, chains_[chain]);
         all.chain.push_back(chain);
         add_feature(feature, all);
       }

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "kinecal/problem/any_term.hpp"
 #include "kinecal/errors/prior.hpp"
+#include "kinecal/problem/any_term.hpp"
 
 namespace kinecal {
 

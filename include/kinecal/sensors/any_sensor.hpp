@@ -60,7 +60,7 @@ class SensorOfType final : public AnySensor {
 
   [[nodiscard]] std::string_view type() const override { return M::kType; }
   [[nodiscard]] std::span<const ParameterInfo> parameters() const override {
-    if constexpr (kParametersOf<M> > 0) return M::kParameters;
+    if constexpr (kParametersOf < M >> 0) return M::kParameters;
     return {};
   }
   [[nodiscard]] bool delivers(Quantity quantity) const override {
@@ -69,7 +69,7 @@ class SensorOfType final : public AnySensor {
   [[nodiscard]] bool in_own_frame() const override { return kIsInOwnFrame<M>; }
   [[nodiscard]] bool is_oriented() const override { return kIsOriented<M>; }
   [[nodiscard]] std::vector<double> settings(const Observation& seen) const override {
-    if constexpr (kSettingsOf<M> > 0) {
+    if constexpr (kSettingsOf < M >> 0) {
       const auto all = model_.settings(seen);
       return {all.begin(), all.end()};
     }
@@ -96,8 +96,7 @@ class SensorOfType final : public AnySensor {
   [[nodiscard]] Vector3<double> point(const Vector3<double>& measured,
                                       std::span<const double> settings) const override {
     if constexpr (PlacesOne<M, Quantity::point>) {
-      Measurement<M, double> m{.point = measured,
-                               .settings = array_of<kSettingsOf<M>>(settings)};
+      Measurement<M, double> m{.point = measured, .settings = array_of<kSettingsOf<M>>(settings)};
       const std::vector<double> values = initial(settings);
       return model_.place(m, array_of<kParametersOf<M>>(values));
     }

@@ -48,9 +48,12 @@ class CorrectedDepthCamera;
 /// A depth camera.
 struct DepthCamera {
   static constexpr std::string_view kType = "camera3d";  ///< name in configurations
-  static constexpr std::array kParameters = {
-      ParameterInfo{"fx"}, ParameterInfo{"fy"},            ParameterInfo{"cx"},
-      ParameterInfo{"cy"}, ParameterInfo{"z_offset", "m"}, ParameterInfo{"z_scaling"}};
+  static constexpr std::array kParameters = {ParameterInfo{"fx"},
+                                             ParameterInfo{"fy"},
+                                             ParameterInfo{"cx"},
+                                             ParameterInfo{"cy"},
+                                             ParameterInfo{"z_offset", "m"},
+                                             ParameterInfo{"z_scaling"}};
   static constexpr std::size_t kSettings = 6;  ///< fx fy cx cy z_offset z_scaling, as recorded
   static constexpr bool kOwnFrame = true;      ///< features are in the optical frame
   /// Computes points and derivatives with what all points of a sample share.

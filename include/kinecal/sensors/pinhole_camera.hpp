@@ -44,7 +44,8 @@ struct PinholeCamera {
       distorted = true;
       s[4 + i] = info.d[i];
     }
-    if (distorted) std::tie(s[0], s[1], s[2], s[3]) = std::tie(info.k[0], info.k[4], info.k[2], info.k[5]);
+    if (distorted)
+      std::tie(s[0], s[1], s[2], s[3]) = std::tie(info.k[0], info.k[4], info.k[2], info.k[5]);
     check_camera_settings(s);
     return s;
   }
@@ -78,7 +79,8 @@ struct PinholeCamera {
       y = y + (w - seen.y());
     }
     const S zero(0.0), one(1.0);
-    return {.direction = {x, y, one}, .by_u = {one / fx, zero, zero}, .by_v = {zero, one / fy, zero}};
+    return {
+        .direction = {x, y, one}, .by_u = {one / fx, zero, zero}, .by_v = {zero, one / fy, zero}};
   }
 
  private:

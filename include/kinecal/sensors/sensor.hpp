@@ -37,7 +37,7 @@
 
 #include "kinecal/parameters/parameter.hpp"
 #include "kinecal/samples/sample.hpp"
-#include "kinecal/sensors/quantity.hpp"
+#include "kinecal/sensors/quantity_vectors.hpp"
 
 namespace kinecal {
 
@@ -100,9 +100,9 @@ inline constexpr bool kIsOriented = detail::is_oriented<M>();
 /// @tparam Q  scalar: a double, or a packet of several samples
 template <class M, class Q>
 struct Measurement {
-  Vector3<Q> point = Vector3<Q>::Zero();          ///< (3) as recorded, or as M::measurement() gives
-  Matrix3<Q> rotation = Matrix3<Q>::Identity();   ///< (3 x 3) of an oriented sensor
-  std::array<Q, kSettingsOf<M>> settings = {};    ///< of the observation
+  Vector3<Q> point = Vector3<Q>::Zero();         ///< (3) as recorded, or as M::measurement() gives
+  Matrix3<Q> rotation = Matrix3<Q>::Identity();  ///< (3 x 3) of an oriented sensor
+  std::array<Q, kSettingsOf<M>> settings = {};   ///< of the observation
 };
 
 namespace detail {
@@ -114,30 +114,33 @@ using Placed = decltype(std::declval<const M&>().place(
     std::declval<const Measurement<M, double>&>(),
     std::declval<const std::array<S, kParametersOf<M>>&>()));
 template <class M, Quantity Q>
-concept PlacesOne = requires { typename Placed<M>; } &&
-    std::same_as<Placed<M>, typename VectorsOf<Q>::template Type<Probe>>;
+concept PlacesOne = requires {
+  typename Placed<M>;
+}
+&&std::same_as<Placed<M>, typename VectorsOf<Q>::template Type<Probe>>;
 
 }  // namespace detail
 
 /// A sensor that delivers something in its frame: place(measurement, parameters).
 template <class M>
-concept PlacingSensor = detail::PlacesOne<M, Quantity::point> ||
-    detail::PlacesOne<M, Quantity::ray> || detail::PlacesOne<M, Quantity::pose> ||
-    detail::PlacesOne<M, Quantity::reading>;
+concept PlacingSensor =
+    detail::PlacesOne<M, Quantity::point> || detail::PlacesOne<M, Quantity::ray> ||
+    detail::PlacesOne<M, Quantity::pose> || detail::PlacesOne<M, Quantity::reading>;
 
 /// A camera that predicts the pixel of a point: predict(p, settings, parameters).
 template <class M>
-concept PredictingSensor =
-    requires(const M& model, const Vector3<detail::Probe>& p,
-             const std::array<double, kSettingsOf<M>>& settings,
-             const std::array<detail::Probe, kParametersOf<M>>& parameters) {
+concept PredictingSensor = requires(const M& model, const Vector3<detail::Probe>& p,
+                                    const std::array<double, kSettingsOf<M>>& settings,
+                                    const std::array<detail::Probe, kParametersOf<M>>& parameters) {
   { model.predict(p, settings, parameters) } -> std::same_as<Eigen::Matrix<detail::Probe, 2, 1>>;
 };
 
 /// A sensor.
 template <class M>
-concept Sensor = requires { { M::kType } -> std::convertible_to<std::string_view>; } &&
-    (PlacingSensor<M> || PredictingSensor<M>);
+concept Sensor = requires {
+  { M::kType } -> std::convertible_to<std::string_view>;
+}
+&&(PlacingSensor<M> || PredictingSensor<M>);
 
 /// What place() delivers; nullopt if a sensor only predicts.
 template <Sensor M>

@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
 

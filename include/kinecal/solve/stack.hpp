@@ -13,8 +13,8 @@
 #include <span>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
 

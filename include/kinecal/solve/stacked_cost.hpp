@@ -15,8 +15,8 @@
 #include <memory>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/solve/stack.hpp"
 
 namespace kinecal {

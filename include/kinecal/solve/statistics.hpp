@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/problem/any_problem.hpp"
 #include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
 

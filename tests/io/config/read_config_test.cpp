@@ -646,7 +646,7 @@ TEST(ReadConfig, WeightingOfABlockIsChecked) {
   }
   EXPECT_THAT(errors(with_block(plane + "samples: alon")),
               ElementsAre("calibrate.yaml:10: error block 'block': samples 'alon' is not one of "
-                          "all, alone; did you mean 'alone'?"));
+                          "all, exclusive, alone; did you mean 'alone'?"));
   EXPECT_THAT(errors(with_block(plane + "loss: {type: hubber}")),
               ElementsAre("calibrate.yaml:10: error block 'block': loss: type 'hubber' is not one "
                           "of none, huber, cauchy, tukey; did you mean 'huber'?"));

@@ -267,6 +267,18 @@ TEST(ReadSamples, PointWithoutACoordinateIsAnError) {
                {"features without 'point'"});
 }
 
+TEST(ReadSamples, OrientationThatIsNoUnitQuaternionIsAnError) {
+  const auto pose = [](const std::string& orientation) {
+    return kJoints +
+           "observations:\n- sensor_name: mocap\n  features: [{point: {x: 1, y: 2, z: 3}, " +
+           "orientation: " + orientation + "}]\n---\n";
+  };
+  expect_error(pose("{x: 0, y: 0, z: 1, w: 1}"), 4, {"orientation", "length 1"});
+  expect_error(pose("{x: 0, y: 0, z: 0, w: 0}"), 4, {"orientation", "length 1"});
+  expect_error(pose("{x: 0, y: 0, z: 1}"), 4, {"orientation without 'w'"});
+  expect_error(pose("{x: 0, y: 0, z: up, w: 1}"), 4, {"'up' is not a number"});
+}
+
 TEST(ReadSamples, SensorThatOccursTwiceInASampleIsAnError) {
   expect_error(kJoints + kArm + "- sensor_name: arm\n---\n", 5,
                {"sample at line 1", "sensor 'arm' occurs twice"});

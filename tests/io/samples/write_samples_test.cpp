@@ -93,6 +93,17 @@ std::vector<Sample> difficult_samples() {
   return samples;
 }
 
+TEST(WriteSamples, PosesKeepTheirOrientation) {
+  const Vector3<double> w(0.3, -0.2, 2.5);
+  Sample sample{{"elbow"}, {0.5}, {{"mocap", {{"stand", {0.1, 0.2, 0.3}, exp(w)}}}}, ""};
+  const std::vector<Sample> again = read_text(written({sample}));
+  ASSERT_EQ(again.size(), 1u);
+  const Feature& feature = again[0].observations[0].features[0];
+  EXPECT_EQ(feature.point, sample.observations[0].features[0].point);
+  ASSERT_TRUE(feature.rotation.has_value());
+  EXPECT_LE((log(*feature.rotation) - w).norm(), 1e-14);
+}
+
 TEST(WriteSamples, WhatIsWrittenReadsBackExactly) {
   const std::vector<Sample> samples = difficult_samples();
   const std::vector<Sample> back = read_text(written(samples));

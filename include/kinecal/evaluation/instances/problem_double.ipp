@@ -6,8 +6,8 @@ namespace kinecal {
 
 template class SensorView<double>;
 template class LocalSums<double>;
-template class DifferenceGram<double>;
-template class FeatureGram<double>;
+template class PointWrenches<double>;
+template class FeatureWrenches<double>;
 template class Evaluator<double>;
 template class BasicProblem<double>;
 

@@ -6,8 +6,8 @@ namespace kinecal {
 
 template class SensorView<Packet>;
 template class LocalSums<Packet>;
-template class DifferenceGram<Packet>;
-template class FeatureGram<Packet>;
+template class PointWrenches<Packet>;
+template class FeatureWrenches<Packet>;
 template class Evaluator<Packet>;
 template class BasicProblem<Packet>;
 

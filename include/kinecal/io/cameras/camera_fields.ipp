@@ -109,7 +109,8 @@ inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const So
 }
 
 /// Reports values that a pinhole camera cannot have.
-inline void check_camera(const CameraInfo& camera, const SourceLocation& place, Diagnostics& diagnostics) {
+inline void check_camera(const CameraInfo& camera, const SourceLocation& place,
+                         Diagnostics& diagnostics) {
   const auto& k = camera.k;
   if (!(k[0] > 0.0) || !(k[4] > 0.0)) {
     diagnostics.error(place,

@@ -24,20 +24,20 @@ struct ModelConfig {
   std::string type;        ///< of the registry: "chain3d" ("chain" is read as chain3d)
   std::string frame;       ///< link of the URDF
   std::string param_name;  ///< prefix of the camera's parameters; the model's name by default
-  SourceLocation place;             ///< where the file defines it
+  SourceLocation place;    ///< where the file defines it
 };
 
 /// `free_params:`  a joint offset or a camera parameter.
 struct FreeParamConfig {
-  std::string name;  ///< of the parameter: "elbow_flex_joint", "head_camera_fx"
-  SourceLocation place;       ///< where the file frees it
+  std::string name;      ///< of the parameter: "elbow_flex_joint", "head_camera_fx"
+  SourceLocation place;  ///< where the file frees it
 };
 
 /// `free_frames:`  a joint's frame or a virtual frame, and its free axes.
 struct FreeFrameConfig {
   std::string name;            ///< joint of the URDF or virtual frame
   std::array<bool, 6> axes{};  ///< x y z roll pitch yaw
-  SourceLocation place;                 ///< where the file frees it
+  SourceLocation place;        ///< where the file frees it
 };
 
 /// `free_frames_initial_values:`  where a free frame starts.
@@ -45,22 +45,22 @@ struct FrameInitialValueConfig {
   std::string name;                               ///< of the free frame
   Vector3<double> xyz = Vector3<double>::Zero();  ///< metres
   Vector3<double> rpy = Vector3<double>::Zero();  ///< radians
-  SourceLocation place;                                    ///< where the file sets it
+  SourceLocation place;                           ///< where the file sets it
 };
 
 /// `initial_values:`  (kinecal only) a value of any parameter, free or not.
 struct InitialValueConfig {
-  std::string name;    ///< of the parameter
-  double value = 0.0;  ///< radians, metres, or a relative change of an intrinsic
-  SourceLocation place;         ///< where the file sets it
+  std::string name;      ///< of the parameter
+  double value = 0.0;    ///< radians, metres, or a relative change of an intrinsic
+  SourceLocation place;  ///< where the file sets it
 };
 
 /// `bounds:`  (kinecal only) lower and upper bound of a free parameter.
 struct BoundConfig {
-  std::string name;    ///< of the parameter
-  double lower = 0.0;  ///< least value, in the unit of the parameter
-  double upper = 0.0;  ///< greatest value, in the unit of the parameter
-  SourceLocation place;         ///< where the file sets it
+  std::string name;      ///< of the parameter
+  double lower = 0.0;    ///< least value, in the unit of the parameter
+  double upper = 0.0;    ///< greatest value, in the unit of the parameter
+  SourceLocation place;  ///< where the file sets it
 };
 
 /// `loss: {type: none|huber|cauchy|tukey, scale: ...}`
@@ -76,12 +76,13 @@ struct BlockConfig {
   std::vector<std::string> models;  ///< in the order of the registry's keys; empty for outrageous
   std::string param;                ///< outrageous: joint or frame
   std::map<std::string, double> numbers;  ///< by key; defaults filled in
-  bool exclusive = false;  ///< `samples: exclusive` (or alone): only samples without observations of
-                           ///< other models
-  std::string ground;  ///< camera3d_to_ground: only samples with an observation of this sensor
-  double sigma = 1.0;  ///< standard deviation, units of the residual
-  LossConfig loss;     ///< of each feature
-  SourceLocation place;         ///< where the file defines it
+  bool exclusive =
+      false;             ///< `samples: exclusive` (or alone): only samples without observations of
+                         ///< other models
+  std::string ground;    ///< camera3d_to_ground: only samples with an observation of this sensor
+  double sigma = 1.0;    ///< standard deviation, units of the residual
+  LossConfig loss;       ///< of each feature
+  SourceLocation place;  ///< where the file defines it
 };
 
 /// One optimization.  Each step starts from the result of the step before it.
@@ -95,7 +96,7 @@ struct StepConfig {
   std::vector<InitialValueConfig> initial_values;             ///< `initial_values:`
   std::vector<BoundConfig> bounds;                            ///< `bounds:`
   std::vector<BlockConfig> error_blocks;                      ///< `error_blocks:`
-  SourceLocation place;                                                ///< where the step begins
+  SourceLocation place;                                       ///< where the step begins
 };
 
 /// Names of a step's free parameters, each with the place that frees it: first free_params, then
@@ -112,9 +113,9 @@ struct StepConfig {
 
 /// A configuration file.
 struct Config {
-  std::string base_link = "base_link";        ///< link in which measurements are compared
+  std::string base_link = "base_link";                 ///< link in which measurements are compared
   std::optional<SourceLocation> base_link_place = {};  ///< empty if the file does not set base_link
-  std::vector<StepConfig> steps;              ///< in the order in which they are solved
+  std::vector<StepConfig> steps;                       ///< in the order in which they are solved
   SourceLocation place;                                ///< the file
 };
 

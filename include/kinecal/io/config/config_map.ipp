@@ -32,7 +32,8 @@ class ConfigMap {
  public:
   /// @param map      a map; must outlive this
   /// @param subject  what the map describes, for messages: "model 'arm'"; may be empty
-  ConfigMap(const YamlNode& map, SourceLocation place, std::string subject, Diagnostics& diagnostics)
+  ConfigMap(const YamlNode& map, SourceLocation place, std::string subject,
+            Diagnostics& diagnostics)
       : place_(std::move(place)), subject_(std::move(subject)), diagnostics_(&diagnostics) {
     for (std::size_t i = 0; i < map.keys.size(); ++i) add(map.keys[i], map.items[i]);
   }
@@ -164,7 +165,9 @@ class ConfigMap {
   }
 
  private:
-  [[nodiscard]] SourceLocation place_of(const YamlNode& node) const { return {place_.file, node.line}; }
+  [[nodiscard]] SourceLocation place_of(const YamlNode& node) const {
+    return {place_.file, node.line};
+  }
 
   void append(ConfigEntry entry) {
     indices_.emplace(entry.key, entries_.size());

@@ -33,8 +33,8 @@ namespace kinecal {
 
 /// A column as the user names it.
 struct CsvColumn {
-  std::string name;  ///< as in the header, or its number from 1
-  SourceLocation place;       ///< where the mapping names it
+  std::string name;      ///< as in the header, or its number from 1
+  SourceLocation place;  ///< where the mapping names it
 };
 
 /// Columns to add up; usually one.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kinecal/io/messages/make.ipp"
+#include "kinecal/io/results/output_file.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
 
@@ -14,6 +15,9 @@ namespace kinecal {
 namespace detail {
 
 [[nodiscard]] inline MessageFields feature_message(const Feature& feature) {
+  if (feature.rotation) {
+    throw OutputError("a message of samples cannot hold the orientation of a feature; write YAML");
+  }
   const auto& p = feature.point;
   return fields("header", fields("frame_id", std::string_view(feature.frame)), "point",
                 fields("x", p.x(), "y", p.y(), "z", p.z()));

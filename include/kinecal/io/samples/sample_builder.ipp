@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -52,6 +53,7 @@ class SampleBuilder {
   /// A map or list ends.  @param line  where it began
   void end(SampleNode node, int line) {
     if (node == SampleNode::joint_states) check_joints(line);
+    if (node == SampleNode::orientation) end_orientation(line);
     if (node == SampleNode::observation) end_observation(line);
     if (node == SampleNode::parameter) camera_.end_parameter(errors_);
   }
@@ -76,6 +78,8 @@ class SampleBuilder {
       feature().point.y() = value;
     } else if (node == SampleNode::z) {
       feature().point.z() = value;
+    } else if (node >= SampleNode::qx && node <= SampleNode::qw) {
+      quaternion_(static_cast<int>(node) - static_cast<int>(SampleNode::qx)) = value;
     } else {
       camera_.number(node, line, value, errors_);
     }
@@ -106,6 +110,15 @@ class SampleBuilder {
     }
   }
 
+  void end_orientation(int line) {
+    constexpr double kMostOff = 1e-2;  // of its length; a file has few digits
+    const double length = quaternion_.norm();
+    if (std::abs(length - 1.0) > kMostOff) {
+      errors_.add(line, fmt::format("orientation: a unit quaternion has length 1, not {}", length));
+    }
+    feature().rotation = rotation_from_quaternion<double>(quaternion_ / length);
+  }
+
   void end_observation(int line) {
     const std::string& name = observation().sensor;
     const auto where = [&] {
@@ -123,6 +136,7 @@ class SampleBuilder {
   int line_ = 0;            ///< where the sample begins
   std::size_t joints_ = 0;  ///< of the last sample: the next one probably has as many
   Sample sample_;
+  Eigen::Vector4d quaternion_ = Eigen::Vector4d::Zero();  ///< x y z w
   SampleCamera camera_;
 };
 

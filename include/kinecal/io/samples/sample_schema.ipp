@@ -3,7 +3,8 @@
 //   joint_states: {name: [...], position: [...]}
 //   observations:
 //   - sensor_name: camera
-//     features: [{header: {frame_id: ...}, point: {x: ..., y: ..., z: ...}}, ...]
+//     features: [{header: {frame_id: ...}, point: {x: ..., y: ..., z: ...},
+//                 orientation: {x: ..., y: ..., z: ..., w: ...}}, ...]    (of poses only)
 //     ext_camera_info:
 //       camera_info: {height, width, distortion_model, D, K, R, P}
 //       parameters: [{name: ..., value: ...}, ...]
@@ -39,6 +40,11 @@ enum class SampleNode : std::uint8_t {
   x,
   y,
   z,
+  orientation,
+  qx,
+  qy,
+  qz,
+  qw,
   ext_camera_info,
   camera_info,
   height,
@@ -92,6 +98,11 @@ struct SampleNodeRule {
       {x, point, number, "x", "", true},
       {y, point, number, "y", "", true},
       {z, point, number, "z", "", true},
+      {orientation, feature, map, "orientation"},
+      {qx, orientation, number, "x", "", true},
+      {qy, orientation, number, "y", "", true},
+      {qz, orientation, number, "z", "", true},
+      {qw, orientation, number, "w", "", true},
       {ext_camera_info, observation, map, "ext_camera_info"},
       {camera_info, ext_camera_info, map, "camera_info"},
       {height, camera_info, number, "height"},

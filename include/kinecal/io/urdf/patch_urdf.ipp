@@ -169,8 +169,8 @@ inline void check_patch(const UrdfText& source, const Robot& robot, const JointP
       const Mimic driven = drive(robot, joint);
       if (driven.joint != patch.joint) continue;
       Pose<double>& moved_by = changes[joint.name].moved_by;
-      moved_by = moved_by *
-                 joint_pose(joint.type, joint.axis, make_joint_state(driven.multiplier * patch.offset));
+      moved_by = moved_by * joint_pose(joint.type, joint.axis,
+                                       make_joint_state(driven.multiplier * patch.offset));
     }
   }
   return changes;

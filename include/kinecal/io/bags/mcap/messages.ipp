@@ -29,7 +29,8 @@ class McapMessages {
   /// @param place        named by warnings
   /// @param diagnostics  receives warnings; errors are thrown
   /// @throws BytesError  if it is not an MCAP file
-  McapMessages(ByteFile& file, const BagReader& reader, SourceLocation place, Diagnostics& diagnostics)
+  McapMessages(ByteFile& file, const BagReader& reader, SourceLocation place,
+               Diagnostics& diagnostics)
       : file_(file), reader_(reader), place_(std::move(place)), diagnostics_(diagnostics) {
     const Bytes first = file_.read(std::min<std::uint64_t>(file_.size(), 16), buffer_);
     if (first.empty()) throw BytesError("is empty");

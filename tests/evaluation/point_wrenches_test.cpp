@@ -1,4 +1,4 @@
-#include "kinecal/evaluation/difference_gram.hpp"
+#include "kinecal/evaluation/point_wrenches.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,12 +24,11 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
   Evaluator<S>(problem, free).for_each_term(x, true, [&](int, auto&, const auto& views, auto) {
     ++packs;
     const auto chains = Rows::chains(views, first);
-    std::vector<int> columns;
-    views.columns(chains, columns);
+    const std::vector<int> columns = views.sum_columns(chains);
     const std::array twists = {BodyTwists<S>(views[0].twists(chains[0])),
                                BodyTwists<S>(views[1].twists(chains[1]))};
-    FeatureGram<S> gram;
-    gram.resize(2, views.num_own());
+    FeatureWrenches<S> general;
+    general.start(twists, views.num_own());
     std::vector<S> weights;
     std::vector<Vector3<S>> residuals;
     for (std::size_t i = first; i < Rows::features(views); ++i) {
@@ -37,23 +36,21 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
       if (!all_count) set_lane(weights.back(), 0, 0.0);
       typename Rows::Rows rows;
       Rows::template rows<true>(test::HiddenDifference{}, views, i, Linearization::measured, rows);
-      if (i == first) {
-        gram.set(rows, weights.back());
-      } else {
-        gram.add(rows, weights.back());
-      }
+      general.add(rows, weights.back());
       residuals.push_back(rows.residual);
     }
-    gram.complete();
+    general.finish();
     LocalSums<S> of_rows(columns), of_moments(columns);
-    of_rows.expand(gram, twists);
-    DifferenceGram<S> difference;
-    const auto side = [&](std::size_t k) {
-      return typename DifferenceGram<S>::Side{views[k].values(first), views[k].changes(first),
-                                              views[k].own().free.size()};
-    };
-    difference.set(side(0), side(1), weights, residuals);
-    of_moments.expand(difference, difference.centered(twists));
+    of_rows.add(general);
+    typename PointWrenches<S>::Sides sides;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const std::size_t own = views[s].own().free.size(), count = weights.size();
+      sides[s] = {
+          {views[s].values(first), count}, {views[s].changes(first), own * count}, own, twists[s]};
+    }
+    PointWrenches<S> of_points;
+    of_points.set(sides, weights, residuals);
+    of_moments.add(of_points);
     NormalEquations expected(free.size()), found(free.size());
     of_rows.add_to(expected);
     of_moments.add_to(found);
@@ -83,11 +80,11 @@ void check_sensors() {
   }
 }
 
-TEST(DifferenceGram, IsThatOfRowsOfDoubles) {
+TEST(PointWrenches, IsThatOfRowsOfDoubles) {
   check_sensors<double>();
 }
 
-TEST(DifferenceGram, IsThatOfRowsOfPackets) {
+TEST(PointWrenches, IsThatOfRowsOfPackets) {
   check_sensors<Packet>();
 }
 

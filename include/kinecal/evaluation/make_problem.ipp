@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/evaluation/make_problem.hpp"
 #include "kinecal/evaluation/problem.hpp"
 
 namespace kinecal {

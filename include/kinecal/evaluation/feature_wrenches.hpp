@@ -1,0 +1,144 @@
+// What resists motions, for any error block: one small matrix per sample.
+//
+// The columns of a body's parameters are by_body xi_k, with the twists xi_k of its chain, which are
+// the same for all features.  So each sample sums a small matrix over its features,
+//
+//   K = sum of  w L^T L      L = [ residual | by_own | by_body of each body ]
+//
+// whose size depends neither on the number of features nor on that of parameters.  Its part between
+// bodies b and s turns a twist xi of s into its wrench on b: K_bs xi.
+// Source: ARCHITECTURE.md, ideas 2 (twists) and 6 (the compressed cost).
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "kinecal/evaluation/dot_products.hpp"
+#include "kinecal/evaluation/feature_rows.hpp"
+
+namespace kinecal {
+
+/// What resists motions of features of any kind.
+template <class S>
+class FeatureWrenches {
+ public:
+  /// Number of bodies.
+  [[nodiscard]] std::size_t bodies() const { return twists_.size(); }
+  /// Number of rotational and of translational twists of a body.
+  /// @{
+  [[nodiscard]] std::size_t turns(std::size_t body) const {
+    return twists_[body].rotational.size();
+  }
+  [[nodiscard]] std::size_t shifts(std::size_t body) const {
+    return twists_[body].translational.size();
+  }
+  /// @}
+  /// Number of the sensors' own parameters.
+  [[nodiscard]] std::size_t own() const { return own_; }
+
+  /// The twist of column i, and of those after it.
+  [[nodiscard]] PacketRows<S> twists(std::size_t i) const {
+    return {columns_.data() + i * size(), size(), 3};
+  }
+  /// Force and moment of each column on a body.
+  [[nodiscard]] PacketRows<S> wrenches(std::size_t body) const {
+    return {columns_.data() + 6 + 6 * body, size(), 3};
+  }
+  /// Adds the products of the sensors' own columns with each other and with the residual.
+  void add_own(S* sums, std::size_t stride) const {
+    for (std::size_t c = 1; c <= own_; ++c) {
+      for (std::size_t i = 0; i <= c; ++i) sums[c * stride + i] += row(c)[i];
+    }
+  }
+
+  /// Starts a sum over features.
+  /// @param twists  of each body; must stay until the sums are added
+  /// @param own     number of the sensors' own parameters
+  void start(std::span<const BodyTwists<S>> twists, std::size_t own) {
+    twists_ = twists;
+    own_ = own;
+    width_ = 1 + own + 6 * twists.size();
+    k_.resize(width_ * width_);
+    empty_ = true;
+  }
+  /// Adds w L^T L of a feature.
+  template <int M, int Bodies>
+  void add(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
+    using std::sqrt;
+    constexpr std::size_t kRows = M;
+    std::array<std::array<S, kRows>, 1 + kMostOwn + 6 * Bodies> columns;  // of L, scaled
+    const S root = sqrt(weight);
+    for (std::size_t m = 0; m < kRows; ++m) {
+      const auto row = static_cast<int>(m);
+      std::size_t n = 0;
+      columns[n++][m] = root * rows.residual(row);
+      for (std::size_t c = 0; c < rows.own; ++c) columns[n++][m] = root * rows.by_own[c](row);
+      for (std::size_t s = 0; s < Bodies; ++s) {
+        for (int k = 0; k < 6; ++k) columns[n++][m] = root * rows.by_body[s](row, k);
+      }
+    }
+    const PacketRows<S> l{columns[0].data(), kRows, 3};
+    if (empty_) {
+      set_triangle<kRows>(l, width_, l, k_.data(), width_);
+    } else {
+      add_products<kRows>(l, width_, l, 0, k_.data(), width_);
+    }
+    empty_ = false;
+  }
+  /// Computes the wrenches, when all features are added.
+  void finish() {
+    const std::size_t others = 1 + own_;
+    for (std::size_t i = others; i < width_; ++i) {
+      for (std::size_t j = others; j < i; ++j) k_[j * width_ + i] = row(i)[j];
+    }
+    std::size_t columns = others;
+    for (const BodyTwists<S>& body : twists_)
+      columns += body.rotational.size() + body.translational.size();
+    columns_.resize(columns * size());
+    S* column = columns_.data();
+    for (std::size_t c = 0; c < others; ++c, column += size()) {
+      for (std::size_t i = 0; i < 6 * bodies(); ++i) column[6 + i] = row(others + i)[c];
+    }
+    for (std::size_t s = 0; s < bodies(); ++s) {
+      column = set_columns<6>(s, twists_[s].rotational_numbers(), turns(s), column);
+    }
+    for (std::size_t s = 0; s < bodies(); ++s) {
+      column = set_columns<3>(s, twists_[s].translational_numbers(), shifts(s), column);
+    }
+  }
+
+ private:
+  /// Row i of K: its lower triangle; all of it between bodies.
+  [[nodiscard]] const S* row(std::size_t i) const { return &k_[i * width_]; }
+
+  /// Numbers of a column: its twist, and a wrench on each body.
+  [[nodiscard]] std::size_t size() const { return 6 + 6 * bodies(); }
+
+  /// Some twists of a body and their wrenches: the forces on all bodies; with D = 6, the moments on
+  /// it and on the bodies after it, too.
+  /// @returns  the column after the last one
+  template <std::size_t D>
+  S* set_columns(std::size_t body, const S* xi, std::size_t count, S* column) const {
+    const std::size_t first = 1 + own_;
+    for (std::size_t b = 0; b < bodies(); ++b) {
+      const PacketRows<S> k{row(first + 6 * b) + first + 6 * body, width_, 3};
+      set_products<D, S>({xi, D, 3}, count, k, D == 6 && b >= body ? 6 : 3, column + 6 + 6 * b,
+                         size());
+    }
+    for (const S* end = xi + D * count; xi != end; column += size()) {
+      for (std::size_t d = 0; d < D; ++d) column[d] = *xi++;
+    }
+    return column;
+  }
+
+  std::span<const BodyTwists<S>> twists_;
+  std::size_t own_ = 0, width_ = 0;
+  bool empty_ = true;
+  std::vector<S> k_;
+  std::vector<S> columns_;  ///< in the order of LocalSums
+};
+
+}  // namespace kinecal

@@ -1,0 +1,234 @@
+// What resists motions, for points that are only subtracted: r = p_a - p_b.
+//
+// With derivatives I and -I, the sums over the features are moments of the points.  Taken about the
+// center of each side's points, translation and rotation decouple:
+//
+//   force   sum w v = W v,  the same on both sides
+//   moment  sum w q x (u x p) = (tr C - C) u      C = sum w p q^T
+//
+// for a twist (v, u) whose linear part v is the velocity of the center.  The second side moves the
+// other way: its twists are (-v, u), and the moments on it are negated.  Features are scaled by the
+// root of their weights and velocities by that of W, so that a velocity is its own force.
+// Source: Euler's equations of a rigid body.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "kinecal/evaluation/dot_products.hpp"
+#include "kinecal/kinematics/twist_walker.hpp"
+
+namespace kinecal {
+
+/// One side of a difference: points in the base, and how parameters move them.
+template <class S>
+struct DifferenceSide {
+  std::span<const Vector3<S>> points;  ///< of each feature, metres
+  /// Derivatives of each point by the sensor's own parameters, feature by feature: metres per unit.
+  std::span<const Vector3<S>> changes;
+  std::size_t own = 0;   ///< number of those parameters
+  BodyTwists<S> twists;  ///< of the body of the points
+};
+
+/// What resists motions of features that are only subtracted; the interface is that of FeatureWrenches.
+template <class S>
+class PointWrenches {
+ public:
+  using Sides = std::array<DifferenceSide<S>, 2>;
+
+  [[nodiscard]] static constexpr std::size_t bodies() { return 2; }
+  /// Number of rotational and of translational twists of a body.
+  /// @{
+  [[nodiscard]] std::size_t turns(std::size_t body) const { return turns_[body]; }
+  [[nodiscard]] std::size_t shifts(std::size_t body) const { return shifts_[body]; }
+  /// @}
+  /// Number of the sensors' own parameters.
+  [[nodiscard]] std::size_t own() const { return own_; }
+
+  /// The twist of column i, and of those after it.
+  [[nodiscard]] PacketRows<S> twists(std::size_t i) const {
+    static_assert(sizeof(Column) == 12 * sizeof(S));
+    return {columns_[i].velocity.data(), 12, 3};
+  }
+  /// Force and moment of each column on a body.
+  [[nodiscard]] PacketRows<S> wrenches(std::size_t body) const {
+    return {columns_[0].velocity.data(), 12, 6 + 3 * body};
+  }
+  /// Adds the products of the sensors' own columns with each other and with the residual.
+  void add_own(S* sums, std::size_t stride) const {
+    if (own_ == 0) return;
+    const std::size_t size = 3 * (1 + own_);
+    const S* motions = motions_[0].data();
+    const auto add = [&]<std::size_t N>(std::integral_constant<std::size_t, N>) {
+      add_products<3 * N, S>({motions + 3, 3, size}, own_, {motions, 3, size}, 1, sums, stride);
+      motions += N * size;
+    };
+    std::size_t left = features_;
+    for (; left >= 4; left -= 4) add(std::integral_constant<std::size_t, 4>{});
+    for (; left > 0; --left) add(std::integral_constant<std::size_t, 1>{});
+  }
+
+  /// Sums consecutive features on the same chains.
+  /// @param weights    of each feature
+  /// @param residuals  (3) of each feature, metres
+  void set(const Sides& sides, std::span<const S> weights, std::span<const Vector3<S>> residuals) {
+    features_ = weights.size();
+    own_ = sides[0].own + sides[1].own;
+    std::size_t columns = 1 + own_;
+    for (std::size_t s = 0; s < 2; ++s) {
+      turns_[s] = sides[s].twists.rotational.size();
+      shifts_[s] = sides[s].twists.translational.size();
+      columns += turns_[s] + shifts_[s];
+    }
+    columns_.resize(columns);
+    motions_.resize((1 + own_) * features_);
+    set_points(sides, weights);
+    set_own(0, residuals.data(), 1, false);
+    Column* column = set_own_columns(sides);
+    column = set_turns<0>(sides[0].twists.rotational, column);
+    column = set_turns<1>(sides[1].twists.rotational, column);
+    for (std::size_t s = 0; s < 2; ++s) {
+      const S scale = s == 0 ? root_ : S(-root_);
+      for (const Vector3<S>& shift : sides[s].twists.translational) {
+        (column++)->velocity = scaled(shift, scale);
+      }
+    }
+  }
+
+ private:
+  /// A column: twist, force and moments.
+  struct Column {
+    Vector3<S> velocity;  ///< of the center, scaled; it is the force, too
+    Vector3<S> angular;
+    std::array<Vector3<S>, 2> moment;  ///< about the centers; the second one negated
+  };
+
+  void set_points(const Sides& sides, std::span<const S> weights) {
+    using std::sqrt;
+    S sum(0.0);
+    roots_.resize(features_);
+    for (std::size_t i = 0; i < features_; ++i) {
+      sum += weights[i];
+      roots_[i] = sqrt(weights[i]);
+    }
+    root_ = sqrt(sum);
+    const auto some = sum > S(0.0);
+    const S share = S(1.0) / select(some, sum, S(1.0));
+    share_of_root_ = select(some, root_ * share, S(1.0));
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Vector3<S>* p = sides[s].points.data();
+      Vector3<S> center = Vector3<S>::Zero();
+      for (std::size_t i = 0; i < features_; ++i) add_scaled(center, p[i], weights[i]);
+      center = scaled(center, share);
+      from_center_[s].resize(features_);
+      Vector3<S>* from_center = from_center_[s].data();
+      for (std::size_t i = 0; i < features_; ++i) {
+        from_center[i] = scaled(p[i] - center, roots_[i]);
+      }
+      centers_[s] = center;
+    }
+    set_inertia<true>(inertia_[0], from_center_[0].data(), from_center_[0].data());
+    set_inertia<false>(inertia_[1], from_center_[1].data(), from_center_[0].data());
+    set_inertia<true>(inertia_[2], from_center_[1].data(), from_center_[1].data());
+  }
+
+  /// sum (p^T q I - p q^T); negated for two sides.
+  /// @tparam Same  true if p and q are the same points: only one triangle is summed
+  template <bool Same>
+  void set_inertia(Matrix3<S>& inertia, const Vector3<S>* p, const Vector3<S>* q) const {
+    Matrix3<S> c = Matrix3<S>::Zero();
+    for (std::size_t i = 0; i < features_; ++i, ++p, ++q) {
+      for (int col = 0; col < 3; ++col) {
+        const S x = (*q)(col);
+        for (int row = Same ? col : 0; row < 3; ++row) c(row, col) += (*p)(row)*x;
+      }
+    }
+    for (int col = 0; col < 3; ++col) {
+      const S others = c((col + 1) % 3, (col + 1) % 3) + c((col + 2) % 3, (col + 2) % 3);
+      inertia(col, col) = Same ? others : S(-others);
+      for (int row = Same ? col + 1 : 0; row < 3; ++row) {
+        if (row == col) continue;
+        inertia(row, col) = Same ? S(-c(row, col)) : c(row, col);
+        if constexpr (Same) inertia(col, row) = inertia(row, col);
+      }
+    }
+  }
+
+  /// @returns  the column after the last one
+  Column* set_own_columns(const Sides& sides) {
+    std::size_t column = 1;
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (std::size_t c = 0; c < sides[s].own; ++c) {
+        set_own(column++, sides[s].changes.data() + c, sides[s].own, s == 1);
+      }
+    }
+    return columns_.data() + column;
+  }
+  /// @param x  (3) of each feature: its motion by a parameter, or its residual
+  void set_own(std::size_t c, const Vector3<S>* x, std::size_t stride, bool negated) {
+    const Vector3<S>*p = from_center_[0].data(), *q = from_center_[1].data();
+    Vector3<S>* motion = motions_.data() + c;
+    const S* roots = roots_.data();
+    const S sign(negated ? -1.0 : 1.0);
+    Vector3<S> force = Vector3<S>::Zero(), about_a = force, about_b = force;
+    for (std::size_t i = 0; i < features_; ++i, ++p, ++q, x += stride, motion += 1 + own_) {
+      const S root = roots[i];
+      const Vector3<S> f = scaled(*x, root * sign);
+      *motion = f;
+      add_scaled(force, f, root);
+      add_cross(about_a, *p, f);
+      add_cross(about_b, f, *q);
+    }
+    Column& column = columns_[c];
+    column.velocity = scaled(force, share_of_root_);
+    column.moment[0] = about_a;
+    column.moment[1] = about_b;
+  }
+
+  /// @returns  the column after the last one
+  template <std::size_t Side>
+  Column* set_turns(std::span<const Twist<S>> turns, Column* column) const {
+    const Vector3<S> center = centers_[Side];
+    const S scale = Side == 0 ? root_ : S(-root_);
+    for (const Twist<S>& turn : turns) {
+      column->velocity = scaled(turn.velocity(center), scale);
+      column->angular = turn.angular;
+      const S x = turn.angular.x(), y = turn.angular.y(), z = turn.angular.z();
+      for (std::size_t b = Side; b < 2; ++b) {
+        const S* inertia = inertia_[Side + b].data();
+        S* moment = column->moment[b].data();
+        for (std::size_t k = 0; k < 3; ++k, inertia += 3) {
+          moment[k] = inertia[0] * x + inertia[1] * y + inertia[2] * z;
+        }
+      }
+      ++column;
+    }
+    return column;
+  }
+
+  [[nodiscard]] static Vector3<S> scaled(const Vector3<S>& v, const S& factor) {
+    return {v.x() * factor, v.y() * factor, v.z() * factor};
+  }
+  static void add_scaled(Vector3<S>& sum, const Vector3<S>& v, const S& factor) {
+    sum = {sum.x() + v.x() * factor, sum.y() + v.y() * factor, sum.z() + v.z() * factor};
+  }
+  static void add_cross(Vector3<S>& sum, const Vector3<S>& p, const Vector3<S>& f) {
+    sum = {sum.x() + p.y() * f.z() - p.z() * f.y(),  // two fused multiply-adds each
+           sum.y() + p.z() * f.x() - p.x() * f.z(), sum.z() + p.x() * f.y() - p.y() * f.x()};
+  }
+
+  std::size_t features_ = 0, own_ = 0;
+  std::array<std::size_t, 2> turns_{}, shifts_{};
+  S root_, share_of_root_;             ///< of the sum of weights, and its inverse
+  std::array<Vector3<S>, 2> centers_;  ///< of the points of both sides, in the base
+  std::array<Matrix3<S>, 3> inertia_;  ///< first, mixed, second
+  std::vector<Column> columns_;        ///< in the order of LocalSums
+  std::vector<S> roots_;               ///< of the weights
+  std::array<std::vector<Vector3<S>>, 2> from_center_;  ///< each point, scaled
+  std::vector<Vector3<S>> motions_;  ///< residual and own motions of each feature, scaled
+};
+
+}  // namespace kinecal

@@ -1,0 +1,65 @@
+// Which terms a sample takes part in.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "kinecal/errors/plane_fit.hpp"
+#include "kinecal/problem/any_problem.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+[[nodiscard]] inline std::vector<const ObservationNumbers*> observations_of(
+    const AnyTerm& term, const SampleNumbers& observed) {
+  std::vector<const ObservationNumbers*> seen;
+  for (const int s : term.sensors()) seen.push_back(&*observed[static_cast<std::size_t>(s)]);
+  return seen;
+}
+
+}  // namespace detail
+
+KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sample,
+                                        const SampleNumbers& observed) const {
+  const std::string& beside = term.options().beside;
+  if (!beside.empty() && sample.observation(beside) == nullptr) return false;
+  const auto observing = std::count_if(
+      sample.observations.begin(), sample.observations.end(),
+      [&](const Observation& o) { return !o.features.empty() && o.sensor != beside; });
+  if (term.options().exclusive && observing != std::ssize(term.sensors())) return false;
+  for (const int s : term.sensors()) {
+    if (!observed[static_cast<std::size_t>(s)]) return false;
+  }
+  const auto seen = detail::observations_of(term, observed);
+  const auto name = [&](std::size_t i) { return sensor(term.sensors()[i]).mount().name; };
+  for (std::size_t i = 1; i < seen.size() && term.pairs_features(); ++i) {
+    if (seen[i]->usable.size() == seen[0]->usable.size()) continue;
+    throw SampleError("error block '" + term.name() + "': sensor '" + name(0) + "' has " +
+                      std::to_string(seen[0]->usable.size()) + " features, sensor '" + name(i) +
+                      "' has " + std::to_string(seen[i]->usable.size()));
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (term.quantities()[i] != Quantity::plane) continue;
+    if (const std::string why = why_no_plane(term.sensors()[i], *seen[i]); !why.empty()) {
+      throw SampleError("error block '" + term.name() + "': " + why);
+    }
+  }
+  return term.count(seen) > 0;
+}
+
+/// Why the features of a sensor in one sample do not determine a plane; empty if they do.
+KINECAL_INLINE std::string AnyProblem::why_no_plane(int s, const ObservationNumbers& seen) const {
+  std::vector<Vector3<double>> points;
+  for (std::size_t i = 0; i < seen.usable.size(); ++i) {
+    if (seen.usable[i] == 0.0) continue;
+    if (seen.chain[i] != seen.chain[0]) return "the points of a plane are in several frames";
+    const double* measured = &seen.measured[3 * i];
+    points.push_back(
+        sensor(s).sensor().point({measured[0], measured[1], measured[2]}, seen.settings));
+  }
+  if (points.size() < 3) return "a plane takes three points or more";
+  return PlaneFit<double>(points).determined() ? "" : "its points span no plane";
+}
+
+}  // namespace kinecal
