@@ -27,6 +27,7 @@ using Floor = Crate<Camera, JointOffset<"lift">, JointOffset<"head_tilt">,
                     FrameOffset<"camera_joint">, DepthIntrinsics<"camera">,
                     Block<"floor", PointToPlane, "camera">, PriorOn<"keep", "camera_joint">>;
 using Counterweight = Crate<Chain3d<"weight", FromBase<"counterweight">>, Arm, JointOffset<"wrist">,
+                            JointModelParameters<"wrist", "gear_ratio", "eccentric_cos">,
                             FrameOffset<"weight", Axes{.z = true, .a = true}>,
                             Block<"weight", PointToPoint, "weight", "arm">>;
 using Pixels =
@@ -39,7 +40,7 @@ static_assert(!std::is_empty_v<Joints>);
 static_assert(Crate<Joints, HandEye>::Free::kSize == HandEye::Free::kSize);
 
 static_assert(All::Sensors::kSize == 4 && All::Blocks::kSize == 4 && All::Priors::kSize == 1);
-static_assert(All::Free::kSize == 3 + 6 + 3 + 6 + 6 + 1 + 2 + 4 + 1, "each once");
+static_assert(All::Free::kSize == 3 + 6 + 3 + 6 + 6 + 1 + 2 + 2 + 4 + 1, "each once");
 static_assert(std::is_same_v<Crate<HandEye, HandEye>::Parameters, HandEye::Parameters>);
 
 /// The same calibration put together at run time.
@@ -151,13 +152,14 @@ TEST(Crate, NamesItsParametersAsAConfigurationDoes) {
   std::vector<std::string> names;
   const FreeSet free = All::free(table);
   for (const int i : free.parameters()) names.push_back(table[i].name);
-  EXPECT_THAT(names, testing::ElementsAre(
-                         "pan", "elbow", "wrist", "camera_joint_x", "camera_joint_y",
-                         "camera_joint_z", "camera_joint_a", "camera_joint_b", "camera_joint_c",
-                         "mount_x", "mount_y", "mount_z", "camera_fx", "camera_fy", "camera_cx",
-                         "camera_cy", "camera_z_offset", "camera_z_scaling", "board_x", "board_y",
-                         "board_z", "board_a", "board_b", "board_c", "lift", "head_tilt",
-                         "weight_z", "weight_a", "eye_fx", "eye_fy", "eye_cx", "eye_cy"));
+  EXPECT_THAT(names,
+              testing::ElementsAre(
+                  "pan", "elbow", "wrist", "camera_joint_x", "camera_joint_y", "camera_joint_z",
+                  "camera_joint_a", "camera_joint_b", "camera_joint_c", "mount_x", "mount_y",
+                  "mount_z", "camera_fx", "camera_fy", "camera_cx", "camera_cy", "camera_z_offset",
+                  "camera_z_scaling", "board_x", "board_y", "board_z", "board_a", "board_b",
+                  "board_c", "lift", "head_tilt", "wrist_gear_ratio", "wrist_eccentric_cos",
+                  "weight_z", "weight_a", "eye_fx", "eye_fy", "eye_cx", "eye_cy"));
   EXPECT_EQ(table["lift"].unit, "m");
   EXPECT_EQ(table["pan"].unit, "rad");
   EXPECT_EQ(table["mount_a"].unit, "rad");

@@ -113,7 +113,11 @@ S oracle_position(const Robot& robot, const Joint& joint, const Sample& sample,
     }
   }
   for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
-    if (sample.joint_names[i] == joint.name) return sample.joint_positions[i] + values(joint.name);
+    if (sample.joint_names[i] != joint.name) continue;
+    const double q = sample.joint_positions[i];
+    return q * (values(joint.name + "_gear_ratio") + 1.0) + values(joint.name) +
+           std::sin(q) * values(joint.name + "_eccentric_sin") +
+           (std::cos(q) - 1.0) * values(joint.name + "_eccentric_cos");
   }
   throw std::invalid_argument("the oracle does not know where joint '" + joint.name + "' stands");
 }

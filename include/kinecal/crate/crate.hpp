@@ -165,6 +165,12 @@ class Crate {
     if constexpr (P::kKind == ParameterKind::joint_offset) {
       constexpr JointType type = RobotOf::kJoints[detail::joint_index<RobotOf>(P::kOwner)].type;
       add(std::string(P::kOwner), turns(type) ? "rad" : "m");
+    } else if constexpr (P::kKind == ParameterKind::joint_model) {
+      for (const ParameterId& id : P::kIds) {
+        const auto& names = kJointModelNames;
+        const auto k = std::find(names.begin(), names.end(), id.part) - names.begin();
+        add(id.name(), std::string(kJointModelUnits[static_cast<std::size_t>(k)]).c_str());
+      }
     } else if constexpr (P::kKind == ParameterKind::frame_offset ||
                          P::kKind == ParameterKind::virtual_frame) {
       for (std::size_t k = 0; k < 6; ++k) {
@@ -202,7 +208,9 @@ class Crate {
       for (std::size_t k = 0; k < 6; ++k) {
         if (joint.frame[k] >= 0) ++(k < 3 ? size.translational : size.rotational);
       }
-      if (joint.offset >= 0) ++(turns(C::kJoints[i].type) ? size.rotational : size.translational);
+      std::size_t& of_joint = turns(C::kJoints[i].type) ? size.rotational : size.translational;
+      if (joint.offset >= 0) ++of_joint;
+      for (const int column : joint.model) of_joint += column >= 0 ? 1 : 0;
     }
     for (const ParameterInfo& info : detail::declared_parameters<typename Sensor::Model>()) {
       if (Free::find(Sensor::kName, info.name) >= 0) ++size.own;

@@ -39,6 +39,12 @@ struct NameOfVirtualFrame {
       "kinecal: this VirtualFrame has the name of a joint of the robot; write FrameOffset "
       "for the joint, or rename the frame");
 };
+template <class Parameter, bool kIsKnown = false>
+struct NameOfModel {
+  static_assert(kIsKnown,
+                "kinecal: no joint model that fits the joint has this parameter; "
+                "kinematics/joint_model.hpp has their names");
+};
 template <class Parameter, class Found, bool kIsKnown = false>
 struct OwnerOfParameter {
   static_assert(kIsKnown,
@@ -74,6 +80,24 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
   using type = FirstOf<Unless<Found::kExists, JointOfOffset<P, Found>>,
                        Unless<moves(joint().type), MotionOfOffset<P>>,
                        Unless<!joint().mimic.has_value(), DriveOfOffset<P>>>;
+};
+
+template <class P, RobotData R, class Sensors, class Blocks>
+struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_model> {
+  using Joint = CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset>;
+
+  [[nodiscard]] static constexpr bool are_known() {
+    for (const ParameterId& id : P::kIds) {
+      bool found = false;
+      for (std::size_t k = 0; k < kJointModelSize; ++k) {
+        const bool fits = turns(Joint::joint().type) || !kJointModelRotatesOnly[k];
+        found |= kJointModelNames[k] == id.part && fits;
+      }
+      if (!found) return false;
+    }
+    return true;
+  }
+  using type = FirstOf<typename Joint::type, Unless<are_known(), NameOfModel<P>>>;
 };
 
 template <class P, RobotData R, class Sensors, class Blocks>
@@ -169,7 +193,8 @@ struct UseOfParameter {
 template <class... Ps>
 struct JointsAndFrames {
   [[nodiscard]] static constexpr bool is_one(ParameterKind kind) {
-    return kind != ParameterKind::sensor && kind != ParameterKind::block;
+    return kind == ParameterKind::joint_offset || kind == ParameterKind::frame_offset ||
+           kind == ParameterKind::virtual_frame;
   }
   static constexpr auto kNames = [] {
     std::array<std::string_view, (std::size_t(0) + ... + (is_one(Ps::kKind) ? 1 : 0))> names;

@@ -71,6 +71,32 @@ inline void add_joint(ParameterTable& table, const Robot& robot, const std::stri
   add_if_new(table, name, turns(joint.type) ? "rad" : "m");
 }
 
+/// Adds a parameter of a joint model, "elbow_gear_ratio", or reports why the joint cannot have it.
+/// @returns  false if the name is not one of a joint and a joint model
+inline bool add_joint_model(ParameterTable& table, const Robot& robot, const std::string& name,
+                            const SourceLocation& place, Diagnostics& diagnostics) {
+  for (std::size_t k = 0; k < kJointModelSize; ++k) {
+    const std::string suffix = "_" + std::string(kJointModelNames[k]);
+    if (!name.ends_with(suffix)) continue;
+    const std::string of = name.substr(0, name.size() - suffix.size());
+    if (!robot.has_joint(of)) continue;
+    const Joint& joint = robot.joint(of);
+    if (!moves(joint.type) || joint.mimic) {
+      diagnostics.error(
+          place, fmt::format("'{}': joint '{}' {}", name, of,
+                             joint.mimic ? "mimics another; name that one" : "does not move"));
+    } else if (kJointModelRotatesOnly[k] && !turns(joint.type)) {
+      diagnostics.error(place, fmt::format("'{}': joint '{}' slides; only a joint that rotates has "
+                                           "this parameter",
+                                           name, of));
+    } else {
+      add_if_new(table, name, std::string(kJointModelUnits[k]));
+    }
+    return true;
+  }
+  return false;
+}
+
 /// Reports a free frame that is neither a joint nor a virtual frame of recorded features.
 inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
                         const std::set<std::string>& recorded, bool have_samples,
@@ -103,7 +129,11 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
                                                                const StepConfig& step) {
   std::vector<std::string> names;
   for (const Joint& joint : robot.joints()) {
-    if (moves(joint.type) && !joint.mimic) names.push_back(joint.name);
+    if (!moves(joint.type) || joint.mimic) continue;
+    names.push_back(joint.name);
+    for (const std::string_view part : kJointModelNames) {
+      names.push_back(parameter_name(joint.name, part));
+    }
   }
   for (const ModelConfig& model : step.models) {
     for (const ParameterInfo& info : sensor_entry(model).sensor->parameters()) {
@@ -126,6 +156,14 @@ inline void add_params(ParameterTable& table, const Robot& robot, const StepConf
       add_joint(table, robot, param.name, param.place, diagnostics);
       continue;
     }
+    if (add_joint_model(table, robot, param.name, param.place, diagnostics)) {
+      if (table.find(param.name) < 0) continue;
+      diagnostics.warning(param.place,
+                          fmt::format("a URDF cannot hold '{}': apply it in the driver of the "
+                                      "joint; calibration.yaml has its value",
+                                      param.name));
+      continue;
+    }
     diagnostics.error(
         param.place,
         fmt::format("free parameter '{}' is neither a joint of the robot nor a parameter of "
@@ -142,6 +180,7 @@ inline void add_valued_joints(ParameterTable& table, const Robot& robot, const S
       add_joint(table, robot, name, place, diagnostics);
       return;
     }
+    if (add_joint_model(table, robot, name, place, diagnostics)) return;
     std::vector<std::string> names = free_param_names(robot, step);
     for (const Parameter& parameter : table) names.push_back(parameter.name);
     diagnostics.error(place, fmt::format("{} '{}' is not a parameter of this calibration{}", what,

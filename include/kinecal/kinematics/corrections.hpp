@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/kinematics/joint_state.hpp"
+#include "kinecal/kinematics/joint_model.hpp"
 #include "kinecal/kinematics/static_chain.hpp"
 
 namespace kinecal {
@@ -20,6 +20,8 @@ struct JointCorrection {
   JointState<S> offset;                               ///< added to the measured position
   Pose<S> frame;                                      ///< between the joint's origin and its motion
   Matrix3<S> left_jacobian = Matrix3<S>::Identity();  ///< of the frame's rotation vector
+  bool has_model = false;                             ///< the joint has parameters of joint models
+  OfJointModels<S> model{};                           ///< their values
 
   /// Sets the frame correction.
   /// @param translation      (3) metres, in the joint's frame

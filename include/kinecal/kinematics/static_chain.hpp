@@ -61,6 +61,7 @@ struct StaticJoint {
   static constexpr int principal = axis.principal();
   static constexpr bool corrected = C::kJoints[I].corrected, reversed = false;
   static constexpr FixedOf<C, I> fixed = {};
+  static constexpr MimicData drive = C::kJoints[I].drive;
   // NOLINTEND(readability-identifier-naming)
 };
 

@@ -13,6 +13,7 @@
 //   rotation k       angular = R J e_k                 linear = o' x angular,  o' = o + R t
 //   turning joint    angular = R a                     linear = o x angular
 //   sliding joint    linear = R a                      angular = 0
+//   joint model      the twist of its joint times the derivative of the model (joint_model.hpp)
 //
 // A joint passed from child to parent moves what comes after it the other way: the same formulas at
 // the frame after the joint, negated.
@@ -37,6 +38,12 @@ struct JointIndices {
   int offset = -1;    ///< of the offset
   double gain = 1.0;  ///< of the offset: the multiplier of a mimic joint
   std::array<int, 6> frame = {-1, -1, -1, -1, -1, -1};  ///< of the frame correction: x y z a b c
+  /// Of the joint models.
+  OfJointModels<int> model = [] {
+    OfJointModels<int> none{};
+    for (int& index : none) index = -1;
+    return none;
+  }();
 
   bool operator==(const JointIndices&) const = default;  ///< all members are equal
 };
@@ -129,8 +136,11 @@ struct TwistColumns {
       for (std::size_t k = 3; k < 6; ++k) add(result.rotational, columns[i].frame[k]);
     };
     if (!joint.reversed) frame();
-    if (moves(joint.type))
-      add(turns(joint.type) ? result.rotational : result.translational, columns[i].offset);
+    if (moves(joint.type)) {
+      std::vector<int>& list = turns(joint.type) ? result.rotational : result.translational;
+      add(list, columns[i].offset);
+      for (const int column : columns[i].model) add(list, column);
+    }
     if (joint.reversed) frame();
   }
   return result;
@@ -182,6 +192,23 @@ struct TwistWalker {
     if (!joint.reversed) walker.correct(i, joint, correction);
   }
 
+  /// Passes the motion of a joint with models: one twist more for each of their free parameters.
+  template <class I, class Joint, class R>
+  void move(I i, const Joint& joint, const ModelledState<R>& state) {
+    move(i, joint, static_cast<const JointState<R>&>(state));
+    const OfJointModels<R> derivatives = joint_model_derivatives(state.measured, state.values);
+    const Vector3<S> axis = walker.axis(joint);
+    for (std::size_t k = 0; k < kJointModelSize; ++k) {
+      if (columns[i].model[k] < 0) continue;
+      const S factor = S(derivatives[k]) * S(joint.reversed ? -state.multiplier : state.multiplier);
+      const Vector3<S> scaled(axis.x() * factor, axis.y() * factor, axis.z() * factor);
+      if (turns(joint.type)) {
+        add_turn(walker.pose.translation, scaled);
+      } else {
+        *shift++ = scaled;
+      }
+    }
+  }
   /// Passes a joint's motion: one twist if its offset is free.
   template <class I, class Joint, class U>
   void move(I i, const Joint& joint, const JointState<U>& motion) {

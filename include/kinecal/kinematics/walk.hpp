@@ -61,6 +61,13 @@ template <StaticChain C>
   return {};
 }
 
+/// Passes the motion of a joint that has models.  Not inline: few joints have.
+template <class I, class Joint, class S, class U, class W>
+[[gnu::noinline]] void move_modelled(I i, const Joint& joint, const JointState<S>& measured,
+                                     const JointCorrection<U>& correction, W& walker) {
+  walker.move(i, joint, modelled_state(joint.drive, measured, correction.offset, correction.model));
+}
+
 }  // namespace detail
 
 /// The part of a walk before the first moving joint: the same for all joint positions.
@@ -91,7 +98,13 @@ void walk_on(const Chain& chain, std::size_t first, const Motions& motions,
       walker.fixed(joint.fixed);
       if (joint.corrected && !joint.reversed) walker.correct(i, joint, corrections[i]);
     }
-    if (moves(joint.type)) walker.move(i, joint, motions[i] + corrections[i].offset);
+    if (moves(joint.type)) {
+      if (corrections[i].has_model) [[unlikely]] {
+        detail::move_modelled(i, joint, motions[i], corrections[i], walker);
+      } else {
+        walker.move(i, joint, motions[i] + corrections[i].offset);
+      }
+    }
     if (joint.corrected && joint.reversed) walker.correct(i, joint, corrections[i]);
     return true;
   });

@@ -20,6 +20,9 @@ namespace kinecal {
     if (moves(joint.type)) {
       of_joint.offset = table.find(joint.drive.joint);
       of_joint.gain = joint.drive.multiplier;
+      for (std::size_t k = 0; k < kJointModelSize; ++k) {
+        of_joint.model[k] = table.find(parameter_name(joint.drive.joint, kJointModelNames[k]));
+      }
     }
     if (!joint.corrected) continue;
     for (std::size_t axis = 0; axis < 6; ++axis) {
@@ -35,6 +38,7 @@ namespace kinecal {
   std::vector<JointIndices> columns = indices;
   for (JointIndices& joint : columns) {
     joint.offset = free.column(joint.offset);
+    for (int& index : joint.model) index = free.column(index);
     for (int& axis : joint.frame) axis = free.column(axis);
   }
   return columns;
@@ -52,6 +56,11 @@ void set_corrections(const std::vector<JointIndices>& indices, std::span<const S
     const JointIndices& joint = indices[j];
     if (joint.offset >= 0)
       corrections[j].offset = make_joint_state(S(value(joint.offset) * joint.gain));
+    for (std::size_t k = 0; k < kJointModelSize; ++k) {
+      if (joint.model[k] < 0) continue;
+      corrections[j].has_model = true;
+      corrections[j].model[k] = value(joint.model[k]);
+    }
     bool corrected = false;
     for (int axis : joint.frame) corrected = corrected || axis >= 0;
     if (!corrected) continue;

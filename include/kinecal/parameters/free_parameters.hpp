@@ -7,6 +7,7 @@
 //   CameraIntrinsics<"camera">                four: fx fy cx cy
 //   DepthCorrection<"camera">                 two: z_offset z_scaling
 //   DepthIntrinsics<"camera">                 all six of a depth camera
+//   JointModelParameters<"elbow", "gear_ratio">   what a joint model declares
 //   SensorParameters<"wire", "scale">         what a sensor declares
 //   BlockParameters<"sphere", "radius">       what an error block declares
 //
@@ -76,6 +77,7 @@ struct ParameterId {
 /// What a free parameter corrects.
 enum class ParameterKind {
   joint_offset,   ///< the position of a joint
+  joint_model,    ///< what a joint model declares: a gear ratio
   frame_offset,   ///< the origin of a joint
   virtual_frame,  ///< a frame that no URDF has
   sensor,         ///< what a sensor declares: intrinsics, a scale factor
@@ -129,6 +131,16 @@ struct VirtualFrame {
   static constexpr ParameterKind kKind = ParameterKind::virtual_frame;  ///< what it corrects
   static constexpr std::string_view kOwner = Frame;                     ///< name of the frame
   static constexpr auto kIds = detail::kFrameIds<Frame, Chosen>;        ///< its numbers
+};
+
+/// Parameters of joint models (kinematics/joint_model.hpp).
+/// @tparam Parts  their names: "gear_ratio", "eccentric_sin", "eccentric_cos"
+template <FixedString Joint, FixedString... Parts>
+struct JointModelParameters {
+  static constexpr ParameterKind kKind = ParameterKind::joint_model;  ///< what it corrects
+  static constexpr std::string_view kOwner = Joint;                   ///< name of the joint
+  static constexpr std::array<ParameterId, sizeof...(Parts)> kIds = {
+      ParameterId{Joint, Parts}...};  ///< its numbers
 };
 
 /// Parameters that a sensor declares.
@@ -232,6 +244,9 @@ inline constexpr std::array<JointIndices, C::kSize> kColumnsOf = [] {
     if (moves(joint.type)) {
       columns[i].offset = F::find(joint.drive.joint, "");
       columns[i].gain = joint.drive.multiplier;
+      for (std::size_t k = 0; k < kJointModelSize; ++k) {
+        columns[i].model[k] = F::find(joint.drive.joint, kJointModelNames[k]);
+      }
     }
     if (!joint.corrected) continue;
     for (std::size_t k = 0; k < 6; ++k) columns[i].frame[k] = F::find(joint.name, kFrameAxes[k]);

@@ -12,7 +12,11 @@ namespace kinecal {
 KINECAL_INLINE void AnyProblem::set_owners() {
   owners_.resize(static_cast<std::size_t>(table_.size()));
   for (const Joint& joint : robot_.joints()) {
-    if (moves(joint.type)) set_owner(table_.find(joint.name), joint.name);
+    if (!moves(joint.type)) continue;
+    set_owner(table_.find(joint.name), joint.name);
+    for (const std::string_view part : kJointModelNames) {
+      set_owner(table_.find(parameter_name(joint.name, part)), joint.name);
+    }
   }
   for (const std::string& frame : frames_) {
     for (const std::string_view axis : kFrameAxes) {
@@ -81,6 +85,7 @@ KINECAL_INLINE void AnyProblem::add_touched(int s, const std::vector<std::size_t
   for (const std::size_t c : chains) {
     for (const JointIndices& joint : mounted.chain_parameters()[c]) {
       touched.insert(joint.offset);
+      touched.insert(joint.model.begin(), joint.model.end());
       touched.insert(joint.frame.begin(), joint.frame.end());
     }
   }
