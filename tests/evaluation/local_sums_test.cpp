@@ -53,8 +53,9 @@ TEST(Sums, AreThoseOfRowsMultipliedOutForSeveralBlocksAndPriorsTogether) {
     options.weight = 0.01;
     options.loss = {LossType::huber, 0.2};
     problem.add_block("reprojection", PointToPixel{}, {"camera", "eye"}, options);
-    problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, options);
-    problem.add_prior("joint", {"elbow", 4.0, 0.0, 0.0}, {});
+    problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0, {0, 0.01, -0.02, 0, 0, 0.03, 0}},
+                      options);
+    problem.add_prior("joint", {"elbow", 4.0, 0.0, 0.0, {0.3}}, {});
   };
   test::check_sums(scene, add_blocks, test::oracle_rows_of(scene, add_blocks), 0.05);
 }

@@ -39,6 +39,48 @@ TEST(Stack, HasTheNormalEquationsOfTheProblem) {
   test::expect_same(sums, expected, kSums);
 }
 
+/// Of estimates from noisy samples: as they spread around the truth.
+TEST(Stack, HasTheCovarianceOfTheEstimates) {
+  constexpr int kEstimates = 400;
+  constexpr double kSigma = 1e-3;
+  const std::vector<std::string> names = {"elbow", "shoulder_lift", "camera_joint_x"};
+  const Problem empty = test::scene_problem();
+  const std::vector<double> zero(static_cast<std::size_t>(empty.table().size()), 0.0);
+  const FreeSet free = test::free_of(empty.table(), names);
+  std::mt19937 random(8);
+  std::normal_distribution<double> noise(0.0, kSigma);
+  Eigen::MatrixXd found(kEstimates, 3);
+  Eigen::MatrixXd expected;
+  const std::vector<Sample> exact = test::exact_samples(empty, zero, 8);
+  for (int n = 0; n < kEstimates; ++n) {
+    Problem problem = test::scene_problem();
+    problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.weight = 1.0 / kSigma});
+    for (Sample sample : exact) {
+      for (Feature& feature : sample.observations[0].features) {
+        for (int k = 0; k < 3; ++k) feature.point(k) += noise(random);
+      }
+      problem.add_sample(sample);
+    }
+    const Stack linear = stack(problem, free, zero);  // one Gauss-Newton step
+    const Eigen::MatrixXd covariance = linear.covariance().value();
+    if (n == 0) expected = covariance;
+    found.row(n) = -(covariance * (linear.jacobian.transpose() * linear.residual)).transpose();
+  }
+  const Eigen::MatrixXd spread = found.transpose() * found / kEstimates;
+  // 400 estimates: a standard error of 7 % of a variance.
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(spread(i, i) / expected(i, i), 1.0, 0.3) << names[std::size_t(i)];
+}
+
+TEST(Stack, HasNoCovarianceOfWhatSamplesDoNotDetermine) {
+  const Problem empty = test::scene_problem();
+  const std::vector<double> zero(static_cast<std::size_t>(empty.table().size()), 0.0);
+  const Problem problem = problem_of(test::exact_samples(empty, zero, 5));
+  // The torso moves camera and arm alike.
+  const FreeSet free = test::free_of(problem.table(), {"elbow", "torso_joint"});
+  EXPECT_FALSE(stack(problem, free, zero).covariance().has_value());
+}
+
 TEST(Stack, NamesTheSampleWhoseResidualIsNotDefined) {
   const Problem empty = test::scene_problem();
   const std::vector<double> zero(static_cast<std::size_t>(empty.table().size()), 0.0);

@@ -192,7 +192,8 @@ TermResiduals OracleProblem::prior_rows(const Prior& prior, std::span<const doub
     const auto& [axis, scale] = scales[static_cast<std::size_t>(row)];
     for (int p = 0; p < table_.size(); ++p) {
       if (table_[p].name != prior.param + axis) continue;
-      rows.residual(row) = scale * x[static_cast<std::size_t>(p)];
+      rows.residual(row) =
+          scale * (x[static_cast<std::size_t>(p)] - prior.mean[static_cast<std::size_t>(row)]);
       rows.jacobian(row, p) = scale;
     }
   }

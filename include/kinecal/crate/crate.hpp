@@ -138,10 +138,10 @@ class Crate {
     });
     for_each(Priors{}, [&]<class P>(P*) {
       const P& part = std::get<P>(priors_);
-      problem.add_prior(
-          std::string(P::kName),
-          {std::string(P::kOf), part.joint_scale, part.position_scale, part.rotation_scale},
-          part.options);
+      problem.add_prior(std::string(P::kName),
+                        {std::string(P::kOf), part.joint_scale, part.position_scale,
+                         part.rotation_scale, part.mean},
+                        part.options);
     });
     return problem;
   }

@@ -71,6 +71,7 @@ struct PriorOn {
   double joint_scale = 1.0;                                   ///< 1 / rad or 1 / m
   double position_scale = 1.0;                                ///< 1 / m
   double rotation_scale = 1.0;                                ///< 1 / rad
+  std::array<double, 7> mean = {};                            ///< see Prior
   TermOptions options = {.type = "outrageous", .unit = "1"};  ///< weight, loss, names
 };
 

@@ -1,6 +1,8 @@
-// A prior on a joint or a frame (outrageous): keeps its parameters small.
+// A prior on a joint or a frame (outrageous): keeps its parameters near a mean, zero by default.
 //
 //   r = ( joint_scale offset,  position_scale (x, y, z),  rotation_scale (a, b, c) )
+//
+// of the differences from the mean.
 //
 // Source: Fetch paper, III-B, restricting the camera frame.
 // SPDX-License-Identifier: Apache-2.0
@@ -13,12 +15,14 @@
 
 namespace kinecal {
 
-/// Keeps the parameters of a joint or a frame small.
+/// Keeps the parameters of a joint or a frame near a mean.
 struct Prior {
   std::string param;            ///< name of the joint or frame
   double joint_scale = 1.0;     ///< 1 / rad or 1 / m
   double position_scale = 1.0;  ///< 1 / m
   double rotation_scale = 1.0;  ///< 1 / rad
+  /// Where the parameters should be: offset x y z a b c; rad or m, metres, radians.
+  std::array<double, 7> mean = {};
 
   static constexpr int kRows = 7;  ///< residuals: offset x y z a b c
 

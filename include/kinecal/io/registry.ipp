@@ -42,11 +42,16 @@ template <ErrorBlock B, class Make>
   return entry;
 }
 
+/// Keys of a prior's mean: of a joint's offset, and of a frame's x y z a b c.
+inline constexpr std::array<const char*, 7> kPriorMeans = {"mean",   "mean_x", "mean_y", "mean_z",
+                                                           "mean_a", "mean_b", "mean_c"};
+
 [[nodiscard]] inline BlockEntry prior_entry() {
   BlockEntry entry;
   entry.type = entry.read_as = "outrageous";
   entry.unit = "1";
   entry.numbers = {{"joint_scale", 1.0}, {"position_scale", 1.0}, {"rotation_scale", 1.0}};
+  for (const char* mean : kPriorMeans) entry.numbers.emplace_back(mean, 0.0);
   entry.has_param = true;
   entry.parameters = [](const BlockConfig&) { return std::vector<ParameterInfo>(); };
   entry.add = [](AnyProblem& problem, const BlockConfig& block, const TermOptions& options) {

@@ -27,7 +27,8 @@ struct PriorTerm {
     for (std::size_t row = 0; row < parameters.size(); ++row) {
       if (parameters[row] < 0) continue;
       const auto r = static_cast<Eigen::Index>(row);
-      out.residual(r) = scales[row] * values[static_cast<std::size_t>(parameters[row])];
+      out.residual(r) =
+          scales[row] * (values[static_cast<std::size_t>(parameters[row])] - prior.mean[row]);
       const int column = free != nullptr ? free->column(parameters[row]) : -1;
       if (column >= 0) out.jacobian(r, column) = scales[row];
     }

@@ -26,6 +26,12 @@ struct Stack {
   Eigen::VectorXd residual;  ///< (residuals) weight times residual: term by term, sample by sample,
                              ///< then the priors
   RowMajor jacobian;         ///< (residuals x free parameters) derivatives of these
+
+  /// (free x free) covariance of the free parameters: (J^T J)^-1.  It holds if weights are one over
+  /// standard deviations; multiply by residual.squaredNorm() / (residuals - free) if only their
+  /// ratios are known.
+  /// @returns  nullopt if the samples do not determine all of them
+  [[nodiscard]] std::optional<Eigen::MatrixXd> covariance() const;
 };
 
 /// Stacks all residuals of a problem.  Losses are not applied.

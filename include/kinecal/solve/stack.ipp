@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 
@@ -31,6 +32,20 @@ KINECAL_INLINE std::optional<UndefinedResidual> detail::stack_rows(AnyEvaluator&
     append(prior_factor * prior.options.weight, of_prior);
   }
   return undefined;
+}
+
+KINECAL_INLINE std::optional<Eigen::MatrixXd> Stack::covariance() const {
+  constexpr double kLeast = 1e-14;  // eigenvalue, of columns of length one
+  const Eigen::VectorXd lengths = jacobian.colwise().norm();
+  if (!(lengths.array() > 0.0).all()) return std::nullopt;
+  const Eigen::VectorXd scale = lengths.cwiseInverse();
+  const Eigen::MatrixXd columns = jacobian * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(columns.transpose() * columns);
+  if (!(eigen.eigenvalues()(0) > kLeast * static_cast<double>(columns.cols()))) {
+    return std::nullopt;
+  }
+  const Eigen::MatrixXd v = scale.asDiagonal() * eigen.eigenvectors();
+  return v * eigen.eigenvalues().cwiseInverse().asDiagonal() * v.transpose();
 }
 
 KINECAL_INLINE Stack stack(const AnyProblem& problem, const FreeSet& free,
