@@ -56,10 +56,10 @@ inline constexpr std::array<const char*, 7> kPriorMeans = {"mean",   "mean_x", "
   entry.parameters = [](const BlockConfig&) { return std::vector<ParameterInfo>(); };
   entry.add = [](AnyProblem& problem, const BlockConfig& block, const TermOptions& options) {
     const auto number = [&](const char* key) { return block.numbers.at(key); };
-    problem.add_prior(
-        block.name,
-        {block.param, number("joint_scale"), number("position_scale"), number("rotation_scale")},
-        options);
+    Prior prior{block.param, number("joint_scale"), number("position_scale"),
+                number("rotation_scale")};
+    for (std::size_t i = 0; i < prior.mean.size(); ++i) prior.mean[i] = number(kPriorMeans[i]);
+    problem.add_prior(block.name, prior, options);
   };
   return entry;
 }
