@@ -225,7 +225,7 @@ block hand_eye chain3d_to_chain3d  0 0.01 none 1 camera arm
 block pixels chain3d_to_camera2d  0 1 none 1 arm eye scale=2
 block ground chain3d_to_plane  0 1 huber 3 camera a=0 b=0 c=1 d=0.1 scale=1
 block walls plane_to_plane  1 1 none 1 camera arm normal_scale=1 offset_scale=1
-block prior outrageous board 0 1 none 1 joint_scale=0 position_scale=1 rotation_scale=1
+block prior outrageous board 0 1 none 1 joint_scale=0 mean=0 mean_a=0 mean_b=0 mean_c=0 mean_x=0 mean_y=0 mean_z=0 position_scale=1 rotation_scale=1
 )");
 }
 

@@ -1,0 +1,175 @@
+// Sensors, error blocks and joint models beyond robot_calibration's, from configuration to result.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr double kElbow = 0.03, kGear = 0.02;
+
+const char* const kUrdf = R"(<robot name="arm">
+  <link name="base"/><link name="turret"/><link name="upper"/><link name="hand"/>
+  <joint name="pan" type="revolute">
+    <parent link="base"/><child link="turret"/><axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/>
+  </joint>
+  <joint name="shoulder" type="revolute">
+    <origin xyz="0.1 0 0.5"/><parent link="turret"/><child link="upper"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/>
+  </joint>
+  <joint name="elbow" type="revolute">
+    <origin xyz="0.4 0 0"/><parent link="upper"/><child link="hand"/><axis xyz="1 0 0"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/>
+  </joint>
+</robot>
+)";
+
+/// Makes samples of an arm whose elbow has a wrong zero and a wrong gear ratio.
+class OpenBlocksProgram : public test::ProgramTest {
+ protected:
+  OpenBlocksProgram() : robot_(parse_urdf(kUrdf, "arm.urdf")) { write("arm.urdf", kUrdf); }
+
+  /// @param observe  adds observations, given the true pose of the hand in the base
+  template <class Observe>
+  void record(Observe&& observe) {
+    const RuntimeChain arm = make_chain(robot_, "base", "hand");
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> angle(-1.2, 1.2);
+    std::vector<Sample> samples;
+    for (int n = 0; n < 30; ++n) {
+      Sample sample{
+          {"pan", "shoulder", "elbow"}, {angle(random), angle(random), angle(random)}, {}, ""};
+      const auto true_position = [&](const std::string& joint) {
+        const double q = *sample.position(joint);
+        return joint == "elbow" ? q * (1.0 + kGear) + kElbow : q;
+      };
+      observe(forward_kinematics(arm, true_position), sample);
+      samples.push_back(sample);
+    }
+    std::ofstream out(folder_ / "samples.yaml");
+    write_samples(out, samples);
+  }
+  /// Calibrates; the configuration is what follows `base_link`.
+  test::Outcome calibrate(const std::string& config) {
+    write("calibrate.yaml", "base_link: base\n" + config);
+    return run(std::string(KINECAL_PROGRAM) +
+               " calibrate --urdf arm.urdf --config calibrate.yaml --samples samples.yaml "
+               "--output result");
+  }
+  [[nodiscard]] double value(const std::string& name) {
+    return YAML::Load(read("result/calibration.yaml"))[name].as<double>();
+  }
+
+  Robot robot_;
+};
+
+TEST_F(OpenBlocksProgram, CalibratesAgainstMotionCapture) {
+  const Pose<double> stand{exp(Vector3<double>(0.1, -0.2, 0.3)), Vector3<double>(1.0, -0.5, 0.2)};
+  record([&](const Pose<double>& hand, Sample& sample) {
+    const Pose<double> seen = stand.inverse() * hand;
+    sample.observations = {
+        {"body", {{"hand", Vector3<double>::Zero(), Matrix3<double>::Identity()}}},
+        {"mocap", {{"stand", seen.translation, seen.rotation}}}};
+  });
+  const test::Outcome result = calibrate(R"(models:
+ - {name: body, type: chain6d, frame: hand}
+ - {name: mocap, type: chain6d, frame: base}
+free_params: [elbow, elbow_gear_ratio]
+free_frames:
+ - {name: stand, x: true, y: true, z: true, roll: true, pitch: true, yaw: true}
+error_blocks:
+ - {name: track, type: pose_to_pose, model_a: body, model_b: mocap, translation_scale: 1000, rotation_scale: 500}
+)");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("elbow"), kElbow, 1e-9);
+  EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-9);
+  EXPECT_NEAR(value("stand_x"), 1.0, 1e-9);
+  EXPECT_THAT(result.err, HasSubstr("a URDF cannot hold 'elbow_gear_ratio'"));
+}
+
+TEST_F(OpenBlocksProgram, CalibratesOnABallBarOfUnknownLength) {
+  const Vector3<double> tip(0.2, 0.1, 0.05), socket(0.5, 0.1, 0.3);
+  // Joint positions are random, so the bar is a draw-bar: another length in each sample would not
+  // do.  The hand's point is where the bar of length 0.35 ends that points at the hand.
+  record([&](const Pose<double>& hand, Sample& sample) {
+    const Vector3<double> p = hand * tip;
+    const Vector3<double> end = socket + 0.35 * (p - socket).normalized();
+    sample.observations = {{"arm", {{"hand", hand.inverse() * end}}}};
+  });
+  const test::Outcome result = calibrate(R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+free_params: [elbow, elbow_gear_ratio, bar_x, bar_y, bar_z, bar_radius]
+error_blocks:
+ - {name: bar, type: point_to_sphere, model: arm, x: 0.45, y: 0.12, z: 0.33, radius: 0.3}
+)");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("elbow"), kElbow, 1e-8);
+  EXPECT_NEAR(value("bar_x"), 0.5, 1e-8);
+  EXPECT_NEAR(value("bar_radius"), 0.35, 1e-8);
+}
+
+TEST_F(OpenBlocksProgram, AMeanHoldsAParameterThatSamplesDoNotDetermine) {
+  record([&](const Pose<double>& hand, Sample& sample) {
+    sample.observations = {{"arm", {{"hand", Vector3<double>::Zero()}}},
+                           {"tracker", {{"base", hand.translation}}}};
+  });
+  const std::string config = R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+ - {name: tracker, type: chain3d, frame: base}
+free_params: [shoulder, elbow]
+error_blocks:
+ - {name: track, type: chain3d_to_chain3d, model_a: arm, model_b: tracker}
+ - {name: drawing, type: outrageous, param: elbow, joint_scale: 1, mean: 0.03}
+)";
+  const test::Outcome result = calibrate(config);  // the elbow turns about the point itself
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("elbow"), 0.03, 1e-9);
+}
+
+TEST_F(OpenBlocksProgram, RefusesWhatCannotBe) {
+  record([&](const Pose<double>&, Sample& sample) {
+    sample.observations = {{"arm", {{"hand", Vector3<double>(0.1, 0, 0)}}}};
+  });
+  const auto expect_refused = [&](const std::string& free, const std::string& block,
+                                  const std::string& message) {
+    const test::Outcome result =
+        calibrate("models:\n - {name: arm, type: chain3d, frame: hand}\nfree_params: [" + free +
+                  "]\nerror_blocks:\n - {name: b, " + block + ", model: arm}\n");
+    EXPECT_EQ(result.code, 1) << result.out;
+    EXPECT_THAT(result.err, HasSubstr(message));
+    EXPECT_FALSE(fs::exists(folder_ / "result"));
+  };
+  const std::string plane = "type: chain3d_to_plane";
+  expect_refused("elbow_gear_ration", plane, "did you mean 'elbow_gear_ratio'?");
+  expect_refused("hand_gear_ratio", plane, "calibrate.yaml:4: ");
+  expect_refused("b_radius", plane, "calibrate.yaml:4: ");
+  expect_refused("elbow", "type: point_to_line, c: 0",
+                 "calibrate.yaml:6: error block 'b': the line's");
+  expect_refused("elbow", "type: point_to_sphere, radious: 1", "did you mean 'radius'?");
+  // A pose sensor whose samples have points.
+  const test::Outcome points = calibrate(R"(models:
+ - {name: arm, type: chain6d, frame: hand}
+ - {name: mocap, type: chain6d, frame: base}
+free_params: [elbow]
+error_blocks:
+ - {name: track, type: pose_to_pose, model_a: arm, model_b: mocap}
+)");
+  EXPECT_EQ(points.code, 1);
+  EXPECT_THAT(points.err, HasSubstr("sensor 'arm': a feature has no orientation"));
+}
+
+}  // namespace
+}  // namespace kinecal
