@@ -4,6 +4,8 @@
 //
 // calibrate.yaml, beside this file, names `type: draw_wire` and `type: wire_length`.
 // SPDX-License-Identifier: Apache-2.0
+#include <stdexcept>
+
 #include "kinecal/io/register.hpp"
 #include "kinecal/program.hpp"
 
@@ -38,8 +40,12 @@ struct WireLength {
 
 int main(int argc, char** argv) {
   register_sensor(DrawWire{});
-  register_block<WireLength>(
-      {{"model"}, {"wire"}}, {{"hook", 0.0}},
-      [](const BlockNumbers& numbers) { return WireLength{numbers.at("hook")}; });
+  register_block<WireLength>({{"model"}, {"wire"}}, {{"hook", 0.0}},
+                             [](const BlockNumbers& numbers) {
+                               const double hook = numbers.at("hook");
+                               if (hook < 0.0)
+                                 throw std::invalid_argument("the hook has a negative length");
+                               return WireLength{hook};
+                             });
   return run_program(argc, argv);
 }

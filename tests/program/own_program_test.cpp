@@ -100,6 +100,8 @@ TEST_F(OwnProgram, CalibratesWithASensorAndABlockOfItsOwn) {
 TEST_F(OwnProgram, RefusesWhatItsTypesDoNotHave) {
   expect_refused(with("hook: 0.012", "hock: 0.012"), "calibrate.yaml:7: ");
   expect_refused(with("hook: 0.012", "hook: long"), "calibrate.yaml:7: ");
+  expect_refused(with("sigma: 0.001", "sigma: 0.001, tension: 3"),
+                 "calibrate.yaml:7: error block 'length': unknown key 'tension'");
   expect_refused(with("type: draw_wire", "type: draw_wir"), "did you mean 'draw_wire'?");
   expect_refused(with("type: wire_length", "type: wire_lenght"), "did you mean 'wire_length'?");
   expect_refused(with("wire_scale", "wire_scal"), "did you mean 'wire_scale'?");

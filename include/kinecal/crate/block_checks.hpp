@@ -59,13 +59,16 @@ struct ArgumentsOfBlock {
                 "declare its Inputs");
 };
 
-/// A block that can be called with points in a scalar, whatever it returns.
+/// The result has the scalar of the points.
+template <class R, class S>
+concept InScalar = std::same_as<typename std::remove_cvref_t<R>::Scalar, S>;
+/// A block that can be called with points in a scalar.
 template <class B, class S>
 concept CalledWithPoints = requires(const B& block, const Vector3<S>& p) {
-  block(p);
+  { block(p) } -> InScalar<S>;
 }
 || requires(const B& block, const Vector3<S>& p) {
-  block(p, p);
+  { block(p, p) } -> InScalar<S>;
 };
 
 /// What is wrong with a block that is not an ErrorBlock.

@@ -45,6 +45,7 @@ struct BlockEntry {
   std::vector<std::pair<std::string, double>> numbers;  ///< keys and defaults; "scale" is a factor
                                                         ///< of the residual in every block
   bool has_param = false;                               ///< it has a key `param`: a prior
+  bool is_upstream = false;  ///< of robot_calibration, whose files may have keys that we ignore
   /// The block's own parameters.
   /// @throws std::exception  if the numbers of the block are impossible
   std::function<std::vector<ParameterInfo>(const BlockConfig&)> parameters;

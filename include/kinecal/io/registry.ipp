@@ -97,6 +97,7 @@ KINECAL_INLINE Registry::Registry() {
         return PlaneToPlane{number(block, "normal_scale"), number(block, "offset_scale")};
       }));
   add(detail::prior_entry());
+  for (BlockEntry& entry : blocks_) entry.is_upstream = true;
   add(built_in_block<PointDistance>(
       pair, {{"length", 0.0}, {"scale", 1.0}},
       [number](const BlockConfig& block) { return PointDistance{number(block, "length")}; }));

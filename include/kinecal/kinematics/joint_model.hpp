@@ -46,7 +46,7 @@ struct EccentricEncoder {
   template <class S>
   [[nodiscard]] S operator()(const S& q, const std::array<S, 2>& v) const {
     using std::cos, std::sin;
-    return v[0] * sin(q) + v[1] * (cos(q) - 1.0);
+    return v[0] * sin(q) + v[1] * (cos(q) - S(1.0));
   }
 };
 

@@ -132,12 +132,10 @@ class Batches {
       }
       set(seen[s]->settings, lane, batch + layout.settings);
       set(seen[s]->measured, lane, batch + layout.measured);
-      set(seen[s]->usable, lane, batch + layout.usable);
-      if (lane > 0) continue;
-      for (int other = 1; other < kLanes<S>; ++other) {
-        for (std::size_t i = 0; i < layout.chain.size(); ++i) {
-          set_lane(batch[layout.usable + i], other, 0.0);
-        }
+      for (std::size_t i = 0; i < layout.chain.size(); ++i) {
+        S& usable = batch[layout.usable + i];
+        if (lane == 0) usable = S(0.0);
+        set_lane(usable, lane, seen[s]->usable[i]);
       }
     }
   }

@@ -133,7 +133,7 @@ inline void read_block_weighting(ConfigMap& map, BlockConfig& block) {
   read_block_numbers(map, *entry, block);
   read_block_weighting(map, block);
   if (entry->type == "camera3d_to_ground") block.ground = map.text("ground").value_or("");
-  map.report_unknown();
+  map.report_unknown(!entry->is_upstream);
   return block;
 }
 

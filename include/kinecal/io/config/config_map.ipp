@@ -154,13 +154,17 @@ class ConfigMap {
     }
   }
 
-  void report_unknown() const {
+  /// @param strict  an error for every unknown key; else for those that resemble a known one
+  void report_unknown(bool strict = false) const {
     for (const ConfigEntry& entry : entries_) {
       if (used_.contains(entry.key)) continue;
       const std::string unknown = "unknown key '" + entry.key + "'";
       const std::string meant = kinecal::did_you_mean(entry.key, words_);
-      if (meant.empty()) warning(entry.place, unknown + " is ignored");
-      if (!meant.empty()) error(entry.place, unknown + meant);
+      if (strict || !meant.empty()) {
+        error(entry.place, unknown + meant);
+      } else {
+        warning(entry.place, unknown + " is ignored");
+      }
     }
   }
 
