@@ -1,9 +1,8 @@
 // Your own error block, with parameters of its own: a ball bar in a socket nobody has measured.
 //
-// One end of the bar turns in a socket on the table; the gripper holds the other end.  So the arm's
-// tip is always on a sphere, and joint positions are all that is recorded.  Where the socket is and
-// how long the bar is are known to a centimetre only: they are free, too.  You write the struct
-// BallBar below; the library differentiates it.
+// One end of the bar turns in a socket on the table; the gripper holds the other end.  So the tip is
+// on a sphere, and joint positions are all that is recorded.  Socket and length are known to a
+// centimetre only: they are free, too.  You write the struct BallBar; the library differentiates it.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
@@ -26,7 +25,6 @@ struct BallBar {
     return Eigen::Matrix<S, 1, 1>((p_base - socket).norm() - own[3]);
   }
 };
-static_assert(ErrorBlock<BallBar> && kParametersOfBlock<BallBar> == 4);
 
 const std::vector<std::string> kJoints = {"pan", "lift", "elbow", "wrist"};
 const std::array<double, 4> kBar = {0.45, 0.15, 0.0, 0.30};  // the true one, metres
@@ -51,7 +49,7 @@ Problem make_problem() {
   return problem;
 }
 
-/// Distance of the true arm's tip, with its wrong zeros, from the sphere: metres.
+/// Distance of the true arm's tip from the true sphere, metres.
 double miss(const Problem& problem, const Sample& sample, const Eigen::VectorXd& truth) {
   const auto position_of = [&](const std::string& joint) {
     return *sample.position(joint) + truth(problem.table().index(joint));
@@ -67,8 +65,7 @@ Sample hold_bar(const Problem& problem, const Eigen::VectorXd& truth, SeededRand
   for (;;) {
     q = {random.uniform(-0.6, 1.0), random.uniform(-0.8, 0.8), 0.0, random.uniform(-1.2, 1.2)};
     const auto is_outside = [&](double elbow) {
-      q[2] = elbow;
-      return miss(problem, sample, truth) > 0.0;
+      return q[2] = elbow, miss(problem, sample, truth) > 0.0;
     };
     double low = 0.2, high = 2.4;
     const bool low_is_outside = is_outside(low);
@@ -94,14 +91,12 @@ int main() {
 
   // A zero of the pan joint turns with the socket: no sample determines it, so it is not free.
   const StepResult result = solve(problem, FreeSet({1, 2, 3, 4, 5, 6, 7}, 8), values);
-  const auto rms_mm = [](double cost) { return 1e3 * std::sqrt(2.0 * cost / 100); };
-  std::printf("distance to the sphere: %.3f mm before, %.3f mm after\n",
-              rms_mm(result.initial_cost), rms_mm(result.final_cost));
+  std::printf("distance to the sphere: %.3f mm RMS after\n",
+              1e3 * std::sqrt(2.0 * result.final_cost / 100));
   for (int i = 1; i < 8; ++i) {
-    const bool is_joint = i < 4;
-    const double unit = is_joint ? kDegree : 1e-3;
+    const double unit = i < 4 ? kDegree : 1e-3;
     std::printf("  %-10s true %7.3f  found %7.3f %s\n", problem.table()[i].name.c_str(),
-                truth(i) / unit, values(i) / unit, is_joint ? "degrees" : "mm");
+                truth(i) / unit, values(i) / unit, i < 4 ? "degrees" : "mm");
   }
   return result.converged && (values - truth).cwiseAbs().maxCoeff() < 1e-3 ? 0 : 1;
 }

@@ -16,7 +16,7 @@ template <ErrorBlock B, class S>
 class BlockTerm : public Term<S> {
  public:
   static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
-  /// The term's sensors as they see a pack of samples.
+  /// The term's sensors as they see a batch of samples.
   using typename Term<S>::Views;
   /// What the sensors of the term observed in one sample.
   using Observations = AnyTerm::Observations;

@@ -1,4 +1,5 @@
-// The walker that composes the pose of the tip, in any scalar: double, Jet, packet.
+// The walker (visitor of the forward pass) that composes the pose of the tip, in any scalar: double,
+// Jet, packet.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

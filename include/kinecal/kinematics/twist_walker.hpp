@@ -1,5 +1,5 @@
-// The walker that also computes a twist for each free parameter: how the parameter moves all that
-// comes after its joint.
+// The walker (visitor of the forward pass) that also computes a twist for each free parameter: how the
+// parameter moves all that comes after its joint.
 //
 // A change of one joint offset or frame component moves the rest of the chain as a rigid body:
 //

@@ -1,6 +1,6 @@
-// The walk: forward kinematics, written once.
+// The walk, a forward pass over the joints of a chain: forward kinematics, written once.
 //
-// The walk visits the joints of a chain from base to tip and calls a visitor, the walker, for each
+// The walk visits the joints from base to tip and calls a visitor, the walker, for each
 // constant transform, frame correction and joint motion.  A PoseWalker composes base_T_tip; a
 // TwistWalker also computes how each parameter moves the tip.
 //
