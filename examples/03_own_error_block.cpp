@@ -6,7 +6,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "kinecal/errors/error_block.hpp"
 #include "kinecal/solve.hpp"
 #include "simulation.hpp"
 
@@ -54,8 +53,8 @@ double miss(const Problem& problem, const Sample& sample, const Eigen::VectorXd&
   const auto position_of = [&](const std::string& joint) {
     return *sample.position(joint) + truth(problem.table().index(joint));
   };
-  const RuntimeChain& chain = problem.sensors()[0].chains()[0];
-  return BallBar{}(forward_kinematics(chain, position_of).translation, kBar)(0);
+  const auto& arm = problem.sensors()[0].chains()[0];
+  return BallBar{}(forward_kinematics(arm, position_of).translation, kBar)(0);
 }
 
 /// A pose in which the bar fits: the elbow bends until it does, the other joints are random.
@@ -91,12 +90,10 @@ int main() {
 
   // A zero of the pan joint turns with the socket: no sample determines it, so it is not free.
   const StepResult result = solve(problem, FreeSet({1, 2, 3, 4, 5, 6, 7}, 8), values);
-  std::printf("distance to the sphere: %.3f mm RMS after\n",
-              1e3 * std::sqrt(2.0 * result.final_cost / 100));
+  std::printf("distance: %.3f mm RMS\n", 1e3 * std::sqrt(2.0 * result.final_cost / 100));
   for (int i = 1; i < 8; ++i) {
-    const double unit = i < 4 ? kDegree : 1e-3;
-    std::printf("  %-10s true %7.3f  found %7.3f %s\n", problem.table()[i].name.c_str(),
-                truth(i) / unit, values(i) / unit, i < 4 ? "degrees" : "mm");
+    std::printf("  %-10s true %7.4f  found %7.4f %s\n", problem.table()[i].name.c_str(), truth(i),
+                values(i), i < 4 ? "rad" : "m");
   }
   return result.converged && (values - truth).cwiseAbs().maxCoeff() < 1e-3 ? 0 : 1;
 }
