@@ -8,6 +8,7 @@
 #include "kinecal/kinematics/fixed_string.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/kinematics/joint.hpp"
+#include "kinecal/kinematics/joint_model.hpp"
 #include "kinecal/kinematics/joint_state.hpp"
 #include "kinecal/kinematics/known_name.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"

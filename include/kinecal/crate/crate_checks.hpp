@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/parameter_checks.hpp"
+#include "kinecal/crate/use_checks.hpp"
 
 namespace kinecal::detail {
 
