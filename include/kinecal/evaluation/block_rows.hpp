@@ -260,11 +260,12 @@ class BlockRows {
       rows.residual = detail::call_block<B, S>(block, own_values(views),
                                                PixelObservation<S>{pixel.value, observed});
     } else {
-      using J = Jet<S, 2 + static_cast<int>(kOwn)>;
-      const Eigen::Matrix<J, 2, 1> predicted(J(pixel.value(0), 0), J(pixel.value(1), 1));
-      const auto r =
-          detail::call_block<B, J>(block, detail::own_jets<kOwn, J, S>(views.own->values, 2),
-                                   PixelObservation<J>{predicted, observed});
+      using PixelJet = Jet<S, 2 + static_cast<int>(kOwn)>;
+      const Eigen::Matrix<PixelJet, 2, 1> predicted(PixelJet(pixel.value(0), 0),
+                                                    PixelJet(pixel.value(1), 1));
+      const auto r = detail::call_block<B, PixelJet>(
+          block, detail::own_jets<kOwn, PixelJet, S>(views.own->values, 2),
+          PixelObservation<PixelJet>{predicted, observed});
       rows.residual = values_of(r);
       const Eigen::Matrix<S, kSize, 2> by_pixel = derivatives_by<2>(r, 0);
       const By3 by_base_point = By3(by_pixel * pixel.by_point) * camera_T_base.rotation;

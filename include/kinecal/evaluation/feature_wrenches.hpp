@@ -69,7 +69,8 @@ class FeatureWrenches {
   void add(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
     using std::sqrt;
     constexpr std::size_t kRows = M;
-    std::array<std::array<S, kRows>, 1 + kMostOwn + 6 * Bodies> columns;  // of L, scaled
+    std::array<std::array<S, kRows>, 1 + kMostOwn + 6 * std::size_t(Bodies)>
+        columns;  // of L, scaled
     const S root = sqrt(weight);
     for (std::size_t m = 0; m < kRows; ++m) {
       const auto row = static_cast<int>(m);

@@ -106,11 +106,12 @@ struct DepthCamera {
 template <class Q>
 class CorrectedDepthCamera {
  public:
+  /// @param pose      of the camera in the base
   /// @param recorded  fx fy cx cy z_offset z_scaling: DepthCamera::settings()
   /// @param v         (6) parameters: corrections of the recorded settings
-  CorrectedDepthCamera(const Pose<Q>& base_T_camera, const std::array<Q, 6>& recorded,
+  CorrectedDepthCamera(const Pose<Q>& pose, const std::array<Q, 6>& recorded,
                        std::span<const double> v)
-      : pose_(base_T_camera),
+      : pose_(pose),
         per_fx_(Q(1.0) / (recorded[0] * Q(1.0 + v[0]))),
         per_fy_(Q(1.0) / (recorded[1] * Q(1.0 + v[1]))),
         cx_(recorded[2] * Q(1.0 + v[2])),

@@ -31,13 +31,13 @@ struct VectorsOf<Quantity::point> {
   static constexpr std::size_t kValues = 1;
 
   template <class S>
-  static void to_base(const Pose<S>& base_T_frame, const Vector3<S>& p, Vector3<S>* out) {
-    out[0] = base_T_frame * p;
+  static void to_base(const Pose<S>& frame, const Vector3<S>& p, Vector3<S>* out) {
+    out[0] = frame * p;
   }
   /// Changes of the variables per unit of the k-th variable of a jet in the frame.
   template <class S, class J>
-  static void change(const Pose<S>& base_T_frame, const Vector3<J>& p, int k, Vector3<S>* out) {
-    out[0] = rotated(base_T_frame.rotation, Vector3<S>(p.x().v(k), p.y().v(k), p.z().v(k)));
+  static void change(const Pose<S>& frame, const Vector3<J>& p, int k, Vector3<S>* out) {
+    out[0] = rotated(frame.rotation, Vector3<S>(p.x().v(k), p.y().v(k), p.z().v(k)));
   }
   template <class J, class S>
   static Vector3<J> jets(const Vector3<S>* values, int first) {
@@ -58,19 +58,19 @@ struct VectorsOf<Quantity::ray> {
   static constexpr std::size_t kValues = 4;
 
   template <class S>
-  static void to_base(const Pose<S>& base_T_frame, const Ray<S>& ray, Vector3<S>* out) {
-    out[0] = base_T_frame * ray.origin;
-    out[1] = rotated(base_T_frame.rotation, ray.direction);
-    out[2] = rotated(base_T_frame.rotation, ray.by_u);
-    out[3] = rotated(base_T_frame.rotation, ray.by_v);
+  static void to_base(const Pose<S>& frame, const Ray<S>& ray, Vector3<S>* out) {
+    out[0] = frame * ray.origin;
+    out[1] = rotated(frame.rotation, ray.direction);
+    out[2] = rotated(frame.rotation, ray.by_u);
+    out[3] = rotated(frame.rotation, ray.by_v);
   }
   template <class S, class J>
-  static void change(const Pose<S>& base_T_frame, const Ray<J>& ray, int k, Vector3<S>* out) {
+  static void change(const Pose<S>& frame, const Ray<J>& ray, int k, Vector3<S>* out) {
     using Point = VectorsOf<Quantity::point>;
-    Point::change(base_T_frame, ray.origin, k, out);
-    Point::change(base_T_frame, ray.direction, k, out + 1);
-    Point::change(base_T_frame, ray.by_u, k, out + 2);
-    Point::change(base_T_frame, ray.by_v, k, out + 3);
+    Point::change(frame, ray.origin, k, out);
+    Point::change(frame, ray.direction, k, out + 1);
+    Point::change(frame, ray.by_u, k, out + 2);
+    Point::change(frame, ray.by_v, k, out + 3);
   }
   template <class J, class S>
   static Ray<J> jets(const Vector3<S>* values, int first) {
@@ -91,20 +91,20 @@ struct VectorsOf<Quantity::pose> {
   static constexpr std::size_t kValues = 4;  // translation, columns of the rotation
 
   template <class S>
-  static void to_base(const Pose<S>& base_T_frame, const Pose<S>& pose, Vector3<S>* out) {
-    const Pose<S> in_base = base_T_frame * pose;
+  static void to_base(const Pose<S>& frame, const Pose<S>& pose, Vector3<S>* out) {
+    const Pose<S> in_base = frame * pose;
     out[0] = in_base.translation;
     for (int c = 0; c < 3; ++c) out[1 + c] = in_base.rotation.col(c);
   }
   template <class S, class J>
-  static void change(const Pose<S>& base_T_frame, const Pose<J>& pose, int k, Vector3<S>* out) {
-    VectorsOf<Quantity::point>::change(base_T_frame, pose.translation, k, out);
+  static void change(const Pose<S>& frame, const Pose<J>& pose, int k, Vector3<S>* out) {
+    VectorsOf<Quantity::point>::change(frame, pose.translation, k, out);
     const auto& r = pose.rotation;  // dR R^T = [w]x
     const auto entry = [&](int row, int column) {
       return r(row, 0).v(k) * r(column, 0).a + r(row, 1).v(k) * r(column, 1).a +
              r(row, 2).v(k) * r(column, 2).a;
     };
-    out[1] = rotated(base_T_frame.rotation, Vector3<S>(entry(2, 1), entry(0, 2), entry(1, 0)));
+    out[1] = rotated(frame.rotation, Vector3<S>(entry(2, 1), entry(0, 2), entry(1, 0)));
   }
   /// The variables of the rotation are a small rotation vector in the base.
   template <class J, class S>
@@ -139,14 +139,13 @@ struct VectorsOf<Quantity::reading> {
   static constexpr std::size_t kValues = 2;
 
   template <class S>
-  static void to_base(const Pose<S>& base_T_frame, const Reading<S>& reading, Vector3<S>* out) {
-    out[0] = base_T_frame * reading.origin;
+  static void to_base(const Pose<S>& frame, const Reading<S>& reading, Vector3<S>* out) {
+    out[0] = frame * reading.origin;
     out[1] = Vector3<S>(reading.value, S(0.0), S(0.0));
   }
   template <class S, class J>
-  static void change(const Pose<S>& base_T_frame, const Reading<J>& reading, int k,
-                     Vector3<S>* out) {
-    VectorsOf<Quantity::point>::change(base_T_frame, reading.origin, k, out);
+  static void change(const Pose<S>& frame, const Reading<J>& reading, int k, Vector3<S>* out) {
+    VectorsOf<Quantity::point>::change(frame, reading.origin, k, out);
     out[1] = Vector3<S>(reading.value.v(k), S(0.0), S(0.0));
   }
   template <class J, class S>
