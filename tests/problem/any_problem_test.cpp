@@ -53,6 +53,26 @@ TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
               HasSubstr("sensor 'camera', a camera3d, does not deliver pixels"));
 }
 
+/// A block of 27 parameters of its own.
+struct Many {
+  static constexpr std::array<ParameterInfo, 27> kParameters = [] {
+    std::array<ParameterInfo, 27> all;
+    all.fill({"p"});
+    return all;
+  }();
+  template <class S>
+  Vector3<S> operator()(const Vector3<S>& p, const std::array<S, 27>& own) const {
+    return p * own[0];
+  }
+};
+
+TEST(Problem, RefusesMoreParametersThanABlockCanHave) {
+  Problem problem = test::scene_problem();
+  EXPECT_THAT(
+      message_of<std::invalid_argument>([&] { problem.add_block("b", Many{}, {"camera"}); }),
+      HasSubstr("have 33 parameters; 32 are possible"));
+}
+
 TEST(Problem, NamesTheNearestJointOrFrameForAMisspeltPrior) {
   Problem problem = test::scene_problem();
   problem.add_prior("keep", {"board", 1.0, 1.0, 1.0});

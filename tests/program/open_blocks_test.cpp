@@ -158,6 +158,8 @@ TEST_F(OpenBlocksProgram, RefusesWhatCannotBe) {
   expect_refused("b_radius", plane, "calibrate.yaml:4: ");
   expect_refused("elbow", "type: point_to_line, c: 0",
                  "calibrate.yaml:6: error block 'b': the line's");
+  expect_refused("elbow", "type: point_to_sphere, radius: -1",
+                 "calibrate.yaml:6: error block 'b': radius is negative");
   expect_refused("elbow", "type: point_to_sphere, radious: 1", "did you mean 'radius'?");
   // A pose sensor whose samples have points.
   const test::Outcome points = calibrate(R"(models:

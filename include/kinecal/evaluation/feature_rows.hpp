@@ -17,11 +17,9 @@
 #include <vector>
 
 #include "kinecal/evaluation/sensor_view.hpp"
+#include "kinecal/problem/any_term.hpp"
 
 namespace kinecal {
-
-/// The most parameters of its own and of its sensors on which an error block may depend.
-inline constexpr std::size_t kMostOwn = 32;
 
 /// Residual of one feature and its derivatives.
 template <class S, int M, int Bodies>

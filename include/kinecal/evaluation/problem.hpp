@@ -42,7 +42,8 @@ class BasicProblem final : public AnyProblem {
   template <class Known = void, ErrorBlock B>
   void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
-    std::vector<int> indices = sensors_of_block(name, sensors, kQuantities<B>);
+    std::vector<int> indices =
+        sensors_of_block(name, sensors, kQuantities<B>, kParametersOfBlock<B>);
     std::vector<int> own;
     if constexpr (kParametersOfBlock < B >> 0) own = parameters_of_block(name, B::kParameters);
     using Type = typename TermOf<B, Known>::type;

@@ -46,6 +46,13 @@ template <ErrorBlock B, class Make>
 inline constexpr std::array<const char*, 7> kPriorMeans = {"mean",   "mean_x", "mean_y", "mean_z",
                                                            "mean_a", "mean_b", "mean_c"};
 
+/// @throws std::invalid_argument  if a length is negative
+[[nodiscard]] inline double length_of(const BlockConfig& block, const char* key) {
+  const double length = block.numbers.at(key);
+  if (length < 0.0) throw std::invalid_argument(std::string(key) + " is negative");
+  return length;
+}
+
 [[nodiscard]] inline BlockEntry prior_entry() {
   BlockEntry entry;
   entry.type = entry.read_as = "outrageous";
@@ -98,9 +105,10 @@ KINECAL_INLINE Registry::Registry() {
       }));
   add(detail::prior_entry());
   for (BlockEntry& entry : blocks_) entry.is_upstream = true;
-  add(built_in_block<PointDistance>(
-      pair, {{"length", 0.0}, {"scale", 1.0}},
-      [number](const BlockConfig& block) { return PointDistance{number(block, "length")}; }));
+  add(built_in_block<PointDistance>(pair, {{"length", 0.0}, {"scale", 1.0}},
+                                    [number](const BlockConfig& block) {
+                                      return PointDistance{detail::length_of(block, "length")};
+                                    }));
   add(built_in_block<PointToLine>(
       {{"model", "model_a"}},
       {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"a", 0.0}, {"b", 0.0}, {"c", 1.0}, {"scale", 1.0}},
@@ -112,7 +120,7 @@ KINECAL_INLINE Registry::Registry() {
       {{"model", "model_a"}}, {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"radius", 0.0}, {"scale", 1.0}},
       [number](const BlockConfig& block) {
         return PointToSphere{{number(block, "x"), number(block, "y"), number(block, "z")},
-                             number(block, "radius")};
+                             detail::length_of(block, "radius")};
       }));
   add(built_in_block<PoseToPose>(
       pair, {{"translation_scale", 1.0}, {"rotation_scale", 1.0}},

@@ -127,10 +127,12 @@ class AnyProblem {
   /// @throws std::logic_error  if samples have been added already
   void check_no_samples() const;
   /// The sensors of an error block, by name.
+  /// @param own  number of the block's own parameters
   /// @throws std::invalid_argument  as add_built_in()
   [[nodiscard]] std::vector<int> sensors_of_block(const std::string& name,
                                                   const std::vector<std::string>& sensors,
-                                                  std::span<const Quantity> quantities) const;
+                                                  std::span<const Quantity> quantities,
+                                                  std::size_t own) const;
   /// Table indices of the own parameters of an error block, which belong to it from now on.
   /// @throws std::invalid_argument  if the table does not have one
   [[nodiscard]] std::vector<int> parameters_of_block(const std::string& name,

@@ -109,7 +109,7 @@ KINECAL_INLINE void AnyProblem::check_no_samples() const {
 
 KINECAL_INLINE std::vector<int> AnyProblem::sensors_of_block(
     const std::string& name, const std::vector<std::string>& sensors,
-    std::span<const Quantity> quantities) const {
+    std::span<const Quantity> quantities, std::size_t own) const {
   check_no_samples();
   std::vector<int> indices;
   for (const std::string& of_block : sensors) indices.push_back(sensor_index(of_block));
@@ -124,6 +124,12 @@ KINECAL_INLINE std::vector<int> AnyProblem::sensors_of_block(
     throw std::invalid_argument("error block '" + name + "': sensor '" + sensors[i] + "', a " +
                                 std::string(of_block.type()) + ", does not deliver " +
                                 std::string(to_string(quantities[i])));
+  }
+  for (const int s : indices) own += sensor(s).parameters().size();
+  if (own > kMostOwn) {
+    throw std::invalid_argument("error block '" + name +
+                                "': its sensors and the block itself have " + std::to_string(own) +
+                                " parameters; " + std::to_string(kMostOwn) + " are possible");
   }
   return indices;
 }

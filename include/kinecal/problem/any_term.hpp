@@ -50,6 +50,9 @@ enum class Linearization {
               ///< would still look observable.  Planes are taken as they are.
 };
 
+/// The most parameters of its own and of its sensors on which an error block may depend.
+inline constexpr std::size_t kMostOwn = 32;
+
 /// A term, independent of the scalar: its name, its sensors, and which samples it takes.
 class AnyTerm {
  public:
