@@ -88,7 +88,7 @@ void expect_the_jets_of_a_depth_camera(const std::array<double, 6>& v, unsigned 
   constexpr double kRounding = 1e-14;  // two dozen operations on metres, metres per unit
   const RandomViews<Q> views(seed);
   const CorrectedDepthCamera<Q> corrected(views.pose, views.camera, v);
-  const std::array<int, 6> all = {0, 1, 2, 3, 4, 5}, some = {5, 2, 0, 0, 0, 0};
+  const std::array<int, 6> all = {0, 1, 2, 3, 4, 5}, some = {2, 5, 0, 0, 0, 0};
   std::array<Vector3<Q>, 6> changes, of_some;
   const Vector3<Q> found = corrected.place(views.measured, all, changes.data());
   (void)corrected.place(views.measured, std::span(some).first(2), of_some.data());
@@ -111,8 +111,8 @@ void expect_the_jets_of_a_depth_camera(const std::array<double, 6>& v, unsigned 
       }
     }
     for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(lane(of_some[0](k), i), lane(changes[5](k), i));
-      EXPECT_EQ(lane(of_some[1](k), i), lane(changes[2](k), i));
+      EXPECT_EQ(lane(of_some[0](k), i), lane(changes[2](k), i));
+      EXPECT_EQ(lane(of_some[1](k), i), lane(changes[5](k), i));
     }
   }
 }

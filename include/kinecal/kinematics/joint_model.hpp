@@ -112,9 +112,10 @@ template <class S>
   return sum;
 }
 
-/// Derivatives of joint_model_change() by each parameter.
+/// Derivatives of joint_model_change() by each parameter.  Not inline: few joints have models.
 template <class S>
-[[nodiscard]] OfJointModels<S> joint_model_derivatives(const S& q, const OfJointModels<S>& values) {
+[[nodiscard, gnu::noinline]] OfJointModels<S> joint_model_derivatives(
+    const S& q, const OfJointModels<S>& values) {
   using J = Jet<S, static_cast<int>(kJointModelSize)>;
   OfJointModels<J> jets;
   for (std::size_t k = 0; k < kJointModelSize; ++k) jets[k] = J(values[k], static_cast<int>(k));
@@ -124,13 +125,13 @@ template <class S>
   return derivatives;
 }
 
-/// The state of a joint that has models, with what their derivatives need.
-template <class R>
-struct ModelledState : JointState<R> {
-  R measured;                 ///< position of the joint that drives it, radians or metres
-  double multiplier = 1.0;    ///< of that joint: see Mimic
-  OfJointModels<R> values{};  ///< of the models' parameters
-};
+/// What an encoder measured: the position of the joint that drives a joint.
+/// @param drive     of the joint: see Mimic
+/// @param position  of the joint as measured, radians or metres
+template <class Drive, class S>
+[[nodiscard]] S driving_position(const Drive& drive, const S& position) {
+  return (position - drive.offset) / drive.multiplier;
+}
 
 /// The state of a joint with models.
 /// @param drive     of the joint: the joint that its encoder measures
@@ -141,13 +142,10 @@ template <class Drive, class S, class U>
 [[nodiscard]] auto modelled_state(const Drive& drive, const JointState<S>& measured,
                                   const JointState<U>& offset, const OfJointModels<U>& values) {
   using R = decltype(measured.cos * offset.cos);
-  ModelledState<R> state;
-  state.multiplier = drive.multiplier;
-  state.measured = R((measured.position - drive.offset) / drive.multiplier);
-  for (std::size_t k = 0; k < values.size(); ++k) state.values[k] = R(values[k]);
-  const R change = joint_model_change(state.measured, state.values) * drive.multiplier;
-  static_cast<JointState<R>&>(state) = measured + offset + make_joint_state(change);
-  return state;
+  OfJointModels<R> all;
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = R(values[k]);
+  const R change = joint_model_change(R(driving_position(drive, measured.position)), all);
+  return measured + offset + make_joint_state(R(change * drive.multiplier));
 }
 
 }  // namespace kinecal

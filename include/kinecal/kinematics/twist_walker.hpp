@@ -192,15 +192,22 @@ struct TwistWalker {
     if (!joint.reversed) walker.correct(i, joint, correction);
   }
 
-  /// Passes the motion of a joint with models: one twist more for each of their free parameters.
-  template <class I, class Joint, class R>
-  void move(I i, const Joint& joint, const ModelledState<R>& state) {
-    move(i, joint, static_cast<const JointState<R>&>(state));
-    const OfJointModels<R> derivatives = joint_model_derivatives(state.measured, state.values);
+  /// Adds a twist for each free parameter of a joint's models, after move().
+  template <class I, class Joint, class M, class U>
+  void move_by_model(I i, const Joint& joint, const JointState<M>& measured,
+                     const JointCorrection<U>& correction) {
+    bool is_free = false;
+    for (const int column : columns[i].model) is_free |= column >= 0;
+    if (!is_free) return;
+    OfJointModels<S> values;
+    for (std::size_t k = 0; k < kJointModelSize; ++k) values[k] = S(correction.model[k]);
+    const OfJointModels<S> derivatives =
+        joint_model_derivatives(S(driving_position(joint.drive, measured.position)), values);
     const Vector3<S> axis = walker.axis(joint);
+    const double multiplier = joint.reversed ? -joint.drive.multiplier : joint.drive.multiplier;
     for (std::size_t k = 0; k < kJointModelSize; ++k) {
       if (columns[i].model[k] < 0) continue;
-      const S factor = S(derivatives[k]) * S(joint.reversed ? -state.multiplier : state.multiplier);
+      const S factor = derivatives[k] * S(multiplier);
       const Vector3<S> scaled(axis.x() * factor, axis.y() * factor, axis.z() * factor);
       if (turns(joint.type)) {
         add_turn(walker.pose.translation, scaled);

@@ -61,11 +61,11 @@ template <StaticChain C>
   return {};
 }
 
-/// Passes the motion of a joint that has models.  Not inline: few joints have.
-template <class I, class Joint, class S, class U, class W>
-[[gnu::noinline]] void move_modelled(I i, const Joint& joint, const JointState<S>& measured,
-                                     const JointCorrection<U>& correction, W& walker) {
-  walker.move(i, joint, modelled_state(joint.drive, measured, correction.offset, correction.model));
+/// The state of a joint that has models.  Not inline: few joints have.
+template <class Drive, class S, class U>
+[[nodiscard, gnu::noinline]] auto modelled(const Drive& drive, const JointState<S>& measured,
+                                           const JointCorrection<U>& correction) {
+  return modelled_state(drive, measured, correction.offset, correction.model);
 }
 
 }  // namespace detail
@@ -99,10 +99,13 @@ void walk_on(const Chain& chain, std::size_t first, const Motions& motions,
       if (joint.corrected && !joint.reversed) walker.correct(i, joint, corrections[i]);
     }
     if (moves(joint.type)) {
+      auto state = motions[i] + corrections[i].offset;
       if (corrections[i].has_model) [[unlikely]] {
-        detail::move_modelled(i, joint, motions[i], corrections[i], walker);
-      } else {
-        walker.move(i, joint, motions[i] + corrections[i].offset);
+        state = detail::modelled(joint.drive, motions[i], corrections[i]);
+      }
+      walker.move(i, joint, state);
+      if constexpr (requires { walker.move_by_model(i, joint, motions[i], corrections[i]); }) {
+        walker.move_by_model(i, joint, motions[i], corrections[i]);
       }
     }
     if (joint.corrected && joint.reversed) walker.correct(i, joint, corrections[i]);

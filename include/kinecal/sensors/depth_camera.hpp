@@ -125,7 +125,7 @@ class CorrectedDepthCamera {
 
   /// The point of a measurement and its derivatives.
   /// @param m        (3) pixel and raw depth: DepthCamera::measurement()
-  /// @param chosen   which parameters to differentiate by
+  /// @param chosen   which parameters to differentiate by, ascending
   /// @param changes  out, for each of them: (3) metres per unit, in the base
   /// @returns        (3) metres, in the base
   Vector3<Q> place(const Vector3<Q>& m, std::span<const int> chosen, Vector3<Q>* changes) const {
@@ -137,6 +137,17 @@ class CorrectedDepthCamera {
     const auto times = [](const auto& v, const Q& x) {
       return Vector3<Q>(v(0) * x, v(1) * x, v(2) * x);
     };
+    Vector3<Q> p;
+    for (int i = 0; i < 3; ++i) p(i) = pose_.translation(i) + ray(i) * depth;
+    if (chosen.size() == 6) {  // most often: all of them, in their order
+      changes[0] = times(r.col(0), s * depth * by_fx_);
+      changes[1] = times(r.col(1), t * depth * by_fy_);
+      changes[2] = times(r.col(0), s_by_cx_ * depth);
+      changes[3] = times(r.col(1), t_by_cy_ * depth);
+      changes[4] = times(ray, factor_);
+      changes[5] = times(ray, raw);
+      return p;
+    }
     for (const int k : chosen) {
       switch (k) {
         case 0:
@@ -158,8 +169,6 @@ class CorrectedDepthCamera {
           *changes++ = times(ray, raw);
       }
     }
-    Vector3<Q> p;
-    for (int i = 0; i < 3; ++i) p(i) = pose_.translation(i) + ray(i) * depth;
     return p;
   }
 
