@@ -105,10 +105,9 @@ KINECAL_INLINE Registry::Registry() {
       }));
   add(detail::prior_entry());
   for (BlockEntry& entry : blocks_) entry.is_upstream = true;
-  add(built_in_block<PointDistance>(pair, {{"length", 0.0}, {"scale", 1.0}},
-                                    [number](const BlockConfig& block) {
-                                      return PointDistance{detail::length_of(block, "length")};
-                                    }));
+  add(built_in_block<PointDistance>(
+      pair, {{"length", 0.0}, {"scale", 1.0}},
+      [](const BlockConfig& block) { return PointDistance{detail::length_of(block, "length")}; }));
   add(built_in_block<PointToLine>(
       {{"model", "model_a"}},
       {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"a", 0.0}, {"b", 0.0}, {"c", 1.0}, {"scale", 1.0}},
