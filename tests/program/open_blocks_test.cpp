@@ -102,8 +102,8 @@ error_blocks:
 
 TEST_F(OpenBlocksProgram, CalibratesOnABallBarOfUnknownLength) {
   const Vector3<double> tip(0.2, 0.1, 0.05), socket(0.5, 0.1, 0.3);
-  // Joint positions are random, so the bar is a draw-bar: another length in each sample would not
-  // do.  The hand's point is where the bar of length 0.35 ends that points at the hand.
+  // Poses are random, so the hand holds the bar at another of its points in each sample: the one where
+  // a bar of length 0.35 from the socket towards the tip ends.
   record([&](const Pose<double>& hand, Sample& sample) {
     const Vector3<double> p = hand * tip;
     const Vector3<double> end = socket + 0.35 * (p - socket).normalized();

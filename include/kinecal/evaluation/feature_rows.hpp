@@ -68,7 +68,6 @@ struct TermViews {
   const OwnParameters* own = nullptr;             ///< of the block itself
 
   [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
-  [[nodiscard]] std::size_t size() const { return sensors.size(); }
 
   /// Number of free parameters of sensors and block on which a feature depends.
   [[nodiscard]] std::size_t num_own() const {
