@@ -30,6 +30,7 @@ struct CompiledWalk {
 
   std::string tip;                    ///< of the chain
   std::vector<JointIndices> columns;  ///< for which with_twists is compiled
+  bool models;                        ///< whether both know joint models
   Walk pose_only;                     ///< computes the pose
   Walk with_twists;                   ///< computes the pose and the twists of free parameters
 };
@@ -46,23 +47,26 @@ struct StaticColumns {
 
 template <class S, class C, class F>
 struct WalkOf {
+  static constexpr bool kModels = have_models(kColumnsOf<C, F>);
+
   KINECAL_FLATTEN static void pose_only(const WalkStart<S>& start, JointStates<S> joints,
                                         Pose<S>& tip) {
-    PoseWalker<S> walker{start.pose};
+    PoseWalker<S> walker;
+    copy_numbers(start.pose, walker.pose);
     go_on(start, joints, walker);
-    tip = walker.pose;
+    copy_numbers(walker.pose, tip);
   }
   KINECAL_FLATTEN static void with_twists(const WalkStart<S>& start, JointStates<S> joints,
                                           Pose<S>& tip) {
     TwistWalker<S, StaticColumns<C, F>> walker({}, start.turn, start.shift, start.pose);
     go_on(start, joints, walker);
-    tip = walker.walker.pose;
+    copy_numbers(walker.walker.pose, tip);
   }
 
  private:
   template <class W>
   static void go_on(const WalkStart<S>& start, JointStates<S> joints, W& walker) {
-    walk_on(C{}, C::kFirstMotion, joints, std::span(start.corrections, C::kSize), walker);
+    walk_on<kModels>(C{}, C::kFirstMotion, joints, std::span(start.corrections, C::kSize), walker);
   }
 };
 
@@ -77,6 +81,7 @@ template <class S, StaticChain C, class F>
   const std::string_view tip = C::kVirtual.empty() ? C::kTip : C::kVirtual;
   return {std::string(tip),
           {columns.begin(), columns.end()},
+          detail::WalkOf<S, C, F>::kModels,
           &detail::WalkOf<S, C, F>::pose_only,
           &detail::WalkOf<S, C, F>::with_twists};
 }

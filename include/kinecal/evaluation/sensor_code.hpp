@@ -138,9 +138,7 @@ class SensorCodeOf final : public SensorCode<S> {
   }
   [[nodiscard]] static Measurement<M, S> measurement(const BatchObservation<S>& seen,
                                                      std::size_t i) {
-    Measurement<M, S> m;
-    m.point = point(seen, i);
-    m.settings = settings(seen);
+    Measurement<M, S> m{.point = point(seen, i), .settings = settings(seen)};
     if constexpr (kIsOriented<M>) std::copy_n(seen.measured(i) + 3, 9, m.rotation.data());
     return m;
   }

@@ -19,6 +19,7 @@ struct SensorState {
   std::vector<Corrections<double>> corrections;    ///< of each chain
   std::vector<std::vector<JointIndices>> columns;  ///< of the joints of each chain
   std::vector<TwistColumns> twist_columns;         ///< of each chain
+  std::vector<bool> models;                        ///< of each chain: some joint has a model
   OwnParameters own;                               ///< of the sensor itself
 
   /// @param free  the columns of the Jacobian
@@ -27,6 +28,7 @@ struct SensorState {
     for (std::size_t c = 0; c < sensor.chains().size(); ++c) {
       columns.push_back(columns_of(sensor.chain_parameters()[c], free));
       twist_columns.push_back(kinecal::twist_columns(sensor.chains()[c], columns.back()));
+      models.push_back(have_models(sensor.chain_parameters()[c]));
     }
   }
 
@@ -90,6 +92,7 @@ class SensorView {
  private:
   void start_chain(std::size_t c);
 
+  template <bool kModels>
   KINECAL_FLATTEN void walk_chain(std::size_t c);
 
   const MountedSensor* sensor_ = nullptr;
@@ -125,6 +128,7 @@ void SensorView<S>::start(const MountedSensor& sensor, const SensorEvaluation<S>
     start_chain(c);
     if (c >= evaluation.walks.size()) continue;
     const CompiledWalk<S>& walk = evaluation.walks[c];
+    if (walk.models != state.models[c]) continue;
     if (!derivatives) compiled_[c] = walk.pose_only;
     if (derivatives && walk.columns == state.columns[c]) compiled_[c] = walk.with_twists;
   }
@@ -137,8 +141,10 @@ void SensorView<S>::update(const BatchObservation<S>& seen) {
     if (!seen.has_joints(c)) continue;
     if (compiled_[c] != nullptr) {
       compiled_[c](starts_[c], seen.joints(c), poses_[c]);
+    } else if (state_->models[c]) {
+      walk_chain<true>(c);
     } else {
-      walk_chain(c);
+      walk_chain<false>(c);
     }
   }
   if (!places_) return;
@@ -166,20 +172,22 @@ void SensorView<S>::start_chain(std::size_t c) {
 }
 
 template <class S>
+template <bool kModels>
 KINECAL_FLATTEN void SensorView<S>::walk_chain(std::size_t c) {
   const RuntimeChain& chain = sensor_->chains()[c];
   const JointStates<S> joints = observation_.joints(c);
   const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
   const WalkStart<S>& start = starts_[c];
   if (!derivatives_) {
-    PoseWalker<S> walker{start.pose};
-    walk_on(chain, start.joint, joints, corrections, walker);
-    poses_[c] = walker.pose;
+    PoseWalker<S> walker;
+    copy_numbers(start.pose, walker.pose);
+    walk_on<kModels>(chain, start.joint, joints, corrections, walker);
+    copy_numbers(walker.pose, poses_[c]);
     return;
   }
   TwistWalker<S> walker(state_->columns[c], start.turn, start.shift, start.pose);
-  walk_on(chain, start.joint, joints, corrections, walker);
-  poses_[c] = walker.walker.pose;
+  walk_on<kModels>(chain, start.joint, joints, corrections, walker);
+  copy_numbers(walker.walker.pose, poses_[c]);
 }
 
 }  // namespace kinecal

@@ -50,6 +50,13 @@ class PacketOf {
   using Mask = decltype(Register{} < Register{});                 ///< per lane: all bits or none
 
   PacketOf() = default;  ///< lanes are not initialized
+  /// Copies the register: g++ copies a class without this as memory, past the registers.
+  PacketOf(const PacketOf& other) : x_(other.x_) {}  // NOLINT(modernize-use-equals-default)
+  /// The same.
+  PacketOf& operator=(const PacketOf& other) {  // NOLINT(modernize-use-equals-default)
+    x_ = other.x_;
+    return *this;
+  }
   /// The same number in all lanes.
   PacketOf(double x) : x_(x - Register{}) {}  // NOLINT: a number is a packet of it
   explicit PacketOf(Register x) : x_(x) {}    ///< takes over all lanes

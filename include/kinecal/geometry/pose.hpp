@@ -58,4 +58,16 @@ struct Pose {
   }
 };
 
+/// to = from, number by number.  Compilers keep the numbers in registers, where a copy of the whole
+/// goes through memory.
+template <class S>
+void copy_numbers(const Pose<S>& from, Pose<S>& to) {
+  for (int r = 0; r < 3; ++r) {
+    to.rotation(r, 0) = from.rotation(r, 0);
+    to.rotation(r, 1) = from.rotation(r, 1);
+    to.rotation(r, 2) = from.rotation(r, 2);
+    to.translation(r) = from.translation(r);
+  }
+}
+
 }  // namespace kinecal

@@ -15,7 +15,7 @@ struct PoseWalker {
   /// Passes a constant transform.
   void fixed(const ConstantPose& transform) {
     if (transform.rotates) {
-      pose = pose * static_cast<const Pose<double>&>(transform);
+      copy_numbers(pose * static_cast<const Pose<double>&>(transform), pose);
     } else {
       pose.translation = pose * transform.translation;
     }
@@ -30,7 +30,11 @@ struct PoseWalker {
   /// Passes a frame correction.
   template <class Joint, class U>
   void correct(std::size_t, const Joint& joint, const JointCorrection<U>& correction) {
-    pose = joint.reversed ? pose * correction.frame.inverse() : pose * correction.frame;
+    if (joint.reversed) {
+      copy_numbers(pose * correction.frame.inverse(), pose);
+    } else {
+      copy_numbers(pose * correction.frame, pose);
+    }
   }
 
   /// Passes a joint's motion.

@@ -59,12 +59,12 @@ void add_times(S& sum, const S& x) {
 }
 
 /// A row of a matrix times a constant column.
-template <class C, class S, int Options>
-[[nodiscard]] S row_times(const Eigen::Matrix<S, 3, 3, Options>& m, int row) {
+template <class C, class S>
+[[nodiscard]] S row_times(const std::array<S, 3>& row) {
   static_assert(C::kFirst < 3);
-  S sum = times<C, C::kFirst>(m(row, static_cast<int>(C::kFirst)));
-  add_times<C, 1>(sum, m(row, 1));
-  add_times<C, 2>(sum, m(row, 2));
+  S sum = times<C, C::kFirst>(row[C::kFirst]);
+  add_times<C, 1>(sum, row[1]);
+  add_times<C, 2>(sum, row[2]);
   return sum;
 }
 
@@ -77,17 +77,16 @@ inline constexpr bool kTurns =
 /// pose = pose * P::kPose.
 template <class P, class S>
 void multiply_by_constant(Pose<S>& pose) {
-  if constexpr (detail::ConstantColumn<P, 3>::kFirst < 3) {
-    for (int row = 0; row < 3; ++row) {
-      pose.translation(row) += detail::row_times<detail::ConstantColumn<P, 3>>(pose.rotation, row);
+  Matrix3<S>& r = pose.rotation;
+  for (int i = 0; i < 3; ++i) {
+    const std::array<S, 3> row = {r(i, 0), r(i, 1), r(i, 2)};
+    if constexpr (detail::ConstantColumn<P, 3>::kFirst < 3) {
+      pose.translation(i) += detail::row_times<detail::ConstantColumn<P, 3>>(row);
     }
-  }
-  if constexpr (detail::kTurns<P>) {
-    const Matrix3<S> r = pose.rotation;
-    for (int row = 0; row < 3; ++row) {
-      pose.rotation(row, 0) = detail::row_times<detail::ConstantColumn<P, 0>>(r, row);
-      pose.rotation(row, 1) = detail::row_times<detail::ConstantColumn<P, 1>>(r, row);
-      pose.rotation(row, 2) = detail::row_times<detail::ConstantColumn<P, 2>>(r, row);
+    if constexpr (detail::kTurns<P>) {
+      r(i, 0) = detail::row_times<detail::ConstantColumn<P, 0>>(row);
+      r(i, 1) = detail::row_times<detail::ConstantColumn<P, 1>>(row);
+      r(i, 2) = detail::row_times<detail::ConstantColumn<P, 2>>(row);
     }
   }
 }

@@ -48,6 +48,16 @@ struct JointIndices {
   bool operator==(const JointIndices&) const = default;  ///< all members are equal
 };
 
+/// True if some joint has parameters of joint models.
+[[nodiscard]] constexpr bool have_models(std::span<const JointIndices> joints) {
+  for (const JointIndices& joint : joints) {
+    for (const int index : joint.model) {
+      if (index >= 0) return true;
+    }
+  }
+  return false;
+}
+
 /// How one parameter moves all points after its joint; in the base, per unit of the parameter.
 template <class S>
 struct Twist {
@@ -162,7 +172,9 @@ struct TwistWalker {
       : columns(free), turn(twists.rotational.data()), shift(twists.translational.data()) {}
   /// Continues in the middle of a chain.
   TwistWalker(const Columns& free, Twist<S>* next_turn, Vector3<S>* next_shift, const Pose<S>& pose)
-      : columns(free), turn(next_turn), shift(next_shift), walker{pose} {}
+      : columns(free), turn(next_turn), shift(next_shift) {
+    copy_numbers(pose, walker.pose);
+  }
 
   /// Passes a constant transform.
   template <class ConstantPose>

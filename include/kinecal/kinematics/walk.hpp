@@ -88,9 +88,10 @@ template <class Chain, class Corrected, class W>
 }
 
 /// The rest of the walk.
-/// @param first  the result of walk_to_first_motion()
+/// @tparam kModels  false if no joint of the chain has parameters of joint models
+/// @param first     the result of walk_to_first_motion()
 /// The other parameters are those of walk().
-template <class Chain, class Motions, class Corrected, class W>
+template <bool kModels = true, class Chain, class Motions, class Corrected, class W>
 void walk_on(const Chain& chain, std::size_t first, const Motions& motions,
              const Corrected& corrections, W& walker) {
   detail::for_joints(chain, first, [&](auto i, const auto& joint) {
@@ -100,11 +101,14 @@ void walk_on(const Chain& chain, std::size_t first, const Motions& motions,
     }
     if (moves(joint.type)) {
       auto state = motions[i] + corrections[i].offset;
-      if (corrections[i].has_model) [[unlikely]] {
-        state = detail::modelled(joint.drive, motions[i], corrections[i]);
+      if constexpr (kModels) {
+        if (corrections[i].has_model) {
+          state = detail::modelled(joint.drive, motions[i], corrections[i]);
+        }
       }
       walker.move(i, joint, state);
-      if constexpr (requires { walker.move_by_model(i, joint, motions[i], corrections[i]); }) {
+      if constexpr (kModels &&
+                    requires { walker.move_by_model(i, joint, motions[i], corrections[i]); }) {
         walker.move_by_model(i, joint, motions[i], corrections[i]);
       }
     }

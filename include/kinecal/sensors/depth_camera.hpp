@@ -106,7 +106,7 @@ struct DepthCamera {
 template <class Q>
 class CorrectedDepthCamera {
  public:
-  /// @param pose      of the camera in the base
+  /// @param pose      of the camera in the base; must outlive this
   /// @param recorded  fx fy cx cy z_offset z_scaling: DepthCamera::settings()
   /// @param v         (6) parameters: corrections of the recorded settings
   CorrectedDepthCamera(const Pose<Q>& pose, const std::array<Q, 6>& recorded,
@@ -173,7 +173,7 @@ class CorrectedDepthCamera {
   }
 
  private:
-  Pose<Q> pose_;
+  const Pose<Q>& pose_;
   Q per_fx_, per_fy_, cx_, cy_, s_by_cx_, t_by_cy_, by_fx_, by_fy_, offset_, factor_;
 };
 
