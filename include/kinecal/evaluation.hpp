@@ -22,5 +22,4 @@
 #include "kinecal/evaluation/problem.hpp"
 #include "kinecal/evaluation/sensor_code.hpp"
 #include "kinecal/evaluation/sensor_view.hpp"
-#include "kinecal/evaluation/sized_block_term.hpp"
 #include "kinecal/evaluation/term.hpp"

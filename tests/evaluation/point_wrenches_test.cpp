@@ -23,15 +23,18 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
   int packs = 0;
   Evaluator<S>(problem, free).for_each_term(x, true, [&](int, auto&, const auto& views, auto) {
     ++packs;
-    const auto chains = Rows::chains(views, first);
-    const std::vector<int> columns = views.sum_columns(chains);
+    const auto run = std::find_if(views.runs.begin(), views.runs.end(), [&](const FeatureRun& r) {
+      return r.first <= first && first < r.end;
+    });
+    ASSERT_NE(run, views.runs.end());
+    const BodyChains& chains = run->chains;
     const std::array twists = {BodyTwists<S>(views[0].twists(chains[0])),
                                BodyTwists<S>(views[1].twists(chains[1]))};
     FeatureWrenches<S> general;
     general.start(twists, views.num_own());
     std::vector<S> weights;
     std::vector<Vector3<S>> residuals;
-    for (std::size_t i = first; i < Rows::features(views); ++i) {
+    for (std::size_t i = first; i < run->end; ++i) {
       weights.push_back(views[0].points()[i].x() + S(2.0));  // another one in each lane
       if (!all_count) set_lane(weights.back(), 0, 0.0);
       typename Rows::Rows rows;
@@ -40,7 +43,7 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
       residuals.push_back(rows.residual);
     }
     general.finish();
-    LocalSums<S> of_rows(columns), of_moments(columns);
+    LocalSums<S> of_rows(run->columns), of_moments(run->columns);
     of_rows.add(general);
     typename PointWrenches<S>::Sides sides;
     for (std::size_t s = 0; s < 2; ++s) {

@@ -133,8 +133,8 @@ class Crate {
     for_each(Blocks{}, [&]<class P>(P*) {
       const P& part = std::get<P>(blocks_);
       const auto& names = P::kSensorNames;
-      problem.template add_block<SizesOf<P>>(std::string(P::kName), part.error,
-                                             {names.begin(), names.end()}, part.options);
+      problem.add_block(std::string(P::kName), part.error, {names.begin(), names.end()},
+                        part.options);
     });
     for_each(Priors{}, [&]<class P>(P*) {
       const P& part = std::get<P>(priors_);
@@ -197,42 +197,6 @@ class Crate {
   /// A sensor's chain with the frame corrections of this crate.
   template <class C, class VirtualFrame = void>
   using ChainWithFrames = detail::CorrectedChain<C, FramesHere, VirtualFrame>;
-
-  /// Number of columns of a sensor's body, for features in the sensor's own frame.
-  template <class Sensor>
-  [[nodiscard]] static constexpr BodySizes sizes() {
-    BodySizes size;
-    using C = ChainWithFrames<typename Sensor::Chain>;
-    for (std::size_t i = 0; i < C::kSize; ++i) {
-      const JointIndices& joint = kColumnsOf<C, Free>[i];
-      for (std::size_t k = 0; k < 6; ++k) {
-        if (joint.frame[k] >= 0) ++(k < 3 ? size.translational : size.rotational);
-      }
-      std::size_t& of_joint = turns(C::kJoints[i].type) ? size.rotational : size.translational;
-      if (joint.offset >= 0) ++of_joint;
-      for (const int column : joint.model) of_joint += column >= 0 ? 1 : 0;
-    }
-    for (const ParameterInfo& info : detail::declared_parameters<typename Sensor::Model>()) {
-      if (Free::find(Sensor::kName, info.name) >= 0) ++size.own;
-    }
-    return size;
-  }
-  template <class... Ts>
-  [[nodiscard]] static constexpr BodySizes sizes_of(std::string_view name,
-                                                    detail::TypeList<Ts...>) {
-    BodySizes size;
-    (void)((Ts::kName == name ? (size = sizes<Ts>(), true) : false) || ...);
-    return size;
-  }
-  template <class P>
-  [[nodiscard]] static constexpr auto sizes_of_block() {
-    if constexpr (P::kSensorNames.size() == 2) {
-      return KnownSizes<sizes_of(P::kSensorNames[0], Sensors{}),
-                        sizes_of(P::kSensorNames[1], Sensors{})>{};
-    }
-  }
-  template <class P>
-  using SizesOf = decltype(sizes_of_block<P>());
 
   template <FixedString Name, class... Ts>
   [[nodiscard]] static auto& part_of(std::tuple<Ts...>& parts) {

@@ -60,18 +60,6 @@ class BlockRows {
   using Views = TermViews<S>;                                     ///< one view per sensor
   using Rows = FeatureRows<S, kSize, static_cast<int>(kBodies)>;  ///< the result
 
-  /// Number of features that are compared; a plane through all features counts as one.
-  [[nodiscard]] static std::size_t features(const Views& views) {
-    return PlanePairBlock<B> ? 1 : views[0].observation().size();
-  }
-
-  /// The chain of each body of feature i.
-  [[nodiscard]] static BodyChains chains(const Views& views, std::size_t i) {
-    BodyChains result{};
-    for (std::size_t s = 0; s < kBodies; ++s) result[s] = views[s].observation().chain(i);
-    return result;
-  }
-
   /// One if all sensors observed feature i, else zero; lane by lane.
   [[nodiscard]] static S weight(const Views& views, std::size_t i) {
     S all = views[0].observation().usable(i);

@@ -44,7 +44,7 @@ class BlockTerm : public Term<S> {
   void evaluate(const Views& views, bool derivatives, Linearization at,
                 BatchRows<S>& out) const override;
 
- protected:
+ private:
   using Block = BlockRows<B, S>;                          ///< computes rows of one feature
   static constexpr std::size_t kBodies = Block::kBodies;  ///< number of sensors
   using Twists = std::array<BodyTwists<S>, kBodies>;      ///< of the columns of each sensor
@@ -52,75 +52,34 @@ class BlockTerm : public Term<S> {
   /// Whether the residual may be the difference of two points, which is summed faster.
   static constexpr bool kMayBeDifference =
       PointPairBlock<B> && kSize == 3 && kParametersOfBlock<B> == 0;
-
-  /// Residuals and Jacobian of the features from `first` to `end`; the block is a difference.
-  /// @param sizes     how many columns each body has
-  /// @param jacobian  (kSize features x columns) where its rows go
-  KINECAL_FLATTEN virtual void write_differences(const Views& views, std::size_t first,
-                                                 std::size_t end, const Twists& twists,
-                                                 const std::array<BodySizes, kBodies>& sizes,
-                                                 BatchRows<S>& out, S* jacobian) const;
-
-  /// Stores the residual of a feature, given the two points: see write_differences().
-  [[nodiscard]] auto residuals_to(const Views& views, BatchRows<S>& out) const {
-    return [this, &views, &out](std::size_t i, const auto& a, const auto& b) {
-      store(i, block_(a, b), Block::weight(views, i), out);
-    };
-  }
-
- private:
   using Rows = typename Block::Rows;
 
-  /// Adds the features from `first` to `end` by their moments.
+  /// Adds the features of a run by their moments.
   /// @returns  false, without adding anything, if the block is not a difference
-  bool add_difference(const Views& views, std::size_t first, std::size_t end, const Loss& loss,
-                      TermSums<S>& sums) const {
+  bool add_difference(const Views& views, const FeatureRun& run, const Twists& twists,
+                      const Loss& loss, TermSums<S>& sums) const {
     if constexpr (kMayBeDifference) {
       if (!is_difference_) return false;
-      const BodyChains chains = Block::chains(views, first);
-      const Twists of_run = twists(views, chains);
+      const std::size_t features = run.end - run.first;
       typename PointWrenches<S>::Sides sides;
       for (std::size_t s = 0; s < 2; ++s) {
         const std::size_t own = views[s].own().free.size();
-        sides[s] = {{views[s].values(first), end - first},
-                    {views[s].changes(first), own * (end - first)},
+        sides[s] = {{views[s].values(run.first), features},
+                    {views[s].changes(run.first), own * features},
                     own,
-                    of_run[s]};
+                    twists[s]};
       }
-      sums.weights.resize(end - first);
-      sums.residuals.resize(end - first);
-      for (std::size_t i = 0; i < end - first; ++i) {
+      sums.weights.resize(features);
+      sums.residuals.resize(features);
+      for (std::size_t i = 0; i < features; ++i) {
         sums.residuals[i] = block_(sides[0].points[i], sides[1].points[i]);
-        sums.weights[i] = add_cost(sums.residuals[i], Block::weight(views, first + i), loss, sums);
+        sums.weights[i] =
+            add_cost(sums.residuals[i], Block::weight(views, run.first + i), loss, sums);
       }
       sums.point_wrenches.set(sides, sums.weights, sums.residuals);
-      sums_of(views, chains, sums).add(sums.point_wrenches);
+      sums_of(run, sums).add(sums.point_wrenches);
     }
     return kMayBeDifference;
-  }
-
-  /// The first feature after `first` on other chains.
-  [[nodiscard]] static std::size_t end_of_run(const Views& views, std::size_t first) {
-    std::size_t end = Block::features(views);
-    for (std::size_t s = 0; s < kBodies; ++s) {
-      const std::vector<std::size_t>& chain = views[s].observation().layout->chain;
-      std::size_t same = first + 1;
-      while (same < end && chain[same] == chain[first]) ++same;
-      end = same;
-    }
-    return end;
-  }
-
-  /// Number of columns on which features of these chains depend.
-  [[nodiscard]] static std::array<BodySizes, kBodies> sizes_of(const Views& views,
-                                                               const BodyChains& chains) {
-    std::array<BodySizes, kBodies> sizes;
-    for (std::size_t s = 0; s < kBodies; ++s) {
-      const SensorState& state = views[s].state();
-      const TwistColumns& twists = state.twist_columns[chains[s]];
-      sizes[s] = {twists.rotational.size(), twists.translational.size(), state.own.free.size()};
-    }
-    return sizes;
   }
 
   /// Adds the cost of a feature.
@@ -144,13 +103,12 @@ class BlockTerm : public Term<S> {
     return result;
   }
 
-  [[nodiscard]] static LocalSums<S>& sums_of(const Views& views, const BodyChains& chains,
-                                             TermSums<S>& sums) {
+  [[nodiscard]] static LocalSums<S>& sums_of(const FeatureRun& run, TermSums<S>& sums) {
     // Sorted by chains, so that sums are added in the same order whichever chains came first.
     const auto place = std::find_if(sums.by_chains.begin(), sums.by_chains.end(),
-                                    [&](const auto& known) { return !(known.first < chains); });
-    if (place != sums.by_chains.end() && place->first == chains) return place->second;
-    return sums.by_chains.emplace(place, chains, LocalSums<S>(views.sum_columns(chains)))->second;
+                                    [&](const auto& known) { return !(known.first < run.chains); });
+    if (place != sums.by_chains.end() && place->first == run.chains) return place->second;
+    return sums.by_chains.emplace(place, run.chains, LocalSums<S>(run.columns))->second;
   }
 
   /// Residual and Jacobian of a feature.
@@ -162,6 +120,18 @@ class BlockTerm : public Term<S> {
     Block::template rows<true>(block_, views, i, at, rows);
     store(i, rows.residual, rows.weight, out);
     write_rows(rows, twists, jacobian, width);
+  }
+
+  /// Residuals and Jacobian of a run of a block that is a difference.
+  KINECAL_FLATTEN void write_difference(const Views& views, const FeatureRun& run,
+                                        const Twists& twists, BatchRows<S>& out,
+                                        S* jacobian) const {
+    if constexpr (kMayBeDifference) {
+      for (std::size_t i = run.first; i < run.end; ++i) {
+        store(i, block_(*views[0].values(i), *views[1].values(i)), Block::weight(views, i), out);
+      }
+      write_differences(views, run, twists, jacobian);
+    }
   }
 
   static void store(std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual, const S& weight,
@@ -187,7 +157,7 @@ int BlockTerm<B, S>::count(Observations seen) const {
 template <ErrorBlock B, class S>
 void BlockTerm<B, S>::add_cost(const Views& views, const Loss& loss, TermSums<S>& sums) const {
   Rows rows;
-  for (std::size_t i = 0; i < Block::features(views); ++i) {
+  for (std::size_t i = 0; i < views.features(); ++i) {
     Block::template rows<false>(block_, views, i, Linearization::measured, rows);
     (void)add_cost(rows.residual, rows.weight, loss, sums);
   }
@@ -196,69 +166,51 @@ void BlockTerm<B, S>::add_cost(const Views& views, const Loss& loss, TermSums<S>
 template <ErrorBlock B, class S>
 void BlockTerm<B, S>::add_normal_equations(const Views& views, const Loss& loss,
                                            TermSums<S>& sums) const {
-  for (std::size_t first = 0, end = 0; first < Block::features(views); first = end) {
-    end = end_of_run(views, first);
-    const BodyChains chains = Block::chains(views, first);
-    if (add_difference(views, first, end, loss, sums)) continue;
-    const Twists of_run = twists(views, chains);
+  for (const FeatureRun& run : views.runs) {
+    const Twists of_run = twists(views, run.chains);
+    if (add_difference(views, run, of_run, loss, sums)) continue;
     sums.wrenches.start(of_run, views.num_own());
     Rows rows;
-    for (std::size_t i = first; i < end; ++i) {
+    for (std::size_t i = run.first; i < run.end; ++i) {
       Block::template rows<true>(block_, views, i, Linearization::measured, rows);
       sums.wrenches.add(rows, add_cost(rows.residual, rows.weight, loss, sums));
     }
     sums.wrenches.finish();
-    sums_of(views, chains, sums).add(sums.wrenches);
+    sums_of(run, sums).add(sums.wrenches);
   }
 }
 
 template <ErrorBlock B, class S>
 void BlockTerm<B, S>::evaluate(const Views& views, bool derivatives, Linearization at,
                                BatchRows<S>& out) const {
-  const std::size_t features = Block::features(views);
-  out.num_runs = 0;
+  const std::size_t features = views.features();
   out.weight.resize(features);
   out.residual.resize(features * kSize);
-  std::size_t values = 0;
-  for (std::size_t first = 0, end = 0; first < features; first = end) {
-    end = end_of_run(views, first);
-    auto& run = out.next_run();
-    run.features = end - first;
-    if (!derivatives) {
-      Rows rows;
-      for (std::size_t i = first; i < end; ++i) {
-        Block::template rows<false>(block_, views, i, at, rows);
-        store(i, rows.residual, rows.weight, out);
-      }
-      continue;
+  if (!derivatives) {
+    Rows rows;
+    for (std::size_t i = 0; i < features; ++i) {
+      Block::template rows<false>(block_, views, i, at, rows);
+      store(i, rows.residual, rows.weight, out);
     }
-    const BodyChains chains = Block::chains(views, first);
-    const Twists of_run = twists(views, chains);
-    const auto sizes = sizes_of(views, chains);
-    views.columns(chains, run.columns);
+    return;
+  }
+  std::size_t values = 0;
+  for (const FeatureRun& run : views.runs) {
+    values += (run.end - run.first) * kSize * run.columns.size();
+  }
+  if (out.jacobian.size() < values) out.jacobian.resize(values);
+  S* jacobian = out.jacobian.data();
+  for (const FeatureRun& run : views.runs) {
+    const Twists of_run = twists(views, run.chains);
     const std::size_t width = run.columns.size();
-    run.jacobian = values;
-    values += run.features * kSize * width;
-    if (out.jacobian.size() < values) out.jacobian.resize(values);
-    S* jacobian = out.jacobian.data() + run.jacobian;
     if (is_difference_ && at == Linearization::measured) {
-      write_differences(views, first, end, of_run, sizes, out, jacobian);
+      write_difference(views, run, of_run, out, jacobian);
+      jacobian += (run.end - run.first) * kSize * width;
     } else {
-      for (std::size_t i = first; i < end; ++i, jacobian += kSize * width) {
+      for (std::size_t i = run.first; i < run.end; ++i, jacobian += kSize * width) {
         write_feature(views, i, at, of_run, out, jacobian, width);
       }
     }
-  }
-}
-
-template <ErrorBlock B, class S>
-KINECAL_FLATTEN void BlockTerm<B, S>::write_differences(const Views& views, std::size_t first,
-                                                        std::size_t end, const Twists& twists,
-                                                        const std::array<BodySizes, kBodies>& sizes,
-                                                        BatchRows<S>& out, S* jacobian) const {
-  if constexpr (kMayBeDifference) {
-    kinecal::write_differences(views, first, end, twists, Sizes{sizes[0], sizes[1]}, jacobian,
-                               residuals_to(views, out));
   }
 }
 

@@ -67,6 +67,9 @@ class Evaluator final : public AnyEvaluator {
 
   void set(std::span<const double> values);
 
+  /// The runs of a term's features in the samples of a layout.
+  [[nodiscard]] std::vector<FeatureRun> runs_of(int t, const Batches<S>& batches) const;
+
   /// Number of batches in a piece; it does not depend on the number of threads.
   [[nodiscard]] std::size_t piece_size() const {
     return std::max<std::size_t>(kSamplesOfPiece / kLanes<S>,
@@ -92,7 +95,9 @@ class Evaluator final : public AnyEvaluator {
   std::size_t num_batches_ = 0;
   std::vector<SensorState> states_;  ///< of each sensor
   std::vector<OwnParameters> own_;   ///< of each term
-  std::vector<bool> places_;         ///< of each sensor: a block takes more of it than predictions
+  std::vector<std::vector<std::vector<FeatureRun>>>
+      runs_;                  ///< of each layout and each of its terms
+  std::vector<bool> places_;  ///< of each sensor: a block takes more of it than predictions
   std::vector<Worker> workers_;
   BatchRows<S> rows_;
   TermResiduals residuals_;
@@ -110,9 +115,27 @@ Evaluator<S>::Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int
       places_[static_cast<std::size_t>(term->sensors()[i])] = true;
     }
   }
-  for (const Batches<S>& batches : problem.batches()) num_batches_ += batches.size();
+  for (const Batches<S>& batches : problem.batches()) {
+    num_batches_ += batches.size();
+    auto& of_layout = runs_.emplace_back();
+    for (const int t : batches.terms()) of_layout.push_back(runs_of(t, batches));
+  }
   const int pieces = std::max(1, static_cast<int>(num_pieces()));
   workers_.resize(static_cast<std::size_t>(std::clamp(number_of_threads(threads), 1, pieces)));
+}
+
+template <class S>
+std::vector<FeatureRun> Evaluator<S>::runs_of(int t, const Batches<S>& batches) const {
+  const auto i = static_cast<std::size_t>(t);
+  const Term<S>& term = *problem_.terms()[i];
+  std::vector<const std::vector<std::size_t>*> chains;
+  std::vector<const SensorState*> states;
+  for (const int sensor : term.sensors()) {
+    const auto s = static_cast<std::size_t>(sensor);
+    chains.push_back(&batches.observation(0, s).layout->chain);
+    states.push_back(&states_[s]);
+  }
+  return feature_runs(chains, states, own_[i], term.pairs_features());
 }
 
 template <class S>
@@ -149,15 +172,17 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
                                  Worker& worker, Visit&& visit) const {
   start(derivatives, worker);
   std::size_t before = 0;
-  for (const Batches<S>& batches : problem_.batches()) {
+  for (std::size_t layout = 0; layout < runs_.size(); ++layout) {
+    const Batches<S>& batches = problem_.batches()[layout];
     const std::size_t size = batches.size();
     for (std::size_t b = std::max(first, before); b < std::min(end, before + size); ++b) {
       for (std::size_t s = 0; s < states_.size(); ++s) {
         if (batches.has(s)) worker.views[s].update(batches.observation(b - before, s));
       }
-      for (const int t : batches.terms()) {
+      for (std::size_t n = 0; n < batches.terms().size(); ++n) {
+        const int t = batches.terms()[n];
         const auto i = static_cast<std::size_t>(t);
-        visit(t, *problem_.terms()[i], TermViews<S>{worker.of_terms[i], &own_[i]},
+        visit(t, *problem_.terms()[i], TermViews<S>{worker.of_terms[i], &own_[i], runs_[layout][n]},
               batches.samples(b - before));
       }
     }
@@ -175,7 +200,7 @@ std::optional<UndefinedResidual> Evaluator<S>::evaluate(std::span<const double> 
                                std::span<const int> samples) {
     term.evaluate(views, derivatives, at, rows_);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      rows_.unpack(term.feature_size(), static_cast<int>(i), columns, residuals_);
+      rows_.unpack(views.runs, term.feature_size(), static_cast<int>(i), columns, residuals_);
       if (residuals_.residual.allFinite()) {
         visit(t, samples[i], residuals_);
       } else if (!undefined) {

@@ -61,51 +61,64 @@ inline constexpr std::size_t kMostBodies = 4;
 /// The bodies of a feature: the chain at whose end it is, for each sensor of an error block.
 using BodyChains = std::array<std::size_t, kMostBodies>;
 
+/// Consecutive features of a layout that are on the same chains.
+struct FeatureRun {
+  std::size_t first = 0;  ///< index of the first feature
+  std::size_t end = 0;    ///< index after the last one
+  BodyChains chains{};    ///< of each sensor
+  /// Columns of the whole Jacobian on which they depend, in this order: parameters of the sensors and
+  /// of the block, rotational twists of each body, translational twists of each body.  A parameter
+  /// that moves several bodies occurs several times.
+  std::vector<int> columns;
+};
+
+/// The runs of a term's features in the samples of a layout.
+/// @param chains  of each feature, by sensor of the term
+/// @param states  of each sensor of the term
+/// @param own     parameters of the block itself
+[[nodiscard]] inline std::vector<FeatureRun> feature_runs(
+    std::span<const std::vector<std::size_t>* const> chains,
+    std::span<const SensorState* const> states, const OwnParameters& own, bool pairs_features) {
+  std::vector<FeatureRun> runs;
+  // A plane through all features counts as one.
+  const std::size_t features = pairs_features ? chains[0]->size() : 1;
+  for (std::size_t i = 0; i < features; ++i) {
+    BodyChains of_feature{};
+    for (std::size_t s = 0; s < chains.size(); ++s) of_feature[s] = (*chains[s])[i];
+    if (runs.empty() || runs.back().chains != of_feature) runs.push_back({i, i, of_feature, {}});
+    runs.back().end = i + 1;
+  }
+  for (FeatureRun& run : runs) {
+    const auto append = [&run](const std::vector<int>& more) {
+      run.columns.insert(run.columns.end(), more.begin(), more.end());
+    };
+    for (const SensorState* state : states) append(state->own.columns);
+    append(own.columns);
+    for (const auto twists : {&TwistColumns::rotational, &TwistColumns::translational}) {
+      for (std::size_t s = 0; s < states.size(); ++s) {
+        append(states[s]->twist_columns[run.chains[s]].*twists);
+      }
+    }
+  }
+  return runs;
+}
+
 /// A term's sensors as they see a batch, and its own parameters.
 template <class S>
 struct TermViews {
   std::span<const SensorView<S>* const> sensors;  ///< of the term, in its order
   const OwnParameters* own = nullptr;             ///< of the block itself
+  std::span<const FeatureRun> runs;               ///< of the features, in their order
 
   [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
 
+  /// Number of features that are compared.
+  [[nodiscard]] std::size_t features() const { return runs.back().end; }
   /// Number of free parameters of sensors and block on which a feature depends.
   [[nodiscard]] std::size_t num_own() const {
     std::size_t n = own->free.size();
     for (const SensorView<S>* view : sensors) n += view->own().free.size();
     return n;
-  }
-  /// Columns of the whole Jacobian on which a feature depends, in this order: those of each body
-  /// (rotational, then translational), those of the sensors' parameters, those of the block.  A
-  /// parameter that moves several bodies occurs several times.
-  void columns(const BodyChains& chains, std::vector<int>& all) const {
-    all.clear();
-    const auto append = [&](const std::vector<int>& more) {
-      all.insert(all.end(), more.begin(), more.end());
-    };
-    for (std::size_t s = 0; s < sensors.size(); ++s) {
-      const TwistColumns& twists = sensors[s]->state().twist_columns[chains[s]];
-      append(twists.rotational);
-      append(twists.translational);
-    }
-    for (const SensorView<S>* view : sensors) append(view->own().columns);
-    append(own->columns);
-  }
-  /// The same columns in the order of LocalSums: own parameters, rotational twists of each body,
-  /// translational twists of each body.
-  [[nodiscard]] std::vector<int> sum_columns(const BodyChains& chains) const {
-    std::vector<int> all;
-    const auto append = [&](const std::vector<int>& more) {
-      all.insert(all.end(), more.begin(), more.end());
-    };
-    for (const SensorView<S>* view : sensors) append(view->own().columns);
-    append(own->columns);
-    for (const auto twists : {&TwistColumns::rotational, &TwistColumns::translational}) {
-      for (std::size_t s = 0; s < sensors.size(); ++s) {
-        append(sensors[s]->state().twist_columns[chains[s]].*twists);
-      }
-    }
-    return all;
   }
 };
 

@@ -23,12 +23,12 @@ namespace kinecal {
 
 /// Normal equations of features on the same chains, summed over samples lane by lane.
 ///
-/// The columns are in the order of TermViews::sum_columns(), after that of the residual.  Translational twists
-/// are the last, so that they meet all others as rows, with three numbers in place of six.
+/// The columns are those of a FeatureRun, after that of the residual.  Translational twists are the
+/// last, so that they meet all others as rows, with three numbers in place of six.
 template <class S>
 class LocalSums {
  public:
-  /// @param columns  of the whole Jacobian: TermViews::sum_columns()
+  /// @param columns  of the whole Jacobian: FeatureRun::columns
   explicit LocalSums(std::vector<int> columns)
       : columns_(std::move(columns)), stride_(columns_.size() + 1), sums_(stride_ * stride_) {
     set_zero();

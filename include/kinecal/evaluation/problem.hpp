@@ -4,7 +4,6 @@
 
 #include "kinecal/evaluation/block_term.hpp"
 #include "kinecal/evaluation/evaluator.hpp"
-#include "kinecal/evaluation/sized_block_term.hpp"
 #include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
@@ -37,18 +36,16 @@ class BasicProblem final : public AnyProblem {
   }
 
   /// Adds an error block between sensors that have been added.
-  /// @tparam Known  KnownSizes of its two bodies, where the compiler knows them
   /// @throws  as AnyProblem::add_built_in()
-  template <class Known = void, ErrorBlock B>
+  template <ErrorBlock B>
   void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
     std::vector<int> indices =
         sensors_of_block(name, sensors, kQuantities<B>, kParametersOfBlock<B>);
     std::vector<int> own;
     if constexpr (kParametersOfBlock < B >> 0) own = parameters_of_block(name, B::kParameters);
-    using Type = typename TermOf<B, Known>::type;
-    terms_.push_back(
-        std::make_unique<Type>(name, block, std::move(indices), std::move(own), options));
+    terms_.push_back(std::make_unique<BlockTerm<B, S>>(name, block, std::move(indices),
+                                                       std::move(own), options));
   }
   /// The same, for a block of the built-in types.
   void add_built_in(const std::string& name, const BuiltInBlock& block,
@@ -77,15 +74,6 @@ class BasicProblem final : public AnyProblem {
   }
 
  private:
-  template <class B, class Known>
-  struct TermOf {
-    using type = BlockTerm<B, S>;
-  };
-  template <PointPairBlock B, class Known>
-  requires(!std::is_void_v<Known>) struct TermOf<B, Known> {
-    using type = SizedBlockTerm<B, S, Known>;
-  };
-
   void add_to_batch(std::size_t layout, const SampleLayout& of_sample,
                     const SampleNumbers& seen) override {
     if (layout == batches_.size()) batches_.emplace_back(of_sample.terms, seen);

@@ -20,41 +20,27 @@ namespace kinecal {
 /// Residuals of one term in a batch of samples, and their derivatives.
 template <class S>
 struct BatchRows {
-  /// Consecutive features on the same chains.
-  struct Run {
-    std::size_t features = 0;  ///< number of them
-    std::vector<int> columns;  ///< of the whole Jacobian: TermViews::columns()
-    std::size_t jacobian = 0;  ///< index in `jacobian` of its first value
-  };
-  std::vector<Run> runs;     ///< only the first `num_runs` are valid
-  std::size_t num_runs = 0;  ///< (vectors keep their memory for the next batch)
-  std::vector<S> weight;     ///< of each feature: one, or zero where it is missing
-  std::vector<S> residual;   ///< of each feature, unweighted
-  std::vector<S> jacobian;   ///< row-major, run after run; values after the last run are stale
-
-  /// Begins the next run, whose memory may be used again.
-  [[nodiscard]] Run& next_run() {
-    if (num_runs == runs.size()) runs.emplace_back();
-    runs[num_runs].features = 0;
-    return runs[num_runs++];
-  }
+  std::vector<S> weight;    ///< of each feature: one, or zero where it is missing
+  std::vector<S> residual;  ///< of each feature, unweighted
+  std::vector<S> jacobian;  ///< row-major, run after run; values after the last run are stale
 
   /// The rows of one lane, without the features that are missing in it.
   /// @param columns  of the whole Jacobian; negative: residuals only
-  void unpack(int feature_size, int lane_index, int columns, TermResiduals& out) const {
+  void unpack(std::span<const FeatureRun> runs, int feature_size, int lane_index, int columns,
+              TermResiduals& out) const {
     Eigen::Index present = 0;
     for (const S& w : weight) present += lane(w, lane_index) > 0.0 ? 1 : 0;
     out.resize(present * feature_size, columns);
     Eigen::Index row = 0;
-    std::size_t feature = 0, value = 0;
-    for (std::size_t r = 0; r < num_runs; ++r) {
-      for (const std::size_t end = feature + runs[r].features; feature < end; ++feature) {
+    std::size_t value = 0;
+    for (const FeatureRun& run : runs) {
+      for (std::size_t feature = run.first; feature < run.end; ++feature) {
         const bool there = lane(weight[feature], lane_index) > 0.0;
         for (int m = 0; m < feature_size; ++m) {
           const std::size_t i = feature * static_cast<std::size_t>(feature_size) + std::size_t(m);
           if (there) out.residual(row) = lane(residual[i], lane_index);
           if (columns >= 0) {
-            for (const int column : runs[r].columns) {
+            for (const int column : run.columns) {
               const double derivative = lane(jacobian[value++], lane_index);
               if (there) out.jacobian(row, column) += derivative;
             }
