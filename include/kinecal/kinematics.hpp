@@ -4,6 +4,7 @@
 
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/chain_checks.hpp"
+#include "kinecal/kinematics/chain_fold.hpp"
 #include "kinecal/kinematics/corrections.hpp"
 #include "kinecal/kinematics/fixed_string.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"

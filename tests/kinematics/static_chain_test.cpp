@@ -59,6 +59,7 @@ void expect_the_same_walk(const std::set<std::string>& frames) {
   for (std::size_t i = 0; i < C::kSize; ++i) {
     EXPECT_EQ(chain.joints[i].name, C::kJoints[i].name);
     EXPECT_EQ(chain.joints[i].corrected, C::kJoints[i].corrected);
+    EXPECT_EQ(chain.joints[i].reversed, C::kJoints[i].reversed);
     EXPECT_EQ(chain.joints[i].principal, C::kJoints[i].axis.principal());
     EXPECT_EQ(chain.joints[i].drive.joint, C::kJoints[i].drive.joint);
     EXPECT_DOUBLE_EQ(chain.joints[i].drive.multiplier, C::kJoints[i].drive.multiplier);
@@ -115,6 +116,16 @@ TEST(StaticChain, HasTheSameCorrectionsAsAtRunTime) {
   expect_the_same_walk<Chain<StaticRobot, "head", "camera_frame", Frames>>(frames);
   expect_the_same_walk<Chain<StaticRobot, "base", "tip", Frames, "board">>(frames);
   expect_the_same_walk<Chain<StaticRobot, "base", "base", Names<>, "tracker">>({});
+}
+
+TEST(StaticChain, LeadsBetweenAnyTwoLinks) {
+  const std::set<std::string> frames = {"pan", "mount", "camera_joint", "weight"};
+  expect_the_same_walk<Chain<StaticRobot, "tip", "base">>({});
+  expect_the_same_walk<Chain<StaticRobot, "camera_frame", "tip">>({});
+  expect_the_same_walk<Chain<StaticRobot, "tip", "camera_frame", Frames>>(frames);
+  expect_the_same_walk<Chain<StaticRobot, "counterweight", "camera_frame", Frames, "board">>(
+      frames);
+  expect_the_same_walk<Chain<StaticRobot, "finger_right", "hand">>({});
 }
 
 struct Shift {

@@ -32,13 +32,6 @@ Chain<Fetch, "torso_lift_lnk", "wrist_roll_link"> base_not_a_link;
 // meant: wrist_roll_link
 Chain<Fetch, "torso_lift_link", "wrist_roll_joint"> tip_not_a_link;
 
-// expect: the tip of this Chain is not below its base; start at a link above both or use
-Chain<Fetch, "wrist_roll_link", "head_pan_link"> tip_beside_base;
-
-// expect: the tip of this Chain is not below its base; start at a link above both or use
-Crate<Arm, Camera3d<"camera", Chain<Fetch, "torso_lift_link", "base_link">>, HandEye>
-    tip_above_base;
-
 // expect: a joint of this Chain is floating or planar; chains take fixed, revolute, continuous and
 Chain<Every, "base", "float\?\?/ing"> floating_joint;
 

@@ -163,7 +163,8 @@ class Crate {
       if (table.find(name) < 0) table.add({.name = name, .unit = unit});
     };
     if constexpr (P::kKind == ParameterKind::joint_offset) {
-      constexpr JointType type = RobotOf::kJoints[detail::joint_index<RobotOf>(P::kOwner)].type;
+      constexpr JointType type =
+          RobotOf::kJoints[detail::joint_index(RobotOf::kJoints, P::kOwner)].type;
       add(std::string(P::kOwner), turns(type) ? "rad" : "m");
     } else if constexpr (P::kKind == ParameterKind::joint_model) {
       for (const ParameterId& id : P::kIds) {

@@ -74,7 +74,7 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
   using Found = LookedUp<P::kOwner, JointNames<R>>;
 
   [[nodiscard]] static constexpr JointData joint() {
-    if constexpr (Found::kExists) return R::kJoints[joint_index<R>(P::kOwner)];
+    if constexpr (Found::kExists) return R::kJoints[joint_index(R::kJoints, P::kOwner)];
     return {};
   }
   using type = FirstOf<Unless<Found::kExists, JointOfOffset<P, Found>>,
@@ -109,8 +109,9 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::frame_offset> {
 
 template <class P, RobotData R, class Sensors, class Blocks>
 struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::virtual_frame> {
-  using type = FirstOf<Unless<joint_index<R>(P::kOwner) == kNowhere, NameOfVirtualFrame<P>>,
-                       Unless<!P::kIds.empty(), AxesOfFrame<P>>>;
+  using type =
+      FirstOf<Unless<joint_index(R::kJoints, P::kOwner) == kNowhere, NameOfVirtualFrame<P>>,
+              Unless<!P::kIds.empty(), AxesOfFrame<P>>>;
 };
 
 /// The parameters that a sensor or block declares.

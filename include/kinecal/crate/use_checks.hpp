@@ -14,14 +14,12 @@ template <class P, class Sensor>
   constexpr std::string_view owner = P::kOwner;
   if (P::kKind == ParameterKind::sensor) return Sensor::kName == owner;
   if (P::kKind == ParameterKind::virtual_frame) return !kIsInOwnFrame<typename Sensor::Model>;
-  for (std::string_view link = Sensor::Chain::kTip; link != Sensor::Chain::kBase;) {
-    const std::size_t joint = joint_above<Robot>(link);
-    if (joint == kNowhere) return true;  // the chain is wrong; its own check reports that
+  for (const std::size_t joint : Sensor::Chain::kPassed) {
+    const JointData& passed = Robot::kJoints[joint];
     const bool is_it = P::kKind == ParameterKind::frame_offset
-                           ? Robot::kJoints[joint].name == owner
-                           : static_drive<Robot>(joint).joint == owner;
+                           ? passed.name == owner
+                           : drive_of(Robot::kJoints, passed).joint == owner;
     if (is_it) return true;
-    link = Robot::kJoints[joint].parent;
   }
   return false;
 }

@@ -11,7 +11,7 @@
 // a correction.  So the walk visits only joints that move or are corrected.
 //
 // This chain is built at run time; static_chain.hpp has one that the compiler knows.  Both are
-// walked by the same code.
+// folded (chain_fold.hpp) and walked (walk.hpp) by the same code.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/kinematics/chain_fold.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
@@ -91,41 +92,29 @@ struct RuntimeChain {
 [[nodiscard]] inline RuntimeChain make_chain(const Robot& robot, const std::string& base,
                                              const std::string& tip,
                                              const std::set<std::string>& corrected = {}) {
-  std::vector<const Joint*> up = joints_to_root(robot, base);
-  std::vector<const Joint*> down = joints_to_root(robot, tip);
-  const auto root = [](const std::vector<const Joint*>& way, const std::string& link) {
-    return way.empty() ? link : way.back()->parent;
-  };
-  if (root(up, base) != root(down, tip)) {
+  (void)robot.parent_joint(base);
+  (void)robot.parent_joint(tip);
+  const std::vector<Joint>& joints = robot.joints();
+  const auto way = detail::find_way(joints, base, tip, std::vector<std::size_t>(2 * joints.size()));
+  if (!way.ends) throw RobotError("link '" + base + "' or '" + tip + "' is below itself");
+  if (!way.is_connected) {
     throw RobotError("links '" + base + "' and '" + tip + "' are not connected in robot '" +
                      robot.name() + "'");
   }
-  while (!up.empty() && !down.empty() && up.back() == down.back()) {  // above the ancestor
-    up.pop_back();
-    down.pop_back();
+  for (std::size_t n = 0; n < way.size; ++n) {
+    const Joint& joint = joints[way.joints[n]];
+    if (detail::is_passable(joint.type)) continue;
+    throw RobotError("joint '" + joint.name + "' between '" + base + "' and '" + tip + "' is " +
+                     std::string(to_string(joint.type)) +
+                     "; chains take fixed, revolute, continuous and prismatic joints");
   }
-  std::reverse(down.begin(), down.end());
-
   RuntimeChain chain{base, tip, {}, {}};
-  Pose<double> fixed;
-  const auto pass = [&](const Joint& joint, bool reversed) {
-    if (joint.type == JointType::floating || joint.type == JointType::planar) {
-      throw RobotError("joint '" + joint.name + "' between '" + base + "' and '" + tip + "' is " +
-                       std::string(to_string(joint.type)) +
-                       "; chains take fixed, revolute, continuous and prismatic joints");
-    }
-    if (!reversed) fixed = fixed * joint.origin;
-    const bool is_corrected = corrected.contains(joint.name);
-    if (is_corrected || moves(joint.type)) {
-      chain.joints.push_back(
-          {joint.name, joint.type, fixed, joint.axis, is_corrected, reversed, drive(robot, joint)});
-      fixed = {};
-    }
-    if (reversed) fixed = fixed * joint.origin.inverse();
-  };
-  for (const Joint* joint : up) pass(*joint, true);
-  for (const Joint* joint : down) pass(*joint, false);
-  chain.tail = fixed;
+  chain.tail = detail::fold(
+      joints, way, [&](const std::string& name) { return corrected.contains(name); },
+      [&](const Joint& joint, const Pose<double>& fixed, bool is_corrected, bool reversed) {
+        chain.joints.push_back({joint.name, joint.type, fixed, joint.axis, is_corrected, reversed,
+                                drive(robot, joint)});
+      });
   return chain;
 }
 

@@ -22,13 +22,6 @@ struct TipOfChain {
                 "kinecal: the tip of this Chain is not a link of the robot; correct its name");
 };
 
-template <FixedString Base, FixedString Tip, bool kTipIsBelowBase = false>
-struct WayOfChain {
-  static_assert(kTipIsBelowBase,
-                "kinecal: the tip of this Chain is not below its base; start at a link above both "
-                "or use make_chain(), which leads between any two links");
-};
-
 template <FixedString Base, FixedString Tip, bool kTurnOrSlide = false>
 struct JointsOfChain {
   static_assert(kTurnOrSlide,

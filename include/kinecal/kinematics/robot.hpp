@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/kinematics/chain_fold.hpp"
 #include "kinecal/kinematics/joint.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
 
@@ -126,13 +127,7 @@ class Robot {
 /// The joint that drives a mimic joint, through all mimic joints in between, with their multipliers
 /// and offsets combined.  A joint that does not mimic drives itself.
 [[nodiscard]] inline Mimic drive(const Robot& robot, const Joint& joint) {
-  Mimic total{joint.name, 1.0, 0.0};
-  for (const Joint* j = &joint; j->mimic; j = &robot.joint(j->mimic->joint)) {
-    total.offset += total.multiplier * j->mimic->offset;
-    total.multiplier *= j->mimic->multiplier;
-    total.joint = j->mimic->joint;
-  }
-  return total;
+  return detail::drive_of(robot.joints(), joint);
 }
 
 }  // namespace kinecal

@@ -24,7 +24,34 @@ namespace kinecal {
 struct PoseData {
   std::array<double, 9> rotation = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};  ///< row-major
   std::array<double, 3> translation = {};                                          ///< metres
+
+  /// b_T_a of a_T_b.
+  [[nodiscard]] constexpr PoseData inverse() const {
+    PoseData other;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) other.rotation[3 * i + j] = rotation[3 * j + i];
+    }
+    const double *r = other.rotation.data(), *t = translation.data();
+    for (std::size_t i = 0; i < 3; ++i, r += 3) {
+      other.translation[i] = -(r[0] * t[0] + r[1] * t[1] + r[2] * t[2]);
+    }
+    return other;
+  }
 };
+
+/// a_T_c = a_T_b * b_T_c.
+[[nodiscard]] constexpr PoseData operator*(const PoseData& a, const PoseData& b) {
+  PoseData product;
+  for (std::size_t r = 0; r < 3; ++r) {
+    const double *row = &a.rotation[3 * r], *t = b.translation.data();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double* m = &b.rotation[c];
+      product.rotation[3 * r + c] = row[0] * m[0] + row[1] * m[3] + row[2] * m[6];
+    }
+    product.translation[r] = row[0] * t[0] + row[1] * t[1] + row[2] * t[2] + a.translation[r];
+  }
+  return product;
+}
 
 /// The position of a mimic joint: multiplier * position(joint) + offset.
 struct MimicData {

@@ -3,10 +3,9 @@
 //   using Arm = Chain<fetch::Robot, "torso_lift_link", "wrist_roll_link">;
 //   const Pose<double> tip = forward_kinematics(Arm{}, position_of);
 //
-// The robot is a RobotData, usually generated from a URDF by kinecal_add_robot().  The walk is that
-// of a RuntimeChain, unrolled: each joint has its own code, fixed joints are folded, identity
-// rotations and principal axes cost nothing extra, and no table is read.  The tip must be below the
-// base; between any other two links use a RuntimeChain.
+// The robot is a RobotData, usually generated from a URDF by kinecal_add_robot().  Base and tip are any
+// two links.  The walk is that of a RuntimeChain, unrolled: each joint has its own code, fixed joints
+// are folded, identity rotations and principal axes cost nothing extra, and no table is read.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -43,6 +42,7 @@ struct StaticJointData {
   PoseData fixed;  ///< constant transform from the previous joint (or the base) to this one
   StaticAxis axis;
   bool corrected = false;
+  bool reversed = false;
   MimicData drive;
 };
 
@@ -59,7 +59,8 @@ struct StaticJoint {
   static constexpr JointType type = C::kJoints[I].type;
   static constexpr StaticAxis axis = C::kJoints[I].axis;
   static constexpr int principal = axis.principal();
-  static constexpr bool corrected = C::kJoints[I].corrected, reversed = false;
+  static constexpr bool corrected = C::kJoints[I].corrected;
+  static constexpr bool reversed = C::kJoints[I].reversed;
   static constexpr FixedOf<C, I> fixed = {};
   static constexpr MimicData drive = C::kJoints[I].drive;
   // NOLINTEND(readability-identifier-naming)
@@ -70,7 +71,7 @@ struct StaticJoint {
 /// A chain that the compiler knows.
 /// @tparam R        the robot
 /// @tparam Base     the link at which it starts
-/// @tparam Tip      the link at which it ends, below the base
+/// @tparam Tip      the link at which it ends
 /// @tparam Frames   Names of the joints with a frame correction
 /// @tparam Virtual  name of a virtual frame beyond the tip, such as a checkerboard, or "": see
 ///                  with_virtual_frame()
@@ -86,17 +87,16 @@ struct Chain {
   using BaseLink = LookedUp<kBase, detail::LinkNames<R>>;
   using TipLink = LookedUp<kTip, detail::LinkNames<R>>;
   static constexpr bool kHasLinks = BaseLink::kExists && TipLink::kExists;
-  static constexpr std::size_t kDepth =
-      kHasLinks ? detail::depth_below<R>(kBase, kTip) : detail::kNowhere;
-  static constexpr bool kIsBelow = kDepth != detail::kNowhere;
-  static constexpr auto kWay = detail::way_down<R, (kIsBelow ? kDepth : 0)>(kTip);
+  static constexpr auto kWay = detail::find_way(R::kJoints, kHasLinks ? kBase : kTip, kTip,
+                                                std::array<std::size_t, 2 * R::kJoints.size()>{});
 
-  [[nodiscard]] static constexpr bool is_kept(const JointData& joint) {
-    return moves(joint.type) || Frames::contains(joint.name);
+  [[nodiscard]] static constexpr PoseData fold(auto&& visit) {
+    return detail::fold(
+        R::kJoints, kWay, [](std::string_view name) { return Frames::contains(name); }, visit);
   }
   [[nodiscard]] static constexpr std::size_t count() {
     std::size_t n = kVirtual.empty() ? 0 : 1;
-    for (const std::size_t i : kWay) n += is_kept(R::kJoints[i]) ? 1 : 0;
+    (void)fold([&n](const auto&...) { ++n; });
     return n;
   }
 
@@ -108,37 +108,35 @@ struct Chain {
     std::array<detail::StaticJointData, kSize> joints;
     PoseData tail;
   };
-  [[nodiscard]] static constexpr Folding fold() {
+  [[nodiscard]] static constexpr Folding folding() {
     Folding result{};
-    PoseData fixed;
     std::size_t n = 0;
-    for (const std::size_t i : kWay) {
-      const JointData& joint = R::kJoints[i];
-      fixed = fixed * joint.origin;
-      if (!is_kept(joint)) continue;
-      result.joints[n++] = {joint.name,
-                            joint.type,
-                            fixed,
-                            {joint.axis},
-                            Frames::contains(joint.name),
-                            detail::static_drive<R>(i)};
-      fixed = {};
-    }
+    result.tail =
+        fold([&](const JointData& joint, const PoseData& fixed, bool corrected, bool reversed) {
+          result.joints[n++] = {joint.name,
+                                joint.type,
+                                fixed,
+                                {joint.axis},
+                                corrected,
+                                reversed,
+                                detail::drive_of(R::kJoints, joint)};
+        });
     if (!kVirtual.empty()) {
-      result.joints[n] = {kVirtual, JointType::fixed,    fixed, {{1.0, 0.0, 0.0}},
-                          true,     {kVirtual, 1.0, 0.0}};
-      fixed = {};
+      result.joints[n] = {kVirtual, JointType::fixed,    result.tail, {{1.0, 0.0, 0.0}}, true,
+                          false,    {kVirtual, 1.0, 0.0}};
+      result.tail = {};
     }
-    result.tail = fixed;
     return result;
   }
-  static constexpr Folding kFolding = fold();
+  static constexpr Folding kFolding = folding();
 
  public:
   /// The joints that move or are corrected, from base to tip.
   static constexpr const std::array<detail::StaticJointData, kSize>& kJoints = kFolding.joints;
   /// Constant transform from the last of them to the tip.
   static constexpr const PoseData& kTail = kFolding.tail;
+  /// Indices in the robot of all joints between base and tip.
+  static constexpr std::span<const std::size_t> kPassed{kWay.joints.data(), kWay.size};
   /// Index of the first joint that moves; kSize if all are fixed.
   static constexpr std::size_t kFirstMotion = [] {
     std::size_t i = 0;
@@ -147,16 +145,12 @@ struct Chain {
   }();
 
  private:
-  [[nodiscard]] static constexpr bool is_taken(std::size_t joint) {
-    const JointType type = R::kJoints[joint].type;
-    return type != JointType::floating && type != JointType::planar;
-  }
-
-  static constexpr bool kTurnOrSlide = std::all_of(kWay.begin(), kWay.end(), is_taken);
+  static constexpr bool kTurnOrSlide =
+      std::all_of(kPassed.begin(), kPassed.end(),
+                  [](std::size_t joint) { return detail::is_passable(R::kJoints[joint].type); });
   static constexpr detail::FirstOf<
       detail::Unless<BaseLink::kExists, detail::BaseOfChain<Base, BaseLink>>,
       detail::Unless<TipLink::kExists, detail::TipOfChain<Tip, TipLink>>,
-      detail::Unless<kIsBelow, detail::WayOfChain<Base, Tip>>,
       detail::Unless<kTurnOrSlide, detail::JointsOfChain<Base, Tip>>,
       typename detail::CheckFrames<R, Frames>::type>
       kCheck = {};

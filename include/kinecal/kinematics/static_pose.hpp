@@ -9,20 +9,6 @@
 
 namespace kinecal {
 
-/// a_T_c = a_T_b * b_T_c.
-[[nodiscard]] constexpr PoseData operator*(const PoseData& a, const PoseData& b) {
-  PoseData product;
-  for (std::size_t r = 0; r < 3; ++r) {
-    const double *row = &a.rotation[3 * r], *t = b.translation.data();
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double* m = &b.rotation[c];
-      product.rotation[3 * r + c] = row[0] * m[0] + row[1] * m[3] + row[2] * m[6];
-    }
-    product.translation[r] = row[0] * t[0] + row[1] * t[1] + row[2] * t[2] + a.translation[r];
-  }
-  return product;
-}
-
 namespace detail {
 
 /// Column `Col` of the rotation, or the translation (3).
