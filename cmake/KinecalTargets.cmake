@@ -115,7 +115,8 @@ file(GLOB KINECAL_DOUBLE_INSTANCES CONFIGURE_DEPENDS
 
 kinecal_add_library(core
   INSTANCES ${KINECAL_PACKET_INSTANCES} ${KINECAL_DOUBLE_INSTANCES}
-  FOLDERS geometry kinematics parameters samples sensors errors problem evaluation crate core linkage
+  FOLDERS geometry kinematics parameters samples sensors errors problem evaluation crate testing core
+          linkage
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(solve
   FOLDERS solve trust

@@ -121,6 +121,82 @@ error_blocks:
   EXPECT_NEAR(value("bar_radius"), 0.35, 1e-8);
 }
 
+TEST_F(OpenBlocksProgram, CalibratesOnABarBetweenTwoPoints) {
+  const Vector3<double> tip(0.2, 0.1, 0.05), socket(0.5, 0.1, 0.3);
+  record([&](const Pose<double>& hand, Sample& sample) {
+    const Vector3<double> end = socket + 0.35 * (hand * tip - socket).normalized();
+    sample.observations = {{"arm", {{"hand", hand.inverse() * end}}},
+                           {"socket", {{"base", socket}}}};
+  });
+  const test::Outcome result = calibrate(R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+ - {name: socket, type: chain3d, frame: base}
+free_params: [elbow, elbow_gear_ratio, bar_length]
+error_blocks:
+ - {name: bar, type: point_distance, model_a: arm, model_b: socket, length: 0.3}
+)");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("elbow"), kElbow, 1e-8);
+  EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-8);
+  EXPECT_NEAR(value("bar_length"), 0.35, 1e-8);
+}
+
+TEST_F(OpenBlocksProgram, CalibratesAlongAKnownLine) {
+  const Vector3<double> point(0.3, -0.2, 0.1), direction(1.0, 2.0, -0.5);
+  double along = -0.5;
+  record([&](const Pose<double>& hand, Sample& sample) {
+    along += 0.03;
+    const Vector3<double> p_base = point + along * direction;
+    sample.observations = {{"arm", {{"hand", hand.inverse() * p_base}}}};
+  });
+  const test::Outcome result = calibrate(R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+free_params: [elbow, elbow_gear_ratio]
+error_blocks:
+ - {name: rail, type: point_to_line, model: arm, x: 0.3, y: -0.2, z: 0.1, a: 1, b: 2, c: -0.5}
+)");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("elbow"), kElbow, 1e-8);
+  EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-8);
+}
+
+/// A camera in the hand and one in the base see the same points; nobody knows where these are.
+TEST_F(OpenBlocksProgram, CalibratesWithTwoCameras) {
+  constexpr double kFocal = 0.01;
+  CameraInfo info;
+  info.width = 640;
+  info.height = 480;
+  info.k = {500, 0, 320, 0, 500, 240, 0, 0, 1};
+  info.p = {500, 0, 320, 0, 0, 500, 240, 0, 0, 0, 1, 0};
+  const auto pixel = [](const Vector3<double>& p, double f) {
+    return Vector3<double>(320 + f * p.x() / p.z(), 240 + f * p.y() / p.z(), 0.0);
+  };
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> side(-0.5, 0.5), depth(1.0, 2.0);
+  record([&](const Pose<double>& hand, Sample& sample) {
+    Observation eye{"eye", {}, info}, wall{"wall", {}, info};
+    while (eye.features.size() < 4) {
+      const Vector3<double> p(side(random), side(random), depth(random)), p_base = hand * p;
+      if (p_base.z() < 0.2) continue;  // behind the other camera
+      eye.features.push_back({"hand", pixel(p, 500 * (1.0 + kFocal))});
+      wall.features.push_back({"base", pixel(p_base, 500)});
+    }
+    sample.observations = {eye, wall};
+  });
+  const test::Outcome result = calibrate(R"(models:
+ - {name: eye, type: camera2d, frame: hand}
+ - {name: wall, type: camera2d, frame: base}
+free_params: [elbow, elbow_gear_ratio, eye_fx, eye_fy]
+error_blocks:
+ - {name: stereo, type: camera2d_to_camera2d, model_a: eye, model_b: wall}
+)");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("elbow"), kElbow, 1e-8);
+  EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-8);
+  EXPECT_NEAR(value("eye_fx"), kFocal, 1e-8);
+  EXPECT_NEAR(value("eye_fy"), kFocal, 1e-8);
+}
+
 TEST_F(OpenBlocksProgram, AMeanHoldsAParameterThatSamplesDoNotDetermine) {
   record([&](const Pose<double>& hand, Sample& sample) {
     sample.observations = {{"arm", {{"hand", Vector3<double>::Zero()}}},
@@ -154,7 +230,9 @@ TEST_F(OpenBlocksProgram, RefusesWhatCannotBe) {
   };
   const std::string plane = "type: chain3d_to_plane";
   expect_refused("elbow_gear_ration", plane, "did you mean 'elbow_gear_ratio'?");
-  expect_refused("hand_gear_ratio", plane, "calibrate.yaml:4: ");
+  expect_refused("hand_gear_ratio", plane,
+                 "calibrate.yaml:4: free parameter 'hand_gear_ratio' is neither a joint of the "
+                 "robot nor a parameter of a joint, sensor or error block");
   expect_refused("b_radius", plane, "calibrate.yaml:4: ");
   expect_refused("elbow", "type: point_to_line, c: 0",
                  "calibrate.yaml:6: error block 'b': the line's");

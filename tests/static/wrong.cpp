@@ -1,6 +1,7 @@
 // Wrong lines.  Each gives exactly one error: the sentence after "expect:" above it.  "meant:" is
 // the name that the compiler suggests.  run.cmake compares errors and suggestions in order, so each
-// sentence is the first and only error of its line.
+// sentence is the first and only error of its line.  Compilers say a sentence once for the same
+// arguments, and those of constructors after all others.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/errors/plane_to_plane.hpp"
 #include "kinecal/errors/point_to_pixel.hpp"
@@ -39,6 +40,22 @@ Chain<Every, "base", "float\?\?/ing"> floating_joint;
 // meant: head_pan_joint
 Chain<Fetch, "torso_lift_link", "head_pan_link", Names<"haed_pan_joint">> misspelt_frame;
 
+// ---- chains, in crates that are used
+
+// expect: the base of this Chain is not a link of the robot; correct its name
+// meant: torso_lift_link
+using AtLift = Camera3d<"camera", Chain<Fetch, "torso_lift_ling", "head_pan_link">>;
+auto calibrate_misspelt_base() {
+  return calibrate(Crate<Arm, AtLift, HandEye>(), {});
+}
+
+// expect: the tip of this Chain is not a link of the robot; correct its name
+// meant: head_pan_link
+using AtPan = Camera3d<"camera", Chain<Fetch, "torso_lift_link", "head_pan_lnk">>;
+auto problem_of_misspelt_tip() {
+  return Crate<Arm, AtPan, FrameOffset<"head_pan_joint">, HandEye>().problem({});
+}
+
 // ---- before the constructors of crates, in which all further checks stand
 
 // expect: this template argument is not a Crate part; parts are sensors, free parameters, Block
@@ -48,6 +65,12 @@ Crate<Arm, Head, HandEye, PointToPlane> not_a_part;
 // meant: hand_eye
 auto& misspelt_block(Crate<Arm, Head, HandEye>& crate) {
   return crate.block<"hand_ey">();
+}
+
+// expect: the crate has no part of this name; correct the name
+// meant: hand_eye
+void weight_of_misspelt_block(Crate<Arm, Head, HandEye>& crate) {
+  crate.block<"hand_eys">().options.weight = 2.0;
 }
 
 // expect: this parameter is not free in the crate; add it there or ask for another
@@ -193,5 +216,64 @@ Crate<Arm, Head, HandEye, Block<"hand_eye", PlaneToPlane, "camera", "arm">> bloc
 Crate<Arm, Head, JointOffset<"elbow_flex_joint">, JointOffset<"head_pan_joint">, HandEye,
       PriorOn<"small", "elbow_flex_joint">, PriorOn<"small", "head_pan_joint">>
     priors_of_one_name;
+
+// ---- crates in use: no further error where they are used
+
+// expect: the robot does not have the joint in this JointOffset; correct its name
+// meant: elbow_flex_joint
+using WithoutJoint = Crate<Arm, Head, JointOffset<"elbow_flex_jiont">, HandEye>;
+auto calibrate_misspelt_joint(std::span<const Sample> samples) {
+  WithoutJoint crate;
+  crate.block<"hand_eye">().options.weight = 2.0;
+  (void)make_calibration(crate, samples);
+  (void)WithoutJoint::free(crate.table(samples));
+  return calibrate(crate, crate.table(samples), samples);
+}
+
+// expect: the residual of this error block is not a vector of fixed size in the scalar of its
+struct OfAnySize : AnySize {};
+auto calibrate_residual_of_any_size() {
+  return calibrate(Crate<Arm, Head, Block<"ground", OfAnySize, "camera">>(), {});
+}
+
+// expect: no sensors deliver the arguments of this error block; write template <class S>
+struct OfAFlag : OfFlags {};
+auto table_of_flags() {
+  return Crate<Arm, Head, Block<"ground", OfAFlag, "camera">>().table({});
+}
+
+// expect: a sensor of this error block is not in the crate; add it or correct its name
+// meant: camera
+auto problem_of_misspelt_sensor() {
+  return Crate<Arm, Head, Block<"hand_eye", PointToPoint, "camer", "arm">>().problem({});
+}
+
+// expect: this Crate has no sensors; add those of its blocks
+auto calibrate_no_sensors() {
+  return calibrate(Crate<FrameOffset<"elbow_flex_joint">, HandEye, Ground>(), {});
+}
+
+// expect: this error block is given a sensor of the wrong kind, which does not deliver what its
+auto calibrate_pixels_as_points() {
+  return calibrate(Crate<Arm, Pinhole, Block<"eye", PointToPoint, "arm", "pinhole">>(), {});
+}
+
+// expect: this error block is given too many or too few sensors; it has one for each argument of
+auto calibrate_too_few_sensors() {
+  return calibrate(Crate<Arm, Head, Block<"far", PointToPoint, "camera">>(), {});
+}
+
+// expect: two blocks of this Crate have the same name; rename one of them
+auto calibrate_blocks_of_one_name() {
+  return calibrate(Crate<Arm, Head, HandEye, Block<"hand_eye", PointToPlane, "camera">>(), {});
+}
+
+// expect: the joint or frame in this PriorOn is not free in the crate; correct its name or leave
+// meant: head_pan_joint
+auto calibrate_misspelt_prior() {
+  return calibrate(
+      Crate<Arm, Head, FrameOffset<"head_pan_joint">, HandEye, PriorOn<"p", "head_pan_jont">>(),
+      {});
+}
 
 }  // namespace kinecal

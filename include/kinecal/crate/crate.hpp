@@ -80,10 +80,7 @@ class Crate {
 
   /// The compiler checks the crate here and not earlier, because a crate that is only a part of
   /// another may lack sensors or blocks.
-  Crate() {
-    [[maybe_unused]] constexpr
-        typename detail::CheckCrate<Sensors, Parameters, Blocks, Priors>::type kCheck = {};
-  }
+  Crate() { [[maybe_unused]] constexpr Check kCheck = {}; }
 
   /// The error block with this name, and its options.
   template <FixedString Name>
@@ -105,14 +102,14 @@ class Crate {
   /// @param samples  a camera's parameters start from the settings its driver had while recording
   [[nodiscard]] ParameterTable table(std::span<const Sample> samples) const {
     ParameterTable table;
-    for_each(Sensors{}, [&]<class P>(P*) {
+    for_each(IfRight<Sensors>{}, [&]<class P>(P*) {
       add_sensor_parameters(table, *any_sensor(typename P::Model{}), P::mount(), samples);
     });
-    for_each(Blocks{}, [&]<class P>(P*) {
+    for_each(IfRight<Blocks>{}, [&]<class P>(P*) {
       const auto infos = parameters_of(std::get<P>(blocks_).error);
       add_parameters(table, P::kName, infos);
     });
-    for_each(Parameters{}, [&]<class P>(P*) { add_parameter<P>(table); });
+    for_each(IfRight<Parameters>{}, [&]<class P>(P*) { add_parameter<P>(table); });
     return table;
   }
 
@@ -127,16 +124,16 @@ class Crate {
   template <class S = Packet>
   [[nodiscard]] BasicProblem<S> problem(ParameterTable table) const {
     BasicProblem<S> problem(robot(), base(), std::move(table), FramesHere::all());
-    for_each(Sensors{}, [&]<class P>(P*) {
+    for_each(IfRight<Sensors>{}, [&]<class P>(P*) {
       problem.add_sensor(typename P::Model{}, P::mount(), walks<S, P>());
     });
-    for_each(Blocks{}, [&]<class P>(P*) {
+    for_each(IfRight<Blocks>{}, [&]<class P>(P*) {
       const P& part = std::get<P>(blocks_);
       const auto& names = P::kSensorNames;
       problem.add_block(std::string(P::kName), part.error, {names.begin(), names.end()},
                         part.options);
     });
-    for_each(Priors{}, [&]<class P>(P*) {
+    for_each(IfRight<Priors>{}, [&]<class P>(P*) {
       const P& part = std::get<P>(priors_);
       problem.add_prior(std::string(P::kName),
                         {std::string(P::kOf), part.joint_scale, part.position_scale,
@@ -147,6 +144,12 @@ class Crate {
   }
 
  private:
+  using Check = typename detail::CheckCrate<Sensors, Parameters, Blocks, Priors>::type;
+  /// A wrong crate fills nothing, so that its sentence is the only error where it is used.
+  template <class List>
+  using IfRight =
+      std::conditional_t<std::is_same_v<Check, detail::Holds>, List, detail::TypeList<>>;
+
   using FramesHere = detail::Frames<Parameters>;
 
   using BaseChain = typename detail::FirstChain<Sensors>::type;
@@ -207,6 +210,8 @@ class Crate {
         kPartCheck = {};
     if constexpr (Found::kExists) {
       return std::get<Names::index(Name)>(parts);
+    } else if constexpr (sizeof...(Ts) > 0) {
+      return std::get<0>(parts);  // has options, too: no further error
     } else {
       return parts;
     }

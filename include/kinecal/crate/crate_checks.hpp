@@ -12,6 +12,7 @@ struct NoRobot {
 };
 struct NoChain {
   using Robot = NoRobot;
+  static constexpr std::string_view kBase = "";
 };
 /// The chain of the first sensor; the crate has its robot and base.
 template <class Sensors>
@@ -64,8 +65,13 @@ struct BaseOfCrate {
                 "robots; features are compared in one base, so give all chains the same one");
 };
 
+/// False if a chain is wrong; its own check reports that.
+template <class C>
+inline constexpr bool kHasBase = LookedUp<C::kBase, LinkNames<typename C::Robot>>::kExists;
+
 template <class A, class B>
 [[nodiscard]] constexpr bool start_together() {
+  if (!kHasBase<A> || !kHasBase<B>) return true;
   return std::is_same_v<typename A::Robot, typename B::Robot> && A::kBase == B::kBase;
 }
 

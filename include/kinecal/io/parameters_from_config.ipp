@@ -166,8 +166,8 @@ inline void add_params(ParameterTable& table, const Robot& robot, const StepConf
     }
     diagnostics.error(
         param.place,
-        fmt::format("free parameter '{}' is neither a joint of the robot nor a parameter of "
-                    "a camera{}",
+        fmt::format("free parameter '{}' is neither a joint of the robot nor a parameter of a "
+                    "joint, sensor or error block{}",
                     param.name, did_you_mean(param.name, free_param_names(robot, step))));
   }
 }

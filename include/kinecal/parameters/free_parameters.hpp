@@ -133,25 +133,29 @@ struct VirtualFrame {
   static constexpr auto kIds = detail::kFrameIds<Frame, Chosen>;        ///< its numbers
 };
 
-/// Parameters of joint models (kinematics/joint_model.hpp).
-/// @tparam Parts  their names: "gear_ratio", "eccentric_sin", "eccentric_cos"
-template <FixedString Joint, FixedString... Parts>
-struct JointModelParameters {
-  static constexpr ParameterKind kKind = ParameterKind::joint_model;  ///< what it corrects
-  static constexpr std::string_view kOwner = Joint;                   ///< name of the joint
+/// Parameters that their owner declares: a joint model, a sensor or an error block.
+/// @tparam Owner  name of the joint, sensor or block
+/// @tparam Parts  names of the parameters, as in the owner's kParameters
+template <ParameterKind Kind, FixedString Owner, FixedString... Parts>
+struct OwnedParameters {
+  static constexpr ParameterKind kKind = Kind;       ///< what it corrects
+  static constexpr std::string_view kOwner = Owner;  ///< name of the owner
   static constexpr std::array<ParameterId, sizeof...(Parts)> kIds = {
-      ParameterId{Joint, Parts}...};  ///< its numbers
+      ParameterId{Owner, Parts}...};  ///< its numbers
 };
 
+// Types of their own and no aliases: compilers print these names.
+
+/// Parameters of joint models (kinematics/joint_model.hpp): "gear_ratio", "eccentric_sin",
+/// "eccentric_cos".
+template <FixedString Joint, FixedString... Parts>
+struct JointModelParameters : OwnedParameters<ParameterKind::joint_model, Joint, Parts...> {};
 /// Parameters that a sensor declares.
-/// @tparam Parts  their names, as in the sensor's kParameters
 template <FixedString Sensor, FixedString... Parts>
-struct SensorParameters {
-  static constexpr ParameterKind kKind = ParameterKind::sensor;  ///< what it corrects
-  static constexpr std::string_view kOwner = Sensor;             ///< name of the sensor
-  static constexpr std::array<ParameterId, sizeof...(Parts)> kIds = {
-      ParameterId{Sensor, Parts}...};  ///< its numbers
-};
+struct SensorParameters : OwnedParameters<ParameterKind::sensor, Sensor, Parts...> {};
+/// Parameters that an error block declares.
+template <FixedString Block, FixedString... Parts>
+struct BlockParameters : OwnedParameters<ParameterKind::block, Block, Parts...> {};
 
 /// Intrinsics of a camera: fx fy cx cy, relative.
 template <FixedString Camera>
@@ -164,16 +168,6 @@ struct DepthCorrection : SensorParameters<Camera, "z_offset", "z_scaling"> {};
 /// Intrinsics and depth correction of a depth camera: six numbers.
 template <FixedString Camera>
 struct DepthIntrinsics : SensorParameters<Camera, "fx", "fy", "cx", "cy", "z_offset", "z_scaling"> {
-};
-
-/// Parameters that an error block declares.
-/// @tparam Parts  their names, as in the block's kParameters
-template <FixedString Block, FixedString... Parts>
-struct BlockParameters {
-  static constexpr ParameterKind kKind = ParameterKind::block;  ///< what it corrects
-  static constexpr std::string_view kOwner = Block;             ///< name of the block
-  static constexpr std::array<ParameterId, sizeof...(Parts)> kIds = {
-      ParameterId{Block, Parts}...};  ///< its numbers
 };
 
 /// A part of a crate that frees numbers.

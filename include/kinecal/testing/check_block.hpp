@@ -1,0 +1,131 @@
+// Holds an error block against the laws of CONCEPTS.md.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/testing/block_input.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// The checks of a block.
+template <ErrorBlock B>
+class BlockCheck {
+  using Input = BlockInput<B, double>;
+  static constexpr int kM = Input::kM, kVariables = Input::kVariables;
+  static constexpr int kInputs = 32;  ///< of random input
+
+ public:
+  explicit BlockCheck(const B& block) : block_(block) {
+    if constexpr (requires { B::kType; }) whose_ = "error block '" + std::string(B::kType) + "': ";
+  }
+
+  /// Checks that the residual is zero and has derivatives where the sensors agree.
+  [[nodiscard]] Verdict agreement(const Input& input) const {
+    const Eigen::MatrixXd r = input.residual(block_), zero = Eigen::MatrixXd::Zero(kM, 1);
+    const Verdict v = compare(whose_ + "the residual is not zero where the sensors agree",
+                              {"residual", r}, {"expected", zero}, 1e-9);
+    return v ? derivatives(input) : Verdict{v.text + input.text()};
+  }
+  /// The same where it is clear at which arguments they agree.
+  [[nodiscard]] Verdict obvious_agreement() {
+    constexpr auto& kAll = Input::kQuantities;
+    if constexpr (Input::kOwn == 0 && PixelBlock<B>) {
+      Input input = Input::random(block_, random_);
+      input.values[1] = input.values[0];
+      return agreement(input);
+    } else if constexpr (Input::kOwn == 0 && kAll.size() == 2) {
+      if constexpr (kAll[0] == kAll[1] && kAll[0] != Quantity::reading) {
+        Input input = Input::random(block_, random_);
+        make_agree<kAll[0]>(random_, &input.values[0], &input.values[Input::kValues / 2]);
+        return agreement(input);
+      }
+    }
+    return kLawsHold;
+  }
+  /// Checks derivatives and packets at random input.
+  [[nodiscard]] Verdict anywhere() {
+    std::vector<Input> usable;
+    for (int n = 0; n < kInputs; ++n) {
+      const Input input = Input::random(block_, random_);
+      if (!input.residual(block_).allFinite()) continue;
+      if (const Verdict v = derivatives(input); !v) return v;
+      usable.push_back(input);
+    }
+    if (usable.empty()) {
+      return {whose_ + "the residual is not a number at any of " + std::to_string(kInputs) +
+              " random inputs"};
+    }
+    if constexpr (!PlanePairBlock<B>) return packets(usable);
+    return kLawsHold;
+  }
+
+ private:
+  [[nodiscard]] Verdict derivatives(const Input& input) const {
+    const auto by_jets = input.differentiate(block_);
+    const Eigen::MatrixXd value = input.residual(block_), again = input.residual(block_),
+                          of_jets = by_jets.value, said = by_jets.derivatives;
+    Verdict v = compare(whose_ + "two calls with the same arguments differ", {"first", value},
+                        {"second", again}, 0.0);
+    if (v) {
+      v = compare(whose_ + "the residual in jets differs from that in double", {"in jets", of_jets},
+                  {"in double", value}, kOfRounding * (1.0 + largest(value) + largest(said)));
+    }
+    if (v) {
+      const auto at = [&](int k, double step) -> Eigen::MatrixXd {
+        return input.moved(k, step).residual(block_);
+      };
+      v = compare_derivatives(whose_, {"by jets", said}, central_differences<kM, kVariables>(at),
+                              largest(value));
+    }
+    return v ? v : Verdict{v.text + input.text()};
+  }
+  [[nodiscard]] Verdict packets(const std::vector<Input>& inputs) const {
+    for (std::size_t first = 0; first < inputs.size(); first += kLanes<Packet>) {
+      const auto packed = BlockInput<B, Packet>::packed(inputs, first);
+      const auto by_jets = packed.differentiate(block_);
+      const Eigen::Matrix<Packet, kM, 1> plain = packed.residual(block_);
+      for (int i = 0; i < kLanes<Packet>; ++i) {
+        const Input& input = inputs[(first + static_cast<std::size_t>(i)) % inputs.size()];
+        const Verdict v = input.differentiate(block_).is_lane_of(i, whose_, by_jets, plain);
+        if (!v) return {v.text + input.text()};
+      }
+    }
+    return kLawsHold;
+  }
+
+  const B& block_;
+  std::string whose_ = "error block: ";
+  RandomInput random_;
+};
+
+}  // namespace detail
+
+/// Checks an error block:
+///
+/// - The residual is zero where the sensors agree (1e-9), and has derivatives there.
+/// - Derivatives by jets equal central differences (1e-6 of the largest derivative), at 32 random
+///   inputs.  A block that drops a derivative is found, as is one with a kink where sensors agree.
+/// - In packets it is, lane by lane, what it is in double (1e-10), with all derivatives.  A block
+///   that branches on values is found, or does not compile.  Blocks of planes may branch.
+/// - A second call gives the same.
+///
+/// Points are within 1 m of the base, pixels 0 to 500, parameters within 0.1 of their initial values;
+/// inputs at which the residual is not a number are skipped.
+/// @param agreeing  arguments of the block, in double, at which the residual is zero with the initial
+///                  values of its parameters.  Without them two equal points, poses, planes or
+///                  pixels agree, and two rays that meet; blocks of other arguments or with
+///                  parameters are then not checked to be zero anywhere.
+template <ErrorBlock B, class... Arguments>
+[[nodiscard]] Verdict check_block(const B& block, const Arguments&... agreeing) {
+  detail::BlockCheck<B> check(block);
+  Verdict verdict;
+  if constexpr (sizeof...(Arguments) > 0) {
+    verdict = check.agreement(detail::BlockInput<B, double>::of(block, agreeing...));
+  } else {
+    verdict = check.obvious_agreement();
+  }
+  return verdict ? check.anywhere() : verdict;
+}
+
+}  // namespace kinecal
