@@ -10,24 +10,33 @@
 
 namespace kinecal {
 
-/// Table indices of the parameters of each joint of a chain.  A mimic joint has the offset of the
-/// joint that drives it.
+/// The indices of the parameters of a joint of a chain.  A mimic joint has the offset of the joint that
+/// drives it.
+/// @param find  callable (owner, part): index of a parameter, or -1; an offset has an empty part
+template <class Joint, class Find>
+[[nodiscard]] constexpr JointIndices joint_indices(const Joint& joint, const Find& find) {
+  JointIndices indices;
+  if (moves(joint.type)) {
+    indices.offset = find(joint.drive.joint, "");
+    indices.gain = joint.drive.multiplier;
+    for (std::size_t k = 0; k < kJointModelSize; ++k) {
+      indices.model[k] = find(joint.drive.joint, kJointModelNames[k]);
+    }
+  }
+  for (std::size_t k = 0; k < 6 && joint.corrected; ++k) {
+    indices.frame[k] = find(joint.name, kFrameAxes[k]);
+  }
+  return indices;
+}
+
+/// Table indices of the parameters of each joint of a chain.
 [[nodiscard]] inline std::vector<JointIndices> chain_parameters(const RuntimeChain& chain,
                                                                 const ParameterTable& table) {
   std::vector<JointIndices> indices;
   for (const ChainJoint& joint : chain.joints) {
-    JointIndices& of_joint = indices.emplace_back();
-    if (moves(joint.type)) {
-      of_joint.offset = table.find(joint.drive.joint);
-      of_joint.gain = joint.drive.multiplier;
-      for (std::size_t k = 0; k < kJointModelSize; ++k) {
-        of_joint.model[k] = table.find(parameter_name(joint.drive.joint, kJointModelNames[k]));
-      }
-    }
-    if (!joint.corrected) continue;
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      of_joint.frame[axis] = table.find(parameter_name(joint.name, kFrameAxes[axis]));
-    }
+    indices.push_back(joint_indices(joint, [&](std::string_view owner, std::string_view part) {
+      return table.find(part.empty() ? std::string(owner) : parameter_name(owner, part));
+    }));
   }
   return indices;
 }

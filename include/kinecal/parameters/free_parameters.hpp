@@ -16,7 +16,7 @@
 #pragma once
 
 #include "kinecal/kinematics/fixed_string.hpp"
-#include "kinecal/kinematics/twist_walker.hpp"
+#include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/parameters/parameter.hpp"
 
 namespace kinecal {
@@ -234,16 +234,9 @@ template <StaticChain C, class F>
 inline constexpr std::array<JointIndices, C::kSize> kColumnsOf = [] {
   std::array<JointIndices, C::kSize> columns{};
   for (std::size_t i = 0; i < C::kSize; ++i) {
-    const detail::StaticJointData& joint = C::kJoints[i];
-    if (moves(joint.type)) {
-      columns[i].offset = F::find(joint.drive.joint, "");
-      columns[i].gain = joint.drive.multiplier;
-      for (std::size_t k = 0; k < kJointModelSize; ++k) {
-        columns[i].model[k] = F::find(joint.drive.joint, kJointModelNames[k]);
-      }
-    }
-    if (!joint.corrected) continue;
-    for (std::size_t k = 0; k < 6; ++k) columns[i].frame[k] = F::find(joint.name, kFrameAxes[k]);
+    columns[i] = joint_indices(C::kJoints[i], [](std::string_view owner, std::string_view part) {
+      return F::find(owner, part);
+    });
   }
   return columns;
 }();
