@@ -176,6 +176,7 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
     const Batches<S>& batches = problem_.batches()[layout];
     const std::size_t size = batches.size();
     for (std::size_t b = std::max(first, before); b < std::min(end, before + size); ++b) {
+      batches.prefetch(b + 1 - before);
       for (std::size_t s = 0; s < states_.size(); ++s) {
         if (batches.has(s)) worker.views[s].update(batches.observation(b - before, s));
       }

@@ -154,6 +154,14 @@ class Batches {
   }
   /// True if a sensor observed something.
   [[nodiscard]] bool has(std::size_t sensor) const { return layouts_[sensor].has_value(); }
+  /// Begins to load a batch from memory, while another one is evaluated; if all of them do not fit
+  /// into a cache.
+  void prefetch(std::size_t batch) const {
+    constexpr std::size_t kLine = 64, kCache = 1 << 20;  // bytes
+    if (batch >= size() || numbers_.size() * sizeof(S) < kCache) return;
+    const auto* bytes = reinterpret_cast<const char*>(numbers_.data() + batch * size_);
+    for (std::size_t i = 0; i < size_ * sizeof(S); i += kLine) __builtin_prefetch(bytes + i);
+  }
   /// What a sensor observed in the samples of a batch.
   [[nodiscard]] BatchObservation<S> observation(std::size_t batch, std::size_t sensor) const {
     return {numbers_.data() + batch * size_, &*layouts_[sensor]};
