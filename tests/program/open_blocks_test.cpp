@@ -139,6 +139,39 @@ error_blocks:
   EXPECT_NEAR(value("elbow"), 0.03, 1e-9);
 }
 
+TEST_F(OpenBlocksProgram, APriorHoldsAParameterOfABlockAndOfAJointModel) {
+  record([&](const Pose<double>& hand, Sample& sample) {
+    sample.observations = {{"arm", {{"hand", hand.inverse() * Vector3<double>(0.85, 0.12, 0.33)}}}};
+  });
+  const auto config = [](const std::string& free, const std::string& prior) {
+    return R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+free_params: [)" +
+           free + R"(]
+error_blocks:
+ - {name: bar, type: point_to_sphere, model: arm, x: 0.45, y: 0.12, z: 0.33, radius: 0.3}
+ - {name: keep_radius, type: outrageous, param: )" +
+           prior + R"(, mean: 0.37, sigma: 1.0e-9}
+ - {name: keep_gear, type: outrageous, param: elbow_gear_ratio, joint_scale: 1.0e+9, mean: -0.01}
+)";
+  };
+  const test::Outcome result =
+      calibrate(config("bar_radius, elbow, elbow_gear_ratio", "bar_radius"));
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("bar_radius"), 0.37, 1e-12);
+  EXPECT_NEAR(value("elbow_gear_ratio"), -0.01, 1e-12);
+
+  const test::Outcome misspelt =
+      calibrate(config("bar_radius, elbow, elbow_gear_ratio", "bar_radios"));
+  EXPECT_EQ(misspelt.code, 1);
+  EXPECT_THAT(misspelt.err, HasSubstr("calibrate.yaml:7: error block 'keep_radius': param "
+                                      "'bar_radios' is not a free joint, a free frame or a "
+                                      "parameter; did you mean 'bar_radius'?"));
+  const test::Outcome held = calibrate(config("elbow, elbow_gear_ratio", "bar_radius"));
+  EXPECT_THAT(held.err, HasSubstr("warning: calibrate.yaml:7: error block 'keep_radius' has no "
+                                  "effect: no step frees its param 'bar_radius'"));
+}
+
 TEST_F(OpenBlocksProgram, RefusesWhatCannotBe) {
   record([&](const Pose<double>&, Sample& sample) {
     sample.observations = {{"arm", {{"hand", Vector3<double>(0.1, 0, 0)}}}};

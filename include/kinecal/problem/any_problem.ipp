@@ -41,7 +41,7 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
     std::vector<std::string> names(frames_.begin(), frames_.end());
     for (const Parameter& parameter : table_) names.push_back(parameter.name);
     throw std::invalid_argument("error block '" + name + "': param '" + prior.param +
-                                "' is neither a free joint nor a free frame" +
+                                "' is not a free joint, a free frame or a parameter" +
                                 did_you_mean(prior.param, names));
   }
   priors_.push_back({name, prior, options});
