@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <random>
 
 #include "kinecal/io/samples/write_samples.hpp"
@@ -74,6 +75,7 @@ class OpenBlocksProgram : public test::ProgramTest {
   }
 
   Robot robot_;
+  int results_ = 0;  ///< folders of results that were renamed
 };
 
 TEST_F(OpenBlocksProgram, CalibratesAgainstMotionCapture) {
@@ -170,6 +172,46 @@ error_blocks:
   const test::Outcome held = calibrate(config("elbow, elbow_gear_ratio", "bar_radius"));
   EXPECT_THAT(held.err, HasSubstr("warning: calibrate.yaml:7: error block 'keep_radius' has no "
                                   "effect: no step frees its param 'bar_radius'"));
+}
+
+/// One bad capture of a tracker says itself how bad it is.
+TEST_F(OpenBlocksProgram, AnOutlierWithALargeSigmaDoesNotPullTheResult) {
+  const auto record_with = [&](double error, std::optional<double> sigma) {
+    int n = 0;
+    record([&](const Pose<double>& hand, Sample& sample) {
+      const Vector3<double> tip(0.2, 0.1, 0.05);
+      Vector3<double> seen = hand * tip;
+      if (n == 7) seen.y() += error;
+      sample.observations = {{"arm", {{"hand", tip}}}, {"tracker", {{"base", seen}}}};
+      if (n++ == 7) sample.observations[1].features[0].sigma = sigma;
+    });
+  };
+  const std::string config = R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+ - {name: tracker, type: chain3d, frame: base}
+free_params: [shoulder, elbow, elbow_gear_ratio]
+error_blocks:
+ - {name: track, type: chain3d_to_chain3d, model_a: arm, model_b: tracker, sigma: 0.0001}
+)";
+  const auto elbow = [&] {
+    const test::Outcome result = calibrate(config);
+    EXPECT_EQ(result.code, 0) << result.err;
+    fs::rename(folder_ / "result", folder_ / ("result" + std::to_string(++results_)));
+    return YAML::Load(read("result" + std::to_string(results_) + "/calibration.yaml"))["elbow"]
+        .as<double>();
+  };
+  record_with(0.3, std::nullopt);
+  EXPECT_GT(std::abs(elbow() - kElbow), 1e-3);
+  record_with(0.3, 100.0);
+  EXPECT_NEAR(elbow(), kElbow, 1e-8);
+  record_with(0.3, -1.0);
+  EXPECT_THAT(calibrate(config).err, HasSubstr("samples.yaml:"));
+  EXPECT_THAT(calibrate(config).err,
+              HasSubstr("sensor 'tracker': the sigma of feature 1 must be positive and finite, is "
+                        "-1"));
+  const test::Outcome bag = run(KINECAL_PROGRAM " convert samples.yaml samples.bag");
+  EXPECT_EQ(bag.code, 1);
+  EXPECT_THAT(bag.err, HasSubstr("cannot hold the sigma of a feature; write YAML"));
 }
 
 TEST_F(OpenBlocksProgram, RefusesWhatCannotBe) {

@@ -167,9 +167,9 @@ class OracleProblem {
   template <ErrorBlock B>
   void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
-    terms_.push_back({sensors, options, kResiduals<B>, [block, name](const Views& views) {
-                        return oracle_residuals(block, name, views);
-                      }});
+    terms_.push_back(
+        {sensors, options, kResiduals<B>, PixelBlock<B>,
+         [block, name](const Views& views) { return oracle_residuals(block, name, views); }});
   }
   void add_prior(const std::string&, const Prior& prior, const TermOptions& options = {}) {
     priors_.emplace_back(prior, options);
@@ -195,12 +195,15 @@ class OracleProblem {
   struct Term {
     std::vector<std::string> sensors;
     TermOptions options;
-    int size;  ///< residuals of a feature
+    int size;        ///< residuals of a feature
+    bool of_pixels;  ///< only the sigmas of its camera are in the unit of its residual
     std::function<OracleResiduals(const Views&)> residuals;
   };
 
   [[nodiscard]] OracleView view(const std::string& name, const Sample& sample,
                                 const OracleValues<OracleJet>& values) const;
+  /// The block's sigma over that of each feature that is there.
+  [[nodiscard]] static std::vector<double> factors(const Term& term, const Views& views);
   /// A row for the joint and for each axis of the frame, zero where there is no such parameter.
   [[nodiscard]] TermResiduals prior_rows(const Prior& prior, std::span<const double> x) const;
 

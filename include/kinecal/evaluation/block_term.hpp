@@ -91,7 +91,8 @@ class BlockTerm : public Term<S> {
       sums.residuals.resize(end - first);
       for (std::size_t i = 0; i < end - first; ++i) {
         sums.residuals[i] = block_(sides[0].points[i], sides[1].points[i]);
-        sums.weights[i] = add_cost(sums.residuals[i], Block::weight(views, first + i), loss, sums);
+        const S weight = Block::weight(views, first + i);
+        sums.weights[i] = add_cost(views, first + i, sums.residuals[i], weight, loss, sums);
       }
       sums.point_wrenches.set(sides, sums.weights, sums.residuals);
       sums_of(views, chains, sums).add(sums.point_wrenches);
@@ -125,9 +126,10 @@ class BlockTerm : public Term<S> {
 
   /// Adds the cost of a feature.
   /// @returns  the feature's weight in the normal equations
-  S add_cost(const Eigen::Matrix<S, kSize, 1>& residual, const S& weight, const Loss& loss,
-             TermSums<S>& sums) const {
-    const S w2(this->options().weight * this->options().weight);
+  S add_cost(const Views& views, std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual,
+             const S& weight, const Loss& loss, TermSums<S>& sums) const {
+    S w2(this->options().weight * this->options().weight);
+    if (const S* factors = views.numbers.factors) w2 *= factors[i] * factors[i];
     S squared(0.0);
     for (int m = 0; m < kSize; ++m) squared += residual(m) * residual(m);
     squared *= w2;
@@ -189,7 +191,7 @@ void BlockTerm<B, S>::add_cost(const Views& views, const Loss& loss, TermSums<S>
   Rows rows;
   for (std::size_t i = 0; i < Block::features(views); ++i) {
     Block::template rows<false>(block_, views, i, Linearization::measured, rows);
-    (void)add_cost(rows.residual, rows.weight, loss, sums);
+    (void)add_cost(views, i, rows.residual, rows.weight, loss, sums);
   }
 }
 
@@ -205,7 +207,7 @@ void BlockTerm<B, S>::add_normal_equations(const Views& views, const Loss& loss,
     Rows rows;
     for (std::size_t i = first; i < end; ++i) {
       Block::template rows<true>(block_, views, i, Linearization::measured, rows);
-      sums.wrenches.add(rows, add_cost(rows.residual, rows.weight, loss, sums));
+      sums.wrenches.add(rows, add_cost(views, i, rows.residual, rows.weight, loss, sums));
     }
     sums.wrenches.finish();
     sums_of(views, chains, sums).add(sums.wrenches);
@@ -219,6 +221,8 @@ void BlockTerm<B, S>::evaluate(const Views& views, bool derivatives, Linearizati
   out.num_runs = 0;
   out.weight.resize(features);
   out.residual.resize(features * kSize);
+  const S* factors = views.numbers.factors;
+  out.factor.assign(factors, factors != nullptr ? factors + features : nullptr);
   std::size_t values = 0;
   for (std::size_t first = 0, end = 0; first < features; first = end) {
     end = end_of_run(views, first);

@@ -155,9 +155,10 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
       for (std::size_t s = 0; s < states_.size(); ++s) {
         if (batches.has(s)) worker.views[s].update(batches.observation(b - before, s));
       }
-      for (const int t : batches.terms()) {
-        const auto i = static_cast<std::size_t>(t);
-        visit(t, *problem_.terms()[i], TermViews<S>{worker.of_terms[i], &own_[i]},
+      for (std::size_t k = 0; k < batches.terms().size(); ++k) {
+        const auto t = static_cast<std::size_t>(batches.terms()[k]);
+        visit(batches.terms()[k], *problem_.terms()[t],
+              TermViews<S>{worker.of_terms[t], &own_[t], batches.of_term(b - before, k)},
               batches.samples(b - before));
       }
     }

@@ -66,6 +66,7 @@ template <class S>
 struct TermViews {
   std::span<const SensorView<S>* const> sensors;  ///< of the term, in its order
   const OwnParameters* own = nullptr;             ///< of the block itself
+  BatchTerm<S> numbers = {};                      ///< what else it takes of the batch
 
   [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
 

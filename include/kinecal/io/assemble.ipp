@@ -29,6 +29,7 @@ inline void add_block(AnyProblem& problem, const BlockConfig& block) {
   options.beside = block.ground;
   options.loss = {loss_type(block.loss.type), block.loss.scale};
   options.weight = 1.0 / block.sigma;
+  options.sigma = block.sigma;
   if (const auto scale = block.numbers.find("scale"); scale != block.numbers.end()) {
     options.weight *= scale->second;
   }

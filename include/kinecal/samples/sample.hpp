@@ -20,6 +20,9 @@ struct Feature {
   Vector3<double> point = Vector3<double>::Zero();  ///< (3) metres; a pixel is (u, v, 0), a reading
                                                     ///< (value, 0, 0)
   std::optional<Matrix3<double>> rotation = {};     ///< (3 x 3) of a pose: frame_R_feature
+  /// Standard deviation of this measurement, metres or pixels: the unit of the residual.  It takes
+  /// the place of the error block's sigma.
+  std::optional<double> sigma = {};
 };
 
 /// The settings of a camera while it recorded: sensor_msgs/CameraInfo and the depth driver's.

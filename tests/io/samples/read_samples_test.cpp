@@ -279,6 +279,21 @@ TEST(ReadSamples, OrientationThatIsNoUnitQuaternionIsAnError) {
   expect_error(pose("{x: 0, y: 0, z: up, w: 1}"), 4, {"'up' is not a number"});
 }
 
+TEST(ReadSamples, AFeatureMayHaveASigma) {
+  const auto features = [](const std::string& sigma) {
+    return kJoints +
+           "observations:\n- sensor_name: arm\n  features: [{point: {x: 1, y: 2, z: 3}, " + sigma +
+           "}, {point: {x: 1, y: 2, z: 3}}]\n---\n";
+  };
+  const Reading reading = read_text(features("sigma: 0.002"));
+  ASSERT_EQ(reading.samples.size(), 1u);
+  const auto& found = reading.samples[0].observations[0].features;
+  EXPECT_EQ(found.at(0).sigma, 0.002);
+  EXPECT_EQ(found.at(1).sigma, std::nullopt);
+  expect_error(features("sigma: small"), 4, {"sigma", "'small' is not a number"});
+  expect_error(features("sigma: {x: 1}"), 4, {"sigma", "a map stands here"});
+}
+
 TEST(ReadSamples, SensorThatOccursTwiceInASampleIsAnError) {
   expect_error(kJoints + kArm + "- sensor_name: arm\n---\n", 5,
                {"sample at line 1", "sensor 'arm' occurs twice"});

@@ -18,6 +18,9 @@ namespace detail {
   if (feature.rotation) {
     throw OutputError("a message of samples cannot hold the orientation of a feature; write YAML");
   }
+  if (feature.sigma) {
+    throw OutputError("a message of samples cannot hold the sigma of a feature; write YAML");
+  }
   const auto& p = feature.point;
   return fields("header", fields("frame_id", std::string_view(feature.frame)), "point",
                 fields("x", p.x(), "y", p.y(), "z", p.z()));

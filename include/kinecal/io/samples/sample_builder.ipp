@@ -80,6 +80,8 @@ class SampleBuilder {
       feature().point.z() = value;
     } else if (node >= SampleNode::qx && node <= SampleNode::qw) {
       quaternion_(static_cast<int>(node) - static_cast<int>(SampleNode::qx)) = value;
+    } else if (node == SampleNode::sigma) {
+      feature().sigma = value;
     } else {
       camera_.number(node, line, value, errors_);
     }

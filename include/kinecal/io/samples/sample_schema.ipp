@@ -4,7 +4,8 @@
 //   observations:
 //   - sensor_name: camera
 //     features: [{header: {frame_id: ...}, point: {x: ..., y: ..., z: ...},
-//                 orientation: {x: ..., y: ..., z: ..., w: ...}}, ...]    (of poses only)
+//                 orientation: {x: ..., y: ..., z: ..., w: ...},          (of poses only)
+//                 sigma: ...}, ...]                                       (if it has its own)
 //     ext_camera_info:
 //       camera_info: {height, width, distortion_model, D, K, R, P}
 //       parameters: [{name: ..., value: ...}, ...]
@@ -45,6 +46,7 @@ enum class SampleNode : std::uint8_t {
   qy,
   qz,
   qw,
+  sigma,
   ext_camera_info,
   camera_info,
   height,
@@ -103,6 +105,7 @@ struct SampleNodeRule {
       {qy, orientation, number, "y", "", true},
       {qz, orientation, number, "z", "", true},
       {qw, orientation, number, "w", "", true},
+      {sigma, feature, number, "sigma"},
       {ext_camera_info, observation, map, "ext_camera_info"},
       {camera_info, ext_camera_info, map, "camera_info"},
       {height, camera_info, number, "height"},

@@ -30,15 +30,16 @@ namespace detail {
 
 [[nodiscard]] inline std::string feature_to_yaml(const Feature& feature) {
   const auto& p = feature.point;
-  std::string orientation;
+  std::string others;
   if (feature.rotation) {
     const Eigen::Vector4d q = quaternion(*feature.rotation).normalized();
-    orientation = fmt::format(", orientation: {{x: {}, y: {}, z: {}, w: {}}}", number_to_yaml(q(0)),
-                              number_to_yaml(q(1)), number_to_yaml(q(2)), number_to_yaml(q(3)));
+    others = fmt::format(", orientation: {{x: {}, y: {}, z: {}, w: {}}}", number_to_yaml(q(0)),
+                         number_to_yaml(q(1)), number_to_yaml(q(2)), number_to_yaml(q(3)));
   }
+  if (feature.sigma) others += fmt::format(", sigma: {}", number_to_yaml(*feature.sigma));
   return fmt::format("  - {{header: {{frame_id: {}}}, point: {{x: {}, y: {}, z: {}}}{}}}\n",
                      name_to_yaml(feature.frame), number_to_yaml(p.x()), number_to_yaml(p.y()),
-                     number_to_yaml(p.z()), orientation);
+                     number_to_yaml(p.z()), others);
 }
 
 [[nodiscard]] inline std::string camera_to_yaml(const CameraInfo& camera) {
