@@ -88,15 +88,17 @@ TEST(Batches, HoldASampleInEachLane) {
   }
 }
 
-TEST(Batches, HoldTheFactorsOfTermsWhoseFeaturesHaveSigmas) {
+TEST(Batches, HoldFactorsWhereFeaturesHaveSigmasAndConditions) {
   std::vector<SampleNumbers> seen = seen_in_samples(kLanesOfPacket + 1);
   for (std::size_t n = 0; n < seen.size(); ++n) {
-    seen[n].terms = {{}, {{1.0, 2.0 + static_cast<double>(n)}}};
+    const auto number = static_cast<double>(n);
+    seen[n].terms = {{{}, {20.0 + number}}, {{1.0, 2.0 + number}, {}}};
   }
   Batches<Packet> batches({3, 5}, seen[0]);
   for (int n = 0; n < std::ssize(seen); ++n) batches.add(n, seen[static_cast<std::size_t>(n)]);
   EXPECT_EQ(batches.of_term(0, 0).factors, nullptr);
   for (int i = 0; i < kLanesOfPacket; ++i) {
+    EXPECT_EQ(lane(batches.of_term(0, 0).conditions[0], i), 20.0 + i);
     EXPECT_EQ(lane(batches.of_term(0, 1).factors[0], i), 1.0);
     EXPECT_EQ(lane(batches.of_term(0, 1).factors[1], i), 2.0 + i);
     EXPECT_EQ(lane(batches.of_term(1, 1).factors[1], i), 2.0 + kLanesOfPacket) << "repeated";

@@ -212,6 +212,9 @@ error_blocks:
   const test::Outcome bag = run(KINECAL_PROGRAM " convert samples.yaml samples.bag");
   EXPECT_EQ(bag.code, 1);
   EXPECT_THAT(bag.err, HasSubstr("cannot hold the sigma of a feature; write YAML"));
+  record([](const Pose<double>&, Sample& sample) { sample.conditions["temperature"] = 20.0; });
+  EXPECT_THAT(run(KINECAL_PROGRAM " convert samples.yaml samples.bag").err,
+              HasSubstr("cannot hold conditions; write YAML"));
 }
 
 TEST_F(OpenBlocksProgram, RefusesWhatCannotBe) {

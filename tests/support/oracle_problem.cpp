@@ -183,6 +183,7 @@ OracleView OracleProblem::view(const std::string& name, const Sample& sample,
     if (seen.sensor == name) view.seen = &seen;
   }
   view.values = &values;
+  view.sample = &sample;
   view.pose = oracle_pose(robot_, base_, view.sensor->mount.frame, "", sample, values);
   std::map<std::string, OraclePose<OracleJet>> poses = {{"", view.pose},
                                                         {view.sensor->mount.frame, view.pose}};

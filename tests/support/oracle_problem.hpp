@@ -31,6 +31,7 @@ struct OracleSensor {
 struct OracleView {
   const OracleSensor* sensor = nullptr;
   const Observation* seen = nullptr;
+  const Sample* sample = nullptr;
   const OracleValues<OracleJet>* values = nullptr;
   OraclePose<OracleJet> pose;                 ///< of the sensor's own frame in the base
   std::vector<Vector3<OracleJet>> points;     ///< of each feature, in the base
@@ -96,18 +97,25 @@ auto oracle_own(const std::string& name, const std::vector<const OracleView*>& v
   return own;
 }
 
+/// The conditions of the sample that a block takes.
+template <class B>
+auto oracle_conditions(const OracleView& view) {
+  detail::ConditionsOf<B, OracleJet> all;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k] = OracleJet(view.sample->conditions.at(std::string(kConditionsOfBlock<B>[k])));
+  }
+  return all;
+}
+
 /// Any other block, called with what its sensors saw.
 template <class B, Quantity... Qs>
 OracleResiduals oracle_residual(const B& block, const std::string& name,
                                 const std::vector<const OracleView*>& views, std::size_t i,
                                 Takes<Qs...>) {
-  const auto own = oracle_own<B>(name, views);
   const auto r = [&]<std::size_t... I>(std::index_sequence<I...>) {
-    if constexpr (kParametersOfBlock < B >> 0) {
-      return block(oracle_argument<Qs>(*views[I], i)..., own);
-    } else {
-      return block(oracle_argument<Qs>(*views[I], i)...);
-    }
+    return detail::call_block<B, OracleJet>(block, oracle_own<B>(name, views),
+                                            oracle_conditions<B>(*views[0]),
+                                            oracle_argument<Qs>(*views[I], i)...);
   }
   (std::make_index_sequence<sizeof...(Qs)>{});
   return {r.data(), r.data() + r.size()};
@@ -135,8 +143,8 @@ OracleResiduals oracle_residuals(const B& block, const std::string& name,
           pixel.predicted(k) = error[static_cast<std::size_t>(k)] + seen(k);
           pixel.observed(k) = ValueOf<OracleJet>(seen(k));
         }
-        const auto own = oracle_own<B>(name, views);
-        const auto of_pixel = block(pixel, own);
+        const auto of_pixel = detail::call_block<B, OracleJet>(
+            block, oracle_own<B>(name, views), oracle_conditions<B>(*views[0]), pixel);
         r = {of_pixel.data(), of_pixel.data() + of_pixel.size()};
       } else if constexpr (std::same_as<B, PointToPoint>) {
         r = oracle_residual(block, views[0]->points[i], views[1]->points[i]);

@@ -33,6 +33,10 @@ class BlockTerm : public Term<S> {
 
   [[nodiscard]] std::span<const Quantity> quantities() const override { return kQuantities<B>; }
 
+  [[nodiscard]] std::span<const std::string_view> conditions() const override {
+    return kConditionsOfBlock<B>;
+  }
+
   [[nodiscard]] bool pairs_features() const override { return !PlanePairBlock<B>; }
 
   [[nodiscard]] int count(Observations seen) const override;
@@ -51,7 +55,7 @@ class BlockTerm : public Term<S> {
 
   /// Whether the residual may be the difference of two points, which is summed faster.
   static constexpr bool kMayBeDifference =
-      PointPairBlock<B> && kSize == 3 && kParametersOfBlock<B> == 0;
+      PointPairBlock<B> && kSize == 3 && detail::kTakesFeaturesOnly<B>;
 
   /// Residuals and Jacobian of the features from `first` to `end`; the block is a difference.
   /// @param sizes     how many columns each body has

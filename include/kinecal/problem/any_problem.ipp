@@ -73,7 +73,8 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
     for (int t = 0; t < num_terms(); ++t) {
       if (!applies(term(t), sample, seen)) continue;
       layout.terms.push_back(t);
-      seen.terms.push_back({detail::factors_of(term(t), seen)});
+      seen.terms.push_back(
+          {detail::factors_of(term(t), seen), detail::conditions_of(term(t), sample)});
       if (!seen.terms.back().factors.empty()) layout.weighted.push_back(t);
     }
   } catch (const SampleError& e) {

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/errors/loss.hpp"
@@ -84,6 +85,8 @@ class AnyTerm {
 
   /// What the block takes of each of its sensors.
   [[nodiscard]] virtual std::span<const Quantity> quantities() const = 0;
+  /// Names of the conditions of a sample that the block takes.
+  [[nodiscard]] virtual std::span<const std::string_view> conditions() const = 0;
   /// Number of residuals of one feature.
   [[nodiscard]] virtual int feature_size() const = 0;
   /// True if feature i of each sensor is the same one.

@@ -79,6 +79,7 @@ template <class S>
 struct BatchTerm {
   /// Of each feature, lane by lane: the block's sigma over the feature's own; nullptr: all are one.
   const S* factors = nullptr;
+  const S* conditions = nullptr;  ///< those that the block takes, lane by lane
 };
 
 /// All samples of one layout.
@@ -102,6 +103,7 @@ class Batches {
     }
     for (const TermNumbers& term : first.terms) {
       factors_.push_back(term.factors.empty() ? kNone : reserve(term.factors));
+      conditions_.push_back(reserve(term.conditions));
     }
   }
 
@@ -129,6 +131,7 @@ class Batches {
     }
     for (std::size_t t = 0; t < seen.terms.size(); ++t) {
       if (factors_[t] != kNone) set(seen.terms[t].factors, lane, batch + factors_[t]);
+      set(seen.terms[t].conditions, lane, batch + conditions_[t]);
     }
   }
 
@@ -154,7 +157,7 @@ class Batches {
   /// @param i  place of the term in terms()
   [[nodiscard]] BatchTerm<S> of_term(std::size_t batch, std::size_t i) const {
     const S* numbers = numbers_.data() + batch * size_;
-    return {factors_[i] == kNone ? nullptr : numbers + factors_[i]};
+    return {factors_[i] == kNone ? nullptr : numbers + factors_[i], numbers + conditions_[i]};
   }
 
  private:
@@ -179,6 +182,7 @@ class Batches {
   std::vector<int> terms_;
   std::vector<std::optional<ObservationLayout>> layouts_;  ///< by sensor
   std::vector<std::size_t> factors_;                       ///< of each term: first number, or kNone
+  std::vector<std::size_t> conditions_;                    ///< of each term: first number
   std::size_t size_ = 0;                                   ///< numbers of a batch
   std::vector<S> numbers_;                                 ///< of all batches
   std::vector<int> samples_;                               ///< of all batches, by lane

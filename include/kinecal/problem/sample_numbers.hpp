@@ -23,6 +23,7 @@ struct ObservationNumbers {
 struct TermNumbers {
   /// Of each feature: the block's sigma over the feature's own; empty if no feature has its own.
   std::vector<double> factors;
+  std::vector<double> conditions;  ///< those that the block takes, in its order
 };
 
 /// One sample of a problem.

@@ -42,6 +42,27 @@ namespace detail {
   return factors;
 }
 
+/// The conditions that a term takes of a sample.
+[[nodiscard]] inline std::vector<double> conditions_of(const AnyTerm& term, const Sample& sample) {
+  std::vector<double> values;
+  for (const std::string_view wanted : term.conditions()) {
+    const std::string name(wanted);
+    const auto found = sample.conditions.find(name);
+    if (found == sample.conditions.end()) {
+      std::vector<std::string> names;
+      for (const auto& [known, value] : sample.conditions) names.push_back(known);
+      throw SampleError("error block '" + term.name() + "': condition '" + name +
+                        "' is not in the sample" + did_you_mean(name, names));
+    }
+    if (!std::isfinite(found->second)) {
+      throw SampleError("error block '" + term.name() + "': condition '" + name +
+                        "' is not a finite number");
+    }
+    values.push_back(found->second);
+  }
+  return values;
+}
+
 }  // namespace detail
 
 KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sample,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,6 +52,9 @@ struct Sample {
   std::vector<double> joint_positions;    ///< radians or metres, in the order of the names
   std::vector<Observation> observations;  ///< at most one of each sensor
   std::string source;                     ///< source location, for messages: "samples.yaml:37"
+  /// Numbers that come with the sample, by name: temperature, load.  Error blocks name those that
+  /// they take and their units: see errors/error_block.hpp.
+  std::map<std::string, double> conditions = {};
 
   /// Measured position of a joint, radians or metres; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {

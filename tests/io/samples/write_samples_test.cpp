@@ -51,6 +51,7 @@ void expect_same(const CameraInfo& a, const CameraInfo& b) {
 void expect_same(const Sample& a, const Sample& b) {
   EXPECT_EQ(a.joint_names, b.joint_names);
   EXPECT_EQ(a.joint_positions, b.joint_positions);
+  EXPECT_EQ(a.conditions, b.conditions);
   ASSERT_EQ(a.observations.size(), b.observations.size());
   for (std::size_t i = 0; i < a.observations.size(); ++i) {
     const Observation &x = a.observations[i], &y = b.observations[i];
@@ -90,6 +91,7 @@ std::vector<Sample> difficult_samples() {
     sample.observations.push_back({"arm", {{"", {-0.0, 1.0, number()}}, {"null", {}}}});
     sample.observations.push_back({"empty", {}});
     sample.observations[0].features[0].sigma = std::abs(number());
+    sample.conditions = {{"temperature", number()}, {"7", number()}, {"with: space", number()}};
   }
   samples.push_back({{}, {}, {}, ""});
   return samples;

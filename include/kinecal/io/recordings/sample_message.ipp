@@ -52,6 +52,9 @@ namespace detail {
 /// @return  views of the sample, which must outlive it
 [[nodiscard]] inline MessageFields sample_message(const Sample& sample) {
   using namespace detail;
+  if (!sample.conditions.empty()) {
+    throw OutputError("a message of samples cannot hold conditions; write YAML");
+  }
   return fields(
       "joint_states",
       fields("name", texts(sample.joint_names), "position", numbers(sample.joint_positions)),

@@ -1,6 +1,7 @@
 // The keys of a recorded sample as a tree: which key stands where, and what may be under it.
 //
 //   joint_states: {name: [...], position: [...]}
+//   conditions: {temperature: ..., ...}                                   (if there are any)
 //   observations:
 //   - sensor_name: camera
 //     features: [{header: {frame_id: ...}, point: {x: ..., y: ..., z: ...},
@@ -30,6 +31,8 @@ enum class SampleNode : std::uint8_t {
   joint_name,
   joint_positions,
   joint_position,
+  conditions,
+  condition,
   observations,
   observation,
   sensor,
@@ -70,7 +73,7 @@ enum class SampleNode : std::uint8_t {
 /// `parameter_value` is a word: its meaning depends on the parameter's name.
 enum class SampleNodeKind : std::uint8_t { map, list, word, number };
 
-/// One row: the node, its parent, its key (none for the items of a list) and its other key.
+/// One row: the node, its parent, its key (none for list items and free keys) and its other key.
 struct SampleNodeRule {
   SampleNode node, parent;
   SampleNodeKind kind;
@@ -89,6 +92,8 @@ struct SampleNodeRule {
       {joint_name, joint_names, word, ""},
       {joint_positions, joint_states, list, "position", "", true},
       {joint_position, joint_positions, number, ""},
+      {conditions, sample, map, "conditions"},
+      {condition, conditions, number, ""},
       {observations, sample, list, "observations", "", true},
       {observation, observations, map, ""},
       {sensor, observation, word, "sensor_name", "", true},
@@ -168,6 +173,7 @@ inline constexpr auto kSampleChildren = [] {
 /// The node under `parent` with this key; `unknown` if there is none.  The items of a list have
 /// the key "".
 [[nodiscard]] constexpr SampleNode sample_child(SampleNode parent, std::string_view key) {
+  if (parent == SampleNode::conditions) return SampleNode::condition;  // their names are free
   const SampleChildren& children = sample_children(parent);
   for (std::size_t i = 0; i < children.size; ++i) {
     const SampleNodeRule& r = sample_rule(children.nodes[i]);
@@ -185,9 +191,8 @@ inline constexpr auto kSampleChildren = [] {
 
 static_assert(
     [] {
-      for (std::size_t i = 0; i < kSampleNodeRules.size(); ++i) {
+      for (std::size_t i = 0; i < kSampleNodeRules.size(); ++i)
         if (static_cast<std::size_t>(kSampleNodeRules[i].node) != i) return false;
-      }
       return kSampleNodeRules.size() == static_cast<std::size_t>(SampleNode::unknown);
     }(),
     "sample_node_rules() must have one row for each SampleNode, in the order of the enum");

@@ -28,6 +28,16 @@ namespace detail {
                      numbers_to_yaml(sample.joint_positions));
 }
 
+/// Nothing for a sample without conditions.
+[[nodiscard]] inline std::string conditions_to_yaml(const Sample& sample) {
+  std::string all;
+  for (const auto& [name, value] : sample.conditions) {
+    all +=
+        fmt::format("{}{}: {}", all.empty() ? "" : ", ", name_to_yaml(name), number_to_yaml(value));
+  }
+  return all.empty() ? "" : fmt::format("conditions: {{{}}}\n", all);
+}
+
 [[nodiscard]] inline std::string feature_to_yaml(const Feature& feature) {
   const auto& p = feature.point;
   std::string others;
@@ -74,7 +84,7 @@ KINECAL_INLINE void write_samples(std::ostream& out, const std::vector<Sample>& 
           "sample {}: {} joint name{} but {} position{}; it cannot be written", sample.source,
           names, names == 1 ? "" : "s", positions, positions == 1 ? "" : "s"));
     }
-    out << detail::joint_states_to_yaml(sample)
+    out << detail::joint_states_to_yaml(sample) << detail::conditions_to_yaml(sample)
         << (sample.observations.empty() ? "observations: []\n" : "observations:\n");
     for (const Observation& o : sample.observations) out << detail::observation_to_yaml(o);
     out << "---\n";
