@@ -38,7 +38,9 @@ template <BlockPart B>
 [[nodiscard]] ExampleBlock describe_block() {
   ExampleBlock example{.name = std::string(B::kName)};
   for (const std::string_view sensor : B::kSensorNames) example.sensors.emplace_back(sensor);
-  if constexpr (PointBlock<typename B::Error> && kParametersOfBlock<typename B::Error> == 0)
+  using Error = typename B::Error;
+  if constexpr (PointBlock<Error> && kParametersOfBlock<Error> == 0 &&
+                kConditionsOfBlock<Error>.empty())
     example.plane = plane_of(B().error);
   return example;
 }

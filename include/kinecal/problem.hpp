@@ -7,3 +7,4 @@
 #include "kinecal/problem/batch.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
 #include "kinecal/problem/prior_term.hpp"
+#include "kinecal/problem/sample_numbers.hpp"

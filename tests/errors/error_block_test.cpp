@@ -26,6 +26,24 @@ struct DynamicSize {
 };
 struct NoCall {};
 
+/// Own parameters and conditions after the features, also for a scalar that is not templated.
+struct HeightOfWarmFloor {
+  static constexpr std::array kParameters = {ParameterInfo{"height", "m"}};
+  static constexpr std::array kConditions = {"temperature", "load"};  // words of any kind
+  template <class S, class Q>
+  Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p, const std::array<S, 1>& own,
+                                    const std::array<Q, 2>& conditions) const {
+    return Eigen::Matrix<S, 1, 1>(p.z() - own[0] * (1.0 + conditions[0]) + conditions[1]);
+  }
+};
+struct WithoutItsConditions : Height {
+  static constexpr std::array<std::string_view, 1> kConditions = {"temperature"};
+};
+static_assert(PointBlock<HeightOfWarmFloor> && kResiduals<HeightOfWarmFloor> == 1);
+static_assert(kConditionsOfBlock<HeightOfWarmFloor>[1] == "load");
+static_assert(kConditionsOfBlock<Height>.empty());
+static_assert(!ErrorBlock<WithoutItsConditions>, "a block takes what it names");
+
 static_assert(PointBlock<Height> && !PointPairBlock<Height>);
 static_assert(PointPairBlock<PointToPoint> && !PointBlock<PointToPoint>);
 static_assert(PixelBlock<PointToPixel> && PlanePairBlock<PlaneToPlane>);

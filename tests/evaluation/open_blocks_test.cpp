@@ -12,7 +12,8 @@ namespace {
 
 std::vector<double> values_of(const ParameterTable& table) {
   std::vector<double> x = test::random_values(table, 0.05, 4);
-  for (const char* name : {"block_u", "block_v", "block_length", "block_radius"}) {
+  for (const char* name :
+       {"block_u", "block_v", "block_length", "block_radius", "block_expansion"}) {
     if (const int i = table.find(name); i >= 0) x[static_cast<std::size_t>(i)] = 0.3;
   }
   return x;
@@ -84,6 +85,13 @@ TEST(OpenBlocks, ThreeSensors) {
 }
 TEST(OpenBlocks, PixelsWithAParameter) {
   check_block(test::ShiftedPixel{}, {"camera", "eye"});
+}
+
+TEST(OpenBlocks, ParametersAndConditions) {
+  check_block(test::ThermalBar{}, {"camera", "elbow_point"});
+}
+TEST(OpenBlocks, PixelsWithACondition) {
+  check_block(test::WarmPixel{}, {"camera", "eye"});
 }
 
 /// The number of a line of sight's pixels by which it misses a point, at the truth.

@@ -73,16 +73,21 @@ TEST(Problem, RefusesMoreParametersThanABlockCanHave) {
       HasSubstr("have 33 parameters; 32 are possible"));
 }
 
-TEST(Problem, NamesTheNearestJointOrFrameForAMisspeltPrior) {
+TEST(Problem, NamesTheNearestParameterForAMisspeltPrior) {
   Problem problem = test::scene_problem();
   problem.add_prior("keep", {"board", 1.0, 1.0, 1.0});
   problem.add_prior("keep", {"elbow", 1.0, 1.0, 1.0});
+  problem.add_prior("keep", {"camera_fx"});
+  const auto message = [&](const char* param) {
+    return message_of<std::invalid_argument>([&] { problem.add_prior("keep", {param}); });
+  };
   EXPECT_EQ(
-      message_of<std::invalid_argument>([&] {
-        problem.add_prior("keep", {"elbw", 1.0, 1.0, 1.0});
-      }),
-      "error block 'keep': param 'elbw' is neither a free joint nor a free frame; did you mean "
-      "'elbow'?");
+      message("elbw"),
+      "error block 'keep': param 'elbw' is not a free joint, a free frame or a parameter; did "
+      "you mean 'elbow'?");
+  EXPECT_THAT(message("bord"), HasSubstr("did you mean 'board'?"));
+  EXPECT_THAT(message("camera_z_ofset"), HasSubstr("did you mean 'camera_z_offset'?"));
+  EXPECT_THAT(message("camera"), HasSubstr("'camera' is not a free joint"));  // which of them?
 }
 
 TEST(Problem, NamesTheNearestParameterForAMisspeltFreeOne) {

@@ -27,9 +27,10 @@ std::vector<SampleNumbers> seen_in_samples(int count) {
       observation.camera->z_scaling = 1.0 + 0.02 * n;
       if (observation.sensor == "eye") observation.camera->d = {0.01 * (n + 1), 0.02, 0.0, n, 0.0};
     }
-    SampleNumbers& seen = all.emplace_back(3);
+    SampleNumbers& seen = all.emplace_back();
+    seen.sensors.resize(3);
     for (std::size_t s = 1; s < 3; ++s) {
-      seen[s] = problem.sensors()[s].numbers(sample, sample.observations[s]);
+      seen.sensors[s] = problem.sensors()[s].numbers(sample, sample.observations[s]);
     }
   }
   return all;
@@ -81,9 +82,26 @@ TEST(Batches, HoldASampleInEachLane) {
       EXPECT_EQ(batches.samples(b)[static_cast<std::size_t>(i)], 10 + 3 * static_cast<int>(n));
       for (const std::size_t s : {1u, 2u}) {
         ASSERT_TRUE(batches.has(s));
-        expect_lane(batches.observation(b, s), i, *seen[n][s], 1.0);
+        expect_lane(batches.observation(b, s), i, *seen[n].sensors[s], 1.0);
       }
     }
+  }
+}
+
+TEST(Batches, HoldFactorsWhereFeaturesHaveSigmasAndConditions) {
+  std::vector<SampleNumbers> seen = seen_in_samples(kLanesOfPacket + 1);
+  for (std::size_t n = 0; n < seen.size(); ++n) {
+    const auto number = static_cast<double>(n);
+    seen[n].terms = {{{}, {20.0 + number}}, {{1.0, 2.0 + number}, {}}};
+  }
+  Batches<Packet> batches({3, 5}, seen[0]);
+  for (int n = 0; n < std::ssize(seen); ++n) batches.add(n, seen[static_cast<std::size_t>(n)]);
+  EXPECT_EQ(batches.of_term(0, 0).factors, nullptr);
+  for (int i = 0; i < kLanesOfPacket; ++i) {
+    EXPECT_EQ(lane(batches.of_term(0, 0).conditions[0], i), 20.0 + i);
+    EXPECT_EQ(lane(batches.of_term(0, 1).factors[0], i), 1.0);
+    EXPECT_EQ(lane(batches.of_term(0, 1).factors[1], i), 2.0 + i);
+    EXPECT_EQ(lane(batches.of_term(1, 1).factors[1], i), 2.0 + kLanesOfPacket) << "repeated";
   }
 }
 
@@ -93,9 +111,9 @@ TEST(Batches, LanesWithoutASampleRepeatTheFirstWithWeightZero) {
   Batches<Packet> batches({}, seen[0]);
   batches.add(0, seen[0]);
   for (const std::size_t s : {1u, 2u}) {
-    expect_lane(batches.observation(0, s), 0, *seen[0][s], 1.0);
+    expect_lane(batches.observation(0, s), 0, *seen[0].sensors[s], 1.0);
     for (int i = 1; i < kLanesOfPacket; ++i) {
-      expect_lane(batches.observation(0, s), i, *seen[0][s], 0.0);
+      expect_lane(batches.observation(0, s), i, *seen[0].sensors[s], 0.0);
     }
   }
 }
@@ -108,7 +126,7 @@ TEST(Batches, OfDoublesHoldOneSample) {
   ASSERT_EQ(batches.size(), 2u);
   for (const std::size_t b : {0u, 1u}) {
     EXPECT_EQ(batches.samples(b)[0], static_cast<int>(4 + b));
-    expect_lane(batches.observation(b, 1), 0, *seen[b][1], 1.0);
+    expect_lane(batches.observation(b, 1), 0, *seen[b].sensors[1], 1.0);
   }
 }
 

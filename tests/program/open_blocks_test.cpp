@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <random>
 
 #include "kinecal/io/samples/write_samples.hpp"
@@ -74,6 +75,7 @@ class OpenBlocksProgram : public test::ProgramTest {
   }
 
   Robot robot_;
+  int results_ = 0;  ///< folders of results that were renamed
 };
 
 TEST_F(OpenBlocksProgram, CalibratesAgainstMotionCapture) {
@@ -213,6 +215,82 @@ error_blocks:
   const test::Outcome result = calibrate(config);  // the elbow turns about the point itself
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_NEAR(value("elbow"), 0.03, 1e-9);
+}
+
+TEST_F(OpenBlocksProgram, APriorHoldsAParameterOfABlockAndOfAJointModel) {
+  record([&](const Pose<double>& hand, Sample& sample) {
+    sample.observations = {{"arm", {{"hand", hand.inverse() * Vector3<double>(0.85, 0.12, 0.33)}}}};
+  });
+  const auto config = [](const std::string& free, const std::string& prior) {
+    return R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+free_params: [)" +
+           free + R"(]
+error_blocks:
+ - {name: bar, type: point_to_sphere, model: arm, x: 0.45, y: 0.12, z: 0.33, radius: 0.3}
+ - {name: keep_radius, type: outrageous, param: )" +
+           prior + R"(, mean: 0.37, sigma: 1.0e-9}
+ - {name: keep_gear, type: outrageous, param: elbow_gear_ratio, joint_scale: 1.0e+9, mean: -0.01}
+)";
+  };
+  const test::Outcome result =
+      calibrate(config("bar_radius, elbow, elbow_gear_ratio", "bar_radius"));
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("bar_radius"), 0.37, 1e-12);
+  EXPECT_NEAR(value("elbow_gear_ratio"), -0.01, 1e-12);
+
+  const test::Outcome misspelt =
+      calibrate(config("bar_radius, elbow, elbow_gear_ratio", "bar_radios"));
+  EXPECT_EQ(misspelt.code, 1);
+  EXPECT_THAT(misspelt.err, HasSubstr("calibrate.yaml:7: error block 'keep_radius': param "
+                                      "'bar_radios' is not a free joint, a free frame or a "
+                                      "parameter; did you mean 'bar_radius'?"));
+  const test::Outcome held = calibrate(config("elbow, elbow_gear_ratio", "bar_radius"));
+  EXPECT_THAT(held.err, HasSubstr("warning: calibrate.yaml:7: error block 'keep_radius' has no "
+                                  "effect: no step frees its param 'bar_radius'"));
+}
+
+/// One bad capture of a tracker says itself how bad it is.
+TEST_F(OpenBlocksProgram, AnOutlierWithALargeSigmaDoesNotPullTheResult) {
+  const auto record_with = [&](double error, std::optional<double> sigma) {
+    int n = 0;
+    record([&](const Pose<double>& hand, Sample& sample) {
+      const Vector3<double> tip(0.2, 0.1, 0.05);
+      Vector3<double> seen = hand * tip;
+      if (n == 7) seen.y() += error;
+      sample.observations = {{"arm", {{"hand", tip}}}, {"tracker", {{"base", seen}}}};
+      if (n++ == 7) sample.observations[1].features[0].sigma = sigma;
+    });
+  };
+  const std::string config = R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+ - {name: tracker, type: chain3d, frame: base}
+free_params: [shoulder, elbow, elbow_gear_ratio]
+error_blocks:
+ - {name: track, type: chain3d_to_chain3d, model_a: arm, model_b: tracker, sigma: 0.0001}
+)";
+  const auto elbow = [&] {
+    const test::Outcome result = calibrate(config);
+    EXPECT_EQ(result.code, 0) << result.err;
+    fs::rename(folder_ / "result", folder_ / ("result" + std::to_string(++results_)));
+    return YAML::Load(read("result" + std::to_string(results_) + "/calibration.yaml"))["elbow"]
+        .as<double>();
+  };
+  record_with(0.3, std::nullopt);
+  EXPECT_GT(std::abs(elbow() - kElbow), 1e-3);
+  record_with(0.3, 100.0);
+  EXPECT_NEAR(elbow(), kElbow, 1e-8);
+  record_with(0.3, -1.0);
+  EXPECT_THAT(calibrate(config).err, HasSubstr("samples.yaml:"));
+  EXPECT_THAT(calibrate(config).err,
+              HasSubstr("sensor 'tracker': the sigma of feature 1 must be positive and finite, is "
+                        "-1"));
+  const test::Outcome bag = run(KINECAL_PROGRAM " convert samples.yaml samples.bag");
+  EXPECT_EQ(bag.code, 1);
+  EXPECT_THAT(bag.err, HasSubstr("cannot hold the sigma of a feature; write YAML"));
+  record([](const Pose<double>&, Sample& sample) { sample.conditions["temperature"] = 20.0; });
+  EXPECT_THAT(run(KINECAL_PROGRAM " convert samples.yaml samples.bag").err,
+              HasSubstr("cannot hold conditions; write YAML"));
 }
 
 TEST_F(OpenBlocksProgram, RefusesWhatCannotBe) {

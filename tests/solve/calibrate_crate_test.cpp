@@ -68,6 +68,36 @@ TEST(CalibrateCrate, FindsWhatWasPutIn) {
   EXPECT_LE((mount - Vector3<double>(truth[2], truth[3], truth[4])).norm(), 1e-10);
 }
 
+TEST(CalibrateCrate, APriorHoldsASingleParameterOfAJointModelOrASensor) {
+  using Gear = JointModelParameters<"elbow", "gear_ratio">;
+  using Depth = DepthCorrection<"camera">;
+  using Kept = Crate<WithCamera, Gear, PriorOn<"keep_gear", "elbow_gear_ratio">,
+                     PriorOn<"keep_depth", "camera_z_scaling">>;
+  std::vector<Sample> samples = exact_samples({0.02, -0.03, 0.004, -0.005, 0.006}, 12);
+  for (Sample& sample : samples) {
+    CameraInfo info;
+    info.k = {550, 0, 320, 0, 550, 240, 0, 0, 1};
+    info.p = {550, 0, 320, 0, 0, 550, 240, 0, 0, 0, 1, 0};
+    for (const char* joint : {"head_pan", "head_tilt"}) {
+      sample.joint_names.emplace_back(joint);
+      sample.joint_positions.push_back(0.1);
+    }
+    const Vector3<double> p(0.1, 0.2, 1.0);
+    sample.observations.push_back({"camera", {{"", p}, {"", 1.1 * p}, {"", p + p}}, info});
+  }
+  Kept crate;
+  crate.block<"hand_eye">().options.weight = 1e-3;
+  crate.prior<"keep_gear">().mean[0] = 0.015;
+  crate.prior<"keep_gear">().options.weight = 1e6;
+  crate.prior<"keep_depth">().mean[0] = 0.025;
+  crate.prior<"keep_depth">().joint_scale = 1e6;
+  const auto result = calibrate(crate, samples);
+  ASSERT_TRUE(result.converged) << result.termination;
+  EXPECT_NEAR(result.value<Gear>(), 0.015, 1e-9);
+  EXPECT_NEAR(result.value<Depth>()[1], 0.025, 1e-9);
+  EXPECT_GT(std::abs(result.value<Depth>()[0]), 1e-3) << "this one is free";
+}
+
 TEST(CalibrateCrate, TakesTheOptionsOfItsBlocksAndOfSolving) {
   const std::vector<Sample> samples = exact_samples({0.02, -0.03, 0.004, -0.005, 0.006}, 12);
   Tracked crate;

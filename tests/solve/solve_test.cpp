@@ -1,5 +1,6 @@
 #include "kinecal/solve/solve.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kinecal/errors.hpp"
@@ -169,6 +170,26 @@ TEST(Solve, ABoundThatIsNotReachedChangesNothing) {
   StepResult unbounded;
   (void)solved(samples, {}, &unbounded);
   EXPECT_NEAR(result.final_cost / unbounded.final_cost, 1.0, 1e-9);
+}
+
+/// Errors of a centimetre are outliers for a block of a tenth of a millimetre, unless they say so.
+TEST(Solve, ALossJudgesAFeatureByItsOwnSigma) {
+  constexpr double kSigma = 1e-4;
+  std::vector<Sample> samples = noisy_samples(20, 0.01);
+  const auto solved_with_tukey = [](const std::vector<Sample>& given) {
+    Problem problem = test::scene_problem();
+    problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
+                      {.weight = 1.0 / kSigma, .sigma = kSigma, .loss = {LossType::tukey, 6.0}});
+    for (const Sample& sample : given) problem.add_sample(sample);
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+    return solve(problem, free_of(problem.table(), kObservable), values);
+  };
+  EXPECT_THAT(solved_with_tukey(samples).termination, testing::HasSubstr("leaves out half"));
+  for (Sample& sample : samples) {
+    for (Feature& feature : sample.observations[1].features) feature.sigma = 0.01;
+  }
+  const StepResult result = solved_with_tukey(samples);
+  EXPECT_TRUE(result.converged) << result.termination;
 }
 
 TEST(Solve, HoldsWhatIsNotFree) {

@@ -39,6 +39,28 @@ TEST(Stack, HasTheNormalEquationsOfTheProblem) {
   test::expect_same(sums, expected, kSums);
 }
 
+TEST(Stack, WeighsAFeatureByItsOwnSigma) {
+  const Problem empty = test::scene_problem();
+  const std::vector<double> truth = test::random_values(empty.table(), 0.03, 5);
+  std::vector<Sample> samples = test::exact_samples(empty, truth, 12);
+  samples[3].observations[1].features[1].sigma = 0.02;  // the camera's
+  samples[7].observations[2].features[0].sigma = 5.0;   // the eye's
+  const Problem problem = problem_of(samples);
+  const FreeSet free = test::free_of(problem.table(), {"elbow", "camera_joint_x", "camera_fx"});
+  const std::vector<double> at = test::random_values(problem.table(), 0.01, 6);
+  const Stack found = stack(problem, free, at);
+  NormalEquations sums = normal_equations(problem, at, &free);
+  const NormalEquations expected = sums;
+  sums.cost = 0.5 * found.residual.squaredNorm();
+  sums.gradient = found.jacobian.transpose() * found.residual;
+  sums.hessian = found.jacobian.transpose() * found.jacobian;
+  constexpr double kSums = 1e-12;
+  test::expect_same(sums, expected, kSums);
+  const NormalEquations others =
+      normal_equations(problem_of(test::exact_samples(empty, truth, 12)), at, nullptr);
+  EXPECT_GT(sums.cost, 2.0 * others.cost) << "the sigma of 20 mm counts, in place of one metre";
+}
+
 /// Of estimates from noisy samples: as they spread around the truth.
 TEST(Stack, HasTheCovarianceOfTheEstimates) {
   constexpr int kEstimates = 400;

@@ -135,10 +135,21 @@ Crate<Arm, Head, JointOffset<"torso_lift_joint">, HandEye> above_all_chains;
 // expect: no residual depends on this free parameter, because no error block has a sensor that it
 Crate<Arm, Head, JointOffset<"elbow_flex_joint">, Ground> moves_unused_sensor;
 
-// expect: the joint or frame in this PriorOn is not free in the crate; correct its name or leave
+// expect: the joint, frame or parameter in this PriorOn is not free in the crate; correct its name
 // meant: head_pan_joint
 Crate<Arm, Head, FrameOffset<"head_pan_joint">, HandEye, PriorOn<"small", "head_pn_joint">>
     misspelt_prior;
+
+// expect: the joint, frame or parameter in this PriorOn is not free in the crate; correct its name
+// meant: camera_fx
+Crate<Arm, Head, CameraIntrinsics<"camera">, HandEye, PriorOn<"small", "camera_fxx">>
+    misspelt_prior_on_an_intrinsic;
+
+// expect: the joint, frame or parameter in this PriorOn is not free in the crate; correct its name
+// meant: elbow_flex_joint_gear_ratio
+Crate<Arm, Head, JointModelParameters<"elbow_flex_joint", "gear_ratio">, HandEye,
+      PriorOn<"small", "elbow_flex_joint_gear_ration">>
+    misspelt_prior_on_a_gear;
 
 // ---- error blocks
 

@@ -58,6 +58,37 @@ struct ShiftedPixel {
   }
 };
 
+/// A bar between two points that grows with its temperature and bends under a load.
+struct ThermalBar {
+  static constexpr const char *kType = "thermal_bar", *kUnit = "m";
+  static constexpr std::array kParameters = {ParameterInfo{"length", "m", 0.4},
+                                             ParameterInfo{"expansion"}};
+  static constexpr std::array<std::string_view, 2> kConditions = {"temperature", "load"};
+  double bend = 1e-3;  ///< metres per unit of load
+
+  template <class S, class Q>
+  [[nodiscard]] Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& a, const Vector3<S>& b,
+                                                  const std::array<S, 2>& own,
+                                                  const std::array<Q, 2>& conditions) const {
+    using std::sqrt;
+    const S x = a.x() - b.x(), y = a.y() - b.y(), z = a.z() - b.z();
+    const S length = own[0] * (1.0 + own[1] * (conditions[0] - 20.0)) - bend * conditions[1];
+    return Eigen::Matrix<S, 1, 1>(sqrt(x * x + y * y + z * z) - length);
+  }
+};
+
+/// The pixels of a camera whose lens drifts with the temperature by a known amount.
+struct WarmPixel {
+  static constexpr std::array<std::string_view, 1> kConditions = {"temperature"};
+
+  template <class S, class Q>
+  [[nodiscard]] Eigen::Matrix<S, 2, 1> operator()(const PixelObservation<S>& pixel,
+                                                  const std::array<Q, 1>& conditions) const {
+    return {pixel.predicted.x() * (1.0 + 1e-4 * conditions[0]) - pixel.observed.x(),
+            pixel.predicted.y() - pixel.observed.y()};
+  }
+};
+
 /// The parameters of the scene, of its further sensors and of a block named "block".
 template <ErrorBlock B>
 ParameterTable open_table(const B& block) {
@@ -94,6 +125,7 @@ std::vector<Sample> open_samples(const BasicProblem<S>& problem, std::span<const
   std::uniform_real_distribution<double> any(-0.5, 0.5), pixel(50, 400);
   const auto vector = [&] { return Vector3<double>{any(random), any(random), any(random)}; };
   for (Sample& sample : samples) {
+    sample.conditions = {{"temperature", 20.0 + 30.0 * any(random)}, {"load", any(random)}};
     for (const char* name : {"elbow_point", "left", "body", "tracker", "wire"}) {
       Observation& seen = sample.observations.emplace_back(Observation{name, {}, camera_info()});
       const std::string frame = name == std::string("tracker") ? "board" : "";

@@ -22,15 +22,17 @@ Robust robust(LossType type, double c, double squared) {
 }
 
 /// Adds the rows of one feature to normal equations.
+/// @param factor  of the block's weight
 void add(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
-         const TermOptions& options, const FreeSet& free, Losses losses, NormalEquations& total) {
+         const TermOptions& options, double factor, const FreeSet& free, Losses losses,
+         NormalEquations& total) {
   Eigen::MatrixXd columns(residual.size(), free.size());
   for (int c = 0; c < free.size(); ++c) {
     columns.col(c) = jacobian.col(free.parameters()[static_cast<std::size_t>(c)]);
   }
   LossType type = options.loss.type;
   if (losses == Losses::convex && type != LossType::none) type = LossType::huber;
-  const double w2 = options.weight * options.weight;
+  const double w2 = std::pow(options.weight * factor, 2);
   const Robust cost = robust(type, options.loss.scale, w2 * residual.squaredNorm());
   total.cost += 0.5 * cost.rho;
   total.gradient += cost.derivative * w2 * columns.transpose() * residual;
@@ -125,10 +127,31 @@ OracleRows OracleProblem::rows(std::span<const double> x) const {
       }
       const OracleResiduals residuals = term.residuals(of_term);
       if (residuals.empty()) continue;
-      rows[{static_cast<int>(t), static_cast<int>(n)}] = numbers(residuals, table_.size());
+      TermResiduals& one = rows[{static_cast<int>(t), static_cast<int>(n)}];
+      one = numbers(residuals, table_.size());
+      const std::vector<double> of_features = factors(term, of_term);
+      if (std::ssize(of_features) * term.size != one.residual.size()) continue;  // planes
+      for (Eigen::Index i = 0; i < one.residual.size(); ++i) {
+        one.factor(i) = of_features[static_cast<std::size_t>(i / term.size)];
+      }
     }
   }
   return rows;
+}
+
+std::vector<double> OracleProblem::factors(const Term& term, const Views& views) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < views[0]->there.size(); ++i) {
+    double variance = 0.0;
+    bool there = true;
+    for (const OracleView* view : views) {
+      there = there && view->there[i];
+      if (term.of_pixels && view == views[0]) continue;
+      if (const auto sigma = view->seen->features[i].sigma) variance += std::pow(*sigma, 2);
+    }
+    if (there) all.push_back(variance > 0.0 ? term.options.sigma / std::sqrt(variance) : 1.0);
+  }
+  return all;
 }
 
 NormalEquations OracleProblem::multiplied_out(const OracleRows& rows, std::span<const double> x,
@@ -138,13 +161,13 @@ NormalEquations OracleProblem::multiplied_out(const OracleRows& rows, std::span<
     const Term& term = terms_[static_cast<std::size_t>(key.first)];
     for (Eigen::Index i = 0; i < of_term.residual.size(); i += term.size) {
       add(of_term.residual.segment(i, term.size), of_term.jacobian.middleRows(i, term.size),
-          term.options, free, losses, total);
+          term.options, of_term.factor(i), free, losses, total);
     }
   }
   for (const auto& [prior, options] : priors_) {
     const TermResiduals one = prior_rows(prior, x);
     for (std::size_t n = 0; n < samples_.size(); ++n) {
-      add(one.residual, one.jacobian, options, free, losses, total);
+      add(one.residual, one.jacobian, options, 1.0, free, losses, total);
     }
   }
   return total;
@@ -160,6 +183,7 @@ OracleView OracleProblem::view(const std::string& name, const Sample& sample,
     if (seen.sensor == name) view.seen = &seen;
   }
   view.values = &values;
+  view.sample = &sample;
   view.pose = oracle_pose(robot_, base_, view.sensor->mount.frame, "", sample, values);
   std::map<std::string, OraclePose<OracleJet>> poses = {{"", view.pose},
                                                         {view.sensor->mount.frame, view.pose}};

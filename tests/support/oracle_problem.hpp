@@ -31,6 +31,7 @@ struct OracleSensor {
 struct OracleView {
   const OracleSensor* sensor = nullptr;
   const Observation* seen = nullptr;
+  const Sample* sample = nullptr;
   const OracleValues<OracleJet>* values = nullptr;
   OraclePose<OracleJet> pose;                 ///< of the sensor's own frame in the base
   std::vector<Vector3<OracleJet>> points;     ///< of each feature, in the base
@@ -96,18 +97,25 @@ auto oracle_own(const std::string& name, const std::vector<const OracleView*>& v
   return own;
 }
 
+/// The conditions of the sample that a block takes.
+template <class B>
+auto oracle_conditions(const OracleView& view) {
+  detail::ConditionsOf<B, OracleJet> all;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k] = OracleJet(view.sample->conditions.at(std::string(kConditionsOfBlock<B>[k])));
+  }
+  return all;
+}
+
 /// Any other block, called with what its sensors saw.
 template <class B, Quantity... Qs>
 OracleResiduals oracle_residual(const B& block, const std::string& name,
                                 const std::vector<const OracleView*>& views, std::size_t i,
                                 Takes<Qs...>) {
-  const auto own = oracle_own<B>(name, views);
   const auto r = [&]<std::size_t... I>(std::index_sequence<I...>) {
-    if constexpr (kParametersOfBlock < B >> 0) {
-      return block(oracle_argument<Qs>(*views[I], i)..., own);
-    } else {
-      return block(oracle_argument<Qs>(*views[I], i)...);
-    }
+    return detail::call_block<B, OracleJet>(block, oracle_own<B>(name, views),
+                                            oracle_conditions<B>(*views[0]),
+                                            oracle_argument<Qs>(*views[I], i)...);
   }
   (std::make_index_sequence<sizeof...(Qs)>{});
   return {r.data(), r.data() + r.size()};
@@ -135,8 +143,8 @@ OracleResiduals oracle_residuals(const B& block, const std::string& name,
           pixel.predicted(k) = error[static_cast<std::size_t>(k)] + seen(k);
           pixel.observed(k) = ValueOf<OracleJet>(seen(k));
         }
-        const auto own = oracle_own<B>(name, views);
-        const auto of_pixel = block(pixel, own);
+        const auto of_pixel = detail::call_block<B, OracleJet>(
+            block, oracle_own<B>(name, views), oracle_conditions<B>(*views[0]), pixel);
         r = {of_pixel.data(), of_pixel.data() + of_pixel.size()};
       } else if constexpr (std::same_as<B, PointToPoint>) {
         r = oracle_residual(block, views[0]->points[i], views[1]->points[i]);
@@ -167,9 +175,9 @@ class OracleProblem {
   template <ErrorBlock B>
   void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
-    terms_.push_back({sensors, options, kResiduals<B>, [block, name](const Views& views) {
-                        return oracle_residuals(block, name, views);
-                      }});
+    terms_.push_back(
+        {sensors, options, kResiduals<B>, PixelBlock<B>,
+         [block, name](const Views& views) { return oracle_residuals(block, name, views); }});
   }
   void add_prior(const std::string&, const Prior& prior, const TermOptions& options = {}) {
     priors_.emplace_back(prior, options);
@@ -195,12 +203,15 @@ class OracleProblem {
   struct Term {
     std::vector<std::string> sensors;
     TermOptions options;
-    int size;  ///< residuals of a feature
+    int size;        ///< residuals of a feature
+    bool of_pixels;  ///< only the sigmas of its camera are in the unit of its residual
     std::function<OracleResiduals(const Views&)> residuals;
   };
 
   [[nodiscard]] OracleView view(const std::string& name, const Sample& sample,
                                 const OracleValues<OracleJet>& values) const;
+  /// The block's sigma over that of each feature that is there.
+  [[nodiscard]] static std::vector<double> factors(const Term& term, const Views& views);
   /// A row for the joint and for each axis of the frame, zero where there is no such parameter.
   [[nodiscard]] TermResiduals prior_rows(const Prior& prior, std::span<const double> x) const;
 

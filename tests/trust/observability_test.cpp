@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <set>
 
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/solve/stack.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
 #include "support/oracle_problem.hpp"
@@ -104,6 +106,26 @@ Problem hand_eye(int samples) {
   const std::vector<double> truth = test::random_values(problem.table(), 0.01, 6);
   for (const Sample& s : test::exact_samples(problem, truth, samples)) problem.add_sample(s);
   return problem;
+}
+
+/// At exact samples the weighted Jacobian is that of stack().
+TEST(Observability, WeighsAFeatureByItsOwnSigma) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
+                    {.weight = 100.0, .sigma = 0.01});
+  const std::vector<double> truth = test::random_values(problem.table(), 0.01, 6);
+  std::vector<Sample> samples = test::exact_samples(problem, truth, 6);
+  for (Sample& sample : samples) {
+    for (Feature& feature : sample.observations[1].features) feature.sigma = 1e-3;
+    sample.observations[1].features[0].sigma = {};
+  }
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  const FreeSet free = free_of(problem, {"elbow", "camera_joint_x", "camera_joint_b"});
+  Eigen::MatrixXd columns = stack(problem, free, truth).jacobian;
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) columns.col(c).normalize();
+  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(columns).singularValues();
+  EXPECT_NEAR(observability(problem, free, truth).condition / (singular(0) / singular(2)), 1.0,
+              1e-9);
 }
 
 /// However far one goes along it.

@@ -62,13 +62,13 @@ struct Block {
   }
 };
 
-/// A prior on a joint's offset or a frame's correction: see Prior.
+/// A prior on a joint's offset, a frame's correction or a single parameter ("camera_fx"): see Prior.
 template <FixedString Name, FixedString Of>
 struct PriorOn {
   static constexpr std::string_view kName = Name;  ///< of the prior, for reports
-  static constexpr std::string_view kOf = Of;      ///< name of the joint or frame
+  static constexpr std::string_view kOf = Of;      ///< name of the joint, frame or parameter
 
-  double joint_scale = 1.0;                                   ///< 1 / rad or 1 / m
+  double joint_scale = 1.0;                                   ///< see Prior
   double position_scale = 1.0;                                ///< 1 / m
   double rotation_scale = 1.0;                                ///< 1 / rad
   std::array<double, 7> mean = {};                            ///< see Prior

@@ -41,17 +41,39 @@ struct UseOfParameter {
                 "sensor that it moves; leave it out or add such a block");
 };
 
-/// The joints and frames that are free, for LookedUp.
+/// The name of number I of a free parameter: "camera_fx".
+template <class P, std::size_t I>
+struct NameOfNumber {
+  static constexpr const ParameterId& kId = P::kIds[I];
+  static constexpr std::size_t kSize =
+      kId.owner.size() + (kId.part.empty() ? 0 : 1 + kId.part.size());
+  static constexpr auto kLetters = [] {
+    std::array<char, kSize> letters{};
+    auto end = std::copy(kId.owner.begin(), kId.owner.end(), letters.begin());
+    if (!kId.part.empty()) {
+      *end++ = '_';
+      std::copy(kId.part.begin(), kId.part.end(), end);
+    }
+    return letters;
+  }();
+  static constexpr std::string_view kName = {kLetters.data(), kSize};
+};
+
+/// On what a prior may be, for LookedUp: the frames that are free, and each free number.
 template <class... Ps>
-struct JointsAndFrames {
-  [[nodiscard]] static constexpr bool is_one(ParameterKind kind) {
-    return kind == ParameterKind::joint_offset || kind == ParameterKind::frame_offset ||
-           kind == ParameterKind::virtual_frame;
+struct NamesForPriors {
+  [[nodiscard]] static constexpr bool is_frame(ParameterKind kind) {
+    return kind == ParameterKind::frame_offset || kind == ParameterKind::virtual_frame;
   }
   static constexpr auto kNames = [] {
-    std::array<std::string_view, (std::size_t(0) + ... + (is_one(Ps::kKind) ? 1 : 0))> names;
+    constexpr std::size_t kFrames = (std::size_t(0) + ... + (is_frame(Ps::kKind) ? 1 : 0));
+    std::array<std::string_view, kFrames + FreeParameters<Ps...>::kSize> names;
     std::size_t n = 0;
-    ((is_one(Ps::kKind) ? void(names[n++] = Ps::kOwner) : void()), ...);
+    ((is_frame(Ps::kKind) ? void(names[n++] = Ps::kOwner) : void()), ...);
+    const auto append = [&]<class P, std::size_t... I>(P*, std::index_sequence<I...>) {
+      ((names[n++] = NameOfNumber<P, I>::kName), ...);
+    };
+    (append(static_cast<Ps*>(nullptr), std::make_index_sequence<Ps::kIds.size()>{}), ...);
     return names;
   }();
 };
@@ -60,14 +82,14 @@ struct JointsAndFrames {
 template <class Prior, class Found, bool kIsFree = false>
 struct ParameterOfPrior {
   static_assert(kIsFree,
-                "kinecal: the joint or frame in this PriorOn is not free in the crate; correct its "
-                "name or leave the prior out");
+                "kinecal: the joint, frame or parameter in this PriorOn is not free in the crate; "
+                "correct its name or leave the prior out");
 };
 
-/// Checks that the joint or frame of a prior is free.
+/// Checks that what a prior keeps is free.
 template <class Prior, class... Ps>
 struct CheckPrior {
-  using Found = LookedUp<Prior::kOf, JointsAndFrames<Ps...>>;
+  using Found = LookedUp<Prior::kOf, NamesForPriors<Ps...>>;
   using type = Unless<Found::kExists, ParameterOfPrior<Prior, Found>>;
 };
 

@@ -14,7 +14,7 @@ namespace kinecal {
 /// True if r = p_a - p_b + c with a constant c, wherever the points are.
 template <ErrorBlock B>
 [[nodiscard]] bool is_difference(const B& block) {
-  if constexpr (PointPairBlock<B> && kResiduals<B> == 3 && kParametersOfBlock<B> == 0) {
+  if constexpr (PointPairBlock<B> && kResiduals<B> == 3 && detail::kTakesFeaturesOnly<B>) {
     using J = Jet<Traced, 6>;
     const auto varying = [](double x, double y, double z) {
       return Vector3<Traced>(Traced(x, true), Traced(y, true), Traced(z, true));

@@ -31,14 +31,24 @@
 //
 // A member function initial() gives their values before the first step, if these are not constants.
 //
+// A block may also take numbers that come with a sample, such as a temperature.  They are its last
+// argument, in a plain scalar:
+//
+//   static constexpr std::array<std::string_view, 1> kConditions = {"temperature"};
+//   template <class S, class Q>
+//   auto operator()(const Vector3<S>& p, const std::array<Q, 1>& conditions) const;
+//
 // A scalar may be a packet with one sample per lane.  So a block does not branch on values: write
 // select(x < y, a, b) in place of x < y ? a : b.  (Planes are compared sample by sample and may
 // branch.)
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
+#include <string_view>
+#include <tuple>
 #include <type_traits>
 
 #include "kinecal/parameters/parameter.hpp"
@@ -60,6 +70,16 @@ template <class B>
 [[nodiscard]] consteval std::size_t count_own() {
   if constexpr (requires { B::kParameters; }) return B::kParameters.size();
   return 0;
+}
+template <class B>
+[[nodiscard]] consteval auto condition_names() {
+  if constexpr (requires { B::kConditions; }) {
+    std::array<std::string_view, B::kConditions.size()> names;
+    std::copy(B::kConditions.begin(), B::kConditions.end(), names.begin());
+    return names;
+  } else {
+    return std::array<std::string_view, 0>{};
+  }
 }
 
 /// The argument of a block for a quantity.
@@ -90,31 +110,61 @@ concept ResidualVector = std::same_as<typename R::Scalar, Probe> && kIsFixedColu
 /// Number of a block's own parameters: the size of B::kParameters, if it has them.
 template <class B>
 inline constexpr std::size_t kParametersOfBlock = detail::count_own<B>();
+/// Names of the conditions of a sample that a block takes: B::kConditions, if it has them.
+template <class B>
+inline constexpr auto kConditionsOfBlock = detail::condition_names<B>();
 
 namespace detail {
 
-/// Calls a block, with its own parameters if it has any.
-template <class B, class S, class... Arguments>
-[[nodiscard]] auto call_block(const B& block, const std::array<S, kParametersOfBlock<B>>& own,
-                              const Arguments&... arguments) {
-  if constexpr (kParametersOfBlock < B >> 0) {
-    return block(arguments..., own);
-  } else {
-    return block(arguments...);
-  }
+/// Own parameters of a block in S and conditions of a sample in its plain scalar.
+template <class B, class S>
+using OwnOf = std::array<S, kParametersOfBlock<B>>;
+template <class B, class S>
+using ConditionsOf = std::array<kinecal::ValueOf<S>, kConditionsOfBlock<B>.size()>;
+
+/// A block without own parameters and conditions.
+template <class B>
+inline constexpr bool kTakesFeaturesOnly = kParametersOfBlock<B> == 0 &&
+                                           kConditionsOfBlock<B>.empty();
+
+/// What a block takes after its features, as a tuple: own parameters and conditions that it has.
+template <class B, class S>
+[[nodiscard]] constexpr auto further(const OwnOf<B, S>& own, const ConditionsOf<B, S>& conditions) {
+  const auto if_any = [](const auto& all) {
+    if constexpr (std::tuple_size_v < std::remove_cvref_t < decltype(all) >>> 0) {
+      return std::tie(all);
+    } else {
+      return std::tuple<>();
+    }
+  };
+  return std::tuple_cat(if_any(own), if_any(conditions));
 }
+
+/// Calls a block with its arguments and what it takes after them.
+template <class B, class S, class... Arguments>
+[[nodiscard]] auto call_block(const B& block, const OwnOf<B, S>& own,
+                              const ConditionsOf<B, S>& conditions, const Arguments&... arguments) {
+  return std::apply([&](const auto&... more) { return block(arguments..., more...); },
+                    further<B, S>(own, conditions));
+}
+
+/// What such a call returns: from the signature only, so that a block is not compiled for a scalar
+/// in which nobody calls it.
+template <class B, class Further, class... Arguments>
+struct CallOf;
+template <class B, class... Further, class... Arguments>
+struct CallOf<B, std::tuple<Further...>, Arguments...>
+    : std::invoke_result<const B&, const Arguments&..., Further...> {};
+template <class B, class... Arguments>
+using ResultOfCall =
+    typename CallOf<B,
+                    decltype(further<B, Probe>(std::declval<OwnOf<B, Probe>>(),
+                                               std::declval<ConditionsOf<B, Probe>>())),
+                    Arguments...>::type;
 
 /// A block that takes these arguments.
 template <class B, class... Arguments>
-concept Callable = (kParametersOfBlock<B> == 0 &&
-                    requires(const B& block, const Arguments&... a) {
-                      { block(a...) } -> ResidualVector;
-                    }) ||
-                   (kParametersOfBlock<B> > 0 &&
-                    requires(const B& block, const std::array<Probe, kParametersOfBlock<B>>& own,
-                             const Arguments&... a) {
-                      { block(a..., own) } -> ResidualVector;
-                    });
+concept Callable = ResidualVector<ResultOfCall<B, Arguments...>>;
 
 template <class B, class Inputs>
 inline constexpr bool kTakes = false;
@@ -190,22 +240,12 @@ concept PlanePairBlock =
 
 namespace detail {
 
-/// From the signature only, so that a block is not compiled for a scalar in which nobody calls it.
-template <class B, class... Given>
-[[nodiscard]] consteval int rows_of_call() {
-  if constexpr (kParametersOfBlock < B >> 0) {
-    using Own = std::array<Probe, kParametersOfBlock<B>>;
-    return std::invoke_result_t<const B&, const Given&..., const Own&>::RowsAtCompileTime;
-  } else {
-    return std::invoke_result_t<const B&, const Given&...>::RowsAtCompileTime;
-  }
-}
 template <class B, Quantity... Qs>
 [[nodiscard]] consteval int residuals(Takes<Qs...>) {
   if constexpr (PixelBlock<B>) {
-    return rows_of_call<B, PixelObservation<Probe>>();
+    return ResultOfCall<B, PixelObservation<Probe>>::RowsAtCompileTime;
   } else {
-    return rows_of_call<B, Argument<Qs, Probe>...>();
+    return ResultOfCall<B, Argument<Qs, Probe>...>::RowsAtCompileTime;
   }
 }
 

@@ -1,8 +1,9 @@
-// A prior on a joint or a frame (outrageous): keeps its parameters near a mean, zero by default.
+// A prior (outrageous): keeps a joint, a frame or a single parameter near a mean, zero by default.
 //
-//   r = ( joint_scale offset,  position_scale (x, y, z),  rotation_scale (a, b, c) )
+//   r = ( joint_scale value,  position_scale (x, y, z),  rotation_scale (a, b, c) )
 //
-// of the differences from the mean.
+// of the differences from the mean.  `value` is a joint's offset or any single parameter: that of a
+// sensor (camera_fx), an error block (bar_radius) or a joint model (elbow_gear_ratio).
 //
 // Source: Fetch paper, III-B, restricting the camera frame.
 // SPDX-License-Identifier: Apache-2.0
@@ -15,16 +16,16 @@
 
 namespace kinecal {
 
-/// Keeps the parameters of a joint or a frame near a mean.
+/// Keeps a joint, a frame or a single parameter near a mean.
 struct Prior {
-  std::string param;            ///< name of the joint or frame
-  double joint_scale = 1.0;     ///< 1 / rad or 1 / m
+  std::string param;            ///< name of the joint, frame or parameter
+  double joint_scale = 1.0;     ///< of a joint or parameter: 1 / its unit
   double position_scale = 1.0;  ///< 1 / m
   double rotation_scale = 1.0;  ///< 1 / rad
-  /// Where the parameters should be: offset x y z a b c; rad or m, metres, radians.
+  /// Where the parameters should be: value x y z a b c; unit of the parameter, metres, radians.
   std::array<double, 7> mean = {};
 
-  static constexpr int kRows = 7;  ///< residuals: offset x y z a b c
+  static constexpr int kRows = 7;  ///< residuals: value x y z a b c
 
   /// Table index of the parameter of each residual; -1 if the table does not have it, and then the
   /// residual is zero.

@@ -98,6 +98,11 @@ class BlockRows {
   [[nodiscard]] static std::array<S, kOwn> own_values(const Views& views) {
     return detail::own_constants<kOwn, S>(views.own->values);
   }
+  [[nodiscard]] static detail::ConditionsOf<B, S> conditions(const Views& views) {
+    detail::ConditionsOf<B, S> all;
+    std::copy_n(views.numbers.conditions, all.size(), all.begin());
+    return all;
+  }
   /// Adds the columns of the block's own parameters.
   /// @param first  variable of the first of them
   template <class R>
@@ -128,7 +133,7 @@ class BlockRows {
 
   [[nodiscard]] static auto call(const B& block, const Values& values, const Views& views) {
     return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return detail::call_block<B, S>(block, own_values(views),
+      return detail::call_block<B, S>(block, own_values(views), conditions(views),
                                       Vectors<I>::template plain<S>(values[I])...);
     }
     (std::make_index_sequence<kBodies>{});
@@ -137,7 +142,7 @@ class BlockRows {
     return [&]<std::size_t... I>(std::index_sequence<I...>) {
       return detail::call_block<B, J>(
           block, detail::own_jets<kOwn, J, S>(views.own->values, kFirst[kBodies]),
-          Vectors<I>::template jets<J, S>(values[I], kFirst[I])...);
+          conditions(views), Vectors<I>::template jets<J, S>(values[I], kFirst[I])...);
     }
     (std::make_index_sequence<kBodies>{});
   }
@@ -245,14 +250,14 @@ class BlockRows {
     camera.code().predict(camera.observation(), p_camera, camera.own().values, camera.own().free,
                           kDerivatives, pixel);
     if constexpr (!kDerivatives) {
-      rows.residual = detail::call_block<B, S>(block, own_values(views),
+      rows.residual = detail::call_block<B, S>(block, own_values(views), conditions(views),
                                                PixelObservation<S>{pixel.value, observed});
     } else {
       using PixelJet = Jet<S, 2 + static_cast<int>(kOwn)>;
       const Eigen::Matrix<PixelJet, 2, 1> predicted(PixelJet(pixel.value(0), 0),
                                                     PixelJet(pixel.value(1), 1));
       const auto r = detail::call_block<B, PixelJet>(
-          block, detail::own_jets<kOwn, PixelJet, S>(views.own->values, 2),
+          block, detail::own_jets<kOwn, PixelJet, S>(views.own->values, 2), conditions(views),
           PixelObservation<PixelJet>{predicted, observed});
       rows.residual = values_of(r);
       const Eigen::Matrix<S, kSize, 2> by_pixel = derivatives_by<2>(r, 0);

@@ -33,6 +33,10 @@ class BlockTerm : public Term<S> {
 
   [[nodiscard]] std::span<const Quantity> quantities() const override { return kQuantities<B>; }
 
+  [[nodiscard]] std::span<const std::string_view> conditions() const override {
+    return kConditionsOfBlock<B>;
+  }
+
   [[nodiscard]] bool pairs_features() const override { return !PlanePairBlock<B>; }
 
   [[nodiscard]] int count(Observations seen) const override;
@@ -51,7 +55,7 @@ class BlockTerm : public Term<S> {
 
   /// Whether the residual may be the difference of two points, which is summed faster.
   static constexpr bool kMayBeDifference =
-      PointPairBlock<B> && kSize == 3 && kParametersOfBlock<B> == 0;
+      PointPairBlock<B> && kSize == 3 && detail::kTakesFeaturesOnly<B>;
   using Rows = typename Block::Rows;
 
   /// Adds the features of a run by their moments.
@@ -73,8 +77,8 @@ class BlockTerm : public Term<S> {
       sums.residuals.resize(features);
       for (std::size_t i = 0; i < features; ++i) {
         sums.residuals[i] = block_(sides[0].points[i], sides[1].points[i]);
-        sums.weights[i] =
-            add_cost(sums.residuals[i], Block::weight(views, run.first + i), loss, sums);
+        const S weight = Block::weight(views, run.first + i);
+        sums.weights[i] = add_cost(views, run.first + i, sums.residuals[i], weight, loss, sums);
       }
       sums.point_wrenches.set(sides, sums.weights, sums.residuals);
       sums_of(run, sums).add(sums.point_wrenches);
@@ -84,9 +88,10 @@ class BlockTerm : public Term<S> {
 
   /// Adds the cost of a feature.
   /// @returns  the feature's weight in the normal equations
-  S add_cost(const Eigen::Matrix<S, kSize, 1>& residual, const S& weight, const Loss& loss,
-             TermSums<S>& sums) const {
-    const S w2(this->options().weight * this->options().weight);
+  S add_cost(const Views& views, std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual,
+             const S& weight, const Loss& loss, TermSums<S>& sums) const {
+    S w2(this->options().weight * this->options().weight);
+    if (const S* factors = views.numbers.factors) w2 *= factors[i] * factors[i];
     S squared(0.0);
     for (int m = 0; m < kSize; ++m) squared += residual(m) * residual(m);
     squared *= w2;
@@ -159,7 +164,7 @@ void BlockTerm<B, S>::add_cost(const Views& views, const Loss& loss, TermSums<S>
   Rows rows;
   for (std::size_t i = 0; i < views.features(); ++i) {
     Block::template rows<false>(block_, views, i, Linearization::measured, rows);
-    (void)add_cost(rows.residual, rows.weight, loss, sums);
+    (void)add_cost(views, i, rows.residual, rows.weight, loss, sums);
   }
 }
 
@@ -173,7 +178,7 @@ void BlockTerm<B, S>::add_normal_equations(const Views& views, const Loss& loss,
     Rows rows;
     for (std::size_t i = run.first; i < run.end; ++i) {
       Block::template rows<true>(block_, views, i, Linearization::measured, rows);
-      sums.wrenches.add(rows, add_cost(rows.residual, rows.weight, loss, sums));
+      sums.wrenches.add(rows, add_cost(views, i, rows.residual, rows.weight, loss, sums));
     }
     sums.wrenches.finish();
     sums_of(run, sums).add(sums.wrenches);
@@ -186,6 +191,8 @@ void BlockTerm<B, S>::evaluate(const Views& views, bool derivatives, Linearizati
   const std::size_t features = views.features();
   out.weight.resize(features);
   out.residual.resize(features * kSize);
+  const S* factors = views.numbers.factors;
+  out.factor.assign(factors, factors != nullptr ? factors + features : nullptr);
   if (!derivatives) {
     Rows rows;
     for (std::size_t i = 0; i < features; ++i) {

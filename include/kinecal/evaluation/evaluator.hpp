@@ -181,9 +181,10 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
         if (batches.has(s)) worker.views[s].update(batches.observation(b - before, s));
       }
       for (std::size_t n = 0; n < batches.terms().size(); ++n) {
-        const int t = batches.terms()[n];
-        const auto i = static_cast<std::size_t>(t);
-        visit(t, *problem_.terms()[i], TermViews<S>{worker.of_terms[i], &own_[i], runs_[layout][n]},
+        const auto t = static_cast<std::size_t>(batches.terms()[n]);
+        visit(batches.terms()[n], *problem_.terms()[t],
+              TermViews<S>{worker.of_terms[t], &own_[t], runs_[layout][n],
+                           batches.of_term(b - before, n)},
               batches.samples(b - before));
       }
     }

@@ -109,6 +109,7 @@ struct TermViews {
   std::span<const SensorView<S>* const> sensors;  ///< of the term, in its order
   const OwnParameters* own = nullptr;             ///< of the block itself
   std::span<const FeatureRun> runs;               ///< of the features, in their order
+  BatchTerm<S> numbers = {};                      ///< what else it takes of the batch
 
   [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
 

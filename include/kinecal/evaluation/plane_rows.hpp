@@ -25,7 +25,8 @@ template <PlanePairBlock B, class S>
 class PlaneLane {
  public:
   static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
-  static_assert(kParametersOfBlock<B> == 0, "kinecal: a block of planes has no own parameters");
+  static_assert(kTakesFeaturesOnly<B>,
+                "kinecal: a block of planes has no own parameters and takes no conditions");
   using Rows = FeatureRows<double, kSize, 2>;
 
   PlaneLane(const B& block, const TermViews<S>& views, int lane) : views_(views), lane_(lane) {

@@ -21,6 +21,7 @@ namespace kinecal {
 template <class S>
 struct BatchRows {
   std::vector<S> weight;    ///< of each feature: one, or zero where it is missing
+  std::vector<S> factor;    ///< of each feature: see TermResiduals; empty: all are one
   std::vector<S> residual;  ///< of each feature, unweighted
   std::vector<S> jacobian;  ///< row-major, run after run; values after the last run are stale
 
@@ -39,6 +40,7 @@ struct BatchRows {
         for (int m = 0; m < feature_size; ++m) {
           const std::size_t i = feature * static_cast<std::size_t>(feature_size) + std::size_t(m);
           if (there) out.residual(row) = lane(residual[i], lane_index);
+          if (there && !factor.empty()) out.factor(row) = lane(factor[feature], lane_index);
           if (columns >= 0) {
             for (const int column : run.columns) {
               const double derivative = lane(jacobian[value++], lane_index);

@@ -29,6 +29,7 @@ inline void add_block(AnyProblem& problem, const BlockConfig& block) {
   options.beside = block.ground;
   options.loss = {loss_type(block.loss.type), block.loss.scale};
   options.weight = 1.0 / block.sigma;
+  options.sigma = block.sigma;
   if (const auto scale = block.numbers.find("scale"); scale != block.numbers.end()) {
     options.weight *= scale->second;
   }
@@ -145,6 +146,28 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
   return table;
 }
 
+/// Warns of priors on parameters that no step frees.
+inline void warn_of_held_priors(const Config& config, const ParameterTable& table,
+                                Diagnostics& diagnostics) {
+  std::set<int> free;
+  for (const StepConfig& step : config.steps) {
+    for (const FreeParamConfig& param : free_parameters(step)) free.insert(table.find(param.name));
+  }
+  free.erase(-1);
+  for (const StepConfig& step : config.steps) {
+    for (const BlockConfig& block : step.error_blocks) {
+      if (block.param.empty()) continue;
+      const auto rows = Prior{block.param}.parameters(table);
+      const auto held = [&](int parameter) { return !free.contains(parameter); };
+      const bool misspelt = std::all_of(rows.begin(), rows.end(), [](int p) { return p < 0; });
+      if (misspelt || !std::all_of(rows.begin(), rows.end(), held)) continue;
+      diagnostics.warning(block.place, fmt::format("error block '{}' has no effect: no step frees "
+                                                   "its param '{}'",
+                                                   block.name, block.param));
+    }
+  }
+}
+
 /// Adds the sensors and error blocks of a step.
 /// @return  false, with errors, if they do not fit the robot
 inline bool add_models(AnyProblem& problem, const StepConfig& step, Diagnostics& diagnostics) {
@@ -189,6 +212,7 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
       calibration.table[index].initial = calibration.table[index].value = value;
     }
   }
+  detail::warn_of_held_priors(config, calibration.table, diagnostics);
   detail::warn_of_unusable(samples, diagnostics);
   detail::warn_of_far_points(config, samples, diagnostics);
   detail::warn_of_changing_cameras(samples, diagnostics);

@@ -66,8 +66,8 @@ class AnyProblem {
                             const TermOptions& options) = 0;
 
   /// Adds a prior.  It counts once for each sample.
-  /// @throws std::invalid_argument  if its joint or frame has no parameter in the table, with the
-  ///                                nearest name
+  /// @throws std::invalid_argument  if the table has no parameter of its joint or frame, nor one of
+  ///                                its name; with the nearest name
   void add_prior(const std::string& name, const Prior& prior, const TermOptions& options = {});
 
   /// Adds a sample.  Sensors and blocks must have been added before.

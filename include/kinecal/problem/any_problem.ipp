@@ -41,7 +41,7 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
     std::vector<std::string> names(frames_.begin(), frames_.end());
     for (const Parameter& parameter : table_) names.push_back(parameter.name);
     throw std::invalid_argument("error block '" + name + "': param '" + prior.param +
-                                "' is neither a free joint nor a free frame" +
+                                "' is not a free joint, a free frame or a parameter" +
                                 did_you_mean(prior.param, names));
   }
   priors_.push_back({name, prior, options});
@@ -56,7 +56,8 @@ namespace detail {
 }  // namespace detail
 
 KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
-  SampleNumbers seen(sensors_.size());
+  SampleNumbers seen;
+  seen.sensors.resize(sensors_.size());
   SampleLayout layout;
   try {
     if (sample.joint_names.size() != sample.joint_positions.size()) {
@@ -67,10 +68,14 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const Observation* observation = sample.observation(sensors_[s].mount().name);
       if (observation == nullptr || observation->features.empty()) continue;
-      seen[s] = sensors_[s].numbers(sample, *observation);
+      seen.sensors[s] = sensors_[s].numbers(sample, *observation);
     }
     for (int t = 0; t < num_terms(); ++t) {
-      if (applies(term(t), sample, seen)) layout.terms.push_back(t);
+      if (!applies(term(t), sample, seen)) continue;
+      layout.terms.push_back(t);
+      seen.terms.push_back(
+          {detail::factors_of(term(t), seen), detail::conditions_of(term(t), sample)});
+      if (!seen.terms.back().factors.empty()) layout.weighted.push_back(t);
     }
   } catch (const SampleError& e) {
     throw SampleError(sample.source + ": " + e.what());
@@ -151,8 +156,9 @@ KINECAL_INLINE void AnyProblem::forget_unused(SampleLayout& layout, SampleNumber
   }
   layout.chains.resize(sensors_.size());
   for (std::size_t s = 0; s < used.size(); ++s) {
-    if (!used[s]) seen[s].reset();
-    if (seen[s]) layout.chains[s] = seen[s]->chain;
+    auto& of_sensor = seen.sensors[s];
+    if (!used[s]) of_sensor.reset();
+    if (of_sensor) layout.chains[s] = of_sensor->chain;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinecal/errors/loss.hpp"
@@ -16,6 +17,8 @@ namespace kinecal {
 /// How a term enters the cost and reports.
 struct TermOptions {
   double weight = 1.0;     ///< factor of the residual: scale / sigma
+  double sigma = 1.0;      ///< the standard deviation in `weight`: the weight of a feature that has
+                           ///< its own is weight * sigma / Feature::sigma
   Loss loss = {};          ///< of each feature's weighted residual
   bool exclusive = false;  ///< use only samples in which no other sensor observes anything
   /// Use only samples with an observation of this sensor, too; empty: all samples.  It need not be a
@@ -33,11 +36,15 @@ struct TermOptions {
 /// Residuals of one term in one sample, feature after feature, and their derivatives.
 struct TermResiduals {
   Eigen::VectorXd residual;  ///< unweighted
+  Eigen::VectorXd factor;    ///< of each residual, beside the term's weight: the block's sigma over
+                             ///< the feature's own; one where a feature has none
   Eigen::MatrixXd jacobian;  ///< (residuals x free parameters); empty if not asked for
 
   /// Sets the residual (rows) to zero, and the Jacobian (rows x columns); columns < 0: no Jacobian.
+  /// Factors are one.
   void resize(Eigen::Index rows, int columns) {
     residual.setZero(rows);
+    factor.setOnes(rows);
     jacobian.setZero(columns >= 0 ? rows : 0, columns >= 0 ? columns : 0);
   }
 };
@@ -78,6 +85,8 @@ class AnyTerm {
 
   /// What the block takes of each of its sensors.
   [[nodiscard]] virtual std::span<const Quantity> quantities() const = 0;
+  /// Names of the conditions of a sample that the block takes.
+  [[nodiscard]] virtual std::span<const std::string_view> conditions() const = 0;
   /// Number of residuals of one feature.
   [[nodiscard]] virtual int feature_size() const = 0;
   /// True if feature i of each sensor is the same one.

@@ -10,37 +10,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <compare>
-#include <optional>
+#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/kinematics/joint_state.hpp"
+#include "kinecal/problem/sample_numbers.hpp"
 
 namespace kinecal {
-
-/// What one sensor observed in one sample.
-struct ObservationNumbers {
-  std::vector<std::size_t> chain;  ///< of each feature: the sensor's chain to it
-  std::vector<double> usable;      ///< of each feature: one, or zero if it is NaN
-  std::vector<double> measured;    ///< of each feature: 3, or 12 with an orientation
-  std::vector<double> settings;    ///< see AnySensor::settings()
-  /// Of each chain to a feature: position, cosine and sine of each joint.
-  std::vector<std::optional<std::vector<double>>> joints;
-};
-
-/// What the sensors of a problem observed in one sample.
-using SampleNumbers = std::vector<std::optional<ObservationNumbers>>;
-
-/// What samples must have in common to share batches.
-struct SampleLayout {
-  std::vector<std::optional<std::vector<std::size_t>>> chains;  ///< of each feature, by sensor
-  std::vector<int> terms;                                       ///< indices of the terms that apply
-
-  /// Any strict order, for a map.
-  auto operator<=>(const SampleLayout&) const = default;  // NOLINT(modernize-use-nullptr)
-};
 
 /// Where the numbers of an observation are in a batch.
 struct ObservationLayout {
@@ -96,13 +74,21 @@ struct BatchObservation {
   }
 };
 
+/// What a term takes of the samples of a batch besides the observations of its sensors.
+template <class S>
+struct BatchTerm {
+  /// Of each feature, lane by lane: the block's sigma over the feature's own; nullptr: all are one.
+  const S* factors = nullptr;
+  const S* conditions = nullptr;  ///< those that the block takes, lane by lane
+};
+
 /// All samples of one layout.
 template <class S>
 class Batches {
  public:
   /// @param first  a sample of the layout
   Batches(std::vector<int> terms, const SampleNumbers& first) : terms_(std::move(terms)) {
-    for (const auto& seen : first) {
+    for (const auto& seen : first.sensors) {
       auto& layout = layouts_.emplace_back();
       if (!seen) continue;
       layout.emplace();
@@ -115,6 +101,10 @@ class Batches {
       layout->usable = reserve(seen->usable);
       if (!seen->chain.empty()) layout->width = seen->measured.size() / seen->chain.size();
     }
+    for (const TermNumbers& term : first.terms) {
+      factors_.push_back(term.factors.empty() ? kNone : reserve(term.factors));
+      conditions_.push_back(reserve(term.conditions));
+    }
   }
 
   /// Adds a sample.
@@ -124,19 +114,24 @@ class Batches {
     if (lane == 0) numbers_.resize(numbers_.size() + size_);
     S* const batch = numbers_.data() + (numbers_.size() - size_);
     samples_.push_back(sample);
-    for (std::size_t s = 0; s < seen.size(); ++s) {
-      if (!seen[s]) continue;
+    for (std::size_t s = 0; s < seen.sensors.size(); ++s) {
+      const auto& of_sensor = seen.sensors[s];
+      if (!of_sensor) continue;
       const ObservationLayout& layout = *layouts_[s];
       for (std::size_t c = 0; c < layout.joints.size(); ++c) {
-        if (seen[s]->joints[c]) set(*seen[s]->joints[c], lane, batch + layout.joints[c]);
+        if (of_sensor->joints[c]) set(*of_sensor->joints[c], lane, batch + layout.joints[c]);
       }
-      set(seen[s]->settings, lane, batch + layout.settings);
-      set(seen[s]->measured, lane, batch + layout.measured);
+      set(of_sensor->settings, lane, batch + layout.settings);
+      set(of_sensor->measured, lane, batch + layout.measured);
       for (std::size_t i = 0; i < layout.chain.size(); ++i) {
         S& usable = batch[layout.usable + i];
         if (lane == 0) usable = S(0.0);
-        set_lane(usable, lane, seen[s]->usable[i]);
+        set_lane(usable, lane, of_sensor->usable[i]);
       }
+    }
+    for (std::size_t t = 0; t < seen.terms.size(); ++t) {
+      if (factors_[t] != kNone) set(seen.terms[t].factors, lane, batch + factors_[t]);
+      set(seen.terms[t].conditions, lane, batch + conditions_[t]);
     }
   }
 
@@ -166,8 +161,16 @@ class Batches {
   [[nodiscard]] BatchObservation<S> observation(std::size_t batch, std::size_t sensor) const {
     return {numbers_.data() + batch * size_, &*layouts_[sensor]};
   }
+  /// What a term takes of the samples of a batch.
+  /// @param i  place of the term in terms()
+  [[nodiscard]] BatchTerm<S> of_term(std::size_t batch, std::size_t i) const {
+    const S* numbers = numbers_.data() + batch * size_;
+    return {factors_[i] == kNone ? nullptr : numbers + factors_[i], numbers + conditions_[i]};
+  }
 
  private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
   [[nodiscard]] std::size_t reserve(const std::vector<double>& numbers) {
     const std::size_t first = size_;
     size_ += numbers.size();
@@ -186,6 +189,8 @@ class Batches {
 
   std::vector<int> terms_;
   std::vector<std::optional<ObservationLayout>> layouts_;  ///< by sensor
+  std::vector<std::size_t> factors_;                       ///< of each term: first number, or kNone
+  std::vector<std::size_t> conditions_;                    ///< of each term: first number
   std::size_t size_ = 0;                                   ///< numbers of a batch
   std::vector<S> numbers_;                                 ///< of all batches
   std::vector<int> samples_;                               ///< of all batches, by lane

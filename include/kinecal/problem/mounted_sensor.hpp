@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -74,6 +75,7 @@ class MountedSensor {
     } catch (const SettingsError& e) {
       throw SampleError("sensor '" + mount_.name + "': " + e.what());
     }
+    add_sigmas(seen, all);
     replace_unusable(all);
     return all;
   }
@@ -99,6 +101,22 @@ class MountedSensor {
     all.measured.insert(all.measured.end(), point.begin(), point.end());
     if (sensor_->is_oriented()) {
       all.measured.insert(all.measured.end(), rotation.data(), rotation.data() + rotation.size());
+    }
+  }
+
+  void add_sigmas(const Observation& seen, ObservationNumbers& all) const {
+    const auto& features = seen.features;
+    const auto has_one = [](const Feature& feature) { return feature.sigma.has_value(); };
+    if (std::none_of(features.begin(), features.end(), has_one)) return;
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      const double sigma = features[i].sigma.value_or(0.0);
+      if (features[i].sigma && !(sigma > 0.0 && std::isfinite(sigma))) {
+        std::ostringstream message;
+        message << "sensor '" << mount_.name << "': the sigma of feature " << i + 1
+                << " must be positive and finite, is " << sigma;
+        throw SampleError(message.str());
+      }
+      all.variance.push_back(sigma * sigma);
     }
   }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/problem/any_problem.hpp"
@@ -14,8 +15,52 @@ namespace detail {
 [[nodiscard]] inline std::vector<const ObservationNumbers*> observations_of(
     const AnyTerm& term, const SampleNumbers& observed) {
   std::vector<const ObservationNumbers*> seen;
-  for (const int s : term.sensors()) seen.push_back(&*observed[static_cast<std::size_t>(s)]);
+  for (const int s : term.sensors()) {
+    seen.push_back(&*observed.sensors[static_cast<std::size_t>(s)]);
+  }
   return seen;
+}
+
+/// The block's sigma over that of each feature; empty if no feature has its own.  Variances of
+/// several sensors add up.  A pixel block takes those of the camera, which are in pixels.
+[[nodiscard]] inline std::vector<double> factors_of(const AnyTerm& term,
+                                                    const SampleNumbers& observed) {
+  const auto seen = observations_of(term, observed);
+  const auto quantities = term.quantities();
+  const bool of_pixels =
+      std::find(quantities.begin(), quantities.end(), Quantity::pixel) != quantities.end();
+  std::vector<double> factors;
+  for (std::size_t s = 0; s < seen.size(); ++s) {
+    const std::vector<double>& variance = seen[s]->variance;
+    if (variance.empty() || (of_pixels && quantities[s] != Quantity::pixel)) continue;
+    factors.resize(variance.size(), 0.0);
+    for (std::size_t i = 0; i < variance.size(); ++i) factors[i] += variance[i];
+  }
+  for (double& of_feature : factors) {
+    of_feature = of_feature > 0.0 ? term.options().sigma / std::sqrt(of_feature) : 1.0;
+  }
+  return factors;
+}
+
+/// The conditions that a term takes of a sample.
+[[nodiscard]] inline std::vector<double> conditions_of(const AnyTerm& term, const Sample& sample) {
+  std::vector<double> values;
+  for (const std::string_view wanted : term.conditions()) {
+    const std::string name(wanted);
+    const auto found = sample.conditions.find(name);
+    if (found == sample.conditions.end()) {
+      std::vector<std::string> names;
+      for (const auto& [known, value] : sample.conditions) names.push_back(known);
+      throw SampleError("error block '" + term.name() + "': condition '" + name +
+                        "' is not in the sample" + did_you_mean(name, names));
+    }
+    if (!std::isfinite(found->second)) {
+      throw SampleError("error block '" + term.name() + "': condition '" + name +
+                        "' is not a finite number");
+    }
+    values.push_back(found->second);
+  }
+  return values;
 }
 
 }  // namespace detail
@@ -29,7 +74,7 @@ KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sampl
       [&](const Observation& o) { return !o.features.empty() && o.sensor != beside; });
   if (term.options().exclusive && observing != std::ssize(term.sensors())) return false;
   for (const int s : term.sensors()) {
-    if (!observed[static_cast<std::size_t>(s)]) return false;
+    if (!observed.sensors[static_cast<std::size_t>(s)]) return false;
   }
   const auto seen = detail::observations_of(term, observed);
   const auto name = [&](std::size_t i) { return sensor(term.sensors()[i]).mount().name; };
@@ -41,6 +86,11 @@ KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sampl
   }
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (term.quantities()[i] != Quantity::plane) continue;
+    if (!seen[i]->variance.empty()) {
+      throw SampleError("error block '" + term.name() + "': a feature of sensor '" + name(i) +
+                        "' has a sigma; all features together are one plane, so the sigma of the "
+                        "block counts and features must have none");
+    }
     if (const std::string why = why_no_plane(term.sensors()[i], *seen[i]); !why.empty()) {
       throw SampleError("error block '" + term.name() + "': " + why);
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ struct Feature {
   Vector3<double> point = Vector3<double>::Zero();  ///< (3) metres; a pixel is (u, v, 0), a reading
                                                     ///< (value, 0, 0)
   std::optional<Matrix3<double>> rotation = {};     ///< (3 x 3) of a pose: frame_R_feature
+  /// Standard deviation of this measurement, metres or pixels: the unit of the residual.  It takes
+  /// the place of the error block's sigma.
+  std::optional<double> sigma = {};
 };
 
 /// The settings of a camera while it recorded: sensor_msgs/CameraInfo and the depth driver's.
@@ -48,6 +52,9 @@ struct Sample {
   std::vector<double> joint_positions;    ///< radians or metres, in the order of the names
   std::vector<Observation> observations;  ///< at most one of each sensor
   std::string source;                     ///< source location, for messages: "samples.yaml:37"
+  /// Numbers that come with the sample, by name: temperature, load.  Error blocks name those that
+  /// they take and their units: see errors/error_block.hpp.
+  std::map<std::string, double> conditions = {};
 
   /// Measured position of a joint, radians or metres; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {

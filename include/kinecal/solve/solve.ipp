@@ -30,17 +30,24 @@ namespace detail {
 [[nodiscard]] inline std::string mostly_left_out(const AnyProblem& problem,
                                                  std::span<const double> values) {
   if (all_losses_convex(problem)) return {};
-  const auto norms = feature_norms(problem, values);
-  for (std::size_t t = 0; t < norms.size(); ++t) {
-    const AnyTerm& term = problem.term(static_cast<int>(t));
+  struct Features {
+    int all = 0, left_out = 0;
+  };
+  std::vector<Features> of_terms(static_cast<std::size_t>(problem.num_terms()));
+  (void)evaluate(problem, values, nullptr, [&](int t, int, const TermResiduals& rows) {
+    const AnyTerm& term = problem.term(t);
     const TermOptions& options = term.options();
-    const auto left_out = std::count_if(norms[t].begin(), norms[t].end(), [&](double norm) {
-      const double weighted = options.weight * norm;
-      return options.loss(weighted * weighted).derivative == 0.0;
-    });
-    if (left_out > 0 && 2 * left_out >= static_cast<std::ptrdiff_t>(norms[t].size())) {
-      return term.name();
+    Features& features = of_terms[static_cast<std::size_t>(t)];
+    for (Eigen::Index row = 0; row < rows.residual.size(); row += term.feature_size()) {
+      const double weight = options.weight * rows.factor(row);
+      const double squared = rows.residual.segment(row, term.feature_size()).squaredNorm();
+      ++features.all;
+      if (options.loss(weight * weight * squared).derivative == 0.0) ++features.left_out;
     }
+  });
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const auto [all, left_out] = of_terms[static_cast<std::size_t>(t)];
+    if (left_out > 0 && 2 * left_out >= all) return problem.term(t).name();
   }
   return {};
 }

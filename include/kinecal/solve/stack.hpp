@@ -23,9 +23,10 @@ struct Stack {
   /// Rows as the evaluation writes them.
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  Eigen::VectorXd residual;  ///< (residuals) weight times residual: term by term, sample by sample,
-                             ///< then the priors
-  RowMajor jacobian;         ///< (residuals x free parameters) derivatives of these
+  /// (residuals) weight of the feature times residual: term by term, sample by sample, then the
+  /// priors.
+  Eigen::VectorXd residual;
+  RowMajor jacobian;  ///< (residuals x free parameters) derivatives of these
 
   /// (free x free) covariance of the free parameters: (J^T J)^-1.  It holds if weights are one over
   /// standard deviations; multiply by residual.squaredNorm() / (residuals - free) if only their

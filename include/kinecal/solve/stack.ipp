@@ -19,8 +19,9 @@ KINECAL_INLINE std::optional<UndefinedResidual> detail::stack_rows(AnyEvaluator&
   Eigen::Index row = 0;
   const auto append = [&](double weight, const TermResiduals& of_term) {
     const Eigen::Index rows = of_term.residual.size();
-    out.residual.segment(row, rows) = weight * of_term.residual;
-    if (jacobians) out.jacobian.middleRows(row, rows) = weight * of_term.jacobian;
+    const Eigen::VectorXd weights = weight * of_term.factor;
+    out.residual.segment(row, rows) = weights.cwiseProduct(of_term.residual);
+    if (jacobians) out.jacobian.middleRows(row, rows) = weights.asDiagonal() * of_term.jacobian;
     row += rows;
   };
   auto undefined = evaluator.evaluate(values, jacobians, [&](int t, int, const auto& of_term) {

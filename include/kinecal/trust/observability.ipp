@@ -68,8 +68,9 @@ KINECAL_INLINE Observability observability(const AnyProblem& problem, const Free
   if (free.size() == 0) return {};
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free.size(), free.size());
   const auto add = [&](int t, int, const TermResiduals& out) {
-    const double weight = problem.term(t).options().weight;
-    normal.noalias() += weight * weight * out.jacobian.transpose() * out.jacobian;
+    const Eigen::VectorXd weights = problem.term(t).options().weight * out.factor;
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * out.jacobian;
+    normal.noalias() += weighted.transpose() * weighted;
   };
   (void)evaluate(problem, values, &free, add, Linearization::error_free);
   const Eigen::VectorXd scale =

@@ -82,6 +82,20 @@ TEST_F(ReadCsvSamples, PutsEveryColumnWhereItBelongs) {
   EXPECT_EQ(sample.observations[2].features[0].point, Vector3<double>(320.5, 240.0, 0.0));
 }
 
+TEST_F(ReadCsvSamples, TakesConditionsFromColumns) {
+  const std::string mapping =
+      kMapping + std::string("conditions: {temperature: u, load: [l, dl]}\n");
+  const auto samples = read(kTable, mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_EQ(samples[0].conditions,
+            (std::map<std::string, double>{{"temperature", 320.5}, {"load", 100.5}}));
+  (void)read(kTable, with(mapping, "temperature: u", "temperature: uu"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:18: column 'uu'")));
+  (void)read(kTable, with(mapping, "{temperature: u, load: [l, dl]}", "[u]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:18: conditions")));
+}
+
 TEST_F(ReadCsvSamples, TakesColumnsByNumberWhereThereIsNoHeader) {
   const std::string mapping =
       "separator: semicolon\nheader: false\njoints: {columns: {pan: 1}}\n"

@@ -279,6 +279,42 @@ TEST(ReadSamples, OrientationThatIsNoUnitQuaternionIsAnError) {
   expect_error(pose("{x: 0, y: 0, z: up, w: 1}"), 4, {"'up' is not a number"});
 }
 
+TEST(ReadSamples, AFeatureMayHaveASigma) {
+  const auto features = [](const std::string& sigma) {
+    return kJoints +
+           "observations:\n- sensor_name: arm\n  features: [{point: {x: 1, y: 2, z: 3}, " + sigma +
+           "}, {point: {x: 1, y: 2, z: 3}}]\n---\n";
+  };
+  const Reading reading = read_text(features("sigma: 0.002"));
+  ASSERT_EQ(reading.samples.size(), 1u);
+  const auto& found = reading.samples[0].observations[0].features;
+  EXPECT_EQ(found.at(0).sigma, 0.002);
+  EXPECT_EQ(found.at(1).sigma, std::nullopt);
+  expect_error(features("sigma: small"), 4, {"sigma", "'small' is not a number"});
+  expect_error(features("sigma: {x: 1}"), 4, {"sigma", "a map stands here"});
+}
+
+TEST(ReadSamples, ASampleMayHaveConditionsOfAnyName) {
+  const auto with = [](const std::string& conditions) {
+    return kJoints + "conditions: " + conditions + "\n" + kArm + "---\n";
+  };
+  const Reading reading = read_text(with("{temperature: 23.5, load: -1.2e3, point: .nan}") +
+                                    kSample + with("{}") + with(""));
+  ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
+  ASSERT_EQ(reading.samples.size(), 4u);
+  const auto& found = reading.samples[0].conditions;
+  EXPECT_EQ(found.size(), 3u);
+  EXPECT_EQ(found.at("temperature"), 23.5);
+  EXPECT_EQ(found.at("load"), -1.2e3);
+  EXPECT_TRUE(std::isnan(found.at("point")));
+  for (std::size_t n = 1; n < 4; ++n) EXPECT_THAT(reading.samples[n].conditions, IsEmpty());
+  expect_error(with("{temperature: warm}"), 2, {"conditions", "'warm' is not a number"});
+  expect_error(with("{temperature: }"), 2, {"conditions", "'' is not a number"});
+  expect_error(with("{temperature: [1]}"), 2, {"conditions", "a list stands here"});
+  expect_error(with("{load: 1, load: 2}"), 2, {"conditions", "'load' occurs twice"});
+  expect_error(with("23.5"), 2, {"conditions", "'23.5' is not a map"});
+}
+
 TEST(ReadSamples, SensorThatOccursTwiceInASampleIsAnError) {
   expect_error(kJoints + kArm + "- sensor_name: arm\n---\n", 5,
                {"sample at line 1", "sensor 'arm' occurs twice"});

@@ -51,6 +51,7 @@ void expect_same(const CameraInfo& a, const CameraInfo& b) {
 void expect_same(const Sample& a, const Sample& b) {
   EXPECT_EQ(a.joint_names, b.joint_names);
   EXPECT_EQ(a.joint_positions, b.joint_positions);
+  EXPECT_EQ(a.conditions, b.conditions);
   ASSERT_EQ(a.observations.size(), b.observations.size());
   for (std::size_t i = 0; i < a.observations.size(); ++i) {
     const Observation &x = a.observations[i], &y = b.observations[i];
@@ -59,6 +60,7 @@ void expect_same(const Sample& a, const Sample& b) {
     for (std::size_t j = 0; j < x.features.size(); ++j) {
       EXPECT_EQ(x.features[j].frame, y.features[j].frame);
       EXPECT_EQ(x.features[j].point, y.features[j].point);
+      EXPECT_EQ(x.features[j].sigma, y.features[j].sigma);
     }
     ASSERT_EQ(x.camera.has_value(), y.camera.has_value());
     if (x.camera) expect_same(*x.camera, *y.camera);
@@ -88,6 +90,8 @@ std::vector<Sample> difficult_samples() {
     sample.observations.push_back({"camera", {{"rgb", {number(), number(), number()}}}, camera});
     sample.observations.push_back({"arm", {{"", {-0.0, 1.0, number()}}, {"null", {}}}});
     sample.observations.push_back({"empty", {}});
+    sample.observations[0].features[0].sigma = std::abs(number());
+    sample.conditions = {{"temperature", number()}, {"7", number()}, {"with: space", number()}};
   }
   samples.push_back({{}, {}, {}, ""});
   return samples;

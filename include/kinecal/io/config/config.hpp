@@ -74,7 +74,7 @@ struct BlockConfig {
   std::string name;                 ///< for reports and messages
   std::string type;                 ///< of the registry: "chain3d_to_chain3d"
   std::vector<std::string> models;  ///< in the order of the registry's keys; empty for outrageous
-  std::string param;                ///< outrageous: joint or frame
+  std::string param;                ///< outrageous: joint, frame or parameter
   std::map<std::string, double> numbers;  ///< by key; defaults filled in
   bool exclusive =
       false;             ///< `samples: exclusive` (or alone): only samples without observations of

@@ -5,6 +5,7 @@
 //   joints:
 //     unit: degrees                 # radians (default) or degrees; metres or millimetres for
 //     columns: {joint_1: q1, ...}   #   prismatic joints: sliding: {unit: ..., columns: ...}
+//   conditions: {temperature: t_air}   # numbers that come with each sample, in units of your own
 //   observations:
 //    - sensor: arm
 //      frame: reflector
@@ -53,6 +54,12 @@ struct CsvJoint {
   CsvUnit unit;      ///< of the columns
 };
 
+/// A condition of every sample: a temperature, a load.
+struct CsvCondition {
+  std::string name;  ///< of the condition
+  CsvSum columns;    ///< whose sum it is
+};
+
 /// One observation of every sample.
 struct CsvObservation {
   std::string sensor;                         ///< sensor_name of the observation
@@ -67,6 +74,7 @@ struct CsvMapping {
   char separator = ',';                      ///< between cells; ' ' for one or more blanks
   bool header = true;                        ///< the first row names the columns
   std::vector<CsvJoint> joints;              ///< positions in every sample
+  std::vector<CsvCondition> conditions;      ///< of every sample
   std::vector<CsvObservation> observations;  ///< of every sample
 };
 

@@ -60,6 +60,15 @@ inline void read_csv_joints(ConfigMap& map, const std::string& key, bool angle,
   joints->report_unknown();
 }
 
+/// `conditions:`
+inline void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
+  const auto conditions = file.map("conditions", "conditions");
+  if (!conditions) return;
+  for (const ConfigEntry& entry : conditions->entries()) {
+    mapping.conditions.push_back({entry.key, read_csv_sum(*conditions, entry.value, entry.place)});
+  }
+}
+
 /// `points:` (three columns each) or `pixels:` (two)
 inline void read_csv_points(ConfigMap& map, const std::string& key, std::size_t columns,
                             CsvObservation& observation) {
@@ -129,6 +138,7 @@ inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
   mapping.header = file.flag("header", true);
   read_csv_joints(file, "joints", true, mapping);
   read_csv_joints(file, "sliding", false, mapping);
+  read_csv_conditions(file, mapping);
   for (const ConfigEntry& entry : file.list("observations")) {
     if (auto map = file.map(entry, "observation")) read_csv_observation(*map, mapping);
   }

@@ -88,6 +88,9 @@ class CsvSamples {
         file_(std::move(file)),
         diagnostics_(diagnostics) {
     for (const CsvJoint& joint : mapping.joints) joints_.push_back(find(joint.columns));
+    for (const CsvCondition& condition : mapping.conditions) {
+      conditions_.push_back(find(condition.columns));
+    }
     for (const CsvObservation& observation : mapping.observations) {
       for (const auto& point : observation.points) {
         for (const CsvSum& sum : point) points_.push_back(find(sum));
@@ -114,6 +117,9 @@ class CsvSamples {
       }
       sample.joint_names.push_back(joint.name);
       sample.joint_positions.push_back(q);
+    }
+    for (std::size_t i = 0; i < conditions_.size(); ++i) {
+      sample.conditions[mapping_.conditions[i].name] = value(row, conditions_[i], {});
     }
     std::size_t next = 0;
     for (const CsvObservation& observation : mapping_.observations) {
@@ -203,7 +209,7 @@ class CsvSamples {
   CsvColumns columns_;
   std::string file_;
   Diagnostics& diagnostics_;
-  std::vector<Indices> joints_, points_;  ///< in the order of the mapping
+  std::vector<Indices> joints_, conditions_, points_;  ///< in the order of the mapping
   std::size_t bad_cells_ = 0;
   std::set<std::string> doubted_;  ///< joints and sensors with a warning
 };

@@ -18,6 +18,9 @@ namespace detail {
   if (feature.rotation) {
     throw OutputError("a message of samples cannot hold the orientation of a feature; write YAML");
   }
+  if (feature.sigma) {
+    throw OutputError("a message of samples cannot hold the sigma of a feature; write YAML");
+  }
   const auto& p = feature.point;
   return fields("header", fields("frame_id", std::string_view(feature.frame)), "point",
                 fields("x", p.x(), "y", p.y(), "z", p.z()));
@@ -49,6 +52,9 @@ namespace detail {
 /// @return  views of the sample, which must outlive it
 [[nodiscard]] inline MessageFields sample_message(const Sample& sample) {
   using namespace detail;
+  if (!sample.conditions.empty()) {
+    throw OutputError("a message of samples cannot hold conditions; write YAML");
+  }
   return fields(
       "joint_states",
       fields("name", texts(sample.joint_names), "position", numbers(sample.joint_positions)),

@@ -58,6 +58,13 @@ class SampleBuilder {
     if (node == SampleNode::parameter) camera_.end_parameter(errors_);
   }
 
+  /// The name of the condition whose value comes next.
+  void key(int line, std::string_view name) {
+    condition_ = name;
+    if (!sample_.conditions.contains(condition_)) return;
+    errors_.add(line, fmt::format("conditions: {} occurs twice", shown(name)));
+  }
+
   /// A word, or a number as text.
   void scalar(SampleNode node, int line, std::string_view text) {
     if (sample_rule(node).kind == SampleNodeKind::word) return word(node, line, text);
@@ -80,6 +87,10 @@ class SampleBuilder {
       feature().point.z() = value;
     } else if (node >= SampleNode::qx && node <= SampleNode::qw) {
       quaternion_(static_cast<int>(node) - static_cast<int>(SampleNode::qx)) = value;
+    } else if (node == SampleNode::condition) {
+      sample_.conditions[condition_] = value;
+    } else if (node == SampleNode::sigma) {
+      feature().sigma = value;
     } else {
       camera_.number(node, line, value, errors_);
     }
@@ -137,6 +148,7 @@ class SampleBuilder {
   std::size_t joints_ = 0;  ///< of the last sample: the next one probably has as many
   Sample sample_;
   Eigen::Vector4d quaternion_ = Eigen::Vector4d::Zero();  ///< x y z w
+  std::string condition_;                                 ///< name of the last condition
   SampleCamera camera_;
 };
 

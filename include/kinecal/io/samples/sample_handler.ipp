@@ -79,11 +79,8 @@ class SampleHandler {
   void map_starts(int line) { start(line, SampleNodeKind::map); }
 
   void ends() {
-    if (skipped_ > 0) {
-      --skipped_;
-    } else {
-      finish();
-    }
+    if (skipped_ == 0) return finish();
+    --skipped_;
   }
 
  private:
@@ -121,6 +118,7 @@ class SampleHandler {
     key_line_ = line;
     value_node_ = text.empty() ? SampleNode::unknown : sample_child(level.node, text);
     if (value_node_ == SampleNode::unknown) return;
+    if (value_node_ == SampleNode::condition) return builder_.key(line, text);
     if ((seen_ & sample_bit(value_node_)) != 0) {
       error(level.node, line,
             fmt::format("key '{}' occurs twice; is a '---' missing between samples?", text));

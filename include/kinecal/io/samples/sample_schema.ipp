@@ -1,10 +1,12 @@
 // The keys of a recorded sample as a tree: which key stands where, and what may be under it.
 //
 //   joint_states: {name: [...], position: [...]}
+//   conditions: {temperature: ..., ...}                                   (if there are any)
 //   observations:
 //   - sensor_name: camera
 //     features: [{header: {frame_id: ...}, point: {x: ..., y: ..., z: ...},
-//                 orientation: {x: ..., y: ..., z: ..., w: ...}}, ...]    (of poses only)
+//                 orientation: {x: ..., y: ..., z: ..., w: ...},          (of poses only)
+//                 sigma: ...}, ...]                                       (if it has its own)
 //     ext_camera_info:
 //       camera_info: {height, width, distortion_model, D, K, R, P}
 //       parameters: [{name: ..., value: ...}, ...]
@@ -29,6 +31,8 @@ enum class SampleNode : std::uint8_t {
   joint_name,
   joint_positions,
   joint_position,
+  conditions,
+  condition,
   observations,
   observation,
   sensor,
@@ -45,6 +49,7 @@ enum class SampleNode : std::uint8_t {
   qy,
   qz,
   qw,
+  sigma,
   ext_camera_info,
   camera_info,
   height,
@@ -68,7 +73,7 @@ enum class SampleNode : std::uint8_t {
 /// `parameter_value` is a word: its meaning depends on the parameter's name.
 enum class SampleNodeKind : std::uint8_t { map, list, word, number };
 
-/// One row: the node, its parent, its key (none for the items of a list) and its other key.
+/// One row: the node, its parent, its key (none for list items and free keys) and its other key.
 struct SampleNodeRule {
   SampleNode node, parent;
   SampleNodeKind kind;
@@ -87,6 +92,8 @@ struct SampleNodeRule {
       {joint_name, joint_names, word, ""},
       {joint_positions, joint_states, list, "position", "", true},
       {joint_position, joint_positions, number, ""},
+      {conditions, sample, map, "conditions"},
+      {condition, conditions, number, ""},
       {observations, sample, list, "observations", "", true},
       {observation, observations, map, ""},
       {sensor, observation, word, "sensor_name", "", true},
@@ -103,6 +110,7 @@ struct SampleNodeRule {
       {qy, orientation, number, "y", "", true},
       {qz, orientation, number, "z", "", true},
       {qw, orientation, number, "w", "", true},
+      {sigma, feature, number, "sigma"},
       {ext_camera_info, observation, map, "ext_camera_info"},
       {camera_info, ext_camera_info, map, "camera_info"},
       {height, camera_info, number, "height"},
@@ -165,6 +173,7 @@ inline constexpr auto kSampleChildren = [] {
 /// The node under `parent` with this key; `unknown` if there is none.  The items of a list have
 /// the key "".
 [[nodiscard]] constexpr SampleNode sample_child(SampleNode parent, std::string_view key) {
+  if (parent == SampleNode::conditions) return SampleNode::condition;  // their names are free
   const SampleChildren& children = sample_children(parent);
   for (std::size_t i = 0; i < children.size; ++i) {
     const SampleNodeRule& r = sample_rule(children.nodes[i]);
@@ -182,9 +191,8 @@ inline constexpr auto kSampleChildren = [] {
 
 static_assert(
     [] {
-      for (std::size_t i = 0; i < kSampleNodeRules.size(); ++i) {
+      for (std::size_t i = 0; i < kSampleNodeRules.size(); ++i)
         if (static_cast<std::size_t>(kSampleNodeRules[i].node) != i) return false;
-      }
       return kSampleNodeRules.size() == static_cast<std::size_t>(SampleNode::unknown);
     }(),
     "sample_node_rules() must have one row for each SampleNode, in the order of the enum");

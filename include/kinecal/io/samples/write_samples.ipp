@@ -28,17 +28,28 @@ namespace detail {
                      numbers_to_yaml(sample.joint_positions));
 }
 
+/// Nothing for a sample without conditions.
+[[nodiscard]] inline std::string conditions_to_yaml(const Sample& sample) {
+  std::string all;
+  for (const auto& [name, value] : sample.conditions) {
+    all +=
+        fmt::format("{}{}: {}", all.empty() ? "" : ", ", name_to_yaml(name), number_to_yaml(value));
+  }
+  return all.empty() ? "" : fmt::format("conditions: {{{}}}\n", all);
+}
+
 [[nodiscard]] inline std::string feature_to_yaml(const Feature& feature) {
   const auto& p = feature.point;
-  std::string orientation;
+  std::string others;
   if (feature.rotation) {
     const Eigen::Vector4d q = quaternion(*feature.rotation).normalized();
-    orientation = fmt::format(", orientation: {{x: {}, y: {}, z: {}, w: {}}}", number_to_yaml(q(0)),
-                              number_to_yaml(q(1)), number_to_yaml(q(2)), number_to_yaml(q(3)));
+    others = fmt::format(", orientation: {{x: {}, y: {}, z: {}, w: {}}}", number_to_yaml(q(0)),
+                         number_to_yaml(q(1)), number_to_yaml(q(2)), number_to_yaml(q(3)));
   }
+  if (feature.sigma) others += fmt::format(", sigma: {}", number_to_yaml(*feature.sigma));
   return fmt::format("  - {{header: {{frame_id: {}}}, point: {{x: {}, y: {}, z: {}}}{}}}\n",
                      name_to_yaml(feature.frame), number_to_yaml(p.x()), number_to_yaml(p.y()),
-                     number_to_yaml(p.z()), orientation);
+                     number_to_yaml(p.z()), others);
 }
 
 [[nodiscard]] inline std::string camera_to_yaml(const CameraInfo& camera) {
@@ -73,7 +84,7 @@ KINECAL_INLINE void write_samples(std::ostream& out, const std::vector<Sample>& 
           "sample {}: {} joint name{} but {} position{}; it cannot be written", sample.source,
           names, names == 1 ? "" : "s", positions, positions == 1 ? "" : "s"));
     }
-    out << detail::joint_states_to_yaml(sample)
+    out << detail::joint_states_to_yaml(sample) << detail::conditions_to_yaml(sample)
         << (sample.observations.empty() ? "observations: []\n" : "observations:\n");
     for (const Observation& o : sample.observations) out << detail::observation_to_yaml(o);
     out << "---\n";
