@@ -108,7 +108,7 @@ void print_comparisons(const FetchWork& work, int rounds, int most_samples) {
   const double bytes =
       double(after.uordblks + after.hblkhd) - double(before.uordblks + before.hblkhd);
   fmt::print("\n{} samples, {:.0f} bytes each in memory; {} cores\n", most_samples,
-             bytes / most_samples, number_of_threads(0));
+             bytes / most_samples, kinecal::detail::number_of_threads(0));
   add("one thread", own_problem<Packet>(work, many), 1);
   add("two threads", std::move(problem), 2);
   print_ratios(works, x, rounds);

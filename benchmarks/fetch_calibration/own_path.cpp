@@ -36,10 +36,11 @@ class OwnPath {
 
   /// Residuals and dense Jacobian, one pack of samples after the other.
   void evaluate(Values x, bool jacobian) {
-    evaluator_.for_each_term(x, jacobian, [&](int, const Term<S>& term, const auto& views, auto) {
-      term.evaluate(views, jacobian, Linearization::measured, rows_);
-      detail::hide(rows_);
-    });
+    evaluator_.for_each_term(
+        x, jacobian, [&](int, const kinecal::detail::Term<S>& term, const auto& views, auto) {
+          term.evaluate(views, jacobian, Linearization::measured, rows_);
+          detail::hide(rows_);
+        });
   }
 
   [[nodiscard]] Sums normal_equations(Values x) {
@@ -73,7 +74,7 @@ class OwnPath {
   FreeSet free_;
   Eigen::VectorXd values_;
   Evaluator<S> evaluator_;
-  BatchRows<S> rows_;
+  kinecal::detail::BatchRows<S> rows_;
 };
 
 /// Operations per sample, including its share of what is done once for all samples.

@@ -187,7 +187,7 @@ TEST(Crate, SaysWhatKindItsBlocksAre) {
 
 /// Stands in for a compiled walk and counts its calls.
 struct CountedWalk {
-  CompiledWalk<Packet> real;
+  detail::CompiledWalk<Packet> real;
   int pose_only = 0, with_twists = 0;
 };
 
@@ -196,9 +196,9 @@ std::array<CountedWalk, kMostWalks> counted;
 
 /// A compiled walk is a plain function, so there is one for each place in the list.
 template <std::size_t I>
-CompiledWalk<Packet> counting(const CompiledWalk<Packet>& walk) {
+detail::CompiledWalk<Packet> counting(const detail::CompiledWalk<Packet>& walk) {
   counted[I] = {walk};
-  CompiledWalk<Packet> stand_in = walk;
+  detail::CompiledWalk<Packet> stand_in = walk;
   stand_in.pose_only = [](const auto& start, auto joints, auto& tip) {
     ++counted[I].pose_only;
     counted[I].real.pose_only(start, joints, tip);
@@ -210,9 +210,9 @@ CompiledWalk<Packet> counting(const CompiledWalk<Packet>& walk) {
   return stand_in;
 }
 
-CompiledWalk<Packet> counting(std::size_t i, const CompiledWalk<Packet>& walk) {
+detail::CompiledWalk<Packet> counting(std::size_t i, const detail::CompiledWalk<Packet>& walk) {
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    CompiledWalk<Packet> stand_in;
+    detail::CompiledWalk<Packet> stand_in;
     (void)((I == i ? (stand_in = counting<I>(walk), true) : false) || ...);
     return stand_in;
   }
@@ -235,8 +235,8 @@ TEST(Crate, WalksAreUsedWhereTheyFit) {
   std::vector<std::string> names;
   for (std::size_t s = 0; s < of_crate.sensors().size(); ++s) {
     const MountedSensor& sensor = of_crate.sensors()[s];
-    std::vector<CompiledWalk<Packet>> walks;
-    for (const CompiledWalk<Packet>& walk : of_crate.evaluation_of(s).walks) {
+    std::vector<detail::CompiledWalk<Packet>> walks;
+    for (const detail::CompiledWalk<Packet>& walk : of_crate.evaluation_of(s).walks) {
       ASSERT_LT(names.size(), kMostWalks);
       walks.push_back(counting(names.size(), walk));
       names.push_back(sensor.mount().name + " " + walk.tip);

@@ -13,8 +13,8 @@ TEST(Parallel, DoesEachPieceOnce) {
   for (const int pieces : {1, 2, 5, 64, 1000}) {
     for (const int threads : {1, 2, 3, 7, 50}) {
       std::vector<std::atomic<int>> done(static_cast<std::size_t>(pieces));
-      for_each_piece(pieces, threads,
-                     [&](int piece, int) { ++done[static_cast<std::size_t>(piece)]; });
+      detail::for_each_piece(pieces, threads,
+                             [&](int piece, int) { ++done[static_cast<std::size_t>(piece)]; });
       for (const std::atomic<int>& times : done) EXPECT_EQ(times, 1);
     }
   }
@@ -22,7 +22,7 @@ TEST(Parallel, DoesEachPieceOnce) {
 
 TEST(Parallel, WithNoPiecesDoesNothing) {
   for (const int threads : {0, 1, 7}) {
-    for_each_piece(0, threads, [](int, int) { FAIL(); });
+    detail::for_each_piece(0, threads, [](int, int) { FAIL(); });
   }
 }
 
@@ -32,7 +32,7 @@ TEST(Parallel, NumbersTheThreadsFromZeroAndNoNumberTwiceAtOnce) {
   for (const int pieces : {2, 3, 200}) {
     std::array<std::atomic<bool>, kThreads> busy = {};
     std::atomic<bool> good = true;
-    for_each_piece(pieces, kThreads, [&](int, int thread) {
+    detail::for_each_piece(pieces, kThreads, [&](int, int thread) {
       if (thread < 0 || thread >= std::min(kThreads, pieces)) {
         good = false;
         return;
@@ -50,7 +50,7 @@ TEST(Parallel, UsesTheCallersThreadAlone) {
   const std::thread::id caller = std::this_thread::get_id();
   for (const int pieces : {1, 9}) {
     int called = 0;
-    for_each_piece(pieces, 1, [&](int, int thread) {
+    detail::for_each_piece(pieces, 1, [&](int, int thread) {
       ++called;
       EXPECT_EQ(thread, 0);
       EXPECT_EQ(std::this_thread::get_id(), caller);
@@ -70,7 +70,7 @@ TEST(Parallel, ThrowsWhatAPieceThrowsAfterAllThreadsHaveEnded) {
         if (piece == bad) throw std::runtime_error("piece " + std::to_string(piece));
       };
       try {
-        for_each_piece(10, threads, work);
+        detail::for_each_piece(10, threads, work);
         FAIL() << "nothing was thrown";
       } catch (const std::runtime_error& e) {
         EXPECT_EQ(e.what(), "piece " + std::to_string(bad));
@@ -81,14 +81,15 @@ TEST(Parallel, ThrowsWhatAPieceThrowsAfterAllThreadsHaveEnded) {
 }
 
 TEST(Parallel, ThrowsOnceWhereEveryPieceThrows) {
-  EXPECT_THROW(for_each_piece(100, 7, [](int, int) { throw std::logic_error("every piece"); }),
-               std::logic_error);
+  EXPECT_THROW(
+      detail::for_each_piece(100, 7, [](int, int) { throw std::logic_error("every piece"); }),
+      std::logic_error);
 }
 
 TEST(Parallel, ZeroThreadsMeansOneForEachCoreAndNeverNone) {
-  EXPECT_GE(number_of_threads(0), 1);
-  EXPECT_GE(number_of_threads(-3), 1);
-  EXPECT_EQ(number_of_threads(5), 5);
+  EXPECT_GE(detail::number_of_threads(0), 1);
+  EXPECT_GE(detail::number_of_threads(-3), 1);
+  EXPECT_EQ(detail::number_of_threads(5), 5);
 }
 
 }  // namespace

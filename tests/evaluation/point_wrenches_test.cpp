@@ -19,18 +19,18 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
   problem.add_block("b", PointToPoint{}, sensors, {});
   const auto x = test::random_values(problem.table(), 0.05, 3);
   for (const Sample& s : test::wide_samples(problem, x, 2 * kLanes<S> + 1)) problem.add_sample(s);
-  using Rows = BlockRows<test::HiddenDifference, S>;
+  using Rows = detail::BlockRows<test::HiddenDifference, S>;
   int packs = 0;
   Evaluator<S>(problem, free).for_each_term(x, true, [&](int, auto&, const auto& views, auto) {
     ++packs;
-    const auto run = std::find_if(views.runs.begin(), views.runs.end(), [&](const FeatureRun& r) {
-      return r.first <= first && first < r.end;
-    });
+    const auto run = std::find_if(
+        views.runs.begin(), views.runs.end(),
+        [&](const detail::FeatureRun& r) { return r.first <= first && first < r.end; });
     ASSERT_NE(run, views.runs.end());
-    const BodyChains& chains = run->chains;
+    const detail::BodyChains& chains = run->chains;
     const std::array twists = {BodyTwists<S>(views[0].twists(chains[0])),
                                BodyTwists<S>(views[1].twists(chains[1]))};
-    FeatureWrenches<S> general;
+    detail::FeatureWrenches<S> general;
     general.start(twists, views.num_own());
     std::vector<S> weights;
     std::vector<Vector3<S>> residuals;
@@ -43,15 +43,15 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
       residuals.push_back(rows.residual);
     }
     general.finish();
-    LocalSums<S> of_rows(run->columns), of_moments(run->columns);
+    detail::LocalSums<S> of_rows(run->columns), of_moments(run->columns);
     of_rows.add(general);
-    typename PointWrenches<S>::Sides sides;
+    typename detail::PointWrenches<S>::Sides sides;
     for (std::size_t s = 0; s < 2; ++s) {
       const std::size_t own = views[s].own().free.size(), count = weights.size();
       sides[s] = {
           {views[s].values(first), count}, {views[s].changes(first), own * count}, own, twists[s]};
     }
-    PointWrenches<S> of_points;
+    detail::PointWrenches<S> of_points;
     of_points.set(sides, weights, residuals);
     of_moments.add(of_points);
     NormalEquations expected(free.size()), found(free.size());

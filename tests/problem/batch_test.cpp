@@ -13,10 +13,10 @@ namespace {
 constexpr int kLanesOfPacket = kLanes<Packet>;
 
 /// What camera and eye saw in samples that differ in all their numbers; the arm is absent.
-std::vector<SampleNumbers> seen_in_samples(int count) {
+std::vector<detail::SampleNumbers> seen_in_samples(int count) {
   const Problem problem = test::scene_problem();
   const auto x = test::random_values(problem.table(), 0.02, 5);
-  std::vector<SampleNumbers> all;
+  std::vector<detail::SampleNumbers> all;
   for (Sample& sample : test::exact_samples(problem, x, count)) {
     const double n = static_cast<double>(all.size());
     for (Observation& observation : sample.observations) {
@@ -27,7 +27,7 @@ std::vector<SampleNumbers> seen_in_samples(int count) {
       observation.camera->z_scaling = 1.0 + 0.02 * n;
       if (observation.sensor == "eye") observation.camera->d = {0.01 * (n + 1), 0.02, 0.0, n, 0.0};
     }
-    SampleNumbers& seen = all.emplace_back();
+    detail::SampleNumbers& seen = all.emplace_back();
     seen.sensors.resize(3);
     for (std::size_t s = 1; s < 3; ++s) {
       seen.sensors[s] = problem.sensors()[s].numbers(sample, sample.observations[s]);
@@ -37,8 +37,8 @@ std::vector<SampleNumbers> seen_in_samples(int count) {
 }
 
 template <class S>
-void expect_lane(const BatchObservation<S>& batch, int i, const ObservationNumbers& one,
-                 double weight) {
+void expect_lane(const detail::BatchObservation<S>& batch, int i,
+                 const detail::ObservationNumbers& one, double weight) {
   ASSERT_EQ(one.usable.size(), 4u);
   ASSERT_EQ(batch.size(), one.usable.size());
   ASSERT_EQ(one.measured.size(), 12u);
@@ -66,8 +66,8 @@ void expect_lane(const BatchObservation<S>& batch, int i, const ObservationNumbe
 }
 
 TEST(Batches, HoldASampleInEachLane) {
-  const std::vector<SampleNumbers> seen = seen_in_samples(2 * kLanesOfPacket + 1);
-  Batches<Packet> batches({3, 5}, seen[0]);
+  const std::vector<detail::SampleNumbers> seen = seen_in_samples(2 * kLanesOfPacket + 1);
+  detail::Batches<Packet> batches({3, 5}, seen[0]);
   for (int n = 0; n < std::ssize(seen); ++n) {
     batches.add(10 + 3 * n, seen[static_cast<std::size_t>(n)]);
   }
@@ -89,12 +89,12 @@ TEST(Batches, HoldASampleInEachLane) {
 }
 
 TEST(Batches, HoldFactorsWhereFeaturesHaveSigmasAndConditions) {
-  std::vector<SampleNumbers> seen = seen_in_samples(kLanesOfPacket + 1);
+  std::vector<detail::SampleNumbers> seen = seen_in_samples(kLanesOfPacket + 1);
   for (std::size_t n = 0; n < seen.size(); ++n) {
     const auto number = static_cast<double>(n);
     seen[n].terms = {{{}, {20.0 + number}}, {{1.0, 2.0 + number}, {}}};
   }
-  Batches<Packet> batches({3, 5}, seen[0]);
+  detail::Batches<Packet> batches({3, 5}, seen[0]);
   for (int n = 0; n < std::ssize(seen); ++n) batches.add(n, seen[static_cast<std::size_t>(n)]);
   EXPECT_EQ(batches.of_term(0, 0).factors, nullptr);
   for (int i = 0; i < kLanesOfPacket; ++i) {
@@ -107,8 +107,8 @@ TEST(Batches, HoldFactorsWhereFeaturesHaveSigmasAndConditions) {
 
 /// They must be numbers and defined wherever the first sample is.
 TEST(Batches, LanesWithoutASampleRepeatTheFirstWithWeightZero) {
-  const std::vector<SampleNumbers> seen = seen_in_samples(1);
-  Batches<Packet> batches({}, seen[0]);
+  const std::vector<detail::SampleNumbers> seen = seen_in_samples(1);
+  detail::Batches<Packet> batches({}, seen[0]);
   batches.add(0, seen[0]);
   for (const std::size_t s : {1u, 2u}) {
     expect_lane(batches.observation(0, s), 0, *seen[0].sensors[s], 1.0);
@@ -119,8 +119,8 @@ TEST(Batches, LanesWithoutASampleRepeatTheFirstWithWeightZero) {
 }
 
 TEST(Batches, OfDoublesHoldOneSample) {
-  const std::vector<SampleNumbers> seen = seen_in_samples(2);
-  Batches<double> batches({}, seen[0]);
+  const std::vector<detail::SampleNumbers> seen = seen_in_samples(2);
+  detail::Batches<double> batches({}, seen[0]);
   batches.add(4, seen[0]);
   batches.add(5, seen[1]);
   ASSERT_EQ(batches.size(), 2u);
@@ -136,7 +136,8 @@ TEST(Batches, AFeatureThatIsNotANumberRepeatsAnotherWithWeightZero) {
   Sample sample = test::exact_samples(problem, zero, 1)[0];
   sample.observations[0].features[0].point.y() = std::numeric_limits<double>::quiet_NaN();
   sample.observations[0].features[2].point.z() = std::numeric_limits<double>::infinity();
-  const ObservationNumbers seen = problem.sensors()[0].numbers(sample, sample.observations[0]);
+  const detail::ObservationNumbers seen =
+      problem.sensors()[0].numbers(sample, sample.observations[0]);
   EXPECT_EQ(seen.usable, (std::vector<double>{0.0, 1.0, 0.0, 1.0}));
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(seen.measured[k], seen.measured[3 + k]);

@@ -53,7 +53,7 @@ TEST(CompressedCost, HasTheCostGradientAndHessianOfTheStackedResiduals) {
   const FreeSet free = all_free(problem);
   const auto x = test::random_values(problem.table(), 0.02, 5);
   const Stacked all = stack(problem, x, free);
-  const EquivalentResidual compressed(normal_equations(problem, x, &free));
+  const detail::EquivalentResidual compressed(normal_equations(problem, x, &free));
   EXPECT_EQ(compressed.residual.size(), free.size() + 1);
   EXPECT_NEAR(compressed.residual.squaredNorm() / all.residual.squaredNorm(), 1.0, 1e-12);
   const Eigen::VectorXd gradient = all.jacobian.transpose() * all.residual;
@@ -73,7 +73,7 @@ TEST(CompressedCost, IsFiniteWhereTheHessianIsSingular) {
   const Eigen::VectorXd d =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal.hessian).eigenvalues();
   ASSERT_LT(d(0), 1e-12 * d(d.size() - 1));
-  const EquivalentResidual compressed(normal);
+  const detail::EquivalentResidual compressed(normal);
   EXPECT_TRUE(compressed.residual.allFinite());
   EXPECT_TRUE(compressed.jacobian.allFinite());
 }
@@ -85,8 +85,8 @@ TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
     const FreeSet free = all_free(problem);
     const auto x = test::random_values(problem.table(), 0.02, 5);
     Evaluator<Packet> evaluator(problem, free);
-    const CompressedCost cost(evaluator, Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-                                             x.data(), problem.table().size())));
+    const detail::CompressedCost cost(evaluator, Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                                                     x.data(), problem.table().size())));
     const auto n = static_cast<Eigen::Index>(free.size());
     const auto cost_at = [&](const std::vector<double>& values) {
       Eigen::VectorXd r(n + 1);

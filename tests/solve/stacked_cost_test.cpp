@@ -209,7 +209,7 @@ TEST(StackedResiduals, RefuseValuesForWhichAResidualIsNotDefined) {
   ceres::Problem ceres_problem(options);
   stack.add_to(ceres_problem, x.data());
   Evaluator<Packet> evaluator(problem, free);
-  const CompressedCost compressed(evaluator, zero);
+  const detail::CompressedCost compressed(evaluator, zero);
   Eigen::Vector2d r;
   for (const double pan : {0.0, M_PI, 0.01}) {
     x[0] = pan;

@@ -57,7 +57,7 @@ BasicProblem<S> scene_problem(const std::string& base = "base_link") {
 template <class S>
 std::ptrdiff_t count_batches(const BasicProblem<S>& problem) {
   std::size_t n = 0;
-  for (const Batches<S>& batches : problem.batches()) n += batches.size();
+  for (const detail::Batches<S>& batches : problem.batches()) n += batches.size();
   return static_cast<std::ptrdiff_t>(n);
 }
 

@@ -185,13 +185,14 @@ class Crate {
 
   /// The compiled walks to a sensor and to the virtual frames beyond it.
   template <class S, class Sensor>
-  [[nodiscard]] static std::vector<CompiledWalk<S>> walks() {
-    std::vector<CompiledWalk<S>> walks = {
-        compiled_walk<S, ChainWithFrames<typename Sensor::Chain>, Free>()};
+  [[nodiscard]] static std::vector<detail::CompiledWalk<S>> walks() {
+    std::vector<detail::CompiledWalk<S>> walks = {
+        detail::compiled_walk<S, ChainWithFrames<typename Sensor::Chain>, Free>()};
     if constexpr (!kIsInOwnFrame<typename Sensor::Model>) {
       for_each(Parameters{}, [&]<class P>(P*) {
         if constexpr (P::kKind == ParameterKind::virtual_frame) {
-          walks.push_back(compiled_walk<S, ChainWithFrames<typename Sensor::Chain, P>, Free>());
+          walks.push_back(
+              detail::compiled_walk<S, ChainWithFrames<typename Sensor::Chain, P>, Free>());
         }
       });
     }

@@ -10,9 +10,7 @@
 #include "kinecal/evaluation/plane_rows.hpp"
 #include "kinecal/problem/any_term.hpp"
 
-namespace kinecal {
-
-namespace detail {
+namespace kinecal::detail {
 
 /// Solves A x = b for a symmetric positive definite A, lane by lane; not a number where A is
 /// singular.  Source: Golub and Van Loan, Matrix Computations, 4.1 (L D L^T).
@@ -48,8 +46,6 @@ template <class S, int M, int V>
     return -solve_positive<S, V>(normal, gradient);
   }
 }
-
-}  // namespace detail
 
 /// Computes the rows of features of an error block of type B.
 template <ErrorBlock B, class S>
@@ -278,4 +274,4 @@ class BlockRows {
   }
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

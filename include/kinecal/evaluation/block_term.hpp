@@ -8,7 +8,7 @@
 #include "kinecal/evaluation/jacobian_rows.hpp"
 #include "kinecal/evaluation/term.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The term of an error block, for any number of columns.  Functions that are expensive to compile
 /// are defined outside of the class: they are not inline, so instances.hpp can compile them once.
@@ -221,4 +221,4 @@ void BlockTerm<B, S>::evaluate(const Views& views, bool derivatives, Linearizati
   }
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

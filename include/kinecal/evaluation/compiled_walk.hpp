@@ -9,7 +9,7 @@
 #include "kinecal/parameters/free_parameters.hpp"
 #include "kinecal/problem/batch.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The state of a walk before the first moving joint: the same for all samples of an evaluation.
 template <class S>
@@ -34,8 +34,6 @@ struct CompiledWalk {
   Walk pose_only;                     ///< computes the pose
   Walk with_twists;                   ///< computes the pose and the twists of free parameters
 };
-
-namespace detail {
 
 /// The columns of each joint as constants.
 template <class C, class F>
@@ -70,8 +68,6 @@ struct WalkOf {
   }
 };
 
-}  // namespace detail
-
 /// Compiles the walk of a chain.
 /// @tparam C  a Chain
 /// @tparam F  a FreeParameters
@@ -86,4 +82,4 @@ template <class S, StaticChain C, class F>
           &detail::WalkOf<S, C, F>::with_twists};
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -11,7 +11,7 @@
 
 #include "kinecal/geometry/packet.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Where vectors are, whose numbers are in groups of three.
 template <class S>
@@ -25,8 +25,6 @@ struct PacketRows {
     return data[i * size + d / 3 * next + d % 3];
   }
 };
-
-namespace detail {
 
 template <std::size_t N>
 using Constant = std::integral_constant<std::size_t, N>;
@@ -87,8 +85,6 @@ KINECAL_FLATTEN void multiply(PacketRows<S> rows, std::size_t count, const Packe
   if (count == 1) next(Constant<1>{});
 }
 
-}  // namespace detail
-
 /// Adds the products of some rows with all columns up to their own: the lower triangle of the sums;
 /// above it they are undefined.
 /// @tparam D      numbers of a row
@@ -116,4 +112,4 @@ void set_products(const PacketRows<S>& rows, std::size_t count, const PacketRows
   detail::multiply<false, D, 0>(rows, count, columns, num_columns, products, stride);
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

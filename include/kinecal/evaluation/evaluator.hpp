@@ -60,15 +60,16 @@ class Evaluator final : public AnyEvaluator {
 
   /// Memory of one thread.
   struct Worker {
-    std::vector<SensorView<S>> views;
-    std::vector<std::vector<const SensorView<S>*>> of_terms;  ///< the views of each term
-    std::vector<TermSums<S>> sums;                            ///< of each term
+    std::vector<detail::SensorView<S>> views;
+    std::vector<std::vector<const detail::SensorView<S>*>> of_terms;  ///< the views of each term
+    std::vector<detail::TermSums<S>> sums;                            ///< of each term
   };
 
   void set(std::span<const double> values);
 
   /// The runs of a term's features in the samples of a layout.
-  [[nodiscard]] std::vector<FeatureRun> runs_of(int t, const Batches<S>& batches) const;
+  [[nodiscard]] std::vector<detail::FeatureRun> runs_of(int t,
+                                                        const detail::Batches<S>& batches) const;
 
   /// Number of batches in a piece; it does not depend on the number of threads.
   [[nodiscard]] std::size_t piece_size() const {
@@ -93,13 +94,13 @@ class Evaluator final : public AnyEvaluator {
   const BasicProblem<S>& problem_;
   FreeSet free_;
   std::size_t num_batches_ = 0;
-  std::vector<SensorState> states_;  ///< of each sensor
-  std::vector<OwnParameters> own_;   ///< of each term
-  std::vector<std::vector<std::vector<FeatureRun>>>
+  std::vector<detail::SensorState> states_;  ///< of each sensor
+  std::vector<OwnParameters> own_;           ///< of each term
+  std::vector<std::vector<std::vector<detail::FeatureRun>>>
       runs_;                  ///< of each layout and each of its terms
   std::vector<bool> places_;  ///< of each sensor: a block takes more of it than predictions
   std::vector<Worker> workers_;
-  BatchRows<S> rows_;
+  detail::BatchRows<S> rows_;
   TermResiduals residuals_;
 };
 
@@ -115,27 +116,29 @@ Evaluator<S>::Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int
       places_[static_cast<std::size_t>(term->sensors()[i])] = true;
     }
   }
-  for (const Batches<S>& batches : problem.batches()) {
+  for (const detail::Batches<S>& batches : problem.batches()) {
     num_batches_ += batches.size();
     auto& of_layout = runs_.emplace_back();
     for (const int t : batches.terms()) of_layout.push_back(runs_of(t, batches));
   }
   const int pieces = std::max(1, static_cast<int>(num_pieces()));
-  workers_.resize(static_cast<std::size_t>(std::clamp(number_of_threads(threads), 1, pieces)));
+  workers_.resize(
+      static_cast<std::size_t>(std::clamp(detail::number_of_threads(threads), 1, pieces)));
 }
 
 template <class S>
-std::vector<FeatureRun> Evaluator<S>::runs_of(int t, const Batches<S>& batches) const {
+std::vector<detail::FeatureRun> Evaluator<S>::runs_of(int t,
+                                                      const detail::Batches<S>& batches) const {
   const auto i = static_cast<std::size_t>(t);
-  const Term<S>& term = *problem_.terms()[i];
+  const detail::Term<S>& term = *problem_.terms()[i];
   std::vector<const std::vector<std::size_t>*> chains;
-  std::vector<const SensorState*> states;
+  std::vector<const detail::SensorState*> states;
   for (const int sensor : term.sensors()) {
     const auto s = static_cast<std::size_t>(sensor);
     chains.push_back(&batches.observation(0, s).layout->chain);
     states.push_back(&states_[s]);
   }
-  return feature_runs(chains, states, own_[i], term.pairs_features());
+  return detail::feature_runs(chains, states, own_[i], term.pairs_features());
 }
 
 template <class S>
@@ -173,7 +176,7 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
   start(derivatives, worker);
   std::size_t before = 0;
   for (std::size_t layout = 0; layout < runs_.size(); ++layout) {
-    const Batches<S>& batches = problem_.batches()[layout];
+    const detail::Batches<S>& batches = problem_.batches()[layout];
     const std::size_t size = batches.size();
     for (std::size_t b = std::max(first, before); b < std::min(end, before + size); ++b) {
       batches.prefetch(b + 1 - before);
@@ -183,8 +186,8 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
       for (std::size_t n = 0; n < batches.terms().size(); ++n) {
         const auto t = static_cast<std::size_t>(batches.terms()[n]);
         visit(batches.terms()[n], *problem_.terms()[t],
-              TermViews<S>{worker.of_terms[t], &own_[t], runs_[layout][n],
-                           batches.of_term(b - before, n)},
+              detail::TermViews<S>{worker.of_terms[t], &own_[t], runs_[layout][n],
+                                   batches.of_term(b - before, n)},
               batches.samples(b - before));
       }
     }
@@ -198,8 +201,8 @@ std::optional<UndefinedResidual> Evaluator<S>::evaluate(std::span<const double> 
                                                         Linearization at) {
   std::optional<UndefinedResidual> undefined;
   const int columns = derivatives ? free_.size() : -1;
-  const auto visit_batch = [&](int t, const Term<S>& term, const TermViews<S>& views,
-                               std::span<const int> samples) {
+  const auto visit_batch = [&](int t, const detail::Term<S>& term,
+                               const detail::TermViews<S>& views, std::span<const int> samples) {
     term.evaluate(views, derivatives, at, rows_);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       rows_.unpack(views.runs, term.feature_size(), static_cast<int>(i), columns, residuals_);
@@ -220,13 +223,13 @@ NormalEquations Evaluator<S>::normal_equations(std::span<const double> values, b
   set(values);
   const int columns = derivatives ? free_.size() : 0;
   std::vector<NormalEquations> parts(num_pieces(), NormalEquations(columns));
-  for_each_piece(static_cast<int>(parts.size()), static_cast<int>(workers_.size()),
-                 [&](int piece, int thread) {
-                   const std::size_t first = static_cast<std::size_t>(piece) * piece_size();
-                   sum(first, std::min(first + piece_size(), num_batches_), derivatives, losses,
-                       workers_[static_cast<std::size_t>(thread)],
-                       parts[static_cast<std::size_t>(piece)]);
-                 });
+  detail::for_each_piece(static_cast<int>(parts.size()), static_cast<int>(workers_.size()),
+                         [&](int piece, int thread) {
+                           const std::size_t first = static_cast<std::size_t>(piece) * piece_size();
+                           sum(first, std::min(first + piece_size(), num_batches_), derivatives,
+                               losses, workers_[static_cast<std::size_t>(thread)],
+                               parts[static_cast<std::size_t>(piece)]);
+                         });
   NormalEquations total(columns);
   for (const NormalEquations& part : parts) total += part;
   for (const PriorTerm& prior : problem_.priors()) {
@@ -240,11 +243,11 @@ template <class S>
 void Evaluator<S>::sum(std::size_t first, std::size_t end, bool derivatives, Losses losses,
                        Worker& worker, NormalEquations& total) const {
   worker.sums.resize(problem_.terms().size());
-  for (TermSums<S>& of_term : worker.sums) of_term.set_zero();
-  const auto add = [&](int t, const Term<S>& term, const TermViews<S>& views,
+  for (detail::TermSums<S>& of_term : worker.sums) of_term.set_zero();
+  const auto add = [&](int t, const detail::Term<S>& term, const detail::TermViews<S>& views,
                        std::span<const int>) {
     const Loss loss = term.options().loss_for(losses);
-    TermSums<S>& of_term = worker.sums[static_cast<std::size_t>(t)];
+    detail::TermSums<S>& of_term = worker.sums[static_cast<std::size_t>(t)];
     if (derivatives) {
       term.add_normal_equations(views, loss, of_term);
     } else {
@@ -252,7 +255,7 @@ void Evaluator<S>::sum(std::size_t first, std::size_t end, bool derivatives, Los
     }
   };
   for_each_term(first, end, derivatives, worker, add);
-  for (const TermSums<S>& of_term : worker.sums) {
+  for (const detail::TermSums<S>& of_term : worker.sums) {
     total.cost += 0.5 * sum_of_lanes(of_term.twice_cost);
     if (!derivatives) continue;
     for (const auto& [chains, local] : of_term.by_chains) local.add_to(total);

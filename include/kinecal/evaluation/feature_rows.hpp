@@ -19,7 +19,7 @@
 #include "kinecal/evaluation/sensor_view.hpp"
 #include "kinecal/problem/any_term.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Residual of one feature and its derivatives.
 template <class S, int M, int Bodies>
@@ -123,4 +123,4 @@ struct TermViews {
   }
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

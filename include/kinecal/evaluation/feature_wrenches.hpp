@@ -19,7 +19,7 @@
 #include "kinecal/evaluation/dot_products.hpp"
 #include "kinecal/evaluation/feature_rows.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// What resists motions of features of any kind.
 template <class S>
@@ -142,4 +142,4 @@ class FeatureWrenches {
   std::vector<S> columns_;  ///< in the order of LocalSums
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -10,36 +10,36 @@
 
 namespace kinecal {
 
-extern template class SensorView<Packet>;
-extern template class LocalSums<Packet>;
-extern template class PointWrenches<Packet>;
-extern template class FeatureWrenches<Packet>;
+extern template class detail::SensorView<Packet>;
+extern template class detail::LocalSums<Packet>;
+extern template class detail::PointWrenches<Packet>;
+extern template class detail::FeatureWrenches<Packet>;
 extern template class Evaluator<Packet>;
 extern template class BasicProblem<Packet>;
-extern template class BlockTerm<PointToPoint, Packet>;
-extern template class BlockTerm<PointToPixel, Packet>;
-extern template class BlockTerm<PointToPlane, Packet>;
-extern template class BlockTerm<PlaneToPlane, Packet>;
-extern template class BlockTerm<PointDistance, Packet>;
-extern template class BlockTerm<PointToLine, Packet>;
-extern template class BlockTerm<PointToSphere, Packet>;
-extern template class BlockTerm<PoseToPose, Packet>;
-extern template class BlockTerm<RayToRay, Packet>;
+extern template class detail::BlockTerm<PointToPoint, Packet>;
+extern template class detail::BlockTerm<PointToPixel, Packet>;
+extern template class detail::BlockTerm<PointToPlane, Packet>;
+extern template class detail::BlockTerm<PlaneToPlane, Packet>;
+extern template class detail::BlockTerm<PointDistance, Packet>;
+extern template class detail::BlockTerm<PointToLine, Packet>;
+extern template class detail::BlockTerm<PointToSphere, Packet>;
+extern template class detail::BlockTerm<PoseToPose, Packet>;
+extern template class detail::BlockTerm<RayToRay, Packet>;
 
-extern template class SensorView<double>;
-extern template class LocalSums<double>;
-extern template class PointWrenches<double>;
-extern template class FeatureWrenches<double>;
+extern template class detail::SensorView<double>;
+extern template class detail::LocalSums<double>;
+extern template class detail::PointWrenches<double>;
+extern template class detail::FeatureWrenches<double>;
 extern template class Evaluator<double>;
 extern template class BasicProblem<double>;
-extern template class BlockTerm<PointToPoint, double>;
-extern template class BlockTerm<PointToPixel, double>;
-extern template class BlockTerm<PointToPlane, double>;
-extern template class BlockTerm<PlaneToPlane, double>;
-extern template class BlockTerm<PointDistance, double>;
-extern template class BlockTerm<PointToLine, double>;
-extern template class BlockTerm<PointToSphere, double>;
-extern template class BlockTerm<PoseToPose, double>;
-extern template class BlockTerm<RayToRay, double>;
+extern template class detail::BlockTerm<PointToPoint, double>;
+extern template class detail::BlockTerm<PointToPixel, double>;
+extern template class detail::BlockTerm<PointToPlane, double>;
+extern template class detail::BlockTerm<PlaneToPlane, double>;
+extern template class detail::BlockTerm<PointDistance, double>;
+extern template class detail::BlockTerm<PointToLine, double>;
+extern template class detail::BlockTerm<PointToSphere, double>;
+extern template class detail::BlockTerm<PoseToPose, double>;
+extern template class detail::BlockTerm<RayToRay, double>;
 
 }  // namespace kinecal

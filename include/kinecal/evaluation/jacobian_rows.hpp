@@ -6,7 +6,7 @@
 
 #include "kinecal/evaluation/feature_rows.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Writes by_own, and by_body xi for all twists.
 /// @param out  (M x width), row-major
@@ -59,4 +59,4 @@ void write_differences(const TermViews<S>& views, const FeatureRun& run,
   }
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -19,7 +19,7 @@
 #include "kinecal/evaluation/normal_equations.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Normal equations of features on the same chains, summed over samples lane by lane.
 ///
@@ -78,4 +78,4 @@ class LocalSums {
   std::vector<S> sums_;
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

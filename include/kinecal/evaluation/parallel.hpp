@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The wanted number of threads; for zero, the number of cores.
 [[nodiscard]] inline int number_of_threads(int wanted) {
@@ -39,4 +39,4 @@ void for_each_piece(int pieces, int threads, Work&& work) {
   if (error) std::rethrow_exception(error);
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -11,9 +11,7 @@
 #include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/evaluation/feature_rows.hpp"
 
-namespace kinecal {
-
-namespace detail {
+namespace kinecal::detail {
 
 template <class S>
 [[nodiscard]] Vector3<double> lane_of(const Vector3<S>& p, int i) {
@@ -91,8 +89,6 @@ class PlaneLane {
   bool empty_ = true, determined_ = false;
 };
 
-}  // namespace detail
-
 /// Residual and derivatives of the planes through all features of two sensors.
 template <PlanePairBlock B, class S>
 void plane_rows(const B& block, const TermViews<S>& views, bool derivatives,
@@ -113,4 +109,4 @@ void plane_rows(const B& block, const TermViews<S>& views, bool derivatives,
   }
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

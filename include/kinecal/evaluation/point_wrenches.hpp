@@ -21,7 +21,7 @@
 #include "kinecal/evaluation/dot_products.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// One side of a difference: points in the base, and how parameters move them.
 template <class S>
@@ -231,4 +231,4 @@ class PointWrenches {
   std::vector<Vector3<S>> motions_;  ///< residual and own motions of each feature, scaled
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

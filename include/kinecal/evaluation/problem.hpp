@@ -19,7 +19,8 @@ class BasicProblem final : public AnyProblem {
   /// @param walks  compiled walks along its chains, if there are any
   /// @throws  as AnyProblem::add_built_in()
   template <Sensor M>
-  void add_sensor(const M& sensor, const Mount& mount, std::vector<CompiledWalk<S>> walks = {}) {
+  void add_sensor(const M& sensor, const Mount& mount,
+                  std::vector<detail::CompiledWalk<S>> walks = {}) {
     this->mount(any_sensor(sensor), mount);
     auto& of_sensor = evaluations_.emplace_back();
     of_sensor.code = std::make_unique<detail::SensorCodeOf<M, S>>(sensor);
@@ -44,8 +45,8 @@ class BasicProblem final : public AnyProblem {
         sensors_of_block(name, sensors, kQuantities<B>, kParametersOfBlock<B>);
     std::vector<int> own;
     if constexpr (kParametersOfBlock < B >> 0) own = parameters_of_block(name, B::kParameters);
-    terms_.push_back(std::make_unique<BlockTerm<B, S>>(name, block, std::move(indices),
-                                                       std::move(own), options));
+    terms_.push_back(std::make_unique<detail::BlockTerm<B, S>>(name, block, std::move(indices),
+                                                               std::move(own), options));
   }
   /// The same, for a block of the built-in types.
   void add_built_in(const std::string& name, const BuiltInBlock& block,
@@ -54,7 +55,9 @@ class BasicProblem final : public AnyProblem {
   }
 
   /// The terms of the error blocks, in the order in which blocks were added.
-  [[nodiscard]] const std::vector<std::unique_ptr<Term<S>>>& terms() const { return terms_; }
+  [[nodiscard]] const std::vector<std::unique_ptr<detail::Term<S>>>& terms() const {
+    return terms_;
+  }
   /// Number of error blocks, without priors.
   [[nodiscard]] int num_terms() const override { return static_cast<int>(terms_.size()); }
   /// The term of an error block.
@@ -62,11 +65,11 @@ class BasicProblem final : public AnyProblem {
     return *terms_[static_cast<std::size_t>(index)];
   }
   /// How a sensor is evaluated.
-  [[nodiscard]] const SensorEvaluation<S>& evaluation_of(std::size_t sensor) const {
+  [[nodiscard]] const detail::SensorEvaluation<S>& evaluation_of(std::size_t sensor) const {
     return evaluations_[sensor];
   }
   /// The samples, by layout.
-  [[nodiscard]] const std::vector<Batches<S>>& batches() const { return batches_; }
+  [[nodiscard]] const std::vector<detail::Batches<S>>& batches() const { return batches_; }
 
   [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
                                                         int threads = 1) const override {
@@ -74,15 +77,15 @@ class BasicProblem final : public AnyProblem {
   }
 
  private:
-  void add_to_batch(std::size_t layout, const SampleLayout& of_sample,
-                    const SampleNumbers& seen) override {
+  void add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
+                    const detail::SampleNumbers& seen) override {
     if (layout == batches_.size()) batches_.emplace_back(of_sample.terms, seen);
     batches_[layout].add(num_samples(), seen);
   }
 
-  std::vector<SensorEvaluation<S>> evaluations_;  ///< of each sensor
-  std::vector<std::unique_ptr<Term<S>>> terms_;
-  std::vector<Batches<S>> batches_;  ///< by layout
+  std::vector<detail::SensorEvaluation<S>> evaluations_;  ///< of each sensor
+  std::vector<std::unique_ptr<detail::Term<S>>> terms_;
+  std::vector<detail::Batches<S>> batches_;  ///< by layout
 };
 
 /// A problem evaluated in packets as wide as the instruction set it is compiled for.

@@ -10,7 +10,7 @@
 #include "kinecal/problem/batch.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The pixel at which a camera should see a point, with derivatives.
 template <class S>
@@ -47,8 +47,6 @@ class SensorCode {
                        std::span<const double> own, std::span<const int> chosen, bool derivatives,
                        PredictedPixel<S>& out) const = 0;
 };
-
-namespace detail {
 
 template <std::size_t N, class J>
 [[nodiscard]] std::array<J, N> own_constants(std::span<const double> own) {
@@ -169,6 +167,4 @@ class SensorCodeOf final : public SensorCode<S> {
   M model_;
 };
 
-}  // namespace detail
-
-}  // namespace kinecal
+}  // namespace kinecal::detail

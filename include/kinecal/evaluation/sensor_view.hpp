@@ -11,7 +11,7 @@
 #include "kinecal/parameters/own_parameters.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// What all batches of an evaluation share: the corrections of the sensor's chains, its parameters
 /// and the columns of the Jacobian.
@@ -190,4 +190,4 @@ KINECAL_FLATTEN void SensorView<S>::walk_chain(std::size_t c) {
   copy_numbers(walker.walker.pose, poses_[c]);
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -15,7 +15,7 @@
 #include "kinecal/evaluation/point_wrenches.hpp"
 #include "kinecal/problem/any_term.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Residuals of one term in a batch of samples, and their derivatives.
 template <class S>
@@ -91,4 +91,4 @@ class Term : public AnyTerm {
                         BatchRows<S>& out) const = 0;
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

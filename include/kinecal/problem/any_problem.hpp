@@ -141,8 +141,8 @@ class AnyProblem {
  private:
   /// Takes the sample num_samples() into batches.
   /// @param layout  index of its layout; layouts are numbered as they occur
-  virtual void add_to_batch(std::size_t layout, const SampleLayout& of_sample,
-                            const SampleNumbers& seen) = 0;
+  virtual void add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
+                            const detail::SampleNumbers& seen) = 0;
 
   [[nodiscard]] const MountedSensor& sensor(int s) const {
     return sensors_[static_cast<std::size_t>(s)];
@@ -153,9 +153,9 @@ class AnyProblem {
   }
   [[nodiscard]] int sensor_index(const std::string& name) const;
   [[nodiscard]] bool applies(const AnyTerm& term, const Sample& sample,
-                             const SampleNumbers& observed) const;
-  [[nodiscard]] std::string why_no_plane(int s, const ObservationNumbers& seen) const;
-  void forget_unused(SampleLayout& layout, SampleNumbers& seen) const;
+                             const detail::SampleNumbers& observed) const;
+  [[nodiscard]] std::string why_no_plane(int s, const detail::ObservationNumbers& seen) const;
+  void forget_unused(detail::SampleLayout& layout, detail::SampleNumbers& seen) const;
   void add_touched(int s, const std::vector<std::size_t>& chains, std::set<int>& touched) const;
 
   Robot robot_;
@@ -173,7 +173,7 @@ class AnyProblem {
     std::size_t index = 0;  ///< in the order in which layouts occurred
     int samples = 0;        ///< number of them
   };
-  std::map<SampleLayout, OfLayout> layouts_;
+  std::map<detail::SampleLayout, OfLayout> layouts_;
 };
 
 }  // namespace kinecal

@@ -49,16 +49,16 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
 
 namespace detail {
 
-[[nodiscard]] inline bool has_term(const SampleLayout& layout, int term) {
+[[nodiscard]] inline bool has_term(const detail::SampleLayout& layout, int term) {
   return std::find(layout.terms.begin(), layout.terms.end(), term) != layout.terms.end();
 }
 
 }  // namespace detail
 
 KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
-  SampleNumbers seen;
+  detail::SampleNumbers seen;
   seen.sensors.resize(sensors_.size());
-  SampleLayout layout;
+  detail::SampleLayout layout;
   try {
     if (sample.joint_names.size() != sample.joint_positions.size()) {
       throw SampleError("it has " + std::to_string(sample.joint_names.size()) +
@@ -149,7 +149,8 @@ KINECAL_INLINE int AnyProblem::sensor_index(const std::string& name) const {
 }
 
 /// Drops the observations that no term uses, so that they are not evaluated.
-KINECAL_INLINE void AnyProblem::forget_unused(SampleLayout& layout, SampleNumbers& seen) const {
+KINECAL_INLINE void AnyProblem::forget_unused(detail::SampleLayout& layout,
+                                              detail::SampleNumbers& seen) const {
   std::vector<bool> used(sensors_.size(), false);
   for (const int t : layout.terms) {
     for (const int s : term(t).sensors()) used[static_cast<std::size_t>(s)] = true;

@@ -64,7 +64,7 @@ inline constexpr std::size_t kMostOwn = 32;
 class AnyTerm {
  public:
   /// What the sensors of the term observed in one sample, in their order.
-  using Observations = std::span<const ObservationNumbers* const>;
+  using Observations = std::span<const detail::ObservationNumbers* const>;
 
   /// @param sensors     indices of the sensors in the problem
   /// @param parameters  table indices of the block's own parameters

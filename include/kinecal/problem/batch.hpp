@@ -18,7 +18,7 @@
 #include "kinecal/kinematics/joint_state.hpp"
 #include "kinecal/problem/sample_numbers.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Where the numbers of an observation are in a batch.
 struct ObservationLayout {
@@ -196,4 +196,4 @@ class Batches {
   std::vector<int> samples_;                               ///< of all batches, by lane
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -61,8 +61,9 @@ class MountedSensor {
 
   /// What the sensor observed in a sample, as numbers.
   /// @throws SampleError  with what is missing or wrong
-  [[nodiscard]] ObservationNumbers numbers(const Sample& sample, const Observation& seen) const {
-    ObservationNumbers all;
+  [[nodiscard]] detail::ObservationNumbers numbers(const Sample& sample,
+                                                   const Observation& seen) const {
+    detail::ObservationNumbers all;
     all.joints.resize(chains_.size());
     try {
       all.settings = sensor_->settings(seen);
@@ -87,7 +88,7 @@ class MountedSensor {
     chain_parameters_.push_back(kinecal::chain_parameters(chain, table));
   }
 
-  void add_feature(const Feature& feature, ObservationNumbers& all) const {
+  void add_feature(const Feature& feature, detail::ObservationNumbers& all) const {
     bool usable = feature.point.allFinite();
     Matrix3<double> rotation = Matrix3<double>::Identity();
     if (sensor_->is_oriented()) {
@@ -104,7 +105,7 @@ class MountedSensor {
     }
   }
 
-  void add_sigmas(const Observation& seen, ObservationNumbers& all) const {
+  void add_sigmas(const Observation& seen, detail::ObservationNumbers& all) const {
     const auto& features = seen.features;
     const auto has_one = [](const Feature& feature) { return feature.sigma.has_value(); };
     if (std::none_of(features.begin(), features.end(), has_one)) return;
@@ -153,7 +154,7 @@ class MountedSensor {
   }
 
   /// Replaces NaN features, whose weight is zero, by another one: zero times NaN is NaN.
-  static void replace_unusable(ObservationNumbers& all) {
+  static void replace_unusable(detail::ObservationNumbers& all) {
     const auto first = std::find(all.usable.begin(), all.usable.end(), 1.0);
     if (first == all.usable.end()) return;  // no error block uses the observation then
     const auto width = std::ssize(all.measured) / std::ssize(all.usable);

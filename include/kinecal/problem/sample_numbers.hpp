@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// What one sensor observed in one sample.
 struct ObservationNumbers {
@@ -42,4 +42,4 @@ struct SampleLayout {
   auto operator<=>(const SampleLayout&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -12,9 +12,9 @@ namespace kinecal {
 
 namespace detail {
 
-[[nodiscard]] inline std::vector<const ObservationNumbers*> observations_of(
-    const AnyTerm& term, const SampleNumbers& observed) {
-  std::vector<const ObservationNumbers*> seen;
+[[nodiscard]] inline std::vector<const detail::ObservationNumbers*> observations_of(
+    const AnyTerm& term, const detail::SampleNumbers& observed) {
+  std::vector<const detail::ObservationNumbers*> seen;
   for (const int s : term.sensors()) {
     seen.push_back(&*observed.sensors[static_cast<std::size_t>(s)]);
   }
@@ -24,7 +24,7 @@ namespace detail {
 /// The block's sigma over that of each feature; empty if no feature has its own.  Variances of
 /// several sensors add up.  A pixel block takes those of the camera, which are in pixels.
 [[nodiscard]] inline std::vector<double> factors_of(const AnyTerm& term,
-                                                    const SampleNumbers& observed) {
+                                                    const detail::SampleNumbers& observed) {
   const auto seen = observations_of(term, observed);
   const auto quantities = term.quantities();
   const bool of_pixels =
@@ -66,7 +66,7 @@ namespace detail {
 }  // namespace detail
 
 KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sample,
-                                        const SampleNumbers& observed) const {
+                                        const detail::SampleNumbers& observed) const {
   const std::string& beside = term.options().beside;
   if (!beside.empty() && sample.observation(beside) == nullptr) return false;
   const auto observing = std::count_if(
@@ -99,7 +99,8 @@ KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sampl
 }
 
 /// Why the features of a sensor in one sample do not determine a plane; empty if they do.
-KINECAL_INLINE std::string AnyProblem::why_no_plane(int s, const ObservationNumbers& seen) const {
+KINECAL_INLINE std::string AnyProblem::why_no_plane(int s,
+                                                    const detail::ObservationNumbers& seen) const {
   std::vector<Vector3<double>> points;
   for (std::size_t i = 0; i < seen.usable.size(); ++i) {
     if (seen.usable[i] == 0.0) continue;

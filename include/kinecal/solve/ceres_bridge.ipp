@@ -40,14 +40,15 @@ KINECAL_INLINE void CeresBridge::add(const AnyProblem& problem, const FreeSet& f
     added.emplace(owner, std::move(block));
   }
   blocks_.merge(added);  // nothing can fail from here on
-  CompressedCost::Blocks partition;
+  detail::CompressedCost::Blocks partition;
   std::vector<double*> of_ceres;
   for (const auto& [owner, of_owner] : columns) {
     partition.push_back(of_owner);
     of_ceres.push_back(blocks_.at(owner).values.data());
   }
-  problem_.AddResidualBlock(new CompressedCost(*evaluator, values, losses, std::move(partition)),
-                            nullptr, of_ceres);
+  problem_.AddResidualBlock(
+      new detail::CompressedCost(*evaluator, values, losses, std::move(partition)), nullptr,
+      of_ceres);
   evaluators_.push_back(std::move(evaluator));
   for (const auto& [owner, of_owner] : columns) {
     double* block = blocks_.at(owner).values.data();

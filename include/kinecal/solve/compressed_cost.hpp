@@ -24,7 +24,7 @@
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// A residual and Jacobian equivalent to normal equations.
 struct EquivalentResidual {
@@ -60,7 +60,7 @@ class CompressedCost final : public ceres::CostFunction {
   Blocks blocks_;
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/solve/compressed_cost.ipp"

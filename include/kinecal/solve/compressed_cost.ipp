@@ -6,7 +6,7 @@
 
 #include "kinecal/solve/compressed_cost.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 KINECAL_INLINE EquivalentResidual::EquivalentResidual(const NormalEquations& normal) {
   const Eigen::Index n = normal.gradient.size();
@@ -83,4 +83,4 @@ KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, do
   return true;
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -90,7 +90,7 @@ inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const So
   if (stack) {
     stack->add_to(ceres_problem, x.data());
   } else {
-    ceres_problem.AddResidualBlock(new CompressedCost(evaluator, values, losses), nullptr,
+    ceres_problem.AddResidualBlock(new detail::CompressedCost(evaluator, values, losses), nullptr,
                                    x.data());
   }
   set_bounds(ceres_problem, problem.table(), free, x.data());

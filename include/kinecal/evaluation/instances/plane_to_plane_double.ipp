@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PlaneToPlane, double>;
+template class detail::BlockTerm<PlaneToPlane, double>;
 
 }  // namespace kinecal

@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PlaneToPlane, Packet>;
+template class detail::BlockTerm<PlaneToPlane, Packet>;
 
 }  // namespace kinecal

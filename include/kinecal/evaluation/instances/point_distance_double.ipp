@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointDistance, double>;
+template class detail::BlockTerm<PointDistance, double>;
 
 }  // namespace kinecal

@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointDistance, Packet>;
+template class detail::BlockTerm<PointDistance, Packet>;
 
 }  // namespace kinecal

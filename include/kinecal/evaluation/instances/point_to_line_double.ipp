@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToLine, double>;
+template class detail::BlockTerm<PointToLine, double>;
 
 }  // namespace kinecal

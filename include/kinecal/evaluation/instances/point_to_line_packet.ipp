@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToLine, Packet>;
+template class detail::BlockTerm<PointToLine, Packet>;
 
 }  // namespace kinecal

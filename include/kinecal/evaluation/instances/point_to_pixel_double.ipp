@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToPixel, double>;
+template class detail::BlockTerm<PointToPixel, double>;
 
 }  // namespace kinecal

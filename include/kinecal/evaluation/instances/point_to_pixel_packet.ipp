@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToPixel, Packet>;
+template class detail::BlockTerm<PointToPixel, Packet>;
 
 }  // namespace kinecal

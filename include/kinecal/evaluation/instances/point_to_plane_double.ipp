@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToPlane, double>;
+template class detail::BlockTerm<PointToPlane, double>;
 
 }  // namespace kinecal

@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToPlane, Packet>;
+template class detail::BlockTerm<PointToPlane, Packet>;
 
 }  // namespace kinecal

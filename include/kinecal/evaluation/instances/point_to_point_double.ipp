@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToPoint, double>;
+template class detail::BlockTerm<PointToPoint, double>;
 
 }  // namespace kinecal

@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToPoint, Packet>;
+template class detail::BlockTerm<PointToPoint, Packet>;
 
 }  // namespace kinecal

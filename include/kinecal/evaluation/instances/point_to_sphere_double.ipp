@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToSphere, double>;
+template class detail::BlockTerm<PointToSphere, double>;
 
 }  // namespace kinecal

@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PointToSphere, Packet>;
+template class detail::BlockTerm<PointToSphere, Packet>;
 
 }  // namespace kinecal

@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PoseToPose, double>;
+template class detail::BlockTerm<PoseToPose, double>;
 
 }  // namespace kinecal

@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<PoseToPose, Packet>;
+template class detail::BlockTerm<PoseToPose, Packet>;
 
 }  // namespace kinecal

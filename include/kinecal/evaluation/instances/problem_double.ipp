@@ -4,10 +4,10 @@
 
 namespace kinecal {
 
-template class SensorView<double>;
-template class LocalSums<double>;
-template class PointWrenches<double>;
-template class FeatureWrenches<double>;
+template class detail::SensorView<double>;
+template class detail::LocalSums<double>;
+template class detail::PointWrenches<double>;
+template class detail::FeatureWrenches<double>;
 template class Evaluator<double>;
 template class BasicProblem<double>;
 

@@ -4,10 +4,10 @@
 
 namespace kinecal {
 
-template class SensorView<Packet>;
-template class LocalSums<Packet>;
-template class PointWrenches<Packet>;
-template class FeatureWrenches<Packet>;
+template class detail::SensorView<Packet>;
+template class detail::LocalSums<Packet>;
+template class detail::PointWrenches<Packet>;
+template class detail::FeatureWrenches<Packet>;
 template class Evaluator<Packet>;
 template class BasicProblem<Packet>;
 

@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<RayToRay, double>;
+template class detail::BlockTerm<RayToRay, double>;
 
 }  // namespace kinecal

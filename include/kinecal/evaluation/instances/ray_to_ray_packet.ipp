@@ -4,6 +4,6 @@
 
 namespace kinecal {
 
-template class BlockTerm<RayToRay, Packet>;
+template class detail::BlockTerm<RayToRay, Packet>;
 
 }  // namespace kinecal
