@@ -12,6 +12,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,19 @@
 #include "kinecal/kinematics/twist_walker.hpp"
 
 namespace kinecal::detail {
+
+/// What resists motions: the twists of the columns, and a force and a moment of each on every body.
+/// FeatureWrenches and PointWrenches are models.
+template <class W, class S>
+concept Wrenches = requires(const W& w, std::size_t i, S* sums) {
+  { w.bodies() } -> std::same_as<std::size_t>;       // number of them
+  { w.turns(i) } -> std::same_as<std::size_t>;       // rotational twists of a body
+  { w.shifts(i) } -> std::same_as<std::size_t>;      // translational twists of a body
+  { w.own() } -> std::same_as<std::size_t>;          // own parameters of sensors and block
+  { w.twists(i) } -> std::same_as<PacketRows<S>>;    // of the columns from i on
+  { w.wrenches(i) } -> std::same_as<PacketRows<S>>;  // of all columns on a body
+  w.add_own(sums, i);                                // products of own columns and the residual
+};
 
 /// Normal equations of features on the same chains, summed over samples lane by lane.
 ///
@@ -41,8 +55,7 @@ class LocalSums {
 
   /// Adds one batch.
   /// @param wrenches  twists, and what resists them
-  template <class Wrenches>
-  void add(const Wrenches& wrenches) {
+  void add(const Wrenches<S> auto& wrenches) {
     S* sums = sums_.data();
     wrenches.add_own(sums, stride_);
     std::size_t first = 1 + wrenches.own();
