@@ -147,6 +147,34 @@ TEST(Crate, EvaluatesAsTheSameProblemOfRunTimeInPackets) {
   expect_the_same<Packet>();
 }
 
+template <FixedString Tip>
+using FromCamera = Chain<StaticRobot, "camera_frame", Tip>;
+using UpAndDown =
+    Crate<Chain3d<"arm", FromCamera<"tip">>, Chain3d<"weight", FromCamera<"counterweight">>,
+          JointOffset<"pan">, JointOffset<"head_tilt">, JointOffset<"wrist">,
+          JointModelParameters<"head_tilt", "gear_ratio">, FrameOffset<"camera_joint">,
+          Block<"weight", PointToPoint, "weight", "arm">>;
+
+TEST(Crate, HasChainsThatLeadUpAndDown) {
+  static_assert(FromCamera<"tip">::kJoints[0].reversed);
+  const ParameterTable table = UpAndDown().table({});
+  BasicProblem<Packet> found = UpAndDown().problem<Packet>(table),
+                       expected(robot_from<StaticRobot>(), "camera_frame", table, {"camera_joint"});
+  expected.add_sensor(ChainPoint{}, {"arm", "tip"});
+  expected.add_sensor(ChainPoint{}, {"weight", "counterweight"});
+  expected.add_block("weight", PointToPoint{}, {"weight", "arm"});
+  for (Sample& sample : some_samples(5)) {
+    for (Feature& feature : sample.observations[0].features) feature.frame = "tip";
+    expected.add_sample(sample);
+    found.add_sample(sample);
+  }
+  const std::vector<double> x = test::random_values(table, 0.05, 3);
+  const FreeSet free = UpAndDown::free(table);
+  const NormalEquations sums = normal_equations(expected, x, &free);
+  EXPECT_GT(sums.hessian.diagonal().minCoeff(), 0.0) << "a parameter moves nothing";
+  test::expect_same(normal_equations(found, x, &free), sums, 1e-12);
+}
+
 TEST(Crate, NamesItsParametersAsAConfigurationDoes) {
   const ParameterTable table = All().table({});
   std::vector<std::string> names;
