@@ -279,7 +279,7 @@ auto calibrate_blocks_of_one_name() {
   return calibrate(Crate<Arm, Head, HandEye, Block<"hand_eye", PointToPlane, "camera">>(), {});
 }
 
-// expect: the joint or frame in this PriorOn is not free in the crate; correct its name or leave
+// expect: the joint, frame or parameter in this PriorOn is not free in the crate; correct its name
 // meant: head_pan_joint
 auto calibrate_misspelt_prior() {
   return calibrate(

@@ -14,6 +14,7 @@ template <class P, class Sensor>
   constexpr std::string_view owner = P::kOwner;
   if (P::kKind == ParameterKind::sensor) return Sensor::kName == owner;
   if (P::kKind == ParameterKind::virtual_frame) return !kIsInOwnFrame<typename Sensor::Model>;
+  if (!Sensor::Chain::kHasLinks) return true;  // the chain's own check reports that
   for (const std::size_t joint : Sensor::Chain::kPassed) {
     const JointData& passed = Robot::kJoints[joint];
     const bool is_it = P::kKind == ParameterKind::frame_offset

@@ -52,8 +52,7 @@ class PacketOf {
   PacketOf() = default;  ///< lanes are not initialized
   /// Copies the register: g++ copies a class without this as memory, past the registers.
   PacketOf(const PacketOf& other) : x_(other.x_) {}  // NOLINT(modernize-use-equals-default)
-  /// The same.
-  PacketOf& operator=(const PacketOf& other) {  // NOLINT(modernize-use-equals-default)
+  PacketOf& operator=(const PacketOf& other) {       // NOLINT(modernize-use-equals-default)
     x_ = other.x_;
     return *this;
   }

@@ -86,7 +86,12 @@ struct Chain {
  private:
   using BaseLink = LookedUp<kBase, detail::LinkNames<R>>;
   using TipLink = LookedUp<kTip, detail::LinkNames<R>>;
+
+ public:
+  /// False if base or tip is not a link of the robot; a sentence reports that.
   static constexpr bool kHasLinks = BaseLink::kExists && TipLink::kExists;
+
+ private:
   static constexpr auto kWay = detail::find_way(R::kJoints, kHasLinks ? kBase : kTip, kTip,
                                                 std::array<std::size_t, 2 * R::kJoints.size()>{});
 

@@ -1,4 +1,4 @@
-// Arguments and parameters of an error block as numbers: made at random, moved, in packets, in jets.
+// Arguments, parameters and conditions of an error block as numbers: made at random, moved, in packets, in jets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,7 +19,8 @@ using CalledWith =
 
 template <ErrorBlock B, class S, class Arguments = CalledWith<B>>
 struct BlockInput;
-/// Input of a block: its arguments as vectors of three numbers, and its parameters.
+/// Input of a block: its arguments as vectors of three numbers, its parameters, and the conditions that
+/// it takes.
 template <ErrorBlock B, class S, Quantity... Qs>
 struct BlockInput<B, S, Takes<Qs...>> {
   static constexpr std::array kQuantities = {Qs...};
@@ -29,7 +30,8 @@ struct BlockInput<B, S, Takes<Qs...>> {
   static constexpr int kVariables = kArguments + static_cast<int>(kOwn), kM = kResiduals<B>;
 
   std::array<Vector3<S>, kValues> values;
-  std::array<S, kOwn> own;
+  OwnOf<B, S> own;
+  ConditionsOf<B, S> conditions{};
 
   /// These arguments, and the initial values of the parameters.
   [[nodiscard]] static BlockInput of(const B& block, const Argument<Qs, S>&... arguments) {
@@ -50,6 +52,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
       const double near = infos[i].initial + random(-0.1, 0.1);
       input.own[i] = std::clamp(near, infos[i].lower, infos[i].upper);
     }
+    for (S& condition : input.conditions) condition = S(random(-1.0, 1.0));
     return input;
   }
   /// One input in each lane: from `first` on, and again from the beginning.
@@ -62,6 +65,9 @@ struct BlockInput<B, S, Takes<Qs...>> {
         for (int k = 0; k < 3; ++k) set_lane(input.values[n](k), i, in_lane.values[n](k));
       }
       for (std::size_t n = 0; n < kOwn; ++n) set_lane(input.own[n], i, in_lane.own[n]);
+      for (std::size_t n = 0; n < input.conditions.size(); ++n) {
+        set_lane(input.conditions[n], i, in_lane.conditions[n]);
+      }
     }
     return input;
   }
@@ -75,7 +81,9 @@ struct BlockInput<B, S, Takes<Qs...>> {
     };
     // In braces: arguments are taken from left to right.
     const std::tuple<Argument<Qs, S>...> arguments{take(std::integral_constant<Quantity, Qs>{})...};
-    return std::apply([&](const auto&... a) { return call_block(block, own, a...); }, arguments);
+    return std::apply(
+        [&](const auto&... a) { return call_block<B, S>(block, own, conditions, a...); },
+        arguments);
   }
   /// The residual and its derivatives by arguments and parameters, from jets.
   [[nodiscard]] Differentiated<S, kM, kVariables> differentiate(const B& block) const {
@@ -93,7 +101,8 @@ struct BlockInput<B, S, Takes<Qs...>> {
       parameters[i] = J(own[i], kArguments + static_cast<int>(i));
     }
     const Eigen::Matrix<J, kM, 1> r = std::apply(
-        [&](const auto&... a) { return call_block(block, parameters, a...); }, arguments);
+        [&](const auto&... a) { return call_block<B, J>(block, parameters, conditions, a...); },
+        arguments);
     return Differentiated<S, kM, kVariables>(r);
   }
 
