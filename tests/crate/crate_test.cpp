@@ -152,7 +152,7 @@ using FromCamera = Chain<StaticRobot, "camera_frame", Tip>;
 using UpAndDown =
     Crate<Chain3d<"arm", FromCamera<"tip">>, Chain3d<"weight", FromCamera<"counterweight">>,
           JointOffset<"pan">, JointOffset<"head_tilt">, JointOffset<"wrist">,
-          JointModelParameters<"head_tilt", "gear_ratio">, FrameOffset<"camera_joint">,
+          JointModelParameters<"head_tilt", "gear_ratio">, FrameOffset<"camera_joint", Axes::abc>,
           Block<"weight", PointToPoint, "weight", "arm">>;
 
 TEST(Crate, HasChainsThatLeadUpAndDown) {

@@ -37,7 +37,7 @@ TEST(CheckBlock, HoldsForBlocksOfUsers) {
   EXPECT_EQ(check_block(test::WireLength{}, V(1, 1, 0.5), Reading<double>{{1, 1, 0}, 0.5}),
             kLawsHold);
   EXPECT_EQ(check_block(test::ThermalBar{}, V(0.4, 0, 0), V(0, 0, 0)), kLawsHold);
-  EXPECT_EQ(check_block(test::WarmPixel{}), kLawsHold);
+  EXPECT_EQ(check_block(test::WarmPixel{}, PixelObservation<double>{{3, 4}, {3, 4}}), kLawsHold);
 }
 
 /// A derivative is lost: the number takes the place of the jet.
