@@ -61,7 +61,7 @@ void write_bag(const std::string& path, Encoding encoding, int samples) {
   BagOutput bag(path, encoding, Compression::none);
   for (int n = 0; n < samples; ++n) {
     const Sample sample = made_sample(n);
-    bag.write(topic, n + 1, with_cloud(sample_message(sample), cloud));
+    bag.write(topic, n + 1, with_cloud(detail::sample_message(sample), cloud));
   }
   bag.finish();
 }

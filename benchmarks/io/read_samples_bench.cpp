@@ -112,7 +112,7 @@ struct Ignore {
 void BM_yaml_control(benchmark::State& state) {
   const SampleText file(state.range(0));
   for (auto _ : state) {
-    YamlEvents events(file.text);
+    detail::YamlEvents events(file.text);
     Ignore handler;
     while (events.next_document(handler)) {
     }

@@ -138,6 +138,21 @@ TEST(Architecture, CoreIncludesTheFoldersThatNeedOnlyEigenAndKinecalIncludesTheR
   EXPECT_THAT(included_by("kinecal.hpp"), testing::UnorderedElementsAreArray(rest));
 }
 
+/// What io/ declares in a .ipp without a header of the same name is not for users.  (Other folders
+/// also have .ipp files that only instantiate what their headers declare.)
+TEST(Architecture, WhatNoHeaderDeclaresIsInDetail) {
+  int insides = 0;
+  for (const auto& file : fs::recursive_directory_iterator(kHeaders / "io")) {
+    fs::path header = file.path();
+    if (header.extension() != ".ipp" || fs::exists(header.replace_extension(".hpp"))) continue;
+    ++insides;
+    const std::string text = text_of(file.path());
+    EXPECT_THAT(text, testing::HasSubstr("\nnamespace kinecal::detail {\n")) << file.path();
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr("\nnamespace kinecal {\n"))) << file.path();
+  }
+  EXPECT_GT(insides, 30);
+}
+
 /// A header or .ipp of more lines than the rule allows, and why.
 struct LongSource {
   const char *file, *reason;

@@ -17,19 +17,20 @@ namespace {
 
 using namespace kinecal;
 
-void decode_all(const MessageDefinition& definition, Encoding encoding, Bytes bytes, bool samples) {
+void decode_all(const detail::MessageDefinition& definition, Encoding encoding, Bytes bytes,
+                bool samples) {
   try {
-    const MessageFields message = decode(definition, encoding, bytes);
-    const std::vector<std::byte> once = encode(message, definition, encoding);
+    const MessageFields message = detail::decode(definition, encoding, bytes);
+    const std::vector<std::byte> once = detail::encode(message, definition, encoding);
     const std::vector<std::byte> twice =
-        encode(decode(definition, encoding, once), definition, encoding);
+        detail::encode(detail::decode(definition, encoding, once), definition, encoding);
     if (once != twice) std::abort();
     if (!samples) return;
     detail::MessageSamples read("fuzz.bag");
     read.add(message, 1);
     Diagnostics diagnostics;
     if (read.take(diagnostics).empty() && diagnostics.errors.empty()) std::abort();
-  } catch (const BytesError&) {  // what is expected of most
+  } catch (const detail::BytesError&) {  // what is expected of most
   }
 }
 
@@ -42,15 +43,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const int kind = data[0] % 3;
   if (kind < 2) {
     const Encoding encoding = kind == 0 ? Encoding::ros1 : Encoding::cdr;
-    decode_all(parse_definition(type, known_definition(type, encoding)), encoding, bytes, true);
+    decode_all(detail::parse_definition(type, detail::known_definition(type, encoding)), encoding,
+               bytes, true);
     return 0;
   }
   const std::string all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::size_t end = std::min(all.find('\0'), all.size());
   try {
-    const MessageDefinition definition = parse_definition("a/Type", all.substr(0, end));
+    const detail::MessageDefinition definition =
+        detail::parse_definition("a/Type", all.substr(0, end));
     decode_all(definition, Encoding::cdr, bytes.subspan(std::min(end + 1, bytes.size())), false);
-  } catch (const DefinitionError&) {  // what is expected of most
+  } catch (const detail::DefinitionError&) {  // what is expected of most
   }
   return 0;
 }

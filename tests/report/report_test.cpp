@@ -43,9 +43,9 @@ TEST(JsonReport, IsReadBackAsItWasWritten) {
 }
 
 TEST(JsonReport, WritesNullForNotANumber) {
-  EXPECT_EQ(json_number(std::nan("")), "null");
-  EXPECT_EQ(json_number(0.1), "0.1");
-  EXPECT_EQ(json_string("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
+  EXPECT_EQ(detail::json_number(std::nan("")), "null");
+  EXPECT_EQ(detail::json_number(0.1), "0.1");
+  EXPECT_EQ(detail::json_string("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
 }
 
 TEST(TextReport, ShowsMillimetresAndDegrees) {

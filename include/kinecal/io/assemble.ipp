@@ -204,11 +204,11 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
                     did_you_mean(config.base_link, robot.link_names())));
     return calibration;
   }
-  const std::set<std::string> frames = frames_of(config);
-  calibration.table = parameters_from(config, robot, samples, diagnostics);
+  const std::set<std::string> frames = detail::frames_of(config);
+  calibration.table = detail::parameters_from(config, robot, samples, diagnostics);
   if (!config.steps.empty()) {  // values of later steps are set when those steps start
     for (const auto& [index, value] :
-         initial_assignments(config.steps.front(), calibration.table)) {
+         detail::initial_assignments(config.steps.front(), calibration.table)) {
       calibration.table[index].initial = calibration.table[index].value = value;
     }
   }
@@ -227,7 +227,8 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
     if (!samples.empty()) detail::check_terms(step, *problem, samples, diagnostics);
     FreeSet free = detail::free_set(step, *problem, !samples.empty(), diagnostics);
     calibration.steps.push_back({step.name, step.max_num_iterations, std::move(problem),
-                                 std::move(free), initial_assignments(step, calibration.table)});
+                                 std::move(free),
+                                 detail::initial_assignments(step, calibration.table)});
   }
   return calibration;
 }

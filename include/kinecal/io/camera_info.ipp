@@ -53,9 +53,9 @@ KINECAL_INLINE CameraInfo calibrated_camera_info(const CameraInfo& camera, doubl
 KINECAL_INLINE std::string to_camera_info_yaml(const CameraInfo& camera,
                                                const std::string& camera_name) {
   std::string text = fmt::format("image_width: {}\nimage_height: {}\ncamera_name: {}\n",
-                                 camera.width, camera.height, name_to_yaml(camera_name));
+                                 camera.width, camera.height, detail::name_to_yaml(camera_name));
   text += detail::matrix_to_yaml("camera_matrix", 3, camera.k);
-  text += fmt::format("distortion_model: {}\n", name_to_yaml(camera.distortion_model));
+  text += fmt::format("distortion_model: {}\n", detail::name_to_yaml(camera.distortion_model));
   text += detail::matrix_to_yaml("distortion_coefficients", 1, camera.d);
   text += detail::matrix_to_yaml("rectification_matrix", 3, camera.r);
   return text + detail::matrix_to_yaml("projection_matrix", 3, camera.p);
@@ -63,9 +63,9 @@ KINECAL_INLINE std::string to_camera_info_yaml(const CameraInfo& camera,
 
 KINECAL_INLINE std::string to_camera_message_yaml(const CameraInfo& camera) {
   return fmt::format("height: {}\nwidth: {}\ndistortion_model: {}\nd: {}\nk: {}\nr: {}\np: {}\n",
-                     camera.height, camera.width, name_to_yaml(camera.distortion_model),
-                     numbers_to_yaml(camera.d), numbers_to_yaml(camera.k),
-                     numbers_to_yaml(camera.r), numbers_to_yaml(camera.p));
+                     camera.height, camera.width, detail::name_to_yaml(camera.distortion_model),
+                     detail::numbers_to_yaml(camera.d), detail::numbers_to_yaml(camera.k),
+                     detail::numbers_to_yaml(camera.r), detail::numbers_to_yaml(camera.p));
 }
 
 }  // namespace kinecal

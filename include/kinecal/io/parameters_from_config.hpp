@@ -16,7 +16,7 @@
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/samples/sample.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The type of a model.  A model of unknown type counts as a camera3d: this type has the most
 /// parameters, so a name among them is not reported as well.
@@ -45,7 +45,7 @@ namespace kinecal {
 [[nodiscard]] std::vector<std::pair<int, double>> initial_assignments(const StepConfig& step,
                                                                       const ParameterTable& table);
 
-}  // namespace kinecal
+}  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/io/parameters_from_config.ipp"

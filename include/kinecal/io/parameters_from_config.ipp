@@ -9,7 +9,7 @@
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 KINECAL_INLINE const SensorEntry& sensor_entry(const ModelConfig& model) {
   const SensorEntry* entry = registry().sensor(model.type);
@@ -29,8 +29,6 @@ KINECAL_INLINE std::vector<ParameterInfo> own_parameters(const BlockConfig& bloc
     return {};
   }
 }
-
-namespace detail {
 
 /// Names of the frames in which features were recorded.
 [[nodiscard]] inline std::set<std::string> feature_frames(std::span<const Sample> samples) {
@@ -221,8 +219,6 @@ inline void check_collisions(const ParameterTable& table, const Robot& robot, co
   }
 }
 
-}  // namespace detail
-
 KINECAL_INLINE std::set<std::string> frames_of(const Config& config) {
   std::set<std::string> frames;
   for (const StepConfig& step : config.steps) {
@@ -235,7 +231,7 @@ KINECAL_INLINE ParameterTable parameters_from(const Config& config, const Robot&
                                               std::span<const Sample> samples,
                                               Diagnostics& diagnostics) {
   ParameterTable table;
-  const std::set<std::string> recorded = detail::feature_frames(samples);
+  const std::set<std::string> recorded = feature_frames(samples);
   for (const StepConfig& step : config.steps) {
     for (const ModelConfig& model : step.models) {
       add_sensor_parameters(table, *sensor_entry(model).sensor, mount_from(model), samples);
@@ -244,13 +240,13 @@ KINECAL_INLINE ParameterTable parameters_from(const Config& config, const Robot&
       add_parameters(table, block.name, own_parameters(block));
     }
     for (const FreeFrameConfig& frame : step.free_frames) {
-      detail::check_frame(frame, robot, recorded, !samples.empty(), diagnostics);
-      detail::add_frame(table, frame.name);
+      check_frame(frame, robot, recorded, !samples.empty(), diagnostics);
+      add_frame(table, frame.name);
     }
-    detail::add_params(table, robot, step, diagnostics);
-    detail::add_valued_joints(table, robot, step, diagnostics);
+    add_params(table, robot, step, diagnostics);
+    add_valued_joints(table, robot, step, diagnostics);
   }
-  detail::check_collisions(table, robot, config, diagnostics);
+  check_collisions(table, robot, config, diagnostics);
   return table;
 }
 
@@ -277,4 +273,4 @@ KINECAL_INLINE std::vector<std::pair<int, double>> initial_assignments(
   return assignments;
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

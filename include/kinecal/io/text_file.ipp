@@ -13,7 +13,7 @@
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/linkage.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 KINECAL_INLINE std::string read_text_file(const std::string& path) {
   std::error_code missing;  // reported below
@@ -27,4 +27,4 @@ KINECAL_INLINE std::string read_text_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -10,6 +10,8 @@
 
 namespace kinecal {
 
+namespace detail {
+
 KINECAL_INLINE std::string json_string(std::string_view text) {
   std::string json = "\"";
   for (const char c : text) {
@@ -28,8 +30,6 @@ KINECAL_INLINE std::string json_string(std::string_view text) {
 KINECAL_INLINE std::string json_number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "null";
 }
-
-namespace detail {
 
 [[nodiscard]] inline std::string json(const Statistics& s) {
   return fmt::format(R"({{"rms": {}, "mean": {}, "median": {}, "max": {}}})", json_number(s.rms),
@@ -89,8 +89,8 @@ KINECAL_INLINE std::string json_report(const CalibrationResult& result,
   return fmt::format(
       "{{\n  \"converged\": {},\n  \"termination\": {},\n  \"steps\": {},\n"
       "  \"error_blocks\": {},\n  \"parameters\": {},\n  \"observability\": {}\n}}\n",
-      result.converged, json_string(result.termination), detail::json_list(result.steps, write),
-      detail::json_list(result.blocks, write),
+      result.converged, detail::json_string(result.termination),
+      detail::json_list(result.steps, write), detail::json_list(result.blocks, write),
       detail::json_list(result.calibrated, [&](int i) { return detail::json(result.table[i]); }),
       detail::json_list(observability,
                         [&](const auto& item) { return detail::json(item, result.table); }));

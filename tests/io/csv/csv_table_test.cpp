@@ -15,7 +15,8 @@ using Cells = std::vector<std::string>;
 std::vector<Cells> cells(std::string_view text, char separator = ',') {
   Diagnostics diagnostics;
   std::vector<Cells> all;
-  for (CsvRow& row : csv_rows(text, separator, "t.csv", diagnostics)) all.push_back(row.cells);
+  for (detail::CsvRow& row : detail::csv_rows(text, separator, "t.csv", diagnostics))
+    all.push_back(row.cells);
   EXPECT_THAT(diagnostics.errors, IsEmpty());
   return all;
 }
@@ -51,7 +52,7 @@ TEST(CsvTable, UnderstandsQuotedCells) {
 
 TEST(CsvTable, CountsLinesAlsoWithinCells) {
   Diagnostics diagnostics;
-  const auto rows = csv_rows("a\n\n\"b\r\nc\"\r\nd\n", ',', "t.csv", diagnostics);
+  const auto rows = detail::csv_rows("a\n\n\"b\r\nc\"\r\nd\n", ',', "t.csv", diagnostics);
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[1].line, 3);
   EXPECT_EQ(rows[2].line, 5);
@@ -59,8 +60,8 @@ TEST(CsvTable, CountsLinesAlsoWithinCells) {
 
 TEST(CsvTable, ReportsWhereAQuotedCellGoesWrong) {
   Diagnostics diagnostics;
-  (void)csv_rows("a\n\"b\nc", ',', "t.csv", diagnostics);
-  (void)csv_rows("a\n\"b\"c,d\n", ',', "u.csv", diagnostics);
+  (void)detail::csv_rows("a\n\"b\nc", ',', "t.csv", diagnostics);
+  (void)detail::csv_rows("a\n\"b\"c,d\n", ',', "u.csv", diagnostics);
   EXPECT_THAT(diagnostics.errors, ElementsAre(HasSubstr("t.csv:2: a quoted cell begins here"),
                                               HasSubstr("u.csv:2: text follows a quoted cell")));
 }

@@ -323,8 +323,8 @@ TEST_F(Install, RefusesALaunchFileThatIsNotThereWithTheNearest) {
   fs::rename(folder_ / "robot/robot.launch", folder_ / "robot/robto.launch");
   expect_refused(AllOf(HasSubstr("robot/robot.launch: is not there"),
                        HasSubstr("did you mean 'robto.launch'?")));
-  EXPECT_THROW((void)LaunchFolder(folder_ / "robot", "../a.launch"), InputError);
-  EXPECT_THROW((void)LaunchFolder(folder_ / "rob", "robot.launch"), InputError);
+  EXPECT_THROW((void)detail::LaunchFolder(folder_ / "robot", "../a.launch"), InputError);
+  EXPECT_THROW((void)detail::LaunchFolder(folder_ / "rob", "robot.launch"), InputError);
 }
 
 TEST_F(Install, RefusesAnOffsetThatIsNotFinite) {

@@ -11,6 +11,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;

@@ -10,6 +10,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 const MessageDefinition kEverything = parse_definition("a/Everything",
                                                        "bool flag\n"
                                                        "int8 a\n"

@@ -10,6 +10,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -155,7 +157,7 @@ TEST(Definition, HasNoMoreTextThanIsPlausible) {
 
 TEST(Definition, OfAllKnownMessagesIsComplete) {
   for (const Encoding encoding : {Encoding::ros1, Encoding::cdr}) {
-    for (const detail::KnownMessage& known : detail::kKnownMessages) {
+    for (const KnownMessage& known : kKnownMessages) {
       const std::string type(known.type);
       EXPECT_FALSE(parse_definition(type, known_definition(type, encoding))[0].fields.empty())
           << type;

@@ -19,6 +19,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -50,7 +52,7 @@ Sample made_sample() {
 std::vector<Sample> read_again(const std::vector<Sample>& samples, Encoding encoding,
                                Diagnostics& diagnostics) {
   const MessageDefinition definition = parse_definition(kType, known_definition(kType, encoding));
-  detail::MessageSamples messages("made.bag");
+  MessageSamples messages("made.bag");
   for (std::size_t n = 0; n < samples.size(); ++n) {
     const auto bytes = encode(sample_message(samples[n]), definition, encoding);
     messages.add(decode(definition, encoding, bytes), static_cast<int>(n) + 1);
@@ -100,7 +102,7 @@ TEST(MessageSamples, TakesMessagesWithMoreAndOtherFields) {
   text.insert(text.find(feature), "float64 confidence\n");
   const MessageDefinition definition = parse_definition(kType, text);
   const auto bytes = encode(sample_message(made_sample()), definition, Encoding::cdr);
-  detail::MessageSamples messages("made.bag");
+  MessageSamples messages("made.bag");
   messages.add(decode(definition, Encoding::cdr, bytes), 1);
   Diagnostics diagnostics;
   const std::vector<Sample> all = messages.take(diagnostics);
@@ -109,7 +111,7 @@ TEST(MessageSamples, TakesMessagesWithMoreAndOtherFields) {
 }
 
 TEST(MessageSamples, ReportsWhatAMessageLacks) {
-  detail::MessageSamples messages("made.bag");
+  MessageSamples messages("made.bag");
   messages.add(MessageFields{}, 4);
   Diagnostics diagnostics;
   EXPECT_TRUE(messages.take(diagnostics).empty());
@@ -167,14 +169,12 @@ MessageFields message_of(MessageValue position, MessageFields observation) {
   positions.push_back(std::move(position));
   observations.emplace_back(std::move(observation));
   static const std::vector<std::string> names = {"pan"};
-  return detail::fields(
-      "joint_states",
-      detail::fields("name", detail::texts(names), "position", std::move(positions)),
-      "observations", std::move(observations));
+  return fields("joint_states", fields("name", texts(names), "position", std::move(positions)),
+                "observations", std::move(observations));
 }
 
 std::vector<Sample> read_message(const MessageFields& message, Diagnostics& diagnostics) {
-  detail::MessageSamples messages("made.bag");
+  MessageSamples messages("made.bag");
   messages.add(message, 7);
   return messages.take(diagnostics);
 }
@@ -190,7 +190,7 @@ TEST(MessageSamples, TakeWholeNumbersAndTextsForNumbers) {
   for (const auto& [position, expected] : positions) {
     Diagnostics diagnostics;
     const auto samples =
-        read_message(message_of(position, detail::fields("sensor_name", "arm")), diagnostics);
+        read_message(message_of(position, fields("sensor_name", "arm")), diagnostics);
     EXPECT_THAT(diagnostics.errors, ElementsAre());
     ASSERT_EQ(samples.size(), 1u);
     EXPECT_THAT(samples[0].joint_positions, ElementsAre(expected));
@@ -208,8 +208,7 @@ TEST(MessageSamples, TakeANumberForItsTextWhereAWordStands) {
   };
   for (const auto& [name, expected] : names) {
     Diagnostics diagnostics;
-    const auto samples =
-        read_message(message_of(0.5, detail::fields("sensor_name", name)), diagnostics);
+    const auto samples = read_message(message_of(0.5, fields("sensor_name", name)), diagnostics);
     EXPECT_THAT(diagnostics.errors, ElementsAre());
     ASSERT_EQ(samples.size(), 1u);
     EXPECT_EQ(samples[0].observations.at(0).sensor, expected);
@@ -223,17 +222,16 @@ TEST(MessageSamples, ReportNumbersInTheWrongPlaceAsYamlDoes) {
     return diagnostics.errors;
   };
   const auto with_height = [](double height) {
-    return detail::fields("sensor_name", "arm", "ext_camera_info",
-                          detail::fields("camera_info", detail::fields("height", height)));
+    return fields("sensor_name", "arm", "ext_camera_info",
+                  fields("camera_info", fields("height", height)));
   };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(errors(std::string_view("fast"), detail::fields("sensor_name", "arm")),
+  EXPECT_THAT(errors(std::string_view("fast"), fields("sensor_name", "arm")),
               ElementsAre("made.bag:7: position: 'fast' is not a number"));
-  EXPECT_THAT(errors(0.5, detail::fields("sensor_name", "arm", "features", 0.5)),
+  EXPECT_THAT(errors(0.5, fields("sensor_name", "arm", "features", 0.5)),
               ElementsAre("made.bag:7: features: '0.5' is not a list"));
-  EXPECT_THAT(
-      errors(0.5, detail::fields("sensor_name", "arm", "ext_camera_info", std::int64_t{-1})),
-      ElementsAre("made.bag:7: ext_camera_info: '-1' is not a map"));
+  EXPECT_THAT(errors(0.5, fields("sensor_name", "arm", "ext_camera_info", std::int64_t{-1})),
+              ElementsAre("made.bag:7: ext_camera_info: '-1' is not a map"));
   EXPECT_THAT(errors(0.5, with_height(kNan)),
               testing::Contains("made.bag:7: height: nan is not a number of pixels"));
   EXPECT_THAT(errors(0.5, with_height(-std::numeric_limits<double>::infinity())),

@@ -137,7 +137,7 @@ TEST_F(RecordingTest, OfACompressedFileIsRead) {
   BagOutput bag(path("a.mcap"), Encoding::cdr);
   write_samples(bag, made_samples());
   bag.finish();
-  const auto packed = pack(detail::as_bytes(content(path("a.mcap"))), Compression::zstd);
+  const auto packed = detail::pack(detail::as_bytes(content(path("a.mcap"))), Compression::zstd);
   write("a.mcap.zstd", {reinterpret_cast<const char*>(packed.data()), packed.size()});
   EXPECT_EQ(recording_format(path("a.mcap.zstd")), RecordingFormat::zstd);
   expect_same(read(path("a.mcap.zstd")).samples, made_samples());
@@ -170,9 +170,10 @@ TEST_F(RecordingTest, WithoutSamplesSaysSo) {
 
 TEST_F(RecordingTest, ReportsMessagesThatAreNotOfTheirType) {
   BagOutput bag(path("a"), Encoding::cdr);
-  const BagTopic topic{"calibration_data", "robot_calibration_msgs/CalibrationData",
-                       known_definition("robot_calibration_msgs/CalibrationData", Encoding::cdr),
-                       Encoding::cdr};
+  const BagTopic topic{
+      "calibration_data", "robot_calibration_msgs/CalibrationData",
+      detail::known_definition("robot_calibration_msgs/CalibrationData", Encoding::cdr),
+      Encoding::cdr};
   const std::vector<std::byte> few(6);
   bag.copy(topic, 1, few);
   write_samples(bag, made_samples());
@@ -214,7 +215,7 @@ TEST_F(RecordingTest, KeepsTheVersionsOfATopicApart) {
 
 TEST_F(RecordingTest, ReportsTimesThatRos1DoesNotHave) {
   BagOutput bag(path("a"), Encoding::cdr);
-  const std::string urdf = known_definition("std_msgs/String", Encoding::cdr);
+  const std::string urdf = detail::known_definition("std_msgs/String", Encoding::cdr);
   const BagTopic topic{"robot_description", "std_msgs/String", urdf, Encoding::cdr};
   const std::array<std::byte, 9> empty{std::byte{0}, std::byte{1}};
   for (const std::int64_t time : {std::int64_t{5'000'000'000'000'000'000}, std::int64_t{1}}) {

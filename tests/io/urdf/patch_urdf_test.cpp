@@ -129,7 +129,7 @@ std::vector<Pose<double>> corrected_kinematics(const Robot& robot,
 std::vector<Pose<double>> kinematics_of_file(const std::string& text,
                                              std::map<std::string, double> positions) {
   const Robot robot = parse_urdf(text, "patched.urdf");
-  const UrdfText source(text, "patched.urdf");
+  const detail::UrdfText source(text, "patched.urdf");
   for (auto& [joint, position] : positions) {
     const pugi::xml_node calibration = source.joint(joint).child("calibration");
     position += calibration.attribute("rising").as_double();
@@ -176,7 +176,7 @@ const std::map<std::string, double> kPositions = {{"pan", 0.4}, {"lift", 0.3}, {
 /// Positions as a driver sees them that adds the `rising` of the file as it was.
 std::map<std::string, double> measured_with(const std::string& text) {
   std::map<std::string, double> positions = kPositions;
-  const UrdfText source(text, "arm.urdf");
+  const detail::UrdfText source(text, "arm.urdf");
   for (auto& [joint, position] : positions) {
     position += source.joint(joint).child("calibration").attribute("rising").as_double();
   }

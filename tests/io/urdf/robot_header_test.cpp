@@ -82,7 +82,8 @@ TEST(RobotHeader, StringsAreEscaped) {
 
 TEST(RobotHeader, ANameBecomesANamespace) {
   const auto namespace_of = [](const std::string& name, const std::string& asked_for = "") {
-    return detail::robot_namespace(UrdfText("<robot name='" + name + "'/>", "a.urdf"), asked_for);
+    return detail::robot_namespace(detail::UrdfText("<robot name='" + name + "'/>", "a.urdf"),
+                                   asked_for);
   };
   EXPECT_EQ(namespace_of("fetch"), "fetch");
   EXPECT_EQ(namespace_of("UR5-e  (left)"), "UR5_e_left");

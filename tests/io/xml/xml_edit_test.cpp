@@ -7,6 +7,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 std::string value(const std::string& text, const StartTag& tag, const std::string& name) {
   const AttributeText* attribute = tag.find(name);
   return attribute == nullptr ? "(none)"

@@ -6,7 +6,7 @@ namespace kinecal {
 namespace {
 
 TEST(XmlNumbers, NumbersAreFoundWithTheirPlaces) {
-  const auto tokens = number_tokens(" 1.5\t+2\r\n-3e-2 ");
+  const auto tokens = detail::number_tokens(" 1.5\t+2\r\n-3e-2 ");
   ASSERT_TRUE(tokens);
   ASSERT_EQ(tokens->size(), 3u);
   EXPECT_EQ((*tokens)[0].value, 1.5);
@@ -18,9 +18,9 @@ TEST(XmlNumbers, NumbersAreFoundWithTheirPlaces) {
 
 TEST(XmlNumbers, OnlyFiniteDecimalNumbersAreNumbers) {
   for (const char* text : {"a", "1,5", "nan", "inf", "1e999", "+-1", "++1", "+", "0x1p3", "1 2m"}) {
-    EXPECT_FALSE(number_tokens(text)) << text;
+    EXPECT_FALSE(detail::number_tokens(text)) << text;
   }
-  EXPECT_TRUE(number_tokens("  ")->empty());
+  EXPECT_TRUE(detail::number_tokens("  ")->empty());
 }
 
 }  // namespace

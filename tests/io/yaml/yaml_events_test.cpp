@@ -9,6 +9,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 using ::testing::HasSubstr;
 
 /// Writes down the events: "+" for a document, "{", "[" and scalars after their line, "." for ends.

@@ -13,6 +13,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 using ::testing::HasSubstr;
 
 /// A node in short: "line:" before each value, ~ for null, tags before what they belong to.

@@ -11,6 +11,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

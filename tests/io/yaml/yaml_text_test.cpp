@@ -14,6 +14,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 /// Numbers of every size and both signs, subnormal ones included, from random bits.
 std::vector<double> difficult_numbers() {
   using Limits = std::numeric_limits<double>;

@@ -16,13 +16,13 @@
 
 namespace kinecal {
 
+namespace detail {
+
 /// "sensor_msgs/msg/JointState" of ROS 2 is "sensor_msgs/JointState" of ROS 1.
 [[nodiscard]] std::string plain_type(std::string_view type);
 
 /// "/joint_states" is "joint_states".
 [[nodiscard]] std::string plain_topic(std::string_view name);
-
-namespace detail {
 
 /// "sensor_msgs/JointState" is "sensor_msgs/msg/JointState".
 [[nodiscard]] std::string ros2_type(std::string_view type);

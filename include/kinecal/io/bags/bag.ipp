@@ -12,6 +12,8 @@
 
 namespace kinecal {
 
+namespace detail {
+
 KINECAL_INLINE std::string plain_type(std::string_view type) {
   const std::size_t at = type.find("/msg/");
   if (at == std::string_view::npos) return std::string(type);
@@ -22,8 +24,6 @@ KINECAL_INLINE std::string plain_topic(std::string_view name) {
   name.remove_prefix(std::min(name.find_first_not_of('/'), name.size()));
   return std::string(name);
 }
-
-namespace detail {
 
 KINECAL_INLINE std::string ros2_type(std::string_view type) {
   const std::size_t at = type.find('/');

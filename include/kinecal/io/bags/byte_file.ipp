@@ -16,7 +16,7 @@
 
 #include "kinecal/io/bags/bytes.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Something begins in the file and ends beyond it.
 struct CutOffError : BytesError {
@@ -64,7 +64,7 @@ class ByteFile {
     const auto wanted = static_cast<std::streamsize>(bytes.size());
     in_.read(reinterpret_cast<char*>(bytes.data()), wanted);
     if (in_.gcount() != wanted) {
-      throw CutOffError(detail::at_byte(place_) + "reading the file fails here");
+      throw CutOffError(at_byte(place_) + "reading the file fails here");
     }
     place_ += bytes.size();
   }
@@ -90,7 +90,7 @@ class ByteFile {
 
  private:
   [[noreturn]] void fail_short_of(std::uint64_t count) const {
-    throw CutOffError(detail::at_byte(place_) + "expected " + detail::byte_count(count) + ", " +
+    throw CutOffError(at_byte(place_) + "expected " + byte_count(count) + ", " +
                       std::to_string(left()) + " left");
   }
 
@@ -99,4 +99,4 @@ class ByteFile {
   std::uint64_t place_ = 0;
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -19,6 +19,8 @@ namespace kinecal {
 /// Bytes that somebody else owns.
 using Bytes = std::span<const std::byte>;
 
+namespace detail {
+
 /// Bytes that are not what they should be: "byte 1234: what is wrong".
 struct BytesError : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -78,8 +80,6 @@ class ByteReader {
   std::uint64_t start_;
   std::size_t read_ = 0;
 };
-
-namespace detail {
 
 [[nodiscard]] inline Bytes as_bytes(std::string_view text) {
   return std::as_bytes(std::span(text));

@@ -8,9 +8,7 @@
 #include "kinecal/io/bags/bytes.hpp"
 #include "kinecal/linkage.hpp"
 
-namespace kinecal {
-
-namespace detail {
+namespace kinecal::detail {
 
 KINECAL_INLINE std::string at_byte(std::uint64_t place) {
   return "byte " + std::to_string(place) + ": ";
@@ -20,15 +18,12 @@ KINECAL_INLINE std::string byte_count(std::uint64_t count) {
   return std::to_string(count) + (count == 1 ? " byte" : " bytes");
 }
 
-}  // namespace detail
-
 KINECAL_INLINE void ByteReader::fail(const std::string& what) const {
-  throw BytesError(detail::at_byte(place()) + what);
+  throw BytesError(at_byte(place()) + what);
 }
 
 KINECAL_INLINE void ByteReader::fail_short_of(std::uint64_t count) const {
-  fail("expected " + detail::byte_count(count) + ", " + std::to_string(left()) +
-       " left; is it cut off?");
+  fail("expected " + byte_count(count) + ", " + std::to_string(left()) + " left; is it cut off?");
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

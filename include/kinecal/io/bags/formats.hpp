@@ -7,7 +7,7 @@
 
 #include "kinecal/io/bags/bytes.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// An MCAP file begins and ends with these bytes.
 inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
@@ -16,23 +16,19 @@ inline constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
 /// One little-endian frame of zstd.
 inline constexpr std::string_view kZstdMagic{"\x28\xB5\x2F\xFD", 4};
 
-namespace detail {
-
 [[nodiscard]] inline bool begins_with(Bytes bytes, std::string_view magic) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
-}  // namespace detail
-
 /// Whether a file is MCAP.
 /// @param first  its first bytes, at least 16 if it has as many
 [[nodiscard]] inline bool is_mcap(Bytes first) {
-  return detail::begins_with(first, kMcapMagic);
+  return begins_with(first, kMcapMagic);
 }
 /// Whether a file is a database of SQLite, such as a .db3 bag.
 /// @param first  its first bytes, at least 16 if it has as many
 [[nodiscard]] inline bool is_sqlite(Bytes first) {
-  return detail::begins_with(first, kSqliteMagic);
+  return begins_with(first, kSqliteMagic);
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -24,12 +24,11 @@
 
 #include "kinecal/io/cameras/camera_fields.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Reads a camera_info file or message.
 /// @param file  the top-level map
 [[nodiscard]] inline CameraInfo read_camera_info(ConfigMap& file) {
-  using namespace detail;
   CameraInfo camera;
   camera.width = read_camera_size(file, {"image_width", "width"});
   camera.height = read_camera_size(file, {"image_height", "height"});
@@ -54,8 +53,6 @@ namespace kinecal {
 [[nodiscard]] inline bool is_kalibr_camera(const ConfigEntry& entry) {
   return entry.value.find("camera_model") != nullptr;
 }
-
-namespace detail {
 
 /// `count` numbers; zeros, and an error, if they are missing or fewer or more.
 [[nodiscard]] inline std::vector<double> kalibr_numbers(ConfigMap& camera, const std::string& key,
@@ -83,12 +80,9 @@ inline void expect_kalibr_model(ConfigMap& camera, const std::string& key,
                key + " '" + *model + "' is not supported; it must be " + expected);
 }
 
-}  // namespace detail
-
 /// Reads one camera of Kalibr's camchain.
 /// @param camera  its map
 [[nodiscard]] inline CameraInfo read_kalibr_camera(ConfigMap& camera) {
-  using namespace detail;
   const std::size_t errors = camera.diagnostics().errors.size();
   expect_kalibr_model(camera, "camera_model", "pinhole");
   expect_kalibr_model(camera, "distortion_model", "radtan");
@@ -124,8 +118,6 @@ inline void expect_kalibr_model(ConfigMap& camera, const std::string& key,
   return entry.value.is_map() && entry.value.tag.ends_with("opencv-matrix");
 }
 
-namespace detail {
-
 /// All keys of a file that equal a wanted one except for case and underscores.
 [[nodiscard]] inline CameraKeys opencv_keys(const ConfigMap& file, const CameraKeys& wanted) {
   const auto letters = [](std::string key) {
@@ -142,12 +134,9 @@ namespace detail {
   return keys;
 }
 
-}  // namespace detail
-
 /// Reads a file of OpenCV's FileStorage.
 /// @param file  the top-level map
 [[nodiscard]] inline CameraInfo read_opencv_camera(ConfigMap& file) {
-  using namespace detail;
   const auto keys = [&](const CameraKeys& wanted) { return opencv_keys(file, wanted); };
   CameraInfo camera;
   camera.width = read_camera_size(file, keys({"image_width"}));
@@ -177,4 +166,4 @@ namespace detail {
   return camera;
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

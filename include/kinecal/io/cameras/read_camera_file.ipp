@@ -50,22 +50,22 @@ namespace detail {
 
 KINECAL_INLINE CameraInfo read_camera_file(const std::string& path, Diagnostics& diagnostics,
                                            const std::string& which) {
-  const YamlNode document = detail::camera_document(path);
-  ConfigMap file(document, {path, 0}, "", diagnostics);
+  const detail::YamlNode document = detail::camera_document(path);
+  detail::ConfigMap file(document, {path, 0}, "", diagnostics);
   const std::size_t errors = diagnostics.errors.size();
-  const auto any = [&](bool (*is)(const ConfigEntry&)) {
+  const auto any = [&](bool (*is)(const detail::ConfigEntry&)) {
     return std::any_of(file.entries().begin(), file.entries().end(), is);
   };
   CameraInfo camera;
-  if (any(is_kalibr_camera)) {
+  if (any(detail::is_kalibr_camera)) {
     camera = detail::read_camchain(file, which);
   } else if (!which.empty()) {
     file.error({path, 0},
                "has a single camera and there is no '" + which + "'; leave the name out");
-  } else if (any(is_opencv_matrix)) {
-    camera = read_opencv_camera(file);
+  } else if (any(detail::is_opencv_matrix)) {
+    camera = detail::read_opencv_camera(file);
   } else if (file.peek("camera_matrix") || file.peek("K") || file.peek("k")) {
-    camera = read_camera_info(file);
+    camera = detail::read_camera_info(file);
   } else {
     file.error({path, 0},
                "is not a camera file: it has neither camera_matrix (camera_info, OpenCV), nor K or "

@@ -10,7 +10,7 @@
 #include "kinecal/io/config/config_items.ipp"
 #include "kinecal/io/registry.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Reports a model that does not deliver what the block takes of it.
 inline void check_model_kind(const ConfigMap& map, const BlockConfig& block, const std::string& key,
@@ -137,4 +137,4 @@ inline void read_block_weighting(ConfigMap& map, BlockConfig& block) {
   return block;
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -17,7 +17,7 @@
 
 #include "kinecal/io/config/config_step.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 inline void read_ros1_steps(ConfigMap& file, ConfigMap& steps, ConfigProgress& progress) {
   const int max_num_iterations = read_settings(file, StepConfig{}.max_num_iterations, progress);
@@ -149,4 +149,4 @@ inline void read_dialect(ConfigMap& file, ConfigProgress& progress) {
   file.report_unknown();
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -13,7 +13,7 @@
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/config/config_items.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 inline constexpr std::array<const char*, 6> kConfigAxes = {"x", "y", "z", "roll", "pitch", "yaw"};
 
@@ -156,4 +156,4 @@ inline void check_bounds(const ConfigMap& map, const std::vector<BoundConfig>& b
   }
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -18,7 +18,7 @@
 
 #include "kinecal/io/config/config_map.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// One item; without a map if the map could not be read and this has been reported.
 struct ConfigItem {
@@ -138,4 +138,4 @@ class FindRos2Items {
   std::map<std::string, std::string> owners_;  ///< key -> subject of its item
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

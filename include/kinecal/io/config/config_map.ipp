@@ -19,7 +19,7 @@
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// `key: value`, or an element of a list, whose key is empty.
 struct ConfigEntry {
@@ -212,4 +212,4 @@ class ConfigMap {
   std::set<std::string> used_;                  ///< known keys and names that the user chose
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

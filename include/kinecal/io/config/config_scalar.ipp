@@ -16,7 +16,7 @@
 #include "kinecal/io/yaml/yaml_node.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// A plain or quoted scalar without a tag, or with one of YAML's.
 [[nodiscard]] inline bool is_config_scalar(const YamlNode& node) {
@@ -75,4 +75,4 @@ namespace kinecal {
   return std::nullopt;
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

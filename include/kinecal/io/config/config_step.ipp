@@ -11,7 +11,7 @@
 #include "kinecal/io/config/config_blocks.ipp"
 #include "kinecal/io/config/config_free.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The configuration so far, and what later steps need to know about it.
 struct ConfigProgress {
@@ -136,4 +136,4 @@ inline void share_values(ConfigMap& map, ConfigProgress& progress) {
   check_bounds(map, bounds, all_free, "in any step");
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -14,10 +14,14 @@
 
 namespace kinecal {
 
+namespace detail {
+
 /// The document of a YAML file with a single one; null if the file is empty.
 /// @param diagnostics  receives an error for each further document
 /// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
 [[nodiscard]] YamlNode load_config(const std::string& path, Diagnostics& diagnostics);
+
+}  // namespace detail
 
 /// Reads a configuration.  It collects all errors; with errors, the configuration is incomplete.
 /// @param path         YAML file in the ROS 1 or the ROS 2 dialect

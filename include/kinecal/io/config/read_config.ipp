@@ -21,8 +21,6 @@ inline void add_once(std::vector<std::string>& messages, const std::vector<std::
   }
 }
 
-}  // namespace detail
-
 KINECAL_INLINE YamlNode load_config(const std::string& path, Diagnostics& diagnostics) {
   YamlNode content;
   for (YamlNode& document : parse_yaml(read_yaml_text(path), path)) {
@@ -37,16 +35,18 @@ KINECAL_INLINE YamlNode load_config(const std::string& path, Diagnostics& diagno
   return content;
 }
 
+}  // namespace detail
+
 KINECAL_INLINE Config read_config(const std::string& path, Diagnostics& diagnostics) {
-  ConfigProgress progress;
+  detail::ConfigProgress progress;
   progress.config.place = {path, 0};
   Diagnostics found;
-  const YamlNode content = load_config(path, found);
+  const detail::YamlNode content = detail::load_config(path, found);
   if (content.is_map()) {
-    ConfigMap file(content, {path, 0}, "", found);
-    read_dialect(file, progress);
+    detail::ConfigMap file(content, {path, 0}, "", found);
+    detail::read_dialect(file, progress);
   } else {
-    found.error({path, 0}, "the file is " + describe_config(content) + ", not a map");
+    found.error({path, 0}, "the file is " + detail::describe_config(content) + ", not a map");
   }
   detail::add_once(diagnostics.errors, found.errors);
   detail::add_once(diagnostics.warnings, found.warnings);

@@ -153,12 +153,12 @@ inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
 }  // namespace detail
 
 KINECAL_INLINE CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics) {
-  const YamlNode content = load_config(path, diagnostics);
+  const detail::YamlNode content = detail::load_config(path, diagnostics);
   if (!content.is_map()) {
-    diagnostics.error({path, 0}, "the file is " + describe_config(content) + ", not a map");
+    diagnostics.error({path, 0}, "the file is " + detail::describe_config(content) + ", not a map");
     return {};
   }
-  ConfigMap file(content, {path, 0}, "", diagnostics);
+  detail::ConfigMap file(content, {path, 0}, "", diagnostics);
   return detail::read_csv_mapping(file);
 }
 

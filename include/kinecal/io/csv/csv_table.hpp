@@ -12,7 +12,7 @@
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/linkage.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// A row of a table.
 struct CsvRow {
@@ -26,7 +26,7 @@ struct CsvRow {
 [[nodiscard]] std::vector<CsvRow> csv_rows(std::string_view text, char separator,
                                            const std::string& file, Diagnostics& diagnostics);
 
-}  // namespace kinecal
+}  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/io/csv/csv_table.ipp"

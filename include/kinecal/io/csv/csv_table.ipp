@@ -7,9 +7,7 @@
 
 #include "kinecal/io/csv/csv_table.hpp"
 
-namespace kinecal {
-
-namespace detail {
+namespace kinecal::detail {
 
 /// Cuts a text into rows.
 class CsvReader {
@@ -104,11 +102,9 @@ class CsvReader {
   int line_ = 1;
 };
 
-}  // namespace detail
-
 KINECAL_INLINE std::vector<CsvRow> csv_rows(std::string_view text, char separator,
                                             const std::string& file, Diagnostics& diagnostics) {
-  return detail::CsvReader(text, separator, file, diagnostics).rows();
+  return CsvReader(text, separator, file, diagnostics).rows();
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -218,14 +218,14 @@ class CsvSamples {
 
 KINECAL_INLINE std::vector<Sample> csv_samples(std::string_view text, const CsvMapping& mapping,
                                                const std::string& file, Diagnostics& diagnostics) {
-  std::vector<CsvRow> rows = csv_rows(text, mapping.separator, file, diagnostics);
+  std::vector<detail::CsvRow> rows = detail::csv_rows(text, mapping.separator, file, diagnostics);
   std::vector<Sample> samples;
   if (rows.size() < (mapping.header ? 2u : 1u)) {
     diagnostics.error({file, 0}, "the table has no rows");
     return samples;
   }
   std::size_t columns = 0;
-  for (const CsvRow& row : rows) columns = std::max(columns, row.cells.size());
+  for (const detail::CsvRow& row : rows) columns = std::max(columns, row.cells.size());
   std::vector<std::string> header;
   if (mapping.header) {
     header = rows.front().cells;
@@ -235,7 +235,7 @@ KINECAL_INLINE std::vector<Sample> csv_samples(std::string_view text, const CsvM
   const std::size_t before = diagnostics.errors.size();
   detail::CsvSamples reader(mapping, {header, columns, diagnostics}, file, diagnostics);
   if (diagnostics.errors.size() != before) return samples;  // they would repeat in every row
-  for (const CsvRow& row : rows) {
+  for (const detail::CsvRow& row : rows) {
     if (auto sample = reader.sample(row)) samples.push_back(std::move(*sample));
   }
   reader.finish();
@@ -250,7 +250,7 @@ KINECAL_INLINE std::vector<Sample> read_csv_samples(const std::string& csv,
                                                     Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   const CsvMapping columns = read_csv_mapping(mapping, diagnostics);
-  const std::string text = read_text_file(csv);
+  const std::string text = detail::read_text_file(csv);
   if (diagnostics.errors.size() != before) return {};
   return csv_samples(text, columns, csv, diagnostics);
 }

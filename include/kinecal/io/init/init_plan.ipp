@@ -12,7 +12,7 @@
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/kinematics/chain.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// One entry of a list: a comment, a name, and keys with their values as YAML.  Without keys the
 /// entry is the name alone.
@@ -31,8 +31,6 @@ struct InitPlan {
   std::vector<InitEntry> models, free_params, free_frames, initial_values, error_blocks;
   std::vector<InitLeftOut> left_out;
 };
-
-namespace detail {
 
 /// The initial value of a frame that the URDF does not contain: zeros, to be replaced by hand.
 inline void add_initial_value(InitPlan& plan, const std::string& frame, const std::string& why) {
@@ -136,6 +134,4 @@ inline void free_offsets(InitPlan& plan, const std::vector<ChainJoint>& way,
   return mount;
 }
 
-}  // namespace detail
-
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -82,13 +82,13 @@ inline void check_named_files(const std::filesystem::path& launch) {
 KINECAL_INLINE Installation install(const ResultFolder& result, const std::filesystem::path& folder,
                                     const std::string& launch, const LaunchNames& names,
                                     Diagnostics& diagnostics) {
-  LaunchFolder target(folder, launch);
+  detail::LaunchFolder target(folder, launch);
   target.remove_leftovers();
   detail::check_path(target.path());
-  const LaunchText old(read_text_file(target.launch()), target.launch().string());
-  const InstalledFiles files = detail::files_for(result, target.path());
+  const detail::LaunchText old(detail::read_text_file(target.launch()), target.launch().string());
+  const detail::InstalledFiles files = detail::files_for(result, target.path());
   const std::string text =
-      old.with(launch_settings(result, files, target.path(), names, diagnostics));
+      old.with(detail::launch_settings(result, files, target.path(), names, diagnostics));
   std::vector<OutputFile> added;
   for (const OutputFile& file : detail::list(files)) {
     if (!std::filesystem::exists(target.path() / file.name)) added.push_back(file);
@@ -105,21 +105,22 @@ KINECAL_INLINE Installation install(const ResultFolder& result, const std::files
 
 KINECAL_INLINE std::string restore_installed(const std::filesystem::path& folder,
                                              const std::string& launch, bool force) {
-  LaunchFolder target(folder, launch);
+  detail::LaunchFolder target(folder, launch);
   if (!force) detail::check_named_files(target.backup());
   return target.restore();
 }
 
 KINECAL_INLINE std::string installed_date(const std::filesystem::path& folder,
                                           const std::string& launch, const LaunchNames& names) {
-  const LaunchFolder target(folder, launch);
-  const LaunchText text(read_text_file(target.launch()), target.launch().string());
+  const detail::LaunchFolder target(folder, launch);
+  const detail::LaunchText text(detail::read_text_file(target.launch()), target.launch().string());
   const std::string key(launch_key::kDate);
-  const LaunchSetting setting{key, LaunchElement::param, names.at(key), "value", ""};
+  const detail::LaunchSetting setting{key, detail::LaunchElement::param, names.at(key), "value",
+                                      ""};
   Diagnostics diagnostics;
   const pugi::xml_node date = text.find(setting, diagnostics);
   diagnostics.throw_if_errors();
-  return LaunchText::value_of(date);
+  return detail::LaunchText::value_of(date);
 }
 
 }  // namespace kinecal

@@ -25,7 +25,7 @@
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 class LaunchFolder {
  public:
@@ -62,7 +62,7 @@ class LaunchFolder {
       placed.names.push_back(backup_name(n));
     }
     sync_folder();
-    detail::rename_file(staging.path / launch_, launch());
+    rename_file(staging.path / launch_, launch());
     placed.names.clear();
     sync_folder();
     return backup_name(n);
@@ -100,7 +100,7 @@ class LaunchFolder {
     const Staging staging(folder_);
     keep(staging, undone);
     sync_folder();
-    detail::rename_file(folder_ / backup_name(n), launch());
+    rename_file(folder_ / backup_name(n), launch());
     sync_folder();
     return undone;
   }
@@ -114,7 +114,7 @@ class LaunchFolder {
       std::error_code error;
       std::filesystem::remove_all(path, error);
       if (::mkdir(path.c_str(), 0700) != 0) {
-        detail::throw_output_error(folder, "cannot be written to");
+        throw_output_error(folder, "cannot be written to");
       }
     }
     Staging(const Staging&) = delete;
@@ -197,25 +197,24 @@ class LaunchFolder {
   /// Writes files with the permissions of the launch file.
   void write_like_launch(const Staging& staging, const std::vector<OutputFile>& files) const {
     struct stat like = {};
-    if (::stat(launch().c_str(), &like) != 0)
-      detail::throw_output_error(launch(), "cannot be read");
+    if (::stat(launch().c_str(), &like) != 0) throw_output_error(launch(), "cannot be read");
     for (const OutputFile& written : files) {
       const std::filesystem::path path = staging.path / written.name;
       const std::filesystem::path target = folder_ / written.name;
-      detail::write_durably(path, written.content, target);
+      write_durably(path, written.content, target);
       const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-      if (file < 0) detail::throw_output_error(target, "cannot be read");
+      if (file < 0) throw_output_error(target, "cannot be read");
       // Only root may give files away; for others this may fail.
       [[maybe_unused]] const int may_fail = ::fchown(file, like.st_uid, like.st_gid);
       const bool done = ::fchmod(file, like.st_mode & 0777) == 0 && ::fsync(file) == 0;
-      if (::close(file) != 0 || !done) detail::throw_output_error(target, "cannot be written");
+      if (::close(file) != 0 || !done) throw_output_error(target, "cannot be written");
     }
   }
 
   void place(const Staging& staging, const std::vector<OutputFile>& files, New& placed) const {
     write_like_launch(staging, files);
     for (const OutputFile& file : files) {
-      detail::rename_file(staging.path / file.name, folder_ / file.name);
+      rename_file(staging.path / file.name, folder_ / file.name);
       placed.names.push_back(file.name);
     }
   }
@@ -224,14 +223,14 @@ class LaunchFolder {
   void keep(const Staging& staging, const std::string& name) const {
     const std::filesystem::path kept = staging.path / name;
     if (::link(launch().c_str(), kept.c_str()) != 0) {  // a file system without links
-      detail::write_durably(kept, read_text_file(launch()), folder_ / name);
+      write_durably(kept, read_text_file(launch()), folder_ / name);
     }
-    detail::rename_file(kept, folder_ / name);
+    rename_file(kept, folder_ / name);
   }
 
   void remove(const std::string& name) const {
     if (::unlink((folder_ / name).c_str()) != 0) {
-      detail::throw_output_error(folder_ / name, "cannot be removed");
+      throw_output_error(folder_ / name, "cannot be removed");
     }
   }
 
@@ -240,12 +239,12 @@ class LaunchFolder {
     const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const bool done = folder >= 0 && ::fsync(folder) == 0;
     if (folder >= 0) ::close(folder);
-    if (!done) detail::throw_output_error(folder_, "cannot be written to");
+    if (!done) throw_output_error(folder_, "cannot be written to");
   }
 
   std::filesystem::path folder_;
   std::string launch_;
-  detail::FolderLock lock_;
+  FolderLock lock_;
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -31,15 +31,13 @@
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The files of a result under their names on the robot.
 struct InstalledFiles {
   OutputFile urdf;
   std::vector<OutputFile> cameras;  ///< as ResultFolder::cameras
 };
-
-namespace detail {
 
 /// A depth camera's parameter, which is zero if the result does not have it.  The prefix of
 /// parameters may differ from the camera's name: with one depth camera, the only parameter that
@@ -106,8 +104,6 @@ class LaunchSettings {
   std::vector<LaunchSetting> settings_;
 };
 
-}  // namespace detail
-
 /// The settings that a result makes.
 /// @param folder       where the files will be, an absolute path
 /// @param diagnostics  gets a warning for each key without a name
@@ -117,9 +113,9 @@ class LaunchSettings {
                                                                 const std::filesystem::path& folder,
                                                                 const LaunchNames& names,
                                                                 Diagnostics& diagnostics) {
-  detail::LaunchSettings settings(names, diagnostics);
+  LaunchSettings settings(names, diagnostics);
   constexpr LaunchElement kParam = LaunchElement::param, kArg = LaunchElement::arg;
-  settings.add(kParam, "", launch_key::kDate, "value", detail::date_for_people(result.date));
+  settings.add(kParam, "", launch_key::kDate, "value", date_for_people(result.date));
   settings.add(kParam, "", launch_key::kRobot, "textfile", (folder / files.urdf.name).string());
   for (std::size_t i = 0; i < result.cameras.size(); ++i) {
     const ResultCamera& camera = result.cameras[i];
@@ -129,14 +125,14 @@ class LaunchSettings {
       continue;
     }
     settings.add(kArg, camera.prefix, launch_key::kDepthInfo, "default", url);
-    const double offset = detail::depth_parameter(result, camera, "_z_offset");
-    const double scaling = 1.0 + detail::depth_parameter(result, camera, "_z_scaling");
+    const double offset = depth_parameter(result, camera, "_z_offset");
+    const double scaling = 1.0 + depth_parameter(result, camera, "_z_scaling");
     settings.add(kParam, camera.prefix, launch_key::kDepthOffset, "value",
-                 detail::whole_millimetres(offset, result.values.name));
+                 whole_millimetres(offset, result.values.name));
     settings.add(kParam, camera.prefix, launch_key::kDepthScaling, "value",
                  number_to_yaml(scaling));
   }
   return settings.take();
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -21,7 +21,7 @@
 #include "kinecal/io/xml/xml_text.ipp"
 #include "kinecal/kinematics/nearest_name.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 enum class LaunchElement { param, arg };
 
@@ -197,4 +197,4 @@ class LaunchText : public XmlText {
   }
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -102,16 +102,16 @@ namespace detail {
 KINECAL_INLINE ResultFolder read_result_folder(const std::filesystem::path& folder) {
   const std::filesystem::path path = detail::values_file(folder);
   ResultFolder result;
-  result.values = {path.filename().string(), read_text_file(path)};
+  result.values = {path.filename().string(), detail::read_text_file(path)};
   result.date = detail::date_in_name(path.stem().string());
   if (result.date.empty()) result.date = detail::date_of_file(path);
   std::filesystem::path urdf_path;
-  const YamlNode values = detail::yaml_map(result.values.content, path.string());
+  const detail::YamlNode values = detail::yaml_map(result.values.content, path.string());
   for (std::size_t i = 0; i < values.keys.size(); ++i) {
-    const YamlNode& item = values.items[i];
-    if (!values.keys[i].is_scalar() || !config_text(item)) continue;
+    const detail::YamlNode& item = values.items[i];
+    if (!values.keys[i].is_scalar() || !detail::config_text(item)) continue;
     const std::string key = values.keys[i].text;
-    if (const auto value = config_number(item)) {
+    if (const auto value = detail::config_number(item)) {
       result.parameters[key] = *value;
     } else if (key == "urdf") {
       result.urdf = detail::named_file(folder, path.string(), item);

@@ -6,7 +6,7 @@
 #include "kinecal/io/messages/definition.hpp"
 #include "kinecal/io/messages/value.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// @param definition  must outlive the result
 /// @param data        must outlive the result
@@ -14,7 +14,7 @@ namespace kinecal {
 [[nodiscard]] MessageFields decode(const MessageDefinition& definition, Encoding encoding,
                                    Bytes data);
 
-}  // namespace kinecal
+}  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/io/messages/decode.ipp"

@@ -20,8 +20,7 @@
 #include "kinecal/io/messages/decode.hpp"
 #include "kinecal/linkage.hpp"
 
-namespace kinecal {
-namespace detail {
+namespace kinecal::detail {
 
 /// Numbers and texts in the form of ROS 1.
 class Ros1Wire {
@@ -161,14 +160,12 @@ class Decoder {
   std::size_t empty_ = 0, values_ = 0;
 };
 
-}  // namespace detail
-
 KINECAL_INLINE MessageFields decode(const MessageDefinition& definition, Encoding encoding,
                                     Bytes data) {
   if (encoding == Encoding::ros1) {
-    return detail::Decoder<detail::Ros1Wire>(definition, data).message();
+    return Decoder<Ros1Wire>(definition, data).message();
   }
-  return detail::Decoder<detail::CdrWire>(definition, data).message();
+  return Decoder<CdrWire>(definition, data).message();
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

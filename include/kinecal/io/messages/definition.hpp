@@ -20,7 +20,7 @@
 #include <string_view>
 #include <vector>
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The type of a field.  A time or duration of ROS 1 is a message.
 enum class FieldType : std::uint8_t {
@@ -73,7 +73,7 @@ inline constexpr std::size_t kMostOfADefinition = std::size_t{1} << 20;
 /// @throws DefinitionError  naming the line of the text or the missing type
 [[nodiscard]] MessageDefinition parse_definition(const std::string& type, std::string_view text);
 
-}  // namespace kinecal
+}  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/io/messages/definition.ipp"

@@ -22,8 +22,7 @@
 #include "kinecal/io/messages/definition.hpp"
 #include "kinecal/linkage.hpp"
 
-namespace kinecal {
-namespace detail {
+namespace kinecal::detail {
 
 /// The lines that define one type.
 struct DefinitionPart {
@@ -200,14 +199,12 @@ class DefinitionParser {
   std::vector<int> heights_;                  ///< of each type: levels of messages in it
 };
 
-}  // namespace detail
-
 KINECAL_INLINE MessageDefinition parse_definition(const std::string& type, std::string_view text) {
   if (text.size() > kMostOfADefinition) {
     throw DefinitionError(
         fmt::format("it has {} bytes; at most {} are read", text.size(), kMostOfADefinition));
   }
-  return detail::DefinitionParser(detail::definition_parts(type, text)).parse();
+  return DefinitionParser(definition_parts(type, text)).parse();
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -12,13 +12,13 @@
 #include "kinecal/io/messages/definition.hpp"
 #include "kinecal/io/messages/value.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// @throws BytesError  if a list or text is longer than the format allows
 [[nodiscard]] std::vector<std::byte> encode(const MessageFields& value,
                                             const MessageDefinition& definition, Encoding encoding);
 
-}  // namespace kinecal
+}  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/io/messages/encode.ipp"

@@ -17,8 +17,7 @@
 #include "kinecal/io/messages/encode.hpp"
 #include "kinecal/linkage.hpp"
 
-namespace kinecal {
-namespace detail {
+namespace kinecal::detail {
 
 /// Numbers and texts in the form of ROS 1, or in CDR, little endian.
 class WireWriter {
@@ -158,14 +157,12 @@ class Encoder {
   WireWriter wire_;
 };
 
-}  // namespace detail
-
 KINECAL_INLINE std::vector<std::byte> encode(const MessageFields& value,
                                              const MessageDefinition& definition,
                                              Encoding encoding) {
-  detail::Encoder encoder(definition, encoding);
+  Encoder encoder(definition, encoding);
   encoder.message(&value);
   return encoder.take();
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -7,7 +7,7 @@
 
 #include "kinecal/io/bags/bag.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// The .msg text of a message and of all types that it uses; empty if kinecal does not know it.
 /// @param type  "package/Type"
@@ -16,7 +16,7 @@ namespace kinecal {
 /// The checksum by which ROS 1 identifies a message; empty for those that kinecal does not write.
 [[nodiscard]] std::string known_md5(const std::string& type);
 
-}  // namespace kinecal
+}  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/io/messages/known_definitions.ipp"

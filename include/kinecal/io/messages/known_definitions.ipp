@@ -11,8 +11,7 @@
 #include "kinecal/io/messages/known_messages.ipp"
 #include "kinecal/linkage.hpp"
 
-namespace kinecal {
-namespace detail {
+namespace kinecal::detail {
 
 /// Adds the types that the fields of a message use, in the order of the fields.
 inline void add_dependencies(const std::string& fields, std::string_view owner,
@@ -28,25 +27,23 @@ inline void add_dependencies(const std::string& fields, std::string_view owner,
   }
 }
 
-}  // namespace detail
-
 KINECAL_INLINE std::string known_definition(const std::string& type, Encoding encoding) {
-  if (detail::known_message(type) == nullptr) return {};
+  if (known_message(type) == nullptr) return {};
   std::vector<std::string> all = {type};
   std::string text;
   for (std::size_t i = 0; i < all.size(); ++i) {  // grows
-    const detail::KnownMessage& known = *detail::known_message(all[i]);
-    const std::string fields = detail::known_fields(known, encoding);
+    const KnownMessage& known = *known_message(all[i]);
+    const std::string fields = known_fields(known, encoding);
     if (i > 0) text += "\n" + std::string(80, '=') + "\nMSG: " + all[i] + "\n";
     text += fields;
-    detail::add_dependencies(fields, known.type, all);
+    add_dependencies(fields, known.type, all);
   }
   return text;
 }
 
 KINECAL_INLINE std::string known_md5(const std::string& type) {
-  const detail::KnownMessage* known = detail::known_message(type);
+  const KnownMessage* known = known_message(type);
   return known == nullptr ? std::string() : std::string(known->md5);
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

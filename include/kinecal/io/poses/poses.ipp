@@ -89,20 +89,20 @@ KINECAL_INLINE bool is_poses_yaml(const std::string& path) {
 KINECAL_INLINE std::vector<CapturePose> read_poses_yaml(const std::string& path,
                                                         Diagnostics& diagnostics) {
   std::vector<CapturePose> poses;
-  const YamlNode content = load_config(path, diagnostics);
+  const detail::YamlNode content = detail::load_config(path, diagnostics);
   if (!content.is_list()) {
-    diagnostics.error({path, 0}, "the file is " + describe_config(content) +
+    diagnostics.error({path, 0}, "the file is " + detail::describe_config(content) +
                                      ", not a list of {joints: [], positions: [], features: []}");
     return poses;
   }
-  for (const YamlNode& element : content.items) {
+  for (const detail::YamlNode& element : content.items) {
     const SourceLocation place{path, element.line};
     const std::string subject = fmt::format("pose {}", poses.size() + 1);
     if (!element.is_map()) {
-      diagnostics.error(place, subject + " is " + describe_config(element) + ", not a map");
+      diagnostics.error(place, subject + " is " + detail::describe_config(element) + ", not a map");
       continue;
     }
-    ConfigMap map(element, place, subject, diagnostics);
+    detail::ConfigMap map(element, place, subject, diagnostics);
     poses.push_back(detail::read_pose(map));
   }
   return poses;
@@ -111,7 +111,8 @@ KINECAL_INLINE std::vector<CapturePose> read_poses_yaml(const std::string& path,
 KINECAL_INLINE void write_poses_yaml(std::ostream& out, const std::vector<CapturePose>& poses) {
   const auto names = [](const std::vector<std::string>& all) {
     std::string text;
-    for (const std::string& name : all) text += (text.empty() ? "" : ", ") + name_to_yaml(name);
+    for (const std::string& name : all)
+      text += (text.empty() ? "" : ", ") + detail::name_to_yaml(name);
     return text;
   };
   if (poses.empty()) out << "[]\n";

@@ -45,12 +45,12 @@ namespace detail {
 
 KINECAL_INLINE std::size_t convert_bag(const std::string& from, BagOutput& to, Clouds clouds,
                                        Diagnostics& diagnostics) {
-  MessageDecoder decoder(from, diagnostics);
+  detail::MessageDecoder decoder(from, diagnostics);
   std::set<std::string> left_out, refused;
   std::size_t written = 0;
   int number = 0;
   const auto wants = [&](const BagTopic& topic) {
-    const bool known = !known_definition(topic.type, to.encoding()).empty();
+    const bool known = !detail::known_definition(topic.type, to.encoding()).empty();
     const bool copied = topic.encoding == to.encoding() && !topic.definition.empty();
     if (!known && !copied) left_out.insert(topic.name);
     return known || copied;
@@ -90,7 +90,8 @@ KINECAL_INLINE void write_samples(BagOutput& to, const std::vector<Sample>& samp
   constexpr std::int64_t kSecond = 1'000'000'000;
   const BagTopic topic{"calibration_data", "robot_calibration_msgs/CalibrationData", {}, {}, {}};
   std::int64_t time = 0;
-  for (const Sample& sample : samples) to.write(topic, time += kSecond, sample_message(sample));
+  for (const Sample& sample : samples)
+    to.write(topic, time += kSecond, detail::sample_message(sample));
 }
 
 KINECAL_INLINE void write_urdf(BagOutput& to, const std::string& urdf) {

@@ -16,7 +16,7 @@
 #include "kinecal/io/messages/decode.hpp"
 #include "kinecal/io/messages/known_definitions.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Decodes messages and reports why it cannot: once for each definition, and for the first
 /// messages.
@@ -32,7 +32,7 @@ class MessageDecoder {
     const MessageDefinition* definition = definition_of(message.topic);
     if (definition == nullptr) return std::nullopt;
     try {
-      return kinecal::decode(*definition, message.topic.encoding, message.data);
+      return detail::decode(*definition, message.topic.encoding, message.data);
     } catch (const BytesError& e) {
       if (++errors_ <= kMostErrors) {
         diagnostics_.error({file_, 0},
@@ -79,4 +79,4 @@ class MessageDecoder {
       definitions_;
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -59,7 +59,7 @@ namespace detail {
 KINECAL_INLINE std::vector<CapturePose> read_bag_poses(const std::string& path,
                                                        Diagnostics& diagnostics) {
   std::vector<CapturePose> poses;
-  MessageDecoder decoder(path, diagnostics);
+  detail::MessageDecoder decoder(path, diagnostics);
   int number = 0;
   const auto wants = [](const BagTopic& topic) { return use_of(topic) == TopicUse::poses; };
   const auto handle = [&](const BagMessage& message) {

@@ -33,9 +33,9 @@ KINECAL_INLINE RecordingFormat recording_format(const std::string& path) {
   std::array<char, 16> first{};
   std::ifstream(path, std::ios::binary).read(first.data(), first.size());
   const Bytes bytes = std::as_bytes(std::span(first));
-  if (is_mcap(bytes)) return RecordingFormat::mcap;
-  if (is_sqlite(bytes)) return RecordingFormat::sqlite;
-  if (detail::begins_with(bytes, kZstdMagic)) return RecordingFormat::zstd;
+  if (detail::is_mcap(bytes)) return RecordingFormat::mcap;
+  if (detail::is_sqlite(bytes)) return RecordingFormat::sqlite;
+  if (detail::begins_with(bytes, detail::kZstdMagic)) return RecordingFormat::zstd;
   const bool is_ros1 = std::string_view(first.data(), first.size()).starts_with("#ROSBAG V");
   return is_ros1 ? RecordingFormat::ros1_bag : RecordingFormat::yaml;
 }

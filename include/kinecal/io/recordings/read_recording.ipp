@@ -21,7 +21,7 @@ KINECAL_INLINE Recording read_recording(const std::string& path, Diagnostics& di
   }
   Recording recording;
   const std::size_t errors_before = diagnostics.errors.size();
-  MessageDecoder decoder(path, diagnostics);
+  detail::MessageDecoder decoder(path, diagnostics);
   detail::MessageSamples samples(path);
   int number = 0;
   const auto handle = [&](const BagMessage& message) {

@@ -11,8 +11,7 @@
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
 
-namespace kinecal {
-namespace detail {
+namespace kinecal::detail {
 
 [[nodiscard]] inline MessageFields feature_message(const Feature& feature) {
   if (feature.rotation) {
@@ -47,11 +46,8 @@ namespace detail {
   return message;
 }
 
-}  // namespace detail
-
 /// @return  views of the sample, which must outlive it
 [[nodiscard]] inline MessageFields sample_message(const Sample& sample) {
-  using namespace detail;
   if (!sample.conditions.empty()) {
     throw OutputError("a message of samples cannot hold conditions; write YAML");
   }
@@ -63,4 +59,4 @@ namespace detail {
       }));
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

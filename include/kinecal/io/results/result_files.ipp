@@ -107,7 +107,7 @@ KINECAL_INLINE std::vector<OutputFile> result_files(
                          const std::string& file) {
     const bool first = references.find("\n" + kind + ":") == std::string::npos;
     const std::string key = first ? kind : camera + "_" + kind;
-    references += fmt::format("\n{}: {}", name_to_yaml(key), name_to_yaml(file));
+    references += fmt::format("\n{}: {}", detail::name_to_yaml(key), detail::name_to_yaml(file));
   };
   for (const detail::CalibratedCamera& camera :
        detail::calibrated_cameras(calibration, result.table, samples)) {

@@ -181,8 +181,8 @@ inline void check_patch(const UrdfText& source, const Robot& robot, const JointP
 KINECAL_INLINE std::string patch_urdf(const std::string& text, const std::string& name_for_messages,
                                       const Robot& robot, const std::vector<JointPatch>& patches,
                                       OffsetStyle style) {
-  const UrdfText source(text, name_for_messages);
-  std::vector<TextEdit> edits;
+  const detail::UrdfText source(text, name_for_messages);
+  std::vector<detail::TextEdit> edits;
   for (const auto& [name, change] : detail::urdf_joint_changes(source, robot, patches, style)) {
     const pugi::xml_node joint = source.joint(name);
     if (!joint) throw InputError(name_for_messages + ": no joint '" + name + "'");
@@ -190,7 +190,7 @@ KINECAL_INLINE std::string patch_urdf(const std::string& text, const std::string
     editor.move_origin(change.moved_by);
     editor.add_rising(change.rising);
   }
-  return apply_edits(text, std::move(edits));
+  return detail::apply_edits(text, std::move(edits));
 }
 
 }  // namespace kinecal

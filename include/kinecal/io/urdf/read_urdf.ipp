@@ -122,7 +122,7 @@ inline void check_urdf_joints(const UrdfText& source) {
 }  // namespace detail
 
 KINECAL_INLINE Robot parse_urdf(const std::string& text, const std::string& name_for_messages) {
-  const UrdfText source(text, name_for_messages);
+  const detail::UrdfText source(text, name_for_messages);
   detail::check_urdf_joints(source);
   const urdf::ModelInterfaceSharedPtr model = detail::parse_with_urdfdom(source);
   std::vector<Joint> joints;
@@ -134,7 +134,7 @@ KINECAL_INLINE Robot parse_urdf(const std::string& text, const std::string& name
 }
 
 KINECAL_INLINE std::string read_urdf_text(const std::string& path) {
-  return read_text_file(path);
+  return detail::read_text_file(path);
 }
 
 KINECAL_INLINE Robot read_urdf(const std::string& path) {

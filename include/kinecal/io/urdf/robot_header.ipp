@@ -17,7 +17,7 @@ namespace kinecal {
 KINECAL_INLINE std::string robot_header(const std::string& path, const std::string& name_space) {
   const std::string urdf = read_urdf_text(path);
   const Robot robot = parse_urdf(urdf, path);
-  const std::string space = detail::robot_namespace(UrdfText(urdf, path), name_space);
+  const std::string space = detail::robot_namespace(detail::UrdfText(urdf, path), name_space);
   std::string joints;
   for (const Joint* joint : detail::joints_parents_first(robot)) {
     joints += detail::joint_initializer(*joint);

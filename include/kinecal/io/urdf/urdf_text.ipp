@@ -14,7 +14,7 @@
 #include "kinecal/io/xml/xml_numbers.ipp"
 #include "kinecal/io/xml/xml_text.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 class UrdfText : public XmlText {
  public:
@@ -88,4 +88,4 @@ class UrdfText : public XmlText {
   }
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -15,7 +15,7 @@
 
 #include "kinecal/io/diagnostics.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 inline constexpr std::string_view kXmlSpace = " \t\r\n";
 
@@ -80,19 +80,14 @@ struct StartTag {
   }
 };
 
-namespace detail {
-
 /// @throws InputError  if a search found nothing: the text is not the one that was parsed
 [[nodiscard]] inline std::size_t found_in_tag(std::size_t position) {
   if (position == std::string_view::npos) throw InputError("the text ends inside an XML tag");
   return position;
 }
 
-}  // namespace detail
-
 /// The start tag at `begin`, where its '<' stands.
 [[nodiscard]] inline StartTag scan_start_tag(std::string_view text, std::size_t begin) {
-  using detail::found_in_tag;
   StartTag tag;
   tag.begin = begin;
   std::size_t at = tag.attributes_end = found_in_tag(text.find_first_of(" \t\r\n/>", begin));
@@ -113,7 +108,6 @@ namespace detail {
 
 /// Where the element that begins at `begin` ends: after its end tag.
 [[nodiscard]] inline std::size_t element_end(std::string_view text, std::size_t begin) {
-  using detail::found_in_tag;
   const auto behind = [&](std::string_view mark, std::size_t from) {
     return found_in_tag(text.find(mark, from)) + mark.size();
   };
@@ -153,4 +147,4 @@ namespace detail {
   return std::string(space);
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

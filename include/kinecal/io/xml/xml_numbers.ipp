@@ -18,7 +18,7 @@
 
 #include "kinecal/io/xml/xml_edit.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// A number and where in a text it stands.
 struct NumberToken {
@@ -43,8 +43,6 @@ struct NumberToken {
   }
   return tokens;
 }
-
-namespace detail {
 
 /// Shortest text that reads back as the same number; zero has no sign.
 [[nodiscard]] inline std::string xml_number(double value) {
@@ -91,6 +89,4 @@ struct XmlTagEditor {
   }
 };
 
-}  // namespace detail
-
-}  // namespace kinecal
+}  // namespace kinecal::detail

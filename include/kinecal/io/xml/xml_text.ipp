@@ -16,7 +16,7 @@
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/xml/xml_edit.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// What an XML file should be, such as "a URDF", and the name of its root, such as "robot".
 struct XmlKind {
@@ -73,4 +73,4 @@ class XmlText {
   pugi::xml_document document_;
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

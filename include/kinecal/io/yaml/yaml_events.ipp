@@ -18,7 +18,7 @@
 
 #include "kinecal/io/yaml/yaml_pieces.ipp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Receives the events of documents.  Keys and values of a map come in turns; what `map_starts` or
 /// `list_starts` began, `ends` ends.  Lines count from 1; a text is valid during the call only.
@@ -187,4 +187,4 @@ class YamlEvents {
   int depth_ = 0;
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

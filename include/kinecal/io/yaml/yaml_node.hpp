@@ -10,7 +10,7 @@
 
 #include "kinecal/linkage.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// A value of a YAML document, which owns all values below it.  An alias is a copy.
 struct YamlNode {
@@ -46,7 +46,7 @@ inline constexpr std::size_t kMostYamlBytes = std::size_t{1} << 27;
 ///                     than 500 deep, or the tree is larger than kMostYamlBytes
 [[nodiscard]] std::vector<YamlNode> parse_yaml(std::string_view text, const std::string& path);
 
-}  // namespace kinecal
+}  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/io/yaml/yaml_node.ipp"

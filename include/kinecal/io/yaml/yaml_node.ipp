@@ -19,9 +19,7 @@
 #include "kinecal/io/yaml/yaml_events.ipp"
 #include "kinecal/io/yaml/yaml_node.hpp"
 
-namespace kinecal {
-
-namespace detail {
+namespace kinecal::detail {
 
 /// A YamlHandler that builds the trees of all documents.
 class YamlTrees {
@@ -116,8 +114,6 @@ static_assert(YamlHandler<YamlTrees>);
                                 kMostYamlBytes >> 20));
 }
 
-}  // namespace detail
-
 KINECAL_INLINE const YamlNode* YamlNode::find(std::string_view key) const {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (keys[i].is_scalar() && keys[i].text == key) return &items[i];
@@ -128,15 +124,15 @@ KINECAL_INLINE const YamlNode* YamlNode::find(std::string_view key) const {
 KINECAL_INLINE std::string read_yaml_text(const std::string& path) {
   std::error_code unknown;  // of a pipe, for example
   const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
-  if (!unknown && bytes > kMostYamlBytes) throw detail::too_large(path, bytes);
+  if (!unknown && bytes > kMostYamlBytes) throw too_large(path, bytes);
   return read_text_file(path);
 }
 
 KINECAL_INLINE std::vector<YamlNode> parse_yaml(std::string_view text, const std::string& path) {
-  if (text.size() > kMostYamlBytes) throw detail::too_large(path, text.size());
+  if (text.size() > kMostYamlBytes) throw too_large(path, text.size());
   try {
     YamlEvents events(text);
-    detail::YamlTrees trees(events);
+    YamlTrees trees(events);
     while (events.next_document(trees)) {
     }
     return trees.take();
@@ -145,4 +141,4 @@ KINECAL_INLINE std::vector<YamlNode> parse_yaml(std::string_view text, const std
   }
 }
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

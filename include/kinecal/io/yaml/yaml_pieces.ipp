@@ -18,7 +18,7 @@
 #include <string_view>
 #include <utility>
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Text that is not YAML, with the line of the error, from 1.
 struct YamlError : std::runtime_error {
@@ -30,8 +30,6 @@ struct YamlPiece {
   std::string text;
   int line = 1;  ///< of its first character, in the file
 };
-
-namespace detail {
 
 /// True if the `---` at `at` is a marker and not the start of a word.
 [[nodiscard]] inline bool is_yaml_marker(std::string_view text, std::size_t at) {
@@ -63,8 +61,6 @@ namespace detail {
   }
   return std::string_view::npos;
 }
-
-}  // namespace detail
 
 /// Cuts a text after its first line `...`, which ends a stream of documents.
 /// @param rest  the text; keeps what follows the line
@@ -110,7 +106,7 @@ class YamlPieces {
       // Only part of a marker may have been read; the one that begins this piece does not end it.
       const std::size_t from = text.size() < 4 ? 0 : text.size() - 4;
       read(text);
-      cut = detail::last_yaml_start(text, from);
+      cut = last_yaml_start(text, from);
     }
     if (text.empty()) return std::nullopt;
     last_ = text.back();
@@ -140,4 +136,4 @@ class YamlPieces {
   char last_ = '\n';
 };
 
-}  // namespace kinecal
+}  // namespace kinecal::detail

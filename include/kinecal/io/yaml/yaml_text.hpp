@@ -19,6 +19,8 @@ namespace kinecal {
 /// decimal point (1.0, 1.0e-05); without it some YAML readers take it for an integer or a string.
 [[nodiscard]] std::string number_to_yaml(double value);
 
+namespace detail {
+
 /// "[1.0, 2.0]"
 [[nodiscard]] std::string numbers_to_yaml(std::span<const double> numbers);
 
@@ -37,6 +39,8 @@ namespace kinecal {
 /// A name (UTF-8): plain where every YAML reader takes it for this string, else in double quotes
 /// with escapes.
 [[nodiscard]] std::string name_to_yaml(std::string_view name);
+
+}  // namespace detail
 
 }  // namespace kinecal
 

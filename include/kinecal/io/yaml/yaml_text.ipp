@@ -76,6 +76,8 @@ KINECAL_INLINE std::string number_to_yaml(double value) {
   return text;
 }
 
+namespace detail {
+
 KINECAL_INLINE std::string numbers_to_yaml(std::span<const double> numbers) {
   std::string text = "[";
   for (const double number : numbers) {
@@ -108,14 +110,16 @@ KINECAL_INLINE std::string millimetres_from_metres(double metres) {
 
 KINECAL_INLINE std::string name_to_yaml(std::string_view name) {
   if (name.empty()) return "''";
-  if (detail::is_plain_yaml_word(name)) return std::string(name);
+  if (is_plain_yaml_word(name)) return std::string(name);
   std::string quoted = "\"";
   while (!name.empty()) {
-    const auto [size, escape] = detail::yaml_escape(name);
+    const auto [size, escape] = yaml_escape(name);
     quoted += size > 0 ? escape : std::string(1, name[0]);
     name.remove_prefix(size > 0 ? size : 1);
   }
   return quoted + '"';
 }
+
+}  // namespace detail
 
 }  // namespace kinecal

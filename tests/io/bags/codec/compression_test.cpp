@@ -16,6 +16,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 using ::testing::HasSubstr;
 
 constexpr std::size_t kMegabyte = 1 << 20;
@@ -117,7 +119,7 @@ TEST(Compression, ABombTakesNoMoreMemoryThanIsPlausible) {
   for (const Compression c : available()) {
     const auto packed = pack(zeros, c);
     std::vector<std::byte> out;
-    const std::uint64_t most = detail::most_unpacked(packed.size());
+    const std::uint64_t most = most_unpacked(packed.size());
     if (most >= zeros.size()) continue;  // lz4 does not pack that well
     EXPECT_EQ(mistake(packed, c, most, out),
               "does not unpack to " + std::to_string(most) + " bytes, but to more");
@@ -135,9 +137,9 @@ TEST(Compression, WhatIsClaimedIsNotReserved) {
 }
 
 TEST(Compression, PlausibleSizesAreBounded) {
-  EXPECT_EQ(detail::most_unpacked(0), std::uint64_t{1} << 25);
-  EXPECT_EQ(detail::most_unpacked(kMegabyte), 256 * kMegabyte);
-  EXPECT_EQ(detail::most_unpacked(~std::uint64_t{0}), detail::kMostOfABlock);
+  EXPECT_EQ(most_unpacked(0), std::uint64_t{1} << 25);
+  EXPECT_EQ(most_unpacked(kMegabyte), 256 * kMegabyte);
+  EXPECT_EQ(most_unpacked(~std::uint64_t{0}), kMostOfABlock);
 }
 
 TEST(Compression, ManySmallBombsAreOneLargeOne) {
@@ -150,9 +152,9 @@ TEST(Compression, ManySmallBombsAreOneLargeOne) {
 }
 
 TEST(Compression, PlausibleSizesOfAllBlocksAreBounded) {
-  EXPECT_EQ(detail::most_unpacked_in_all(0), detail::kMostOfABlock);
-  EXPECT_EQ(detail::most_unpacked_in_all(10 * detail::kMostOfABlock), 2560 * detail::kMostOfABlock);
-  EXPECT_GE(detail::most_unpacked_in_all(~std::uint64_t{0}), ~std::uint64_t{0} - 255);
+  EXPECT_EQ(most_unpacked_in_all(0), kMostOfABlock);
+  EXPECT_EQ(most_unpacked_in_all(10 * kMostOfABlock), 2560 * kMostOfABlock);
+  EXPECT_GE(most_unpacked_in_all(~std::uint64_t{0}), ~std::uint64_t{0} - 255);
 }
 
 TEST(Compression, BlocksThatAreNotCompressedAreNotCopied) {
@@ -181,13 +183,13 @@ TEST(Compression, NamesAreThoseOfBags) {
 }
 
 TEST(Compression, AMissingLibraryIsNamed) {
-  EXPECT_EQ(detail::not_available(Compression::lz4),
+  EXPECT_EQ(not_available(Compression::lz4),
             "is compressed with lz4, and this kinecal was built without liblz4; install liblz4-dev "
             "and build again");
   for (const Compression c : {Compression::bz2, Compression::lz4, Compression::zstd}) {
     if (is_available(c)) continue;
     std::vector<std::byte> out;
-    EXPECT_EQ(mistake(some_bytes(10), c, 10, out), detail::not_available(c));
+    EXPECT_EQ(mistake(some_bytes(10), c, 10, out), not_available(c));
     EXPECT_THROW((void)pack(out, c), std::invalid_argument);
   }
 }

@@ -16,8 +16,8 @@
 namespace kinecal {
 namespace {
 
-using detail::McapContent;
-using detail::McapOp;
+using namespace detail;
+
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -36,7 +36,7 @@ std::string bag_of(int messages, McapOptions options, std::size_t bytes = 10) {
   for (int i = 0; i < messages; ++i) {
     std::string data = "message " + std::to_string(i);
     data.resize(std::max(bytes, data.size()), '.');
-    writer.write(i % 2 == 0 ? joints : image, 1000 + i, detail::as_bytes(data));
+    writer.write(i % 2 == 0 ? joints : image, 1000 + i, as_bytes(data));
   }
   writer.close();
   return out.str();
@@ -207,7 +207,7 @@ TEST(Mcap, AnIndexOfMoreBytesThanIsPlausibleIsNotRead) {
 /// Where the summary begins, as the footer says; sets its sum to 0, "unknown".
 std::size_t start_of_summary(std::string& file) {
   for (std::size_t i = 9; i <= 12; ++i) file[file.size() - i] = '\0';
-  ByteReader footer(detail::as_bytes(std::string_view(file).substr(file.size() - 28)));
+  ByteReader footer(as_bytes(std::string_view(file).substr(file.size() - 28)));
   return footer.number<std::uint64_t>();
 }
 
@@ -238,7 +238,7 @@ TEST(Mcap, DefinitionsHaveNoMoreBytesThanArePlausible) {
 TEST(Mcap, AnIndexWithoutSchemasOrChannelsLosesNoMessage) {
   for (const McapOp left_out : {McapOp::schema, McapOp::channel, McapOp::statistics}) {
     std::string file = bag_of(8, {Compression::none, 1, true});
-    ByteReader summary(detail::as_bytes(file));
+    ByteReader summary(as_bytes(file));
     summary.skip(start_of_summary(file));
     while (summary.left() > 28) {
       const std::size_t at = summary.read();
@@ -322,7 +322,7 @@ TEST(Mcap, SchemasHaveTypesAndTexts) {
 /// As in ROS 2's compression mode MESSAGE.
 TEST(Mcap, MessagesThatAreCompressedOneByOneAreUnpacked) {
   const auto packed_as = [](const std::string& text) {
-    const auto bytes = pack(detail::as_bytes(text), Compression::zstd);
+    const auto bytes = pack(as_bytes(text), Compression::zstd);
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   };
   const std::string channels = channel(1, 0, "/said", "cdr") + channel(2, 0, "/ros1", "ros1");

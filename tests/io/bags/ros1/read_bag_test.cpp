@@ -78,7 +78,7 @@ std::string without_index(std::string bag) {
 /// Where chunks and the indices after them end, and how many messages stand before that.
 std::vector<std::pair<std::size_t, std::size_t>> ends_of_chunks(const std::string& bag) {
   std::vector<std::pair<std::size_t, std::size_t>> ends;
-  ByteReader reader(std::as_bytes(std::span(bag)));
+  detail::ByteReader reader(std::as_bytes(std::span(bag)));
   reader.skip(13);
   std::size_t end = 0, count = 0;
   while (!reader.at_end()) {
@@ -253,10 +253,10 @@ TEST(Ros1Bag, WhatTheUsersFunctionsThrowPassesThrough) {
   const auto read = [](bool wants) {
     std::istringstream in(bag_of(some_messages(3)));
     Diagnostics diagnostics;
-    const auto fail = [] { throw BytesError("mine"); };
+    const auto fail = [] { throw detail::BytesError("mine"); };
     const BagReader reader{[&](const BagTopic&) { return wants || (fail(), true); },
                            [&](const BagMessage&) { fail(); }};
-    EXPECT_THROW(read_ros1_bag(in, "a.bag", reader, diagnostics), BytesError);
+    EXPECT_THROW(read_ros1_bag(in, "a.bag", reader, diagnostics), detail::BytesError);
     EXPECT_THAT(diagnostics.errors, IsEmpty());
   };
   read(true);
@@ -351,7 +351,7 @@ TEST(Ros1Bag, DefinitionsHaveNoMoreBytesThanArePlausible) {
 TEST(Ros1Bag, ABombIsAnError) {
   for (const Compression c : compressions_of_ros1()) {
     if (c == Compression::none) continue;
-    const std::vector<std::byte> packed = pack(std::vector<std::byte>(48 << 20), c);
+    const std::vector<std::byte> packed = detail::pack(std::vector<std::byte>(48 << 20), c);
     const std::string data(reinterpret_cast<const char*>(packed.data()), packed.size());
     for (const std::uint32_t size : {1000U, 1U << 25, 0xffffffffU}) {
       const BagContents read = read_bag(open_bag(chunk(std::string(to_string(c)), size, data)));

@@ -22,6 +22,8 @@
 namespace kinecal {
 namespace {
 
+using namespace detail;
+
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -49,7 +51,7 @@ class Ros2Bag : public test::FolderTest {
     std::ofstream out(bag_ / name, std::ios::binary);
     McapWriter writer(out);
     const auto topic = writer.add_topic({"said", "std_msgs/String", "", Encoding::cdr});
-    writer.write(topic, 1, detail::as_bytes(data));
+    writer.write(topic, 1, as_bytes(data));
     writer.close();
   }
 
@@ -126,7 +128,7 @@ class CompressedRos2Bag : public Ros2Bag {
   }
 
   [[nodiscard]] static std::string packed(const std::string& bytes) {
-    const auto all = pack(detail::as_bytes(bytes), Compression::zstd);
+    const auto all = pack(as_bytes(bytes), Compression::zstd);
     return {reinterpret_cast<const char*>(all.data()), all.size()};
   }
   /// "name.zstd" in place of "name"
@@ -251,23 +253,22 @@ TEST_F(Ros2Bag, FilesMayBeOfTwoKinds) {
 #endif
 
 TEST(Ros2Formats, AreKnownByTheirFirstBytes) {
-  EXPECT_TRUE(is_mcap(detail::as_bytes(kMcapMagic)));
-  EXPECT_FALSE(is_mcap(detail::as_bytes(kMcapMagic.substr(0, 7))));
-  EXPECT_TRUE(is_sqlite(detail::as_bytes(kSqliteMagic)));
-  EXPECT_FALSE(is_sqlite(detail::as_bytes("SQLite format 2")));
+  EXPECT_TRUE(is_mcap(as_bytes(kMcapMagic)));
+  EXPECT_FALSE(is_mcap(as_bytes(kMcapMagic.substr(0, 7))));
+  EXPECT_TRUE(is_sqlite(as_bytes(kSqliteMagic)));
+  EXPECT_FALSE(is_sqlite(as_bytes("SQLite format 2")));
   EXPECT_FALSE(is_sqlite({}));
 }
 
 TEST(Ros2Formats, TypesAreCalledAsInRos1) {
   EXPECT_EQ(plain_type("sensor_msgs/msg/JointState"), "sensor_msgs/JointState");
   EXPECT_EQ(plain_type("sensor_msgs/JointState"), "sensor_msgs/JointState");
-  EXPECT_EQ(detail::ros2_type("sensor_msgs/JointState"), "sensor_msgs/msg/JointState");
-  EXPECT_EQ(detail::ros2_type("sensor_msgs/msg/JointState"), "sensor_msgs/msg/JointState");
-  EXPECT_EQ(detail::ros2_type("plain"), "plain");
+  EXPECT_EQ(ros2_type("sensor_msgs/JointState"), "sensor_msgs/msg/JointState");
+  EXPECT_EQ(ros2_type("sensor_msgs/msg/JointState"), "sensor_msgs/msg/JointState");
+  EXPECT_EQ(ros2_type("plain"), "plain");
 }
 
 TEST(NaturallyBefore, CountsAsPeopleDo) {
-  using detail::naturally_before;
   const std::vector<std::string> sorted{"", "a", "a2", "a02", "a10", "a10b", "a10c", "b1"};
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     for (std::size_t k = 0; k < sorted.size(); ++k) {

@@ -65,7 +65,7 @@ TEST_F(Db3, AFileThatIsNotADatabaseIsAnError) {
 #ifndef KINECAL_HAVE_SQLITE
 
 TEST_F(Db3, SaysWhatToInstall) {
-  write(std::string(kSqliteMagic));
+  write(std::string(detail::kSqliteMagic));
   EXPECT_THAT(read().errors, ElementsAre(HasSubstr("install libsqlite3-dev and build again")));
 }
 
@@ -232,7 +232,8 @@ TEST_F(Db3, AComputedColumnIsNotAccepted) {
 TEST_F(Db3, MessagesThatAreCompressedOneByOneAreUnpacked) {
   if (!is_available(Compression::zstd)) GTEST_SKIP() << "built without zstd";
   std::string hex;
-  for (const std::byte byte : pack(std::as_bytes(std::span("hello", 5)), Compression::zstd)) {
+  for (const std::byte byte :
+       detail::pack(std::as_bytes(std::span("hello", 5)), Compression::zstd)) {
     hex += fmt::format("{:02x}", std::to_integer<int>(byte));
   }
   run(path_, kOldTables + kTopics +
@@ -271,16 +272,16 @@ TEST_F(Db3, WhatHasNoEndIsInterrupted) {
                           "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT "
                           "count(*) FROM n");
   EXPECT_THAT([&] { (void)rows.next(); },
-              ThrowsMessage<BytesError>(HasSubstr("more rows than its size allows")));
+              ThrowsMessage<detail::BytesError>(HasSubstr("more rows than its size allows")));
 }
 
 TEST_F(Db3, WhatTheReaderThrowsIsNotCaught) {
   run(path_, kOldTables + kTopics + kMessages);
   BagReader reader;
   reader.wants = [](const BagTopic&) { return true; };
-  reader.handle = [](const BagMessage&) { throw BytesError("mine"); };
+  reader.handle = [](const BagMessage&) { throw detail::BytesError("mine"); };
   Diagnostics diagnostics;
-  EXPECT_THROW(read_db3(path_.string(), reader, diagnostics), BytesError);
+  EXPECT_THROW(read_db3(path_.string(), reader, diagnostics), detail::BytesError);
 }
 
 #endif

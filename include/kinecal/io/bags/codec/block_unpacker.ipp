@@ -13,7 +13,7 @@
 #include "kinecal/io/bags/codec/unpack.ipp"
 #include "kinecal/io/bags/formats.hpp"
 
-namespace kinecal {
+namespace kinecal::detail {
 
 /// Unpacks the blocks of a bag, one after the other.  Many small bombs do as much harm as a large
 /// one, so what comes out of all blocks together is bounded by what went in.
@@ -24,14 +24,14 @@ class BlockUnpacker {
   [[nodiscard]] Bytes operator()(Bytes packed, Compression compression,
                                  std::optional<std::uint64_t> size) {
     if (compression == Compression::none) {
-      detail::check_size(packed, size);
+      check_size(packed, size);
       return packed;
     }
     unpack(packed, compression, size, unpacked_);
     read_ += packed.size();
     written_ += unpacked_.size();
-    if (written_ <= detail::most_unpacked_in_all(read_)) return unpacked_;
-    throw BytesError("unpacks, with those before it, from " + detail::byte_count(read_) + " to " +
+    if (written_ <= most_unpacked_in_all(read_)) return unpacked_;
+    throw BytesError("unpacks, with those before it, from " + byte_count(read_) + " to " +
                      std::to_string(written_) + ", which is not plausible");
   }
 
@@ -39,8 +39,6 @@ class BlockUnpacker {
   std::vector<std::byte> unpacked_;
   std::uint64_t read_ = 0, written_ = 0;
 };
-
-namespace detail {
 
 /// In its compression mode MESSAGE, ROS 2 compresses each message with zstd.  Such messages are
 /// recognized by their first bytes, since CDR begins with a zero.
@@ -61,6 +59,4 @@ class MessageUnpacker {
   BlockUnpacker unpack_;
 };
 
-}  // namespace detail
-
-}  // namespace kinecal
+}  // namespace kinecal::detail

@@ -22,11 +22,13 @@ enum class Compression { none, bz2, lz4, zstd };
 /// The name of a compression in bags: "none", "bz2", "lz4" or "zstd".
 [[nodiscard]] std::string_view to_string(Compression compression);
 
-/// The compression with this name in bags; "", as in MCAP, stands for Compression::none.
-[[nodiscard]] std::optional<Compression> compression_named(std::string_view text);
-
 /// Whether this kinecal was built with the library that it needs.
 [[nodiscard]] bool is_available(Compression compression);
+
+namespace detail {
+
+/// The compression with this name in bags; "", as in MCAP, stands for Compression::none.
+[[nodiscard]] std::optional<Compression> compression_named(std::string_view text);
 
 /// @param size  bytes that must come out, if the bag says how many
 /// @param out   holds them, and nothing else; its memory is used again
@@ -37,8 +39,6 @@ void unpack(Bytes packed, Compression compression, std::optional<std::uint64_t> 
 
 /// @throws std::invalid_argument  if this kinecal was built without the library
 [[nodiscard]] std::vector<std::byte> pack(Bytes bytes, Compression compression);
-
-namespace detail {
 
 /// "is compressed with lz4, and ...": a predicate without its subject.
 [[nodiscard]] std::string not_available(Compression compression);

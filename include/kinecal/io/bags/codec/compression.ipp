@@ -33,14 +33,6 @@ KINECAL_INLINE std::string_view to_string(Compression compression) {
   return "none";
 }
 
-KINECAL_INLINE std::optional<Compression> compression_named(std::string_view text) {
-  using enum Compression;
-  for (const Compression c : {none, bz2, lz4, zstd}) {
-    if (text == to_string(c)) return c;
-  }
-  return text.empty() ? std::optional(none) : std::nullopt;
-}
-
 KINECAL_INLINE bool is_available(Compression compression) {
   switch (compression) {
     case Compression::bz2:
@@ -55,34 +47,44 @@ KINECAL_INLINE bool is_available(Compression compression) {
   return true;
 }
 
+namespace detail {
+
+KINECAL_INLINE std::optional<Compression> compression_named(std::string_view text) {
+  using enum Compression;
+  for (const Compression c : {none, bz2, lz4, zstd}) {
+    if (text == to_string(c)) return c;
+  }
+  return text.empty() ? std::optional(none) : std::nullopt;
+}
+
 KINECAL_INLINE void unpack([[maybe_unused]] Bytes packed, Compression compression,
                            [[maybe_unused]] std::optional<std::uint64_t> size,
                            [[maybe_unused]] std::vector<std::byte>& out) {
   switch (compression) {
 #ifdef KINECAL_HAVE_BZ2
     case Compression::bz2: {
-      detail::UnpackBz2 unpacker;
-      return detail::unpack_with(unpacker, packed, size, out);
+      UnpackBz2 unpacker;
+      return unpack_with(unpacker, packed, size, out);
     }
 #endif
 #ifdef KINECAL_HAVE_LZ4
     case Compression::lz4: {
-      detail::UnpackLz4 unpacker;
-      return detail::unpack_with(unpacker, packed, size, out);
+      UnpackLz4 unpacker;
+      return unpack_with(unpacker, packed, size, out);
     }
 #endif
 #ifdef KINECAL_HAVE_ZSTD
     case Compression::zstd: {
-      detail::UnpackZstd unpacker(packed.size());
-      return detail::unpack_with(unpacker, packed, size, out);
+      UnpackZstd unpacker(packed.size());
+      return unpack_with(unpacker, packed, size, out);
     }
 #endif
     case Compression::none:
-      detail::check_size(packed, size);
+      check_size(packed, size);
       out.assign(packed.begin(), packed.end());
       return;
     default:
-      throw BytesError(detail::not_available(compression));
+      throw BytesError(not_available(compression));
   }
 }
 
@@ -90,24 +92,22 @@ KINECAL_INLINE std::vector<std::byte> pack(Bytes bytes, Compression compression)
   switch (compression) {
 #ifdef KINECAL_HAVE_BZ2
     case Compression::bz2:
-      return detail::pack_bz2(bytes);
+      return pack_bz2(bytes);
 #endif
 #ifdef KINECAL_HAVE_LZ4
     case Compression::lz4:
-      return detail::pack_lz4(bytes);
+      return pack_lz4(bytes);
 #endif
 #ifdef KINECAL_HAVE_ZSTD
     case Compression::zstd:
-      return detail::pack_zstd(bytes);
+      return pack_zstd(bytes);
 #endif
     case Compression::none:
       return {bytes.begin(), bytes.end()};
     default:
-      throw std::invalid_argument("what is to be packed " + detail::not_available(compression));
+      throw std::invalid_argument("what is to be packed " + not_available(compression));
   }
 }
-
-namespace detail {
 
 KINECAL_INLINE std::string not_available(Compression compression) {
   const std::string library = "lib" + std::string(to_string(compression));

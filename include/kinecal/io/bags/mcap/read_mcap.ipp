@@ -16,7 +16,7 @@ namespace kinecal {
 
 KINECAL_INLINE void read_mcap(std::istream& in, const std::string& name, const BagReader& reader,
                               Diagnostics& diagnostics) {
-  std::optional<ByteFile> file;
+  std::optional<detail::ByteFile> file;
   std::optional<detail::McapMessages> messages;
   const auto advance = [&]() -> std::optional<BagMessage> {
     try {
@@ -25,7 +25,7 @@ KINECAL_INLINE void read_mcap(std::istream& in, const std::string& name, const B
         messages.emplace(*file, reader, SourceLocation{name, 0}, diagnostics);
       }
       return messages->next();
-    } catch (const BytesError& e) {
+    } catch (const detail::BytesError& e) {
       diagnostics.error({name, 0}, e.what());
       return std::nullopt;
     }
@@ -38,8 +38,8 @@ KINECAL_INLINE void read_mcap(const std::string& path, const std::string& name,
                               const BagReader& reader, Diagnostics& diagnostics) {
   std::ifstream in;
   try {
-    in = open_bytes(path);
-  } catch (const BytesError& e) {
+    in = detail::open_bytes(path);
+  } catch (const detail::BytesError& e) {
     diagnostics.error({name, 0}, e.what());
     return;
   }

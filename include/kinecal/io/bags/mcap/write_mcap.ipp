@@ -165,7 +165,7 @@ class McapFile {
   /// The records compressed; empty if they are written as they are.
   [[nodiscard]] std::string pack(const std::string& records) const {
     if (options_.compression == Compression::none) return {};
-    const std::vector<std::byte> packed = kinecal::pack(as_bytes(records), options_.compression);
+    const std::vector<std::byte> packed = detail::pack(as_bytes(records), options_.compression);
     return {reinterpret_cast<const char*>(packed.data()), packed.size()};
   }
 

@@ -235,7 +235,7 @@ KINECAL_INLINE void read_ros1_bag(std::istream& in, const std::string& name,
                                   const BagReader& reader, Diagnostics& diagnostics) {
   try {
     detail::Ros1BagReading(in, name, reader, diagnostics).read();
-  } catch (const BytesError& e) {
+  } catch (const detail::BytesError& e) {
     diagnostics.error({name, 0}, e.what());
   } catch (const detail::PassedOn& passed_on) {
     std::rethrow_exception(passed_on.thrown);
@@ -246,8 +246,8 @@ KINECAL_INLINE void read_ros1_bag(const std::string& path, const BagReader& read
                                   Diagnostics& diagnostics) {
   std::ifstream in;
   try {
-    in = open_bytes(path);
-  } catch (const BytesError& e) {
+    in = detail::open_bytes(path);
+  } catch (const detail::BytesError& e) {
     return diagnostics.error({path, 0}, e.what());
   }
   read_ros1_bag(in, path, reader, diagnostics);

@@ -53,7 +53,7 @@ KINECAL_INLINE void read_db3(const std::string& path, const std::string& name,
                              [[maybe_unused]] const BagReader& reader, Diagnostics& diagnostics) {
   try {
     detail::check_is_sqlite(path);
-  } catch (const BytesError& e) {
+  } catch (const detail::BytesError& e) {
     diagnostics.error({name, 0}, e.what());
     return;
   }
