@@ -3,7 +3,6 @@
 // One end of the bar turns in a socket on the table; the gripper holds the other end.  So the tip is
 // on a sphere, and joint positions are all that is recorded.  Socket and length are known to a
 // centimetre only: they are free, too.  You write the struct BallBar; the library differentiates it.
-// Its unit test, with kinecal/testing.hpp:  EXPECT_EQ(check_block(BallBar{}), kLawsHold);
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 

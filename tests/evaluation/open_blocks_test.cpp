@@ -94,6 +94,10 @@ TEST(OpenBlocks, PixelsWithACondition) {
   check_block(test::WarmPixel{}, {"camera", "eye"});
 }
 
+TEST(OpenBlocks, PlanesWithAParameterAndACondition) {
+  check_block(test::WarmGap{}, {"camera", "elbow_point"});
+}
+
 /// The number of a line of sight's pixels by which it misses a point, at the truth.
 TEST(OpenBlocks, RaysToOnePointMeet) {
   Problem problem = test::open_problem<Packet>(RayToRay{}, {"eye", "left"});

@@ -89,6 +89,21 @@ struct WarmPixel {
   }
 };
 
+/// Two parallel walls whose distance grows with the temperature; the same on either side.
+struct WarmGap {
+  static constexpr std::array kParameters = {ParameterInfo{"gap", "m", 0.4}};
+  static constexpr std::array<std::string_view, 1> kConditions = {"temperature"};
+
+  template <class S, class Q>
+  [[nodiscard]] Eigen::Matrix<S, 1, 1> operator()(const Plane<S>& a, const Plane<S>& b,
+                                                  const std::array<S, 1>& own,
+                                                  const std::array<Q, 1>& conditions) const {
+    const Vector3<S> between = a.centroid - b.centroid;
+    const S distance = b.normal.dot(between), gap = own[0] * (1.0 + 0.01 * conditions[0]);
+    return Eigen::Matrix<S, 1, 1>(distance * distance - gap * gap);
+  }
+};
+
 /// The parameters of the scene, of its further sensors and of a block named "block".
 template <ErrorBlock B>
 ParameterTable open_table(const B& block) {

@@ -125,8 +125,14 @@ OracleResiduals oracle_residual(const B& block, const std::string& name,
 template <ErrorBlock B>
 OracleResiduals oracle_residuals(const B& block, const std::string& name,
                                  const std::vector<const OracleView*>& views) {
-  if constexpr (PlanePairBlock<B>) {
+  if constexpr (std::same_as<B, PlaneToPlane>) {
     return oracle_residual(block, views[0]->plane(), views[1]->plane());
+  } else if constexpr (PlanePairBlock<B>) {
+    const auto a = views[0]->plane(), b = views[1]->plane();
+    const auto r = detail::call_block<B, OracleJet>(
+        block, oracle_own<B>(name, views), oracle_conditions<B>(*views[0]),
+        Plane<OracleJet>{a.centroid, a.normal}, Plane<OracleJet>{b.centroid, b.normal});
+    return {r.data(), r.data() + r.size()};
   } else {
     OracleResiduals all;
     for (std::size_t i = 0; i < views[0]->there.size(); ++i) {

@@ -23,8 +23,6 @@ template <PlanePairBlock B, class S>
 class PlaneLane {
  public:
   static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
-  static_assert(kTakesFeaturesOnly<B>,
-                "kinecal: a block of planes has no own parameters and takes no conditions");
   using Rows = FeatureRows<double, kSize, 2>;
 
   PlaneLane(const B& block, const TermViews<S>& views, int lane) : views_(views), lane_(lane) {
@@ -42,7 +40,12 @@ class PlaneLane {
       planes[s] = {point_jets<J>(fit.plane().centroid, first),
                    point_jets<J>(fit.plane().normal, first + 3)};
     }
-    residual_ = block(planes[0], planes[1]);
+    ConditionsOf<B, double> conditions{};
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      conditions[i] = kinecal::lane(views.numbers.conditions[i], lane);
+    }
+    const OwnOf<B, J> own = own_jets<kOwn, J, LaneOf<S>>(views.own->values, 12);
+    residual_ = call_block<B, J>(block, own, conditions, planes[0], planes[1]);
     empty_ = false;
   }
 
@@ -74,11 +77,16 @@ class PlaneLane {
         }
       }
     }
+    std::size_t column = views_[0].own().free.size() + views_[1].own().free.size();
+    for (const int k : views_.own->free) {
+      rows.by_own[column++] = derivatives_by<1>(residual_, 12 + k);
+    }
     return rows;
   }
 
  private:
-  using J = Jet<double, 12>;
+  static constexpr std::size_t kOwn = kParametersOfBlock<B>;
+  using J = Jet<double, 12 + static_cast<int>(kOwn)>;
 
   const TermViews<S>& views_;
   int lane_;
