@@ -110,14 +110,14 @@ class MountedSensor {
     const auto has_one = [](const Feature& feature) { return feature.sigma.has_value(); };
     if (std::none_of(features.begin(), features.end(), has_one)) return;
     for (std::size_t i = 0; i < features.size(); ++i) {
-      const double sigma = features[i].sigma.value_or(0.0);
-      if (features[i].sigma && !(sigma > 0.0 && std::isfinite(sigma))) {
+      const double sigma = features[i].sigma.value_or(0.0), variance = sigma * sigma;
+      if (features[i].sigma && !(sigma > 0.0 && std::isnormal(variance))) {
         std::ostringstream message;
         message << "sensor '" << mount_.name << "': the sigma of feature " << i + 1
                 << " must be positive and finite, is " << sigma;
         throw SampleError(message.str());
       }
-      all.variance.push_back(sigma * sigma);
+      all.variance.push_back(variance);
     }
   }
 
