@@ -5,6 +5,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/geometry/packet.hpp"
 #include "kinecal/geometry/rotation.hpp"
 
 namespace kinecal {
@@ -58,10 +59,14 @@ struct Pose {
   }
 };
 
-/// to = from, number by number.  Compilers keep the numbers in registers, where a copy of the whole
-/// goes through memory.
+/// to = from.  Packets are copied number by number: compilers keep them in registers, where a copy of
+/// the whole goes through memory.
 template <class S>
 void copy_numbers(const Pose<S>& from, Pose<S>& to) {
+  if constexpr (kLanes<S> == 1) {
+    to = from;
+    return;
+  }
   for (int r = 0; r < 3; ++r) {
     to.rotation(r, 0) = from.rotation(r, 0);
     to.rotation(r, 1) = from.rotation(r, 1);
