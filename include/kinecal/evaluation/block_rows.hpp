@@ -92,10 +92,10 @@ class BlockRows {
   static constexpr auto kInputs = kQuantities<B>;
 
   [[nodiscard]] static std::array<S, kOwn> own_values(const Views& views) {
-    return detail::own_constants<kOwn, S>(views.own->values);
+    return own_constants<kOwn, S>(views.own->values);
   }
-  [[nodiscard]] static detail::ConditionsOf<B, S> conditions(const Views& views) {
-    detail::ConditionsOf<B, S> all;
+  [[nodiscard]] static ConditionsOf<B, S> conditions(const Views& views) {
+    ConditionsOf<B, S> all;
     std::copy_n(views.numbers.conditions, all.size(), all.begin());
     return all;
   }
@@ -110,7 +110,7 @@ class BlockRows {
   }
 
   template <std::size_t I>
-  using Vectors = detail::VectorsOf<kInputs[I]>;
+  using Vectors = VectorsOf<kInputs[I]>;
   /// The first variable of each sensor, then of the block's own parameters; then their number.
   static constexpr std::array<int, kBodies + 2> kFirst = [] {
     std::array<int, kBodies + 2> first{};
@@ -129,16 +129,16 @@ class BlockRows {
 
   [[nodiscard]] static auto call(const B& block, const Values& values, const Views& views) {
     return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return detail::call_block<B, S>(block, own_values(views), conditions(views),
-                                      Vectors<I>::template plain<S>(values[I])...);
+      return call_block<B, S>(block, own_values(views), conditions(views),
+                              Vectors<I>::template plain<S>(values[I])...);
     }
     (std::make_index_sequence<kBodies>{});
   }
   [[nodiscard]] static auto call_jets(const B& block, const Values& values, const Views& views) {
     return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return detail::call_block<B, J>(
-          block, detail::own_jets<kOwn, J, S>(views.own->values, kFirst[kBodies]),
-          conditions(views), Vectors<I>::template jets<J, S>(values[I], kFirst[I])...);
+      return call_block<B, J>(block, own_jets<kOwn, J, S>(views.own->values, kFirst[kBodies]),
+                              conditions(views),
+                              Vectors<I>::template jets<J, S>(values[I], kFirst[I])...);
     }
     (std::make_index_sequence<kBodies>{});
   }
@@ -212,8 +212,7 @@ class BlockRows {
     constexpr int kFrom =
         kFirst[I] + (kInput == Quantity::ray || kInput == Quantity::reading ? 3 : 0);
     constexpr int kCount = kInput == Quantity::pose ? 6 : kInput == Quantity::reading ? 1 : 3;
-    auto step =
-        detail::shortest_step<S, kSize, kCount>(values_of(r), derivatives_by<kCount>(r, kFrom));
+    auto step = shortest_step<S, kSize, kCount>(values_of(r), derivatives_by<kCount>(r, kFrom));
     const S zero = (step - step).sum();  // NaN where the residual does not depend on it
     for (int k = 0; k < kCount; ++k) step(k) = select(zero == S(0.0), step(k), S(0.0));
     if constexpr (kInput == Quantity::reading) {
@@ -224,7 +223,7 @@ class BlockRows {
         const Matrix3<double> rotation =
             exp(Vector3<double>(lane(step(3), i), lane(step(4), i), lane(step(5), i)));
         for (std::size_t c = 1; c < 4; ++c) {
-          const Vector3<double> turned = rotation * detail::lane_of(moved[c], i);
+          const Vector3<double> turned = rotation * lane_of(moved[c], i);
           for (int k = 0; k < 3; ++k) set_lane(moved[c](k), i, turned(k));
         }
       }
@@ -246,14 +245,14 @@ class BlockRows {
     camera.code().predict(camera.observation(), p_camera, camera.own().values, camera.own().free,
                           kDerivatives, pixel);
     if constexpr (!kDerivatives) {
-      rows.residual = detail::call_block<B, S>(block, own_values(views), conditions(views),
-                                               PixelObservation<S>{pixel.value, observed});
+      rows.residual = call_block<B, S>(block, own_values(views), conditions(views),
+                                       PixelObservation<S>{pixel.value, observed});
     } else {
       using PixelJet = Jet<S, 2 + static_cast<int>(kOwn)>;
       const Eigen::Matrix<PixelJet, 2, 1> predicted(PixelJet(pixel.value(0), 0),
                                                     PixelJet(pixel.value(1), 1));
-      const auto r = detail::call_block<B, PixelJet>(
-          block, detail::own_jets<kOwn, PixelJet, S>(views.own->values, 2), conditions(views),
+      const auto r = call_block<B, PixelJet>(
+          block, own_jets<kOwn, PixelJet, S>(views.own->values, 2), conditions(views),
           PixelObservation<PixelJet>{predicted, observed});
       rows.residual = values_of(r);
       const Eigen::Matrix<S, kSize, 2> by_pixel = derivatives_by<2>(r, 0);

@@ -54,8 +54,7 @@ class BlockTerm : public Term<S> {
   using Twists = std::array<BodyTwists<S>, kBodies>;      ///< of the columns of each sensor
 
   /// Whether the residual may be the difference of two points, which is summed faster.
-  static constexpr bool kMayBeDifference =
-      PointPairBlock<B> && kSize == 3 && detail::kTakesFeaturesOnly<B>;
+  static constexpr bool kMayBeDifference = PointPairBlock<B> && kSize == 3 && kTakesFeaturesOnly<B>;
   using Rows = typename Block::Rows;
 
   /// Adds the features of a run by their moments.

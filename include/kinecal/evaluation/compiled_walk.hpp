@@ -77,9 +77,9 @@ template <class S, StaticChain C, class F>
   const std::string_view tip = C::kVirtual.empty() ? C::kTip : C::kVirtual;
   return {std::string(tip),
           {columns.begin(), columns.end()},
-          detail::WalkOf<S, C, F>::kModels,
-          &detail::WalkOf<S, C, F>::pose_only,
-          &detail::WalkOf<S, C, F>::with_twists};
+          WalkOf<S, C, F>::kModels,
+          &WalkOf<S, C, F>::pose_only,
+          &WalkOf<S, C, F>::with_twists};
 }
 
 }  // namespace kinecal::detail

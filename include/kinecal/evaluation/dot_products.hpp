@@ -94,14 +94,14 @@ KINECAL_FLATTEN void multiply(PacketRows<S> rows, std::size_t count, const Packe
 template <std::size_t D, class S>
 void add_products(const PacketRows<S>& rows, std::size_t count, const PacketRows<S>& columns,
                   std::size_t first, S* sums, std::size_t stride) {
-  detail::multiply<true, D, 1>(rows, count, columns, first + 1, sums + first * stride, stride);
+  multiply<true, D, 1>(rows, count, columns, first + 1, sums + first * stride, stride);
 }
 
 /// Sets the products of some rows with all columns up to their own.
 template <std::size_t D, class S>
 void set_triangle(const PacketRows<S>& rows, std::size_t count, const PacketRows<S>& columns,
                   S* products, std::size_t stride) {
-  detail::multiply<false, D, 1>(rows, count, columns, 1, products, stride);
+  multiply<false, D, 1>(rows, count, columns, 1, products, stride);
 }
 
 /// Sets the products of some rows with some columns.
@@ -109,7 +109,7 @@ void set_triangle(const PacketRows<S>& rows, std::size_t count, const PacketRows
 template <std::size_t D, class S>
 void set_products(const PacketRows<S>& rows, std::size_t count, const PacketRows<S>& columns,
                   std::size_t num_columns, S* products, std::size_t stride) {
-  detail::multiply<false, D, 0>(rows, count, columns, num_columns, products, stride);
+  multiply<false, D, 0>(rows, count, columns, num_columns, products, stride);
 }
 
 }  // namespace kinecal::detail

@@ -35,16 +35,16 @@ struct FeatureRows {
   /// @param change  how it changes with the body
   /// @param x       (3) the vector, in the base
   /// @param by_x    (M x 3) derivative of the residual with respect to it: D
-  void add_vector(std::size_t body, detail::Change change, const Vector3<S>& x,
+  void add_vector(std::size_t body, Change change, const Vector3<S>& x,
                   const Eigen::Matrix<S, M, 3>& by_x) {
     for (int row = 0; row < M; ++row) {
       const Vector3<S> d = by_x.row(row);
       auto of_body = by_body[body].row(row);
-      if (change == detail::Change::point) of_body.template head<3>() += d.transpose();
-      if (change == detail::Change::point || change == detail::Change::direction) {
+      if (change == Change::point) of_body.template head<3>() += d.transpose();
+      if (change == Change::point || change == Change::direction) {
         of_body.template tail<3>() += cross(x, d).transpose();
       }
-      if (change == detail::Change::rotation) of_body.template tail<3>() += d.transpose();
+      if (change == Change::rotation) of_body.template tail<3>() += d.transpose();
     }
   }
   /// Sets the rows of a body with one point.

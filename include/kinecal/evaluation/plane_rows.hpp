@@ -103,7 +103,7 @@ void plane_rows(const B& block, const TermViews<S>& views, bool derivatives,
                 FeatureRows<S, kResiduals<B>, 2>& rows) {
   rows.own = derivatives ? views.num_own() : 0;
   for (int i = 0; i < kLanes<S>; ++i) {
-    const auto one = detail::PlaneLane<B, S>(block, views, i).rows(derivatives);
+    const auto one = PlaneLane<B, S>(block, views, i).rows(derivatives);
     set_lane(rows.weight, i, one.weight);
     for (int m = 0; m < kResiduals<B>; ++m) {
       set_lane(rows.residual(m), i, one.residual(m));

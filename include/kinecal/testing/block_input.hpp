@@ -1,4 +1,5 @@
-// Arguments, parameters and conditions of an error block as numbers: made at random, moved, in packets, in jets.
+// Arguments, parameters and conditions of an error block as numbers: made at random, moved, in
+// packets, in jets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

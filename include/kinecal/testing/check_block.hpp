@@ -14,6 +14,7 @@ class BlockCheck {
   using Input = BlockInput<B, double>;
   static constexpr int kM = Input::kM, kVariables = Input::kVariables;
   static constexpr int kInputs = 32;  ///< of random input
+  static constexpr bool kHasConditions = std::tuple_size_v<decltype(Input::conditions)> > 0;
 
  public:
   explicit BlockCheck(const B& block) : block_(block) {
@@ -30,11 +31,13 @@ class BlockCheck {
   /// The same where it is clear at which arguments they agree.
   [[nodiscard]] Verdict obvious_agreement() {
     constexpr auto& kAll = Input::kQuantities;
-    if constexpr (Input::kOwn == 0 && PixelBlock<B>) {
+    if constexpr (Input::kOwn > 0 || kHasConditions) {
+      return kLawsHold;  // not obvious
+    } else if constexpr (PixelBlock<B>) {
       Input input = Input::random(block_, random_);
       input.values[1] = input.values[0];
       return agreement(input);
-    } else if constexpr (Input::kOwn == 0 && kAll.size() == 2) {
+    } else if constexpr (kAll.size() == 2) {
       if constexpr (kAll[0] == kAll[1] && kAll[0] != Quantity::reading) {
         Input input = Input::random(block_, random_);
         make_agree<kAll[0]>(random_, &input.values[0], &input.values[Input::kValues / 2]);
@@ -114,8 +117,8 @@ class BlockCheck {
 /// inputs at which the residual is not a number are skipped.
 /// @param agreeing  arguments of the block, in double, at which the residual is zero with the initial
 ///                  values of its parameters.  Without them two equal points, poses, planes or
-///                  pixels agree, and two rays that meet; blocks of other arguments or with
-///                  parameters are then not checked to be zero anywhere.
+///                  pixels agree, and two rays that meet; blocks of other arguments, with
+///                  parameters or with conditions are then not checked to be zero anywhere.
 template <ErrorBlock B, class... Arguments>
 [[nodiscard]] Verdict check_block(const B& block, const Arguments&... agreeing) {
   detail::BlockCheck<B> check(block);
