@@ -2,4 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/trust/assess.hpp"
+#include "kinecal/trust/captures.hpp"
+#include "kinecal/trust/held_out.hpp"
+#include "kinecal/trust/judge.hpp"
+#include "kinecal/trust/noise.hpp"
 #include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/uncertainty.hpp"

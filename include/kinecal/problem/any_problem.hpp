@@ -74,6 +74,12 @@ class AnyProblem {
   /// @throws SampleError  with the sample and what is missing or wrong; the sample is not added
   void add_sample(const Sample& sample);
 
+  /// The robot as its URDF says.
+  [[nodiscard]] const Robot& robot() const { return robot_; }
+  /// The link in which the sensors are compared.
+  [[nodiscard]] const std::string& base() const { return base_; }
+  /// Names of the free frames: joints of the robot or virtual frames.
+  [[nodiscard]] const std::set<std::string>& frames() const { return frames_; }
   /// All parameters with their initial values and bounds.
   [[nodiscard]] const ParameterTable& table() const { return table_; }
   /// The sensors in the order in which they were added.

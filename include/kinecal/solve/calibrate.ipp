@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/solve/settle.hpp"
 
 namespace kinecal {
 
@@ -40,7 +41,12 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
     if (progress) {
       options.progress = [&](int iteration, double cost) { progress(step.name, iteration, cost); };
     }
+    const Eigen::VectorXd start = values;
     StepResult solved = solve(*step.problem, step.free, values, options);
+    if (solved.converged) {
+      wrap_angles(*step.problem, step.free, values);
+      solved.final_cost = hold_undetermined(*step.problem, step.free, start, values);
+    }
     solved.name = step.name;
     for (int parameter : step.free.parameters()) {
       const auto& known = result.calibrated;

@@ -28,6 +28,9 @@ struct Observability {
   int rank = 0;            ///< number of observable combinations
   double condition = 1.0;  ///< largest over least singular value of these combinations
   std::vector<Combination> unobservable;  ///< combinations that change no residual
+  /// Table indices of parameters that, when held, leave the others observable: frames rather than
+  /// sensors, sensors rather than joints, and of these the last rather than the first.
+  std::vector<int> hold;
 };
 
 /// The observability of a problem's free parameters from its samples, near the given values.

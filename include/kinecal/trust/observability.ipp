@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/observability.hpp"
 
 namespace kinecal {
 
 namespace detail {
-
-/// Singular values of 1e-8 and below are rounding: they are roots of eigenvalues of J^T J.
-inline constexpr double kUnobservable = 1e-6;
 
 /// Reduces the columns of a basis (Gauss-Jordan with full pivoting) until each has a row in which
 /// it is one and the others are zero.
@@ -61,33 +58,55 @@ inline void reduce(Eigen::MatrixXd& basis) {
   return result;
 }
 
+/// How readily a parameter is held: parameters of frames first, then those of sensors and blocks,
+/// joints last.
+[[nodiscard]] inline int reluctance(const AnyProblem& problem, int parameter) {
+  const std::string& name = problem.table()[parameter].name;
+  const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
+  if (name == owner) return 2;
+  const auto is_axis = [&](std::string_view axis) { return name == parameter_name(owner, axis); };
+  return std::any_of(kFrameAxes.begin(), kFrameAxes.end(), is_axis) ? 0 : 1;
+}
+
+/// Parameters to hold, so that nothing of a null space is left.
+/// @param null  (free x directions), orthonormal
+[[nodiscard]] inline std::vector<int> parameters_to_hold(const AnyProblem& problem,
+                                                         const FreeSet& free,
+                                                         Eigen::MatrixXd null) {
+  std::vector<int> order(static_cast<std::size_t>(free.size()));
+  for (int c = 0; c < free.size(); ++c) order[static_cast<std::size_t>(c)] = free.size() - 1 - c;
+  const auto parameter = [&](int c) { return free.parameters()[static_cast<std::size_t>(c)]; };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return reluctance(problem, parameter(a)) < reluctance(problem, parameter(b));
+  });
+  std::vector<int> held;
+  for (double least = 0.3; null.cols() > 0 && least > kUnobservable; least *= 0.1) {
+    for (const int c : order) {
+      if (null.cols() == 0 || null.row(c).norm() < least) continue;
+      held.push_back(parameter(c));
+      // What is left has no part of this parameter: reflect its row onto the last direction.
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(null.row(c).transpose());
+      null = (null * qr.householderQ()).rightCols(null.cols() - 1).eval();
+    }
+  }
+  return held;
+}
+
 }  // namespace detail
 
 KINECAL_INLINE Observability observability(const AnyProblem& problem, const FreeSet& free,
                                            std::span<const double> values) {
   if (free.size() == 0) return {};
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free.size(), free.size());
-  const auto add = [&](int t, int, const TermResiduals& out) {
-    const Eigen::VectorXd weights = problem.term(t).options().weight * out.factor;
-    const Eigen::MatrixXd weighted = weights.asDiagonal() * out.jacobian;
-    normal.noalias() += weighted.transpose() * weighted;
-  };
-  (void)evaluate(problem, values, &free, add, Linearization::error_free);
-  const Eigen::VectorXd scale =
-      normal.diagonal().unaryExpr([](double d) { return d > 0.0 ? std::sqrt(d) : 1.0; });
-  normal = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-  const Eigen::VectorXd singular = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-
+  const detail::Spectrum spectrum(detail::error_free_information(problem, free, values));
+  const Eigen::VectorXd& singular = spectrum.singular;
   Observability result;
-  const Eigen::Index null =  // all of them where the Jacobian is zero
-      (singular.array() <= detail::kUnobservable * singular.maxCoeff()).count();
-  result.rank = free.size() - static_cast<int>(null);
-  if (result.rank > 0) result.condition = singular.maxCoeff() / singular(null);
-  Eigen::MatrixXd basis = eigen.eigenvectors().leftCols(null);
+  result.rank = free.size() - static_cast<int>(spectrum.null);
+  if (result.rank > 0) result.condition = singular.maxCoeff() / singular(spectrum.null);
+  Eigen::MatrixXd basis = spectrum.vectors.leftCols(spectrum.null);
+  result.hold = detail::parameters_to_hold(problem, free, basis);
   detail::reduce(basis);
-  for (Eigen::Index c = 0; c < null; ++c) {
-    result.unobservable.push_back(detail::combination(basis.col(c), scale, free));
+  for (Eigen::Index c = 0; c < basis.cols(); ++c) {
+    result.unobservable.push_back(detail::combination(basis.col(c), spectrum.scale, free));
   }
   return result;
 }

@@ -1,0 +1,108 @@
+// A problem linearized at its solution, in coordinates that samples and priors determine.
+//
+// What a result is worth is linear algebra on the rows near its minimum: the covariance, what a fold
+// would give, what one sample does.  Coordinates z leave out what nothing determines:
+//
+//   free parameters = those of the solution + basis z        (basis: free x coordinates)
+//
+// Coordinates have no unit: the basis holds those of the parameters.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
+
+namespace kinecal {
+
+/// The rows of all features of an error block in one sample.
+struct RowBlock {
+  int term = 0;            ///< error block, by number in the problem
+  int sample = 0;          ///< sample, by number in the problem
+  Eigen::Index first = 0;  ///< its first row
+  Eigen::Index size = 0;   ///< number of rows: feature after feature
+};
+
+/// The directions in which samples or priors determine the free parameters.
+struct Coordinates {
+  Eigen::MatrixXd basis;  ///< (free x coordinates) change of the free parameters
+  Eigen::MatrixXd null;   ///< (free x others) changes that nothing determines
+  /// (free) which part of each parameter nothing determines: 0 none of it, 1 all of it.
+  Eigen::VectorXd lost;
+  Eigen::VectorXd scale;  ///< (free) effect of each parameter on all weighted residuals, per its unit
+};
+
+/// Weighted residuals of a problem and their derivatives by coordinates.
+struct LinearFit {
+  /// Rows as the evaluation writes them.
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  std::vector<RowBlock> blocks;    ///< in the order of samples, then of error blocks
+  Eigen::VectorXd residual;        ///< (rows) without losses
+  RowMajor jacobian;               ///< (rows x coordinates) derivatives; empty if not asked for
+  Eigen::VectorXd loss;            ///< (rows) rho' of the feature: 1 without a loss
+  Coordinates coordinates;         ///< by which derivatives are taken
+  Eigen::VectorXd prior_gradient;  ///< (coordinates) of all priors
+  Eigen::MatrixXd prior_hessian;   ///< (coordinates x coordinates) of all priors
+
+  /// Number of coordinates.
+  [[nodiscard]] Eigen::Index size() const { return coordinates.basis.cols(); }
+};
+
+/// The coordinates of a problem near some values.
+/// @param values  of all parameters of the table
+[[nodiscard]] Coordinates determined_coordinates(const AnyProblem& problem, const FreeSet& free,
+                                                 std::span<const double> values);
+
+/// Linearizes a problem.
+/// @param evaluator    of the problem and its free parameters
+/// @param values       of all parameters of the table
+/// @param coordinates  see determined_coordinates()
+/// @param derivatives  false: residuals only
+/// @throws std::domain_error  if a residual is undefined
+[[nodiscard]] LinearFit linear_fit(AnyEvaluator& evaluator, std::span<const double> values,
+                                   const Coordinates& coordinates, bool derivatives = true);
+
+/// J^T J of rows with weights, priors included.
+/// @param weights  (rows) of squared residuals
+/// @param priors   factor of the priors
+[[nodiscard]] Eigen::MatrixXd information(const LinearFit& fit, const Eigen::VectorXd& weights,
+                                          double priors = 1.0);
+
+/// The step from the linearization to the minimum of weighted squared rows: one Gauss-Newton step.
+/// @param weights  (rows) of squared residuals
+/// @param priors   factor of the priors
+/// @returns  (coordinates)
+[[nodiscard]] Eigen::VectorXd step_to_minimum(const LinearFit& fit, const Eigen::VectorXd& weights,
+                                              double priors = 1.0);
+
+/// Values of all parameters after a step.
+/// @param step  (coordinates)
+[[nodiscard]] Eigen::VectorXd stepped(const LinearFit& fit, const FreeSet& free,
+                                      std::span<const double> values, const Eigen::VectorXd& step);
+
+/// A fit with other weights.
+struct Refit {
+  Eigen::VectorXd values;    ///< of all parameters of the table
+  Eigen::VectorXd residual;  ///< (rows) weighted, of all rows, in the order of LinearFit
+};
+
+/// Minimizes weighted squared rows from the solution of all: Gauss-Newton steps, halved until the cost
+/// falls.  One step is enough unless directions are hardly determined.
+/// @param values   where `fit` was linearized
+/// @param weights  (rows) of squared residuals
+/// @param priors   factor of the priors
+/// @param settled  a step that lowers the cost by less than this part of it is the last one
+[[nodiscard]] Refit refit(AnyEvaluator& evaluator, std::span<const double> values,
+                          const LinearFit& fit, const Eigen::VectorXd& weights,
+                          double priors = 1.0, double settled = 1e-4);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/solve/linear_fit.ipp"
+#endif

@@ -1,0 +1,182 @@
+// Linearizing a problem.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/solve/linear_fit.hpp"
+#include "kinecal/solve/spectrum.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// Gradient and Hessian of a problem's priors.
+[[nodiscard]] inline NormalEquations prior_equations(const AnyProblem& problem, const FreeSet& free,
+                                                     std::span<const double> values) {
+  NormalEquations sums(free.size());
+  TermResiduals rows;
+  for (const PriorTerm& prior : problem.priors()) {
+    prior.evaluate(problem.table(), values, &free, rows);
+    add_prior(sums, prior.options, rows, problem.num_samples(), Losses::as_given);
+  }
+  return sums;
+}
+
+/// Visits all rows as LinearFit has them, but by free parameters.
+inline void collect(AnyEvaluator& evaluator, std::span<const double> values, bool derivatives,
+                    std::vector<RowBlock>& blocks, std::vector<TermResiduals>& all) {
+  const auto visit = [&](int term, int sample, const TermResiduals& rows) {
+    if (rows.residual.size() == 0) return;
+    blocks.push_back({term, sample, std::ssize(all), rows.residual.size()});
+    all.push_back(rows);
+  };
+  if (const auto undefined = evaluator.evaluate(values, derivatives, visit)) {
+    throw std::domain_error("the residual of '" + undefined->term +
+                            "' is not defined for the sample at " + undefined->source);
+  }
+  std::sort(blocks.begin(), blocks.end(), [](const RowBlock& a, const RowBlock& b) {
+    return a.sample != b.sample ? a.sample < b.sample : a.term < b.term;
+  });
+}
+
+/// Weighted residuals of a block, and rho' of its features.
+inline void weigh(const AnyTerm& term, const TermResiduals& rows, Eigen::Ref<Eigen::VectorXd> r,
+                  Eigen::Ref<Eigen::VectorXd> loss) {
+  const TermOptions& options = term.options();
+  r = options.weight * rows.factor.cwiseProduct(rows.residual);
+  const int size = term.feature_size();
+  for (Eigen::Index row = 0; row < r.size(); row += size) {
+    loss.segment(row, size).setConstant(
+        options.loss(r.segment(row, size).squaredNorm()).derivative);
+  }
+}
+
+}  // namespace detail
+
+KINECAL_INLINE Coordinates determined_coordinates(const AnyProblem& problem, const FreeSet& free,
+                                                  std::span<const double> values) {
+  const detail::Spectrum spectrum(detail::error_free_information(problem, free, values) +
+                                  detail::prior_equations(problem, free, values).hessian);
+  const auto in_units = spectrum.scale.cwiseInverse().asDiagonal();
+  return {in_units * spectrum.vectors.rightCols(free.size() - spectrum.null),
+          in_units * spectrum.vectors.leftCols(spectrum.null),
+          spectrum.vectors.leftCols(spectrum.null).rowwise().norm(), spectrum.scale};
+}
+
+KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, std::span<const double> values,
+                                    const Coordinates& coordinates, bool derivatives) {
+  LinearFit fit;
+  fit.coordinates = coordinates;
+  const Eigen::MatrixXd& basis = coordinates.basis;
+  std::vector<TermResiduals> all;
+  detail::collect(evaluator, values, derivatives, fit.blocks, all);
+  Eigen::Index rows = 0;
+  for (const RowBlock& block : fit.blocks) rows += block.size;
+  fit.residual.resize(rows);
+  fit.loss.resize(rows);
+  fit.jacobian.resize(derivatives ? rows : 0, derivatives ? basis.cols() : 0);
+  Eigen::Index first = 0;
+  for (RowBlock& block : fit.blocks) {
+    const TermResiduals& from = all[static_cast<std::size_t>(block.first)];
+    const AnyTerm& term = evaluator.problem().term(block.term);
+    detail::weigh(term, from, fit.residual.segment(first, block.size),
+                  fit.loss.segment(first, block.size));
+    if (derivatives) {
+      const Eigen::VectorXd weights = term.options().weight * from.factor;
+      fit.jacobian.middleRows(first, block.size).noalias() =
+          weights.asDiagonal() * (from.jacobian * basis);
+    }
+    block.first = first;
+    first += block.size;
+  }
+  const NormalEquations priors =
+      detail::prior_equations(evaluator.problem(), evaluator.free(), values);
+  fit.prior_gradient = basis.transpose() * priors.gradient;
+  fit.prior_hessian = basis.transpose() * priors.hessian * basis;
+  return fit;
+}
+
+KINECAL_INLINE Eigen::MatrixXd information(const LinearFit& fit, const Eigen::VectorXd& weights,
+                                           double priors) {
+  Eigen::MatrixXd sum = priors * fit.prior_hessian;
+  const LinearFit::RowMajor weighted = weights.cwiseSqrt().asDiagonal() * fit.jacobian;
+  sum.noalias() += weighted.transpose() * weighted;
+  return sum;
+}
+
+KINECAL_INLINE Eigen::VectorXd step_to_minimum(const LinearFit& fit, const Eigen::VectorXd& weights,
+                                               double priors) {
+  const Eigen::VectorXd gradient =
+      fit.jacobian.transpose() * weights.cwiseProduct(fit.residual) + priors * fit.prior_gradient;
+  const detail::Spectrum spectrum(information(fit, weights, priors));
+  return -spectrum.pseudo_inverse() * gradient;
+}
+
+KINECAL_INLINE Eigen::VectorXd stepped(const LinearFit& fit, const FreeSet& free,
+                                       std::span<const double> values,
+                                       const Eigen::VectorXd& step) {
+  Eigen::VectorXd all =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  const Eigen::VectorXd change = fit.coordinates.basis * step;
+  for (int c = 0; c < free.size(); ++c) {
+    all(free.parameters()[static_cast<std::size_t>(c)]) += change(c);
+  }
+  return all;
+}
+
+namespace detail {
+
+[[nodiscard]] inline std::span<const double> numbers(const Eigen::VectorXd& values) {
+  return {values.data(), static_cast<std::size_t>(values.size())};
+}
+
+/// Half the step until the weighted cost falls.
+/// @returns  false if it does not fall
+inline bool descend(AnyEvaluator& evaluator, const LinearFit& fit, const Eigen::VectorXd& weights,
+                    double priors, double settled, Eigen::VectorXd step, Refit& at) {
+  const auto cost = [&](const LinearFit& of, const Eigen::VectorXd& values) {
+    const double of_priors =
+        prior_equations(evaluator.problem(), evaluator.free(), numbers(values)).cost;
+    return 0.5 * weights.dot(of.residual.cwiseAbs2()) + priors * of_priors;
+  };
+  const double before = cost(fit, at.values);
+  constexpr int kHalvings = 12;
+  for (int i = 0; i < kHalvings; ++i, step *= 0.5) {
+    const Eigen::VectorXd values = stepped(fit, evaluator.free(), numbers(at.values), step);
+    try {
+      const LinearFit there = linear_fit(evaluator, numbers(values), fit.coordinates, false);
+      const double after = cost(there, values);
+      if (!(after <= before)) continue;
+      at = {values, there.residual};
+      return before - after > settled * before;
+    } catch (const std::domain_error&) {  // a point behind a camera
+    }
+  }
+  return false;
+}
+
+}  // namespace detail
+
+KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, std::span<const double> values,
+                           const LinearFit& fit, const Eigen::VectorXd& weights, double priors,
+                           double settled) {
+  Refit at{Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values)), fit.residual};
+  const Eigen::VectorXd first = step_to_minimum(fit, weights, priors);
+  bool falls = detail::descend(evaluator, fit, weights, priors, settled, first, at);
+  constexpr int kSteps = 10;
+  for (int i = 1; falls && i < kSteps; ++i) {
+    // What the linearization promised is what came: no further step is needed.
+    const Eigen::VectorXd promised = fit.residual + fit.jacobian * first;
+    const double off = (promised - at.residual).squaredNorm();
+    if (i == 1 && off < settled * at.residual.squaredNorm()) break;
+    const LinearFit next = linear_fit(evaluator, detail::numbers(at.values), fit.coordinates);
+    falls = detail::descend(evaluator, next, weights, priors, settled,
+                            step_to_minimum(next, weights, priors), at);
+  }
+  return at;
+}
+
+}  // namespace kinecal

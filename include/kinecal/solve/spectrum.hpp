@@ -1,0 +1,41 @@
+// The singular values of a Jacobian whose columns have been scaled to length one, from J^T J: which
+// combinations of parameters have an effect.
+//
+// Whether a combination has an effect is asked of the error-free problem: see ARCHITECTURE.md.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
+
+namespace kinecal::detail {
+
+/// Singular values below this share of the largest one are zero: those of 1e-8 and below are rounding,
+/// as they are roots of eigenvalues of J^T J.
+inline constexpr double kUnobservable = 1e-6;
+
+/// J^T J of the error-free problem, weighted, without priors.
+[[nodiscard]] Eigen::MatrixXd error_free_information(const AnyProblem& problem, const FreeSet& free,
+                                                     std::span<const double> values);
+
+/// Eigenvalues of an information matrix whose columns have been scaled to length one.
+struct Spectrum {
+  Eigen::VectorXd scale;     ///< lengths of the columns of J; one where they are zero
+  Eigen::VectorXd singular;  ///< singular values of the scaled J, ascending
+  Eigen::MatrixXd vectors;   ///< in the same order
+  Eigen::Index null = 0;     ///< the first ones, which are zero
+
+  /// Of a symmetric, positive semidefinite matrix.
+  explicit Spectrum(const Eigen::MatrixXd& information);
+  /// The pseudo-inverse of the matrix, in its own units.
+  [[nodiscard]] Eigen::MatrixXd pseudo_inverse() const;
+};
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/solve/spectrum.ipp"
+#endif

@@ -1,0 +1,46 @@
+// Singular values of a Jacobian.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/solve/spectrum.hpp"
+
+namespace kinecal::detail {
+
+KINECAL_INLINE Eigen::MatrixXd error_free_information(const AnyProblem& problem,
+                                                      const FreeSet& free,
+                                                      std::span<const double> values) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(free.size(), free.size());
+  const auto add = [&](int t, int, const TermResiduals& out) {
+    const Eigen::VectorXd weights = problem.term(t).options().weight * out.factor;
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * out.jacobian;
+    sum.noalias() += weighted.transpose() * weighted;
+  };
+  (void)evaluate(problem, values, &free, add, Linearization::error_free);
+  return sum;
+}
+
+KINECAL_INLINE Spectrum::Spectrum(const Eigen::MatrixXd& information)
+    : scale(information.diagonal().unaryExpr(
+          [](double d) { return d > 0.0 ? std::sqrt(d) : 1.0; })) {
+  const Eigen::MatrixXd scaled =
+      scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  singular = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  vectors = eigen.eigenvectors();
+  if (singular.size() == 0) return;
+  // all of them where the Jacobian is zero
+  null = (singular.array() <= kUnobservable * singular.maxCoeff()).count();
+}
+
+KINECAL_INLINE Eigen::MatrixXd Spectrum::pseudo_inverse() const {
+  const Eigen::Index rank = singular.size() - null;
+  const Eigen::MatrixXd half = scale.cwiseInverse().asDiagonal() * vectors.rightCols(rank) *
+                               singular.tail(rank).cwiseInverse().asDiagonal();
+  return half * half.transpose();
+}
+
+}  // namespace kinecal::detail

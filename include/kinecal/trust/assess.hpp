@@ -1,0 +1,68 @@
+// All that is known about how good a step of a calibration is: noise, uncertainty, what cannot be
+// observed, held-out error, bad captures.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/captures.hpp"
+#include "kinecal/trust/held_out.hpp"
+#include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/pose_uncertainty.hpp"
+
+namespace kinecal {
+
+/// A joint, frame, sensor or error block whose parameters could as well be held.
+struct IdleGroup {
+  std::string owner;            ///< "elbow_flex_joint"
+  std::vector<int> parameters;  ///< table indices
+  double statistic = 0.0;       ///< d^T C^-1 d of their changes; without effect it is about `rank`
+  int rank = 0;                 ///< number of determined combinations among them
+};
+
+/// How good a step is.
+struct Assessment {
+  std::string step;                    ///< its name
+  Observability observability;         ///< of all free parameters
+  std::vector<BlockNoise> noise;       ///< of each error block
+  std::vector<int> parameters;         ///< table indices: columns of the uncertainty
+  std::vector<int> at_bound;           ///< table indices of free parameters that ended at a bound
+  Uncertainty uncertainty;             ///< of `parameters`
+  std::vector<HeldOutError> held_out;  ///< of each error block; empty if there are too few samples
+  std::vector<CaptureError> captures;  ///< of each sample
+  std::vector<IdleGroup> idle;         ///< whose parameters buy nothing
+  std::optional<PoseUncertainty> pose; ///< of what the first error block compares
+  int rows = 0;                        ///< residuals, without priors
+
+  /// Standard deviation of a parameter of the table; nullopt if the step does not free it.
+  [[nodiscard]] std::optional<double> deviation(int parameter) const;
+};
+
+/// What to compute.
+struct AssessOptions {
+  int folds = 5;  ///< for held-out errors; as many as samples: leave-one-out; below 2: none
+};
+
+/// Assesses each step of a calibration that has run, at its result.
+/// @param samples  those of the problems, in their order
+[[nodiscard]] std::vector<Assessment> assess(const Calibration& calibration,
+                                             const CalibrationResult& result,
+                                             std::span<const Sample> samples,
+                                             const AssessOptions& options = {});
+
+/// Assesses one step.
+/// @param values  of all parameters of the table: its solution
+/// @throws std::domain_error  if a residual is undefined there
+[[nodiscard]] Assessment assess(const AnyProblem& problem, const FreeSet& free,
+                                std::span<const double> values, std::span<const Sample> samples,
+                                const AssessOptions& options = {});
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/assess.ipp"
+#endif

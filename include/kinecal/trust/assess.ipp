@@ -1,0 +1,157 @@
+// Assessing steps.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "kinecal/trust/assess.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// The free parameters that are not at a bound.
+[[nodiscard]] inline FreeSet inside_bounds(const AnyProblem& problem, const FreeSet& free,
+                                           std::span<const double> values, std::vector<int>& held) {
+  std::vector<int> inside;
+  for (const int p : free.parameters()) {
+    const Parameter& parameter = problem.table()[p];
+    const double value = values[static_cast<std::size_t>(p)];
+    constexpr double kAtBound = 1e-9;
+    const double near = kAtBound * (1e-3 + std::abs(value));
+    const bool at = value <= parameter.lower + near || value >= parameter.upper - near;
+    (at ? held : inside).push_back(p);
+  }
+  return FreeSet(std::move(inside), problem.table().size());
+}
+
+/// Groups of parameters that buy nothing: a change d from the initial values that is no larger than
+/// chance makes it, d^T C^-1 d < 2 rank.  Their fit predicts no better than one without them.
+/// Source: Akaike, A New Look at the Statistical Model Identification, 1974.
+[[nodiscard]] inline std::vector<IdleGroup> idle_groups(const AnyProblem& problem,
+                                                        const FreeSet& free,
+                                                        std::span<const double> values,
+                                                        const Uncertainty& known) {
+  std::map<std::string, std::vector<int>> columns;
+  for (int c = 0; c < free.size(); ++c) {
+    const int p = free.parameters()[static_cast<std::size_t>(c)];
+    columns[problem.owners()[static_cast<std::size_t>(p)]].push_back(c);
+  }
+  std::vector<IdleGroup> idle;
+  for (const auto& [owner, of_owner] : columns) {
+    IdleGroup group{.owner = owner, .parameters = {}};
+    Eigen::VectorXd change(std::ssize(of_owner));
+    bool determined = true;
+    for (std::size_t i = 0; i < of_owner.size(); ++i) {
+      const int p = free.parameters()[static_cast<std::size_t>(of_owner[i])];
+      group.parameters.push_back(p);
+      change(static_cast<Eigen::Index>(i)) =
+          values[static_cast<std::size_t>(p)] - problem.table()[p].initial;
+      determined = determined && std::isfinite(known.deviation(of_owner[i]));
+    }
+    const Spectrum spectrum(known.covariance(of_owner, of_owner));
+    group.rank = static_cast<int>(change.size() - spectrum.null);
+    group.statistic = change.dot(spectrum.pseudo_inverse() * change);
+    if (determined && group.rank > 0 && group.statistic < 2.0 * group.rank) idle.push_back(group);
+  }
+  return idle;
+}
+
+/// Where the features of a sensor are: its link, or a virtual frame beyond it.
+[[nodiscard]] inline FrameOnRobot frame_of_features(const AnyProblem& problem, int sensor,
+                                                    std::span<const Sample> samples) {
+  const MountedSensor& mounted = problem.sensors()[static_cast<std::size_t>(sensor)];
+  FrameOnRobot frame{mounted.mount().frame};
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(mounted.mount().name);
+    if (seen == nullptr || seen->features.empty()) continue;
+    const std::string& name = seen->features.front().frame;
+    const bool is_virtual = problem.frames().contains(name) && !problem.robot().has_joint(name);
+    if (is_virtual && !mounted.sensor().in_own_frame()) frame.frame = name;
+    break;
+  }
+  return frame;
+}
+
+/// What the first error block of samples compares: the frames of its sensors' features.  A camera is
+/// the frame in which the other one is wanted.
+[[nodiscard]] inline std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
+    const AnyProblem& problem, std::span<const Sample> samples) {
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const std::vector<int>& sensors = problem.term(t).sensors();
+    if (problem.samples_of(t) == 0) continue;
+    FrameOnRobot one = frame_of_features(problem, sensors[0], samples), other{problem.base()};
+    if (sensors.size() > 1) {
+      other = frame_of_features(problem, sensors[1], samples);
+      const auto& first = problem.sensors()[static_cast<std::size_t>(sensors[0])];
+      if (first.sensor().in_own_frame()) std::swap(one, other);
+    }
+    if (one.name() != other.name()) return std::pair(one, other);
+  }
+  return std::nullopt;
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::optional<double> Assessment::deviation(int parameter) const {
+  const auto at = std::find(parameters.begin(), parameters.end(), parameter);
+  if (at == parameters.end()) return std::nullopt;
+  return uncertainty.deviation(at - parameters.begin());
+}
+
+KINECAL_INLINE Assessment assess(const AnyProblem& problem, const FreeSet& free,
+                                 std::span<const double> values, std::span<const Sample> samples,
+                                 const AssessOptions& options) {
+  Assessment found;
+  found.observability = observability(problem, free, values);
+  const FreeSet inside = detail::inside_bounds(problem, free, values, found.at_bound);
+  found.parameters = inside.parameters();
+  const auto evaluator = problem.evaluator(inside);
+  const LinearFit fit =
+      linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
+  found.rows = static_cast<int>(fit.residual.size());
+  const Eigen::MatrixXd inverse =
+      detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  found.noise = estimate_noise(problem, fit, inverse);
+  found.uncertainty = uncertainty(problem, fit, found.noise);
+  found.captures = capture_errors(problem, fit);
+  found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
+  const int folds = std::min(options.folds, static_cast<int>(samples.size()));
+  if (folds >= 2) {
+    try {
+      found.held_out = held_out_errors(*evaluator, values, fit, folds_of(samples, folds));
+    } catch (const std::domain_error&) {  // without a fold, a point ends behind a camera
+      for (int t = 0; t < problem.num_terms(); ++t) {
+        const AnyTerm& term = problem.term(t);
+        found.held_out.push_back({term.name(), term.options().unit, 0, 0.0,
+                                  std::numeric_limits<double>::infinity()});
+      }
+    }
+  }
+  if (const auto frames = detail::compared_frames(problem, samples)) {
+    found.pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty, samples,
+                                  frames->first, frames->second);
+  }
+  return found;
+}
+
+KINECAL_INLINE std::vector<Assessment> assess(const Calibration& calibration,
+                                              const CalibrationResult& result,
+                                              std::span<const Sample> samples,
+                                              const AssessOptions& options) {
+  std::vector<Assessment> all;
+  const Eigen::VectorXd values = result.table.values();
+  for (std::size_t s = 0; s < result.steps.size(); ++s) {
+    const CalibrationStep& step = calibration.steps[s];
+    all.push_back(assess(*step.problem, step.free,
+                         {values.data(), static_cast<std::size_t>(values.size())}, samples,
+                         options));
+    all.back().step = step.name;
+  }
+  return all;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,43 @@
+// Held-out error: how large the residuals of samples are that a fit has not seen.
+//
+// The fit without a fold starts at the fit of all samples, from which it is one Gauss-Newton step away
+// unless directions are hardly determined.
+// Source: Stone, Cross-Validatory Choice and Assessment of Statistical Predictions, 1974.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/solve/linear_fit.hpp"
+
+namespace kinecal {
+
+/// Fitted and held-out distances of an error block.
+struct HeldOutError {
+  std::string block;      ///< name of the error block
+  std::string unit;       ///< "m", "px" or "1"
+  int features = 0;       ///< of all folds
+  double fitted = 0.0;    ///< root of the mean squared distance of features, all samples fitted
+  double held_out = 0.0;  ///< the same, each feature held out once
+};
+
+/// The fold of each sample, 0 to folds - 1.  Samples are dealt out in the order of their joint
+/// positions, so folds do not depend on the order of samples, and each covers all of the poses.
+[[nodiscard]] std::vector<int> folds_of(std::span<const Sample> samples, int folds);
+
+/// Fitted and held-out error of each error block.
+/// @param values  the solution: where `fit` was linearized
+/// @param fold    of each sample of the problem, by number
+[[nodiscard]] std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator,
+                                                        std::span<const double> values,
+                                                        const LinearFit& fit,
+                                                        const std::vector<int>& fold);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/held_out.ipp"
+#endif

@@ -1,0 +1,64 @@
+// The verdict on a calibration: good, use with care, or do not use; and why.
+//
+// Do not use                                          Use with care
+//   a step did not converge
+//   noise 10 x the sigma that was given                 3 x
+//   without sigma: noise of 20 mm, 10 px                5 mm, 3 px
+//   freedom less than half of the parameters            less than the parameters
+//   held-out error 3 x the fitted one                   1.5 x
+//   a quarter of the samples does not fit               a tenth
+//   a joint's offset beyond its travel, or 90 degrees   30 degrees; other changes that are too large
+//   the pose in question is known to 20 mm only         to 5 mm; a direction of it not at all
+//                                                       a parameter ended at a bound
+//                                                       doubts about the input
+//
+// Freedom is the number of residuals minus that of determined parameters.  Combinations of parameters
+// that nothing determines are no reason as long as they do not move the pose in question.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinecal/trust/assess.hpp"
+
+namespace kinecal {
+
+/// Whether a result should be used.
+enum class Grade { good, use_with_care, do_not_use };
+
+/// "good", "use with care" or "do not use".
+[[nodiscard]] constexpr std::string_view to_string(Grade grade) {
+  if (grade == Grade::good) return "good";
+  return grade == Grade::use_with_care ? "use with care" : "do not use";
+}
+
+/// A verdict and what led to it.
+struct Judgement {
+  Grade verdict = Grade::good;
+  std::vector<std::string> reasons;  ///< the gravest first; sentences with figures
+
+  /// Adds a reason.
+  void add(Grade grade, const std::string& reason) {
+    const auto at = grade > verdict ? reasons.begin() : reasons.end();
+    reasons.insert(at, reason);
+    if (grade > verdict) verdict = grade;
+  }
+};
+
+/// Judges a calibration.
+/// @param assessments  of its steps: see assess()
+/// @param doubts       about the input, as sentences
+[[nodiscard]] Judgement judge(const Calibration& calibration, const CalibrationResult& result,
+                              const std::vector<Assessment>& assessments,
+                              const std::vector<std::string>& doubts = {});
+
+/// A number in the unit that people read: "3.4 mm", "0.21 deg", "1.2 px", "0.4 %" of "1".
+[[nodiscard]] std::string reading(double value, std::string_view unit);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/judge.ipp"
+#endif

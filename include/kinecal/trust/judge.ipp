@@ -1,0 +1,185 @@
+// Judging calibrations.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "kinecal/trust/judge.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// Two limits of a figure: from the first on, use with care; from the second on, do not use.
+struct Limits {
+  double care, refuse;
+
+  [[nodiscard]] bool exceeded(double figure) const { return !(figure < care); }
+  [[nodiscard]] Grade grade(double figure) const {
+    return !(figure < refuse) ? Grade::do_not_use : Grade::use_with_care;
+  }
+};
+
+inline void judge_noise(const Assessment& step, Judgement& judgement) {
+  constexpr Limits kTimes{3.0, 10.0}, kMetres{0.005, 0.02}, kPixels{3.0, 10.0};
+  for (const BlockNoise& noise : step.noise) {
+    if (noise.features == 0 || noise.freedom <= 0.0) continue;
+    // Of both estimates: a few bad captures raise the one, a wrong model raises both.
+    const double sigma = std::min(noise.sigma, noise.robust);
+    const std::string shown = "residuals show " + reading(sigma, noise.unit);
+    if (noise.given > 0.0) {
+      const double times = sigma / noise.given;
+      if (!kTimes.exceeded(times)) continue;
+      judgement.add(kTimes.grade(times), "error block '" + noise.block + "': sigma " +
+                                             reading(noise.given, noise.unit) + " given, " + shown);
+    } else if (noise.unit == "m" || noise.unit == "px") {
+      const Limits& limits = noise.unit == "m" ? kMetres : kPixels;
+      if (!limits.exceeded(sigma)) continue;
+      judgement.add(limits.grade(sigma), "error block '" + noise.block + "': " + shown +
+                                             "; the model does not fit these samples");
+    }
+  }
+}
+
+inline void judge_freedom(const Assessment& step, Judgement& judgement) {
+  const double parameters =
+      std::max<double>(1.0, static_cast<double>(step.uncertainty.coordinates.rows()));
+  const double freedom = step.rows - parameters;
+  if (freedom >= parameters) return;
+  judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,
+                "step '" + step.step + "': " + std::to_string(step.rows) +
+                    " residuals for " + std::to_string(static_cast<int>(parameters)) +
+                    " parameters leave little to check them; record more samples");
+}
+
+inline void judge_held_out(const Assessment& step, Judgement& judgement) {
+  constexpr Limits kTimes{1.5, 3.0};
+  for (std::size_t t = 0; t < step.held_out.size(); ++t) {
+    const HeldOutError& error = step.held_out[t];
+    // Against the noise: the fitted error of few samples is smaller than it.
+    const double noise = step.noise[t].sigma * std::sqrt(step.noise[t].components);
+    if (error.features == 0 || !(noise > 0.0)) continue;
+    const double times = error.held_out / noise;
+    if (!kTimes.exceeded(times)) continue;
+    judgement.add(kTimes.grade(times),
+                  "error block '" + error.block + "': " + reading(error.held_out, error.unit) +
+                      " on samples held out, " + reading(error.fitted, error.unit) +
+                      " on fitted ones; record more samples or free fewer parameters");
+  }
+}
+
+inline void judge_captures(const Assessment& step, const AnyProblem& problem,
+                           Judgement& judgement) {
+  const auto bad = std::count_if(step.captures.begin(), step.captures.end(),
+                                 [](const CaptureError& error) { return error.bad; });
+  constexpr Limits kShare{0.1, 0.25};
+  const double share = static_cast<double>(bad) / std::max(1, problem.num_samples());
+  if (bad == 0 || share <= kShare.care) return;
+  judgement.add(share > kShare.refuse ? Grade::do_not_use : Grade::use_with_care,
+                "step '" + step.step + "': " + std::to_string(bad) + " of " +
+                    std::to_string(problem.num_samples()) + " samples do not fit the others");
+}
+
+/// The largest change of a parameter that a calibration should make.
+[[nodiscard]] inline Limits plausible_change(const AnyProblem& problem, int parameter) {
+  constexpr double kNever = 1e300, kDegree = std::numbers::pi / 180.0;
+  const Parameter& p = problem.table()[parameter];
+  const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
+  if (p.name == owner && problem.robot().has_joint(owner)) {
+    if (p.unit == "m") return {0.1, 0.5};
+    return {30.0 * kDegree, 90.0 * kDegree};
+  }
+  if (problem.robot().has_joint(owner)) return p.unit == "m" ? Limits{0.2, 1.0} : Limits{0.5, kNever};
+  if (problem.frames().contains(owner)) return {kNever, kNever};  // a virtual frame may be anywhere
+  if (p.unit == "m") return {0.1, kNever};
+  return p.unit == "1" ? Limits{0.2, kNever} : Limits{kNever, kNever};
+}
+
+inline void judge_values(const CalibrationStep& step, const CalibrationResult& result,
+                         const Assessment& assessment, Judgement& judgement) {
+  const AnyProblem& problem = *step.problem;
+  for (const int p : step.free.parameters()) {
+    const Parameter& parameter = result.table[p];
+    const double change = std::abs(parameter.value - parameter.initial);
+    const Limits limits = plausible_change(problem, p);
+    if (limits.exceeded(change)) {
+      judgement.add(limits.grade(change),
+                    "'" + parameter.name + "' changed by " +
+                        reading(parameter.value - parameter.initial, parameter.unit) +
+                        "; is the URDF or its initial value wrong, or do these samples not "
+                        "determine it?");
+    }
+    if (!problem.robot().has_joint(parameter.name)) continue;
+    const auto& limited = problem.robot().joint(parameter.name).limits;
+    if (!limited || !(limited->upper > limited->lower)) continue;
+    const double travel = limited->upper - limited->lower;
+    if (std::abs(parameter.value) > travel) {
+      judgement.add(Grade::do_not_use, "the offset of '" + parameter.name + "' is " +
+                                             reading(parameter.value, parameter.unit) +
+                                             ", but the joint travels only " +
+                                             reading(travel, parameter.unit));
+    }
+  }
+  for (const int p : assessment.at_bound) {
+    judgement.add(Grade::use_with_care, "'" + result.table[p].name + "' ended at its bound " +
+                                              reading(result.table[p].value, result.table[p].unit));
+  }
+}
+
+inline void judge_pose(const Assessment& step, Judgement& judgement) {
+  if (!step.pose) return;
+  constexpr Limits kPosition{0.005, 0.02};
+  const std::string pose = "the position of '" + step.pose->frame + "' in '" + step.pose->in + "'";
+  if (!step.pose->determined) {
+    judgement.add(Grade::use_with_care,
+                  pose + " depends on a combination of parameters that these samples do not "
+                         "determine; see 'cannot be determined'");
+  }
+  if (!kPosition.exceeded(step.pose->position)) return;
+  judgement.add(kPosition.grade(step.pose->position),
+                pose + " is known to " + reading(step.pose->position, "m") +
+                    " only; record more samples");
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::string reading(double value, std::string_view unit) {
+  double shown = value;
+  const char* of = "";
+  if (unit == "m") {
+    shown = 1e3 * value;
+    of = " mm";
+  } else if (unit == "rad") {
+    shown = value * 180.0 / std::numbers::pi;
+    of = " deg";
+  } else if (unit == "px") {
+    of = " px";
+  }
+  char text[48];
+  (void)std::snprintf(text, sizeof text, "%.3g%s", shown, of);
+  return text;
+}
+
+KINECAL_INLINE Judgement judge(const Calibration& calibration, const CalibrationResult& result,
+                               const std::vector<Assessment>& assessments,
+                               const std::vector<std::string>& doubts) {
+  Judgement judgement;
+  if (!result.converged) judgement.add(Grade::do_not_use, result.termination);
+  for (std::size_t s = 0; s < assessments.size(); ++s) {
+    const CalibrationStep& step = calibration.steps[s];
+    const bool last = s + 1 == assessments.size();
+    if (last) detail::judge_noise(assessments[s], judgement);  // earlier steps fit less
+    detail::judge_freedom(assessments[s], judgement);
+    if (last) detail::judge_held_out(assessments[s], judgement);
+    if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
+    detail::judge_values(step, result, assessments[s], judgement);
+    if (last) detail::judge_pose(assessments[s], judgement);
+  }
+  for (const std::string& doubt : doubts) judgement.add(Grade::use_with_care, doubt);
+  return judgement;
+}
+
+}  // namespace kinecal

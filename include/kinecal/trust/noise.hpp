@@ -1,0 +1,48 @@
+// The noise of each error block, from the residuals of a fit.
+//
+//   sigma^2 = sum r^2 / (rows - leverage)        leverage = trace of J H^-1 J^T over the block's rows
+//
+// and robustly from the median of the features' distances, which a few bad captures do not change.
+// Source: Press et al., Numerical Recipes, 15.6; Rousseeuw, Leroy, Robust Regression, 1987, 1.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/solve/linear_fit.hpp"
+
+namespace kinecal {
+
+/// The noise of one error block.
+struct BlockNoise {
+  std::string block;        ///< name of the error block
+  std::string unit;         ///< of the residual: "m", "px" or "1"
+  int features = 0;         ///< compared features
+  int components = 1;       ///< residuals of a feature
+  double freedom = 0.0;     ///< rows beyond what the parameters take up
+  double given = 0.0;       ///< sigma of the configuration, in `unit`; 0: none
+  double sigma = 0.0;       ///< standard deviation of a residual component, in `unit`
+  double robust = 0.0;      ///< the same from the median
+  double unit_sigma = 1.0;  ///< residual in `unit` of a weighted residual of one
+
+  /// Standard deviation of a weighted residual component: 1 where the given sigma is right.
+  [[nodiscard]] double weighted() const { return sigma / unit_sigma; }
+};
+
+/// The noise of each error block of a problem.
+/// @param inverse  (coordinates x coordinates) of the information
+[[nodiscard]] std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,
+                                                     const LinearFit& fit,
+                                                     const Eigen::MatrixXd& inverse);
+
+/// Standard deviation of the components, from the median of the distances of features.
+/// @param distances   norm of each feature's residual
+/// @param components  residuals of a feature
+[[nodiscard]] double robust_sigma(std::vector<double> distances, int components);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/noise.ipp"
+#endif

@@ -1,0 +1,61 @@
+// Estimating noise.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/trust/noise.hpp"
+
+namespace kinecal {
+
+KINECAL_INLINE double robust_sigma(std::vector<double> distances, int components) {
+  if (distances.empty()) return 0.0;
+  const auto middle = distances.begin() + std::ssize(distances) / 2;
+  std::nth_element(distances.begin(), middle, distances.end());
+  // Median of chi-square, Wilson and Hilferty: k (1 - 2 / 9k)^3; exact to 2 % for one component.
+  const double k = components;
+  return *middle / std::sqrt(k * std::pow(1.0 - 2.0 / (9.0 * k), 3.0));
+}
+
+KINECAL_INLINE std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,
+                                                      const LinearFit& fit,
+                                                      const Eigen::MatrixXd& inverse) {
+  const auto terms = static_cast<std::size_t>(problem.num_terms());
+  std::vector<BlockNoise> noise(terms);
+  std::vector<double> squares(terms, 0.0);
+  std::vector<std::vector<double>> distances(terms);
+  for (const RowBlock& block : fit.blocks) {
+    const auto t = static_cast<std::size_t>(block.term);
+    const int size = problem.term(block.term).feature_size();
+    const auto jacobian = fit.jacobian.middleRows(block.first, block.size);
+    const auto loss = fit.loss.segment(block.first, block.size);
+    const auto r = fit.residual.segment(block.first, block.size);
+    const Eigen::VectorXd leverage =
+        (jacobian * inverse).cwiseProduct(jacobian).rowwise().sum().cwiseProduct(loss);
+    noise[t].freedom += static_cast<double>(block.size) - leverage.sum();
+    squares[t] += r.cwiseAbs2().dot(loss);
+    for (Eigen::Index row = 0; row < block.size; row += size) {
+      distances[t].push_back(r.segment(row, size).norm());
+    }
+  }
+  for (std::size_t t = 0; t < terms; ++t) {
+    const AnyTerm& term = problem.term(static_cast<int>(t));
+    BlockNoise& of = noise[t];
+    of.block = term.name();
+    of.unit = term.options().unit;
+    of.features = static_cast<int>(distances[t].size());
+    of.components = term.feature_size();
+    of.unit_sigma = 1.0 / term.options().weight;
+    of.given = term.options().sigma_given ? of.unit_sigma : 0.0;
+    const double rows = static_cast<double>(of.features) * of.components;
+    constexpr double kNoFreedom = 1e-6;  // the parameters fit every row
+    if (of.freedom < kNoFreedom * rows || rows == 0.0) continue;
+    of.sigma = of.unit_sigma * std::sqrt(squares[t] / of.freedom);
+    of.robust = of.unit_sigma * robust_sigma(distances[t], of.components) *
+                std::sqrt(rows / of.freedom);
+  }
+  return noise;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,55 @@
+// How well the pose of one link in another is known: the gripper in the camera's frame.
+//
+// Parameters trade with each other, but what a robot needs is a pose.  Its covariance is
+//
+//   J C J^T      J (6 x free) from the twists of both chains, at the joint positions of the samples
+//
+// of the origin of one frame in the other, links or virtual frames (a tracker, a checkerboard).
+//
+// Source: Siciliano et al., Robotics: Modelling, Planning and Control, 3.1, for J.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/trust/uncertainty.hpp"
+
+namespace kinecal {
+
+/// A link, or a virtual frame beyond it.
+struct FrameOnRobot {
+  std::string link;        ///< of the robot
+  std::string frame = {};  ///< virtual frame beyond it; empty: the link itself
+
+  /// Its name.
+  [[nodiscard]] const std::string& name() const { return frame.empty() ? link : frame; }
+};
+
+/// Uncertainty of the pose of a frame in another, over the poses of the samples.
+struct PoseUncertainty {
+  std::string frame;            ///< the link or virtual frame
+  std::string in;               ///< the one in which its pose is given
+  double position = 0.0;        ///< root of the mean variance of its origin, metres: sqrt(trace)
+  double rotation = 0.0;        ///< the same of its orientation, radians
+  double worst_position = 0.0;  ///< at the worst pose of the samples, metres
+  double worst_rotation = 0.0;  ///< the same, radians
+  bool determined = true;       ///< false: a direction that nothing determines moves its origin
+};
+
+/// Uncertainty of the pose of a frame in another.
+/// @param values   of all parameters of the table
+/// @param samples  poses at which it is computed; those that lack a joint of the chain are left out
+/// @throws RobotError  if a link does not exist, or no chain joins the two
+[[nodiscard]] PoseUncertainty pose_uncertainty(const AnyProblem& problem, const FreeSet& free,
+                                               std::span<const double> values,
+                                               const LinearFit& fit, const Uncertainty& known,
+                                               std::span<const Sample> samples,
+                                               const FrameOnRobot& frame, const FrameOnRobot& in);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/pose_uncertainty.ipp"
+#endif

@@ -1,0 +1,120 @@
+// Computing covariances.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/uncertainty.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// Hessian of a robust cost, and the sum of squared gradients of its features.
+struct RobustSums {
+  Eigen::MatrixXd hessian, gradients;
+};
+
+/// rho'' of a loss by central differences of rho'.
+[[nodiscard]] inline double curvature_of(const Loss& loss, double squared) {
+  const double h = 1e-4 * (squared + 1e-3 * loss.scale * loss.scale);
+  const double low = std::max(0.0, squared - h);
+  return (loss(squared + h).derivative - loss(low).derivative) / (squared + h - low);
+}
+
+[[nodiscard]] inline RobustSums robust_sums(const AnyProblem& problem, const LinearFit& fit) {
+  const Eigen::Index n = fit.size();
+  RobustSums sums{fit.prior_hessian, fit.prior_hessian};
+  for (const RowBlock& block : fit.blocks) {
+    const AnyTerm& term = problem.term(block.term);
+    const int size = term.feature_size();
+    for (Eigen::Index row = block.first; row < block.first + block.size; row += size) {
+      const auto j = fit.jacobian.middleRows(row, size);
+      const auto r = fit.residual.segment(row, size);
+      const Eigen::VectorXd g = j.transpose() * r;
+      const double slope = fit.loss(row);
+      const double curvature = curvature_of(term.options().loss, r.squaredNorm());
+      sums.hessian.noalias() += slope * j.transpose() * j + 2.0 * curvature * g * g.transpose();
+      sums.gradients.noalias() += slope * slope * g * g.transpose();
+    }
+  }
+  const double rows = static_cast<double>(fit.residual.size());
+  sums.gradients *= rows / std::max(1.0, rows - static_cast<double>(n));
+  return sums;
+}
+
+/// Variance of the weighted residuals of priors: 1 where weights are one over standard deviations,
+/// else that of all error blocks.
+[[nodiscard]] inline double prior_variance(const std::vector<BlockNoise>& noise) {
+  double squares = 0.0, freedom = 0.0;
+  bool given = true;
+  for (const BlockNoise& of : noise) {
+    if (!(of.freedom > 0.0)) continue;
+    given = given && of.given > 0.0;
+    squares += of.weighted() * of.weighted() * of.freedom;
+    freedom += of.freedom;
+  }
+  return given || freedom == 0.0 ? 1.0 : squares / freedom;
+}
+
+/// V of the cost without losses.
+[[nodiscard]] inline Eigen::MatrixXd noise_information(const LinearFit& fit,
+                                                       const std::vector<BlockNoise>& noise) {
+  Eigen::VectorXd variances(fit.residual.size());
+  for (const RowBlock& block : fit.blocks) {
+    const double s = noise[static_cast<std::size_t>(block.term)].weighted();
+    variances.segment(block.first, block.size).setConstant(s * s);
+  }
+  return information(fit, variances, prior_variance(noise));
+}
+
+}  // namespace detail
+
+KINECAL_INLINE Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
+                                       const std::vector<BlockNoise>& noise) {
+  const bool robust = (fit.loss.array() != 1.0).any();
+  Eigen::MatrixXd hessian, middle;
+  if (robust) {
+    detail::RobustSums sums = detail::robust_sums(problem, fit);
+    hessian = std::move(sums.hessian);
+    middle = std::move(sums.gradients);
+  } else {
+    hessian = information(fit, fit.loss);
+    middle = detail::noise_information(fit, noise);
+  }
+  const Eigen::MatrixXd inverse = detail::Spectrum(hessian).pseudo_inverse();
+  Uncertainty known;
+  known.coordinates = inverse * middle * inverse;
+  const Coordinates& by = fit.coordinates;
+  known.covariance = by.basis * known.coordinates * by.basis.transpose();
+  known.deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  constexpr double kLost = 0.03;  // more than this of a parameter is not determined
+  for (Eigen::Index i = 0; i < by.lost.size(); ++i) {
+    if (by.lost(i) > kLost) known.deviation(i) = std::numeric_limits<double>::infinity();
+  }
+  return known;
+}
+
+KINECAL_INLINE std::vector<Correlation> high_correlations(const Uncertainty& known, double limit) {
+  std::vector<Correlation> pairs;
+  const Eigen::Index n = known.covariance.rows();
+  for (Eigen::Index a = 0; a < n; ++a) {
+    for (Eigen::Index b = a + 1; b < n; ++b) {
+      const double product = known.covariance(a, a) * known.covariance(b, b);
+      if (!(product > 0.0) || !std::isfinite(known.deviation(a) * known.deviation(b))) continue;
+      const double coefficient = known.covariance(a, b) / std::sqrt(product);
+      if (std::abs(coefficient) <= limit) continue;
+      pairs.push_back({static_cast<int>(a), static_cast<int>(b), coefficient});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Correlation& x, const Correlation& y) {
+    const double cx = std::abs(x.coefficient), cy = std::abs(y.coefficient);
+    return cx != cy ? cx > cy : (x.a != y.a ? x.a < y.a : x.b < y.b);
+  });
+  return pairs;
+}
+
+}  // namespace kinecal
