@@ -10,9 +10,11 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "fit.hpp"
 #include "input.hpp"
 #include "kinecal/report.hpp"
 #include "output.hpp"
+#include "output_file.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -85,28 +87,27 @@ int calibrate(const CalibrateOptions& options) {
   std::optional<OutputFolder> folder;
   if (!options.dry_run) folder.emplace(options.output);
   const double reading = seconds_since(start);
-  const CalibrationResult result =
-      kinecal::calibrate(input.calibration, progress_line(), solve_options(options));
+  Fit fitted = fit(input, options, progress_line(), solve_options(options));
   end_progress_line();
-  const std::vector<Observability> observability = observe(input.calibration, result);
-  const bool ran = !result.steps.empty() && result.steps.back().iterations > 0;
-  if (result.converged || ran) {
-    print_result(input.robot.name(), input.samples.size(), result);
-    std::fflush(stdout);
-    print_doubts(input.calibration, result, observability);
+  Findings& findings = fitted.findings;
+  const CalibrationResult& result = findings.result;
+  if (const std::string why = impossible_camera(fitted.calibration, result.table, fitted.samples);
+      result.converged && !why.empty()) {
+    findings.judgement.add(Grade::do_not_use, why);
   }
-  const std::string why = result.converged
-                              ? impossible_camera(input.calibration, result.table, input.samples)
-                              : result.termination;
-  if (!why.empty()) {
+  fmt::print("{}", summary_text(findings));
+  std::fflush(stdout);
+  if (!options.report.empty()) write_file(options.report, json_report(findings));
+  if (findings.judgement.verdict == Grade::do_not_use) {
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
-               result.steps.back().name, why);
-    return kNotConverged;
+               result.steps.empty() ? "" : result.steps.back().name,
+               findings.judgement.reasons.front());
+    return kNotUsable;
   }
   if (folder) {
     const std::vector<OutputFile> files =
-        output_files(input.robot, {input.urdf, input.urdf_text}, input.calibration, result,
-                     observability, input.samples, file_options(options));
+        output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration, findings,
+                     fitted.samples, file_options(options));
     check_targets(options, folder->path(), files);
     write(*folder, files);
   }

@@ -7,16 +7,20 @@
 
 namespace kinecal::cli {
 
-/// 0: done; 1: bad input; 2: did not converge.
-enum ExitCode { kDone = 0, kBadInput = 1, kNotConverged = 2 };
+/// 0: done; 1: bad input; 2: the verdict is "do not use", or the solver did not converge.
+enum ExitCode { kDone = 0, kBadInput = 1, kNotUsable = 2 };
 
 struct CalibrateOptions {
   std::string urdf, config, output;
   std::vector<std::string> samples;
   std::vector<std::string> cameras;  ///< NAME=FILE
   std::string offsets = "rising";
+  std::string report;              ///< report.json is written there, too, whatever the verdict
+  std::vector<int> exclude;        ///< samples to leave out, from 1
+  bool keep_outliers = false;      ///< use samples that do not fit the others
   bool upstream_names = false;
   bool dry_run = false;
+  int folds = 5;  ///< for held-out errors; 0: leave-one-out
   int threads = 0;  ///< zero: one per core
   std::string cost = "compressed";
 };

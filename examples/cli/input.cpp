@@ -85,6 +85,7 @@ Input read_input(const std::string& urdf, const std::string& config,
   }
   if (!robot || !configuration) return input;
   input.robot = *robot;
+  input.config = *configuration;
   if (diagnostics.errors.size() == before) {
     input.calibration = assemble(*configuration, *robot, input.samples, diagnostics);
     return input;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/recordings/read_recording.hpp"
 #include "kinecal/solve/calibrate.hpp"
@@ -14,6 +15,7 @@ namespace kinecal::cli {
 /// Everything that a calibration needs.
 struct Input {
   Robot robot;
+  Config config;
   std::string urdf;       ///< name of the URDF in messages: its file or topic
   std::string urdf_text;  ///< its content
   std::vector<Sample> samples;

@@ -31,7 +31,7 @@ int install_result(const InstallOptions& options) {
   if (const std::string unfit = why_unfit(result, options.result); !unfit.empty()) {
     if (!options.force) {
       fmt::print(stderr, "error: {}; nothing installed; --force installs it anyway\n", unfit);
-      return kNotConverged;
+      return kNotUsable;
     }
     fmt::print(stderr, "warning: {}\n", unfit);
   }

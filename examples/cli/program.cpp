@@ -56,6 +56,21 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   command.add_flag("--upstream-names", options.upstream_names,
                    "name the files as robot_calibration does, with the date");
   command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
+  command.add_option("--report", options.report, "write report.json here, whatever the verdict")
+      ->type_name("FILE");
+  command
+      .add_option("--exclude", options.exclude,
+                  "leave out these samples: numbers from 1, in the order of the files")
+      ->delimiter(',')
+      ->type_name("N");
+  command.add_flag("--keep-outliers", options.keep_outliers,
+                   "use all samples; by default those are left out of which a feature is off by "
+                   "twice what chance makes of one in a thousand recordings");
+  command
+      .add_option("--folds", options.folds,
+                  "parts into which samples are divided for held-out errors; 0: leave-one-out")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
   command
       .add_option("--threads", options.threads,
                   "number of threads, default: one per core; the result does not depend on it")

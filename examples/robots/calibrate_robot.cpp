@@ -10,9 +10,9 @@
 #include "kinecal/io/recordings/read_recording.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/report/findings.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/solve/calibrate.hpp"
-#include "kinecal/trust/observability.hpp"
 #include "simulate.hpp"
 
 namespace kinecal::examples {
@@ -126,15 +126,14 @@ int calibrate(const RobotExample& example, const Options& options) {
 
   const Calibration calibration = calibration_of(example, samples);
   const CalibrationResult result = kinecal::calibrate(calibration);
-  const std::vector<Observability> observability = cli::observe(calibration, result);
-  cli::print_result(example.robot.name(), samples.size(), result);
+  const Findings findings = find(example.robot, calibration, result, samples);
+  fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
-  cli::print_doubts(calibration, result, observability);
-  if (!result.converged) return kNotGood;
+  if (findings.judgement.verdict == Grade::do_not_use) return kNotGood;
   if (folder) {
     const cli::UrdfFile urdf{example.urdf, read_urdf_text(example.urdf)};
     cli::write(*folder,
-               cli::output_files(example.robot, urdf, calibration, result, observability, samples));
+               cli::output_files(example.robot, urdf, calibration, findings, samples));
   }
   if (!simulation) return kGood;
   if (is_as_good_as_the_truth(hold_out(example, *simulation, options, result))) return kGood;

@@ -2,5 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/report/findings.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"

@@ -4,11 +4,9 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "kinecal/linkage.hpp"
-#include "kinecal/solve/calibrate.hpp"
-#include "kinecal/trust/observability.hpp"
+#include "kinecal/report/findings.hpp"
 
 namespace kinecal {
 
@@ -22,11 +20,15 @@ namespace detail {
 
 }  // namespace detail
 
-/// The whole result.  Costs are 1/2 sum of squares; rms is per residual component; mean, median and
-/// max are of the features' norms.  Units are metres, radians and pixels.
-/// @param observability  of each step
-[[nodiscard]] std::string json_report(const CalibrationResult& result,
-                                      const std::vector<Observability>& observability);
+/// The whole report.  Costs are 1/2 sum of squares; rms is per residual component; mean, median and
+/// max are of the features' norms.  Units are metres, radians and pixels; `sigma` of a parameter is one
+/// standard deviation, null if it is not determined.
+[[nodiscard]] std::string json_report(const Findings& findings);
+
+/// A row for each feature of the last step: error block, sample, its source location, feature, unit,
+/// residuals and their distance.
+/// @param calibration  the one that was solved, with its samples
+[[nodiscard]] std::string residuals_csv(const Calibration& calibration, const Findings& findings);
 
 }  // namespace kinecal
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/report/json.hpp"
 
 namespace kinecal {
@@ -52,12 +53,6 @@ KINECAL_INLINE std::string json_number(double value) {
       json(block.before), json(block.after));
 }
 
-[[nodiscard]] inline std::string json(const Parameter& parameter) {
-  return fmt::format(R"({{"name": {}, "value": {}, "initial": {}, "unit": {}}})",
-                     json_string(parameter.name), json_number(parameter.value),
-                     json_number(parameter.initial), json_string(parameter.unit));
-}
-
 [[nodiscard]] inline std::string json(const Observability& observability,
                                       const ParameterTable& table) {
   std::string combinations;
@@ -69,8 +64,53 @@ KINECAL_INLINE std::string json_number(double value) {
     }
     combinations += fmt::format("{}{{{}}}", combinations.empty() ? "" : ", ", factors);
   }
-  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": [{}]}})", observability.rank,
-                     json_number(observability.condition), combinations);
+  std::string hold;
+  for (const int p : observability.hold) {
+    hold += (hold.empty() ? "" : ", ") + json_string(table[p].name);
+  }
+  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": [{}], "hold": [{}]}})",
+                     observability.rank, json_number(observability.condition), combinations, hold);
+}
+
+[[nodiscard]] inline std::string json(const BlockNoise& noise, const HeldOutError* error) {
+  return fmt::format(
+      R"({{"name": {}, "unit": {}, "sigma": {}, "robust_sigma": {}, "sigma_given": {}, )"
+      R"("fitted": {}, "held_out": {}}})",
+      json_string(noise.block), json_string(noise.unit), json_number(noise.sigma),
+      json_number(noise.robust), noise.given > 0.0 ? json_number(noise.given) : "null",
+      error == nullptr ? "null" : json_number(error->fitted),
+      error == nullptr ? "null" : json_number(error->held_out));
+}
+
+[[nodiscard]] inline std::string json(const LeftOutSample& sample) {
+  return fmt::format(R"({{"sample": {}, "source": {}, "why": {}}})", sample.number,
+                     json_string(sample.source), json_string(sample.why));
+}
+
+[[nodiscard]] inline std::string json(const PoseUncertainty& pose) {
+  return fmt::format(
+      R"({{"frame": {}, "in": {}, "position": {}, "rotation": {}, "worst_position": {}, )"
+      R"("worst_rotation": {}, "determined": {}}})",
+      json_string(pose.frame), json_string(pose.in), json_number(pose.position),
+      json_number(pose.rotation), json_number(pose.worst_position),
+      json_number(pose.worst_rotation), pose.determined);
+}
+
+[[nodiscard]] inline std::string json_parameter(const Findings& findings, int i) {
+  const Parameter& parameter = findings.result.table[i];
+  const auto deviation = deviation_of(findings, i);
+  const bool known = deviation && std::isfinite(*deviation);
+  return fmt::format(
+      R"({{"name": {}, "value": {}, "initial": {}, "unit": {}, "sigma": {}, "significant": {}}})",
+      json_string(parameter.name), json_number(parameter.value), json_number(parameter.initial),
+      json_string(parameter.unit), known ? json_number(*deviation) : "null",
+      known && note_on(parameter, *deviation).empty());
+}
+
+[[nodiscard]] inline std::string json_capture(const Findings& findings, const Assessment& step,
+                                              const CaptureError& error) {
+  const auto sample = static_cast<std::size_t>(error.sample);
+  return json({findings.numbers[sample], findings.sources[sample], capture_text(error, step)});
 }
 
 /// "[\n    a,\n    b\n  ]"
@@ -83,17 +123,67 @@ template <class Items, class Write>
 
 }  // namespace detail
 
-KINECAL_INLINE std::string json_report(const CalibrationResult& result,
-                                       const std::vector<Observability>& observability) {
+KINECAL_INLINE std::string json_report(const Findings& findings) {
   const auto write = [](const auto& item) { return detail::json(item); };
+  const CalibrationResult& result = findings.result;
+  const Assessment none, &last = findings.assessments.empty() ? none : findings.assessments.back();
+  std::vector<CaptureError> bad;
+  for (const CaptureError& error : last.captures) {
+    if (error.bad) bad.push_back(error);
+  }
+  const auto noise = [&](const BlockNoise& of) {
+    return detail::json(of, detail::of_block(findings.assessments, &Assessment::held_out, of.block));
+  };
+  const auto observability = [&](const Assessment& step) {
+    return detail::json(step.observability, result.table);
+  };
   return fmt::format(
-      "{{\n  \"converged\": {},\n  \"termination\": {},\n  \"steps\": {},\n"
-      "  \"error_blocks\": {},\n  \"parameters\": {},\n  \"observability\": {}\n}}\n",
-      result.converged, detail::json_string(result.termination),
-      detail::json_list(result.steps, write), detail::json_list(result.blocks, write),
-      detail::json_list(result.calibrated, [&](int i) { return detail::json(result.table[i]); }),
-      detail::json_list(observability,
-                        [&](const auto& item) { return detail::json(item, result.table); }));
+      "{{\n  \"verdict\": {},\n  \"reasons\": {},\n  \"converged\": {},\n  \"termination\": {},\n"
+      "  \"steps\": {},\n  \"error_blocks\": {},\n  \"noise\": {},\n  \"parameters\": {},\n"
+      "  \"pose\": {},\n  \"observability\": {},\n  \"bad_samples\": {},\n"
+      "  \"left_out\": {}\n}}\n",
+      detail::json_string(to_string(findings.judgement.verdict)),
+      detail::json_list(findings.judgement.reasons, detail::json_string), result.converged,
+      detail::json_string(result.termination), detail::json_list(result.steps, write),
+      detail::json_list(result.blocks, write), detail::json_list(last.noise, noise),
+      detail::json_list(result.calibrated,
+                        [&](int i) { return detail::json_parameter(findings, i); }),
+      last.pose ? detail::json(*last.pose) : "null",
+      detail::json_list(findings.assessments, observability),
+      detail::json_list(bad,
+                        [&](const CaptureError& error) {
+                          return detail::json_capture(findings, last, error);
+                        }),
+      detail::json_list(findings.left_out, write));
+}
+
+KINECAL_INLINE std::string residuals_csv(const Calibration& calibration,
+                                         const Findings& findings) {
+  std::string text = "error_block,sample,source,feature,unit,distance,residual\n";
+  if (findings.result.steps.empty()) return text;
+  const AnyProblem& problem = *calibration.steps[findings.result.steps.size() - 1].problem;
+  const Eigen::VectorXd values = findings.result.table.values();
+  const auto quoted = [](const std::string& name) {
+    if (name.find_first_of(",\"\n") == std::string::npos) return name;
+    std::string all = "\"";
+    for (const char c : name) all += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return all + "\"";
+  };
+  (void)evaluate(problem, {values.data(), static_cast<std::size_t>(values.size())}, nullptr,
+                 [&](int t, int sample, const TermResiduals& rows) {
+    const AnyTerm& term = problem.term(t);
+    const int size = term.feature_size();
+    for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
+      const auto r = rows.residual.segment(row, size);
+      text += fmt::format("{},{},{},{},{},{}", quoted(term.name()),
+                          findings.numbers[static_cast<std::size_t>(sample)],
+                          quoted(problem.source(sample)), row / size + 1, term.options().unit,
+                          r.norm());
+      for (Eigen::Index i = 0; i < size; ++i) text += fmt::format(",{}", r(i));
+      text += "\n";
+    }
+  });
+  return text;
 }
 
 }  // namespace kinecal

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/linkage.hpp"
@@ -38,12 +39,6 @@ class TextTable {
 /// The name of that unit; "-" for a residual without unit.
 [[nodiscard]] std::string reading_unit(const std::string& unit);
 
-/// Each error block before and after: rms of its components, median and maximum of its features.
-[[nodiscard]] std::string error_block_table(const CalibrationResult& result);
-
-/// Each calibrated parameter: its value in degrees, mm or %, and as it is stored.
-[[nodiscard]] std::string parameter_table(const CalibrationResult& result);
-
 /// Two lines for each step: what it did and why it stopped.
 [[nodiscard]] std::string step_lines(const CalibrationResult& result);
 
@@ -51,19 +46,18 @@ class TextTable {
 /// "solving 0.0006 s (4 iterations, 1.2 million samples a second, x86-64-v4)".
 [[nodiscard]] std::string solving_text(const CalibrationResult& result);
 
-/// Parameters that ended at a bound of their step.
-[[nodiscard]] std::vector<std::string> active_bounds(const Calibration& calibration,
-                                                     const CalibrationResult& result);
-
-/// The combinations of parameters that a step's samples leave unobservable, one per line; empty if
-/// all are observable.
+/// The combinations of parameters that a step's samples leave unobservable, one per line, and the
+/// parameters to hold so that none is left; empty if all are observable.
 [[nodiscard]] std::string observability_text(const std::string& step,
                                              const Observability& observability,
                                              const ParameterTable& table);
 
-/// Values that are too large for a good calibration: offsets of more than 0.5 rad, corrections of
-/// more than 0.2 m, a depth offset of more than 0.1 m, intrinsics off by more than a fifth.
-[[nodiscard]] std::vector<std::string> suspicious_values(const CalibrationResult& result);
+namespace detail {
+
+/// A value in the unit that people read, and the unit: degrees for "rad", mm for "m", % for "1".
+[[nodiscard]] std::pair<std::string, std::string> for_people(double value, const std::string& unit);
+
+}  // namespace detail
 
 }  // namespace kinecal
 

@@ -42,36 +42,14 @@ KINECAL_INLINE std::string reading_unit(const std::string& unit) {
 namespace detail {
 
 /// "1.234 deg", "5.678 mm" or "0.910 %".
-[[nodiscard]] inline std::string for_people(double value, const std::string& unit) {
-  if (unit == "rad") return fmt::format("{:.3f} deg", value * 180.0 / std::numbers::pi);
-  if (unit == "m") return fmt::format("{:.3f} mm", 1e3 * value);
-  return fmt::format("{:.3f} %", 1e2 * value);
+KINECAL_INLINE std::pair<std::string, std::string> for_people(double value,
+                                                              const std::string& unit) {
+  if (unit == "rad") return {fmt::format("{:.3f}", value * 180.0 / std::numbers::pi), "deg"};
+  if (unit == "m") return {fmt::format("{:.3f}", 1e3 * value), "mm"};
+  return {fmt::format("{:.3f}", 1e2 * value), "%"};
 }
 
 }  // namespace detail
-
-KINECAL_INLINE std::string error_block_table(const CalibrationResult& result) {
-  TextTable table(
-      {"error block", "features", "unit", "rms", "->", "", "median", "->", "", "max", "->", ""});
-  for (const BlockStatistics& block : result.blocks) {
-    const auto text = [&](double value) { return in_reading_unit(value, block.unit); };
-    table.add({block.name, fmt::format("{}", block.count), reading_unit(block.unit),
-               text(block.before.rms), "->", text(block.after.rms), text(block.before.median), "->",
-               text(block.after.median), text(block.before.max), "->", text(block.after.max)});
-  }
-  return table.str();
-}
-
-KINECAL_INLINE std::string parameter_table(const CalibrationResult& result) {
-  TextTable table({"parameter", "calibrated", "value", "from"});
-  for (const int i : result.calibrated) {
-    const Parameter& parameter = result.table[i];
-    const std::string pad = parameter.unit == "1" ? "  " : parameter.unit == "m" ? " " : "";
-    table.add({parameter.name, detail::for_people(parameter.value, parameter.unit) + pad,
-               fmt::format("{:.8g}", parameter.value), fmt::format("{:.8g}", parameter.initial)});
-  }
-  return table.str();
-}
 
 KINECAL_INLINE std::string step_lines(const CalibrationResult& result) {
   std::string text;
@@ -101,23 +79,6 @@ KINECAL_INLINE std::string solving_text(const CalibrationResult& result) {
                      evaluation_of_library().instruction_set, form);
 }
 
-KINECAL_INLINE std::vector<std::string> active_bounds(const Calibration& calibration,
-                                                      const CalibrationResult& result) {
-  std::vector<std::string> lines;
-  for (const CalibrationStep& step : calibration.steps) {
-    for (const int p : step.free.parameters()) {
-      const Parameter& parameter = step.problem->table()[p];
-      const double value = result.table[p].value;
-      constexpr double kAtBound = 1e-9;
-      const double near = kAtBound * (1e-3 + std::abs(value));
-      if (value > parameter.lower + near && value < parameter.upper - near) continue;
-      lines.push_back(
-          fmt::format("step '{}': '{}' ended at its bound {}", step.name, parameter.name, value));
-    }
-  }
-  return lines;
-}
-
 KINECAL_INLINE std::string observability_text(const std::string& step,
                                               const Observability& observability,
                                               const ParameterTable& table) {
@@ -126,37 +87,24 @@ KINECAL_INLINE std::string observability_text(const std::string& step,
   std::string text = fmt::format(
       "step '{}': {} of {} parameter combinations are observable from these samples; along the "
       "other{} "
-      "no residual changes, and priors or initial values decide",
+      "no residual changes, and priors or initial values decide\n",
       step, observability.rank, static_cast<std::size_t>(observability.rank) + unknown,
       unknown == 1 ? "" : "s");
-  for (const Combination& combination : observability.unobservable) {
-    text += "\n   ";
-    constexpr std::size_t kListed = 6;
-    for (std::size_t i = 0; i < std::min(kListed, combination.size()); ++i) {
+  constexpr std::size_t kCombinations = 4, kParameters = 3;
+  for (std::size_t c = 0; c < std::min(kCombinations, unknown); ++c) {
+    const Combination& combination = observability.unobservable[c];
+    text += "   ";
+    for (std::size_t i = 0; i < std::min(kParameters, combination.size()); ++i) {
       const auto& [parameter, factor] = combination[i];
       text += fmt::format(" {:+.3g} {}", factor, table[parameter].name);
     }
-    if (combination.size() > kListed) text += " ...";
+    text += combination.size() > kParameters ? " ...\n" : "\n";
   }
-  return text;
-}
-
-KINECAL_INLINE std::vector<std::string> suspicious_values(const CalibrationResult& result) {
-  std::vector<std::string> lines;
-  for (const int i : result.calibrated) {
-    const Parameter& parameter = result.table[i];
-    const double change = std::abs(parameter.value - parameter.initial);
-    const bool depth = parameter.name.ends_with("_z_offset");
-    const double limit = parameter.unit == "rad" ? 0.5
-                         : parameter.unit == "m" ? (depth ? 0.1 : 0.2)
-                                                 : 0.2;
-    if (change <= limit) continue;
-    lines.push_back(fmt::format(
-        "'{}' changed by {}: is the URDF or the initial value wrong, or do "
-        "these samples not determine it?",
-        parameter.name, detail::for_people(parameter.value - parameter.initial, parameter.unit)));
-  }
-  return lines;
+  if (unknown > kCombinations) text += fmt::format("    and {} more\n", unknown - kCombinations);
+  if (observability.hold.empty()) return text;
+  text += "  to have all others determined, hold";
+  for (const int parameter : observability.hold) text += " " + table[parameter].name;
+  return text + "\n";
 }
 
 }  // namespace kinecal

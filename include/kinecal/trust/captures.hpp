@@ -28,6 +28,7 @@ struct CaptureError {
   double distance = 0.0;  ///< from the fit without bad samples, unit of the residual
   double others = 0.0;    ///< the largest distance of the sample's other features of the block
   double times = 0.0;     ///< distance in standard deviations of the noise
+  double limit = 0.0;     ///< of `times`: beyond it a feature is bad
   bool bad = false;       ///< beyond the limit
   double influence = 0.0;  ///< how far the parameters move without the sample: sqrt(dz^T H dz / size),
                            ///< 1: by their own uncertainty

@@ -144,6 +144,7 @@ class CaptureSearch {
       if (so_far > of.times) {
         of.others = of.term == f.term ? std::max(of.others, of.distance) : 0.0;
         of.times = so_far;
+        of.limit = limit(f);
         of.term = f.term;
         of.feature = f.number;
         of.distance = d;

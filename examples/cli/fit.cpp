@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fit.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "kinecal/io/assemble.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// The samples that are used, by number from 0, and those that are not.
+class Selection {
+ public:
+  explicit Selection(const std::vector<Sample>& all) : all_(all) {}
+
+  void leave_out(int sample, const std::string& why) {
+    const auto s = static_cast<std::size_t>(sample);
+    left_out_.push_back({sample + 1, all_[s].source, why});
+    left_.insert(sample);
+  }
+  [[nodiscard]] std::vector<int> used() const {
+    std::vector<int> numbers;
+    for (int i = 0; i < static_cast<int>(all_.size()); ++i) {
+      if (!left_.contains(i)) numbers.push_back(i);
+    }
+    return numbers;
+  }
+  [[nodiscard]] const std::vector<LeftOutSample>& left_out() const { return left_out_; }
+
+ private:
+  const std::vector<Sample>& all_;
+  std::set<int> left_;
+  std::vector<LeftOutSample> left_out_;
+};
+
+Fit fit_samples(const Input& input, const Selection& selection, const CalibrateOptions& options,
+                const Progress& progress, const SolveOptions& solving) {
+  Fit fitted;
+  std::vector<int> numbers;
+  for (const int i : selection.used()) {
+    fitted.samples.push_back(input.samples[static_cast<std::size_t>(i)]);
+    numbers.push_back(i + 1);
+  }
+  Diagnostics diagnostics;  // warnings have been printed
+  fitted.calibration = assemble(input.config, input.robot, fitted.samples, diagnostics);
+  diagnostics.throw_if_errors();
+  AssessOptions assessing;
+  assessing.folds = options.folds > 0 ? options.folds : static_cast<int>(fitted.samples.size());
+  fitted.findings = find(input.robot, fitted.calibration,
+                         kinecal::calibrate(fitted.calibration, progress, solving),
+                         fitted.samples, assessing);
+  fitted.findings.numbers = std::move(numbers);
+  fitted.findings.left_out = selection.left_out();
+  return fitted;
+}
+
+/// Leaves out the ruined samples of a fit.
+/// @returns  false if there are none, or so many that rather the model is wrong
+bool leave_out_ruined(const Fit& fitted, Selection& selection) {
+  if (fitted.findings.assessments.empty()) return false;
+  const Assessment& last = fitted.findings.assessments.back();
+  std::vector<CaptureError> ruined;
+  for (const CaptureError& error : last.captures) {
+    constexpr double kRuined = 2.0;
+    if (error.bad && error.times > kRuined * error.limit) ruined.push_back(error);
+  }
+  constexpr double kMost = 0.25;
+  if (ruined.empty() ||
+      static_cast<double>(ruined.size()) > kMost * static_cast<double>(fitted.samples.size())) {
+    return false;
+  }
+  for (const CaptureError& error : ruined) {
+    selection.leave_out(fitted.findings.numbers[static_cast<std::size_t>(error.sample)] - 1,
+                        capture_text(error, last));
+  }
+  return true;
+}
+
+}  // namespace
+
+Fit fit(const Input& input, const CalibrateOptions& options, const Progress& progress,
+        const SolveOptions& solving) {
+  Selection selection(input.samples);
+  for (const int number : std::set<int>(options.exclude.begin(), options.exclude.end())) {
+    if (number < 1 || number > static_cast<int>(input.samples.size())) {
+      throw InputError(fmt::format("--exclude: no sample {}; there are samples 1 to {}", number,
+                                   input.samples.size()));
+    }
+    selection.leave_out(number - 1, "--exclude");
+  }
+  constexpr int kRounds = 5;
+  for (int round = 0;; ++round) {
+    Fit fitted = fit_samples(input, selection, options, progress, solving);
+    if (options.keep_outliers || round == kRounds || !fitted.findings.result.converged ||
+        !leave_out_ruined(fitted, selection)) {
+      return fitted;
+    }
+  }
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,26 @@
+// Calibrating, judging, and leaving out samples that do not fit the others.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/report/findings.hpp"
+
+namespace kinecal::cli {
+
+/// A calibration and what was found.
+struct Fit {
+  Calibration calibration;
+  std::vector<Sample> samples;  ///< those of the calibration
+  Findings findings;
+};
+
+/// Calibrates without the samples that the options exclude, and again without those of which a
+/// feature is off by more than twice CaptureError::limit, until there is none.
+/// @throws InputError  if a sample to exclude does not exist, or too few are left
+[[nodiscard]] Fit fit(const Input& input, const CalibrateOptions& options, const Progress& progress,
+                      const SolveOptions& solving);
+
+}  // namespace kinecal::cli

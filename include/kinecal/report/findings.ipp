@@ -1,0 +1,187 @@
+// Writing the report for people.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "kinecal/report/findings.hpp"
+#include "kinecal/report/text.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+[[nodiscard]] inline std::string verdict_text(const Findings& findings) {
+  const Judgement& judgement = findings.judgement;
+  std::string text = fmt::format("verdict: {}\n", to_string(judgement.verdict));
+  for (const std::string& reason : judgement.reasons) text += fmt::format("  - {}\n", reason);
+  return text;
+}
+
+[[nodiscard]] inline std::string fit_table(const Findings& findings) {
+  TextTable table({"error block", "features", "unit", "before", "fitted", "held out", "worst",
+                   "noise", "sigma given"});
+  for (const BlockStatistics& block : findings.result.blocks) {
+    const auto* noise = of_block(findings.assessments, &Assessment::noise, block.name);
+    if (noise == nullptr) continue;  // a prior
+    const auto* error = of_block(findings.assessments, &Assessment::held_out, block.name);
+    const auto text = [&](double value) { return in_reading_unit(value, block.unit); };
+    const double root = std::sqrt(static_cast<double>(noise->components));
+    table.add({block.name, fmt::format("{}", block.count), reading_unit(block.unit),
+               text(root * block.before.rms), text(root * block.after.rms),
+               error == nullptr || error->features == 0 ? "-" : text(error->held_out),
+               text(block.after.max), noise->freedom > 0.0 ? text(noise->sigma) : "-",
+               noise->given > 0.0 ? text(noise->given) : "-"});
+  }
+  return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
+         table.str();
+}
+
+KINECAL_INLINE std::string note_on(const Parameter& parameter, double deviation) {
+  if (!std::isfinite(deviation)) return "not determined";
+  if (std::abs(parameter.value - parameter.initial) < 2.0 * deviation) return "not significant";
+  return "";
+}
+
+KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int parameter) {
+  for (auto a = findings.assessments.rbegin(); a != findings.assessments.rend(); ++a) {
+    if (const auto deviation = a->deviation(parameter)) return deviation;
+  }
+  return std::nullopt;
+}
+
+[[nodiscard]] inline std::string parameters_table(const Findings& findings) {
+  TextTable table({"parameter", "calibrated", "+-", "unit", "value", "from", ""});
+  for (const int i : findings.result.calibrated) {
+    const Parameter& parameter = findings.result.table[i];
+    const auto deviation = deviation_of(findings, i);
+    const auto [text, unit] = for_people(parameter.value, parameter.unit);
+    const std::string known =
+        deviation && std::isfinite(*deviation) ? for_people(*deviation, parameter.unit).first : "-";
+    table.add({parameter.name, text, known, unit, fmt::format("{:.8g}", parameter.value),
+               fmt::format("{:.8g}", parameter.initial),
+               deviation ? note_on(parameter, *deviation) : "at its bound"});
+  }
+  std::string text = "Parameters, with one standard deviation\n" + table.str();
+  for (const Assessment& step : findings.assessments) {
+    if (!step.pose || &step != &findings.assessments.back()) continue;
+    const PoseUncertainty& pose = *step.pose;
+    text += fmt::format("\nPosition of '{}' in '{}': +- {}, {} at the worst pose of these samples\n",
+                        pose.frame, pose.in, reading(pose.position, "m"),
+                        reading(pose.worst_position, "m"));
+  }
+  return text;
+}
+
+[[nodiscard]] inline std::string correlations_text(const Findings& findings) {
+  std::string text;
+  if (findings.assessments.empty()) return text;
+  const Assessment& step = findings.assessments.back();
+  constexpr std::size_t kListed = 5;
+  const std::vector<Correlation> pairs = high_correlations(step.uncertainty);
+  for (std::size_t i = 0; i < std::min(kListed, pairs.size()); ++i) {
+    const auto name = [&](int column) {
+      return findings.result.table[step.parameters[static_cast<std::size_t>(column)]].name;
+    };
+    text += fmt::format("  {:+.3f}  {}, {}\n", pairs[i].coefficient, name(pairs[i].a),
+                        name(pairs[i].b));
+  }
+  if (pairs.size() > kListed) text += fmt::format("  and {} more\n", pairs.size() - kListed);
+  return text.empty() ? text : "Correlated above 0.9: hard to tell apart\n" + text;
+}
+
+[[nodiscard]] inline std::string captures_text(const Findings& findings) {
+  std::string text;
+  for (const LeftOutSample& sample : findings.left_out) {
+    text += fmt::format("  {} (sample {}): {}; left out\n", sample.source, sample.number, sample.why);
+  }
+  if (findings.assessments.empty()) return text;
+  const Assessment& step = findings.assessments.back();
+  std::vector<CaptureError> worst = step.captures;
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const auto& a, const auto& b) { return a.times > b.times; });
+  constexpr std::size_t kWorst = 3;
+  for (std::size_t i = 0; i < worst.size() && (worst[i].bad || i < kWorst); ++i) {
+    if (!(worst[i].times > 0.0)) break;
+    const auto sample = static_cast<std::size_t>(worst[i].sample);
+    text += fmt::format("  {} (sample {}): {}{}\n", findings.sources[sample],
+                        findings.numbers[sample], capture_text(worst[i], step),
+                        worst[i].bad ? "; does not fit the others" : "");
+  }
+  return text.empty() ? text : "Worst samples\n" + text;
+}
+
+[[nodiscard]] inline std::string next_text(const Findings& findings) {
+  if (findings.judgement.verdict == Grade::do_not_use) {
+    return "Next: mend what the verdict names and calibrate again; nothing was written\n";
+  }
+  std::string idle;
+  for (const Assessment& step : findings.assessments) {
+    if (&step != &findings.assessments.back()) continue;
+    for (const IdleGroup& group : step.idle) idle += (idle.empty() ? "" : ", ") + group.owner;
+  }
+  if (!idle.empty()) {
+    return "Next: " + idle + " may as well be held: freeing them predicts no better\n";
+  }
+  return findings.judgement.verdict == Grade::good
+             ? "Next: kinecal install, and verify the result with a few new poses\n"
+             : "Next: record more samples, or verify the result with a few new poses\n";
+}
+
+}  // namespace detail
+
+KINECAL_INLINE Findings find(const Robot& robot, const Calibration& calibration,
+                             CalibrationResult result, std::span<const Sample> samples,
+                             const AssessOptions& options,
+                             const std::vector<std::string>& doubts) {
+  Findings findings;
+  findings.robot = robot.name();
+  findings.result = std::move(result);
+  for (const Sample& sample : samples) findings.sources.push_back(sample.source);
+  findings.numbers.resize(samples.size());
+  std::iota(findings.numbers.begin(), findings.numbers.end(), 1);
+  const std::vector<StepResult>& steps = findings.result.steps;
+  if (findings.result.converged || (!steps.empty() && steps.back().iterations > 0)) {
+    try {
+      findings.assessments = assess(calibration, findings.result, samples, options);
+    } catch (const std::domain_error&) {  // it ended with a point behind a camera: not converged
+    }
+  }
+  findings.judgement = judge(calibration, findings.result, findings.assessments, doubts);
+  return findings;
+}
+
+KINECAL_INLINE std::string capture_text(const CaptureError& error, const Assessment& assessment) {
+  const BlockNoise& noise = assessment.noise[static_cast<std::size_t>(error.term)];
+  std::string text = fmt::format("error block '{}': feature {} is {} off", noise.block,
+                                 error.feature + 1, reading(error.distance, noise.unit));
+  if (error.others > 0.0) {
+    text += fmt::format(", all others at most {}", reading(error.others, noise.unit));
+  }
+  return text + fmt::format(", {:.1f} times the noise", error.times);
+}
+
+KINECAL_INLINE std::string summary_text(const Findings& findings) {
+  std::string text = detail::verdict_text(findings);
+  text += fmt::format("\nRobot '{}', {} sample{}", findings.robot, findings.sources.size(),
+                      findings.sources.size() == 1 ? "" : "s");
+  if (!findings.left_out.empty()) text += fmt::format(", {} left out", findings.left_out.size());
+  text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_table(findings);
+  for (const Assessment& step : findings.assessments) {
+    const std::string open =
+        observability_text(step.step, step.observability, findings.result.table);
+    if (!open.empty()) text += "\n" + open;
+  }
+  for (const std::string& part :
+       {detail::correlations_text(findings), detail::captures_text(findings)}) {
+    if (!part.empty()) text += "\n" + part;
+  }
+  return text + "\n" + detail::next_text(findings) + "\n" + step_lines(findings.result);
+}
+
+}  // namespace kinecal
