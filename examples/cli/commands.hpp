@@ -15,12 +15,12 @@ struct CalibrateOptions {
   std::vector<std::string> samples;
   std::vector<std::string> cameras;  ///< NAME=FILE
   std::string offsets = "rising";
-  std::string report;              ///< report.json is written there, too, whatever the verdict
-  std::vector<int> exclude;        ///< samples to leave out, from 1
-  bool keep_outliers = false;      ///< use samples that do not fit the others
+  std::string report;          ///< report.json is written there, too, whatever the verdict
+  std::vector<int> exclude;    ///< samples to leave out, from 1
+  bool keep_outliers = false;  ///< use samples that do not fit the others
   bool upstream_names = false;
   bool dry_run = false;
-  int folds = 5;  ///< for held-out errors; 0: leave-one-out
+  int folds = 5;    ///< for held-out errors; 0: leave-one-out
   int threads = 0;  ///< zero: one per core
   std::string cost = "compressed";
 };

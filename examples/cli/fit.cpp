@@ -50,9 +50,9 @@ Fit fit_samples(const Input& input, const Selection& selection, const CalibrateO
   diagnostics.throw_if_errors();
   AssessOptions assessing;
   assessing.folds = options.folds > 0 ? options.folds : static_cast<int>(fitted.samples.size());
-  fitted.findings = find(input.robot, fitted.calibration,
-                         kinecal::calibrate(fitted.calibration, progress, solving),
-                         fitted.samples, assessing);
+  fitted.findings =
+      find(input.robot, fitted.calibration,
+           kinecal::calibrate(fitted.calibration, progress, solving), fitted.samples, assessing);
   fitted.findings.numbers = std::move(numbers);
   fitted.findings.left_out = selection.left_out();
   return fitted;

@@ -132,8 +132,7 @@ int calibrate(const RobotExample& example, const Options& options) {
   if (findings.judgement.verdict == Grade::do_not_use) return kNotGood;
   if (folder) {
     const cli::UrdfFile urdf{example.urdf, read_urdf_text(example.urdf)};
-    cli::write(*folder,
-               cli::output_files(example.robot, urdf, calibration, findings, samples));
+    cli::write(*folder, cli::output_files(example.robot, urdf, calibration, findings, samples));
   }
   if (!simulation) return kGood;
   if (is_as_good_as_the_truth(hold_out(example, *simulation, options, result))) return kGood;

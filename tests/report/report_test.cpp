@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <limits>
+
+#include "kinecal/report/findings.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
 
@@ -10,11 +13,13 @@ namespace {
 
 using testing::HasSubstr;
 
-CalibrationResult result() {
-  CalibrationResult r;
+Findings findings() {
+  Findings all;
+  all.robot = "arm";
+  CalibrationResult& r = all.result;
   r.converged = true;
   r.termination = "converged: \"enough\"\n";
-  r.steps.push_back({"one", true, "converged", 5, 2.0, 0.125, 0.001, 30, 2});
+  r.steps.push_back({"one", true, "converged", 5, 2.0, 0.125, 0.001, 30, 3});
   r.blocks.push_back({"hand_eye",
                       "chain3d_to_chain3d",
                       "m",
@@ -23,23 +28,73 @@ CalibrationResult result() {
                       {0.001, 0.002, 0.003, 0.004}});
   r.table.add({.name = "elbow", .unit = "rad", .initial = 0.0, .value = 0.1});
   r.table.add({.name = "camera_z_offset", .unit = "m", .initial = 0.0, .value = 0.25});
-  r.calibrated = {0, 1};
-  return r;
+  r.table.add({.name = "wrist", .unit = "rad", .initial = 0.0, .value = 0.01});
+  r.calibrated = {0, 1, 2};
+  Assessment& step = all.assessments.emplace_back();
+  step.step = "one";
+  step.observability = {2, 2.5, {{{0, 1.0}, {1, -0.5}}}, {1}};
+  step.noise = {{.block = "hand_eye",
+                 .unit = "m",
+                 .features = 10,
+                 .components = 3,
+                 .freedom = 27.0,
+                 .given = 0.002,
+                 .sigma = 0.0011,
+                 .robust = 0.0010,
+                 .unit_sigma = 0.002}};
+  step.parameters = {0, 1, 2};
+  step.uncertainty.covariance = Eigen::Vector3d(1e-4, 1.0, 1e-4).asDiagonal();
+  step.uncertainty.deviation = Eigen::Vector3d(0.01, std::numeric_limits<double>::infinity(), 0.01);
+  step.held_out = {{"hand_eye", "m", 10, 0.0017, 0.0021}};
+  step.captures = {{.sample = 0, .times = 1.0},
+                   {.sample = 1,
+                    .feature = 1,
+                    .distance = 0.048,
+                    .others = 0.003,
+                    .times = 43.0,
+                    .limit = 6.0,
+                    .bad = true}};
+  step.pose = PoseUncertainty{.frame = "hand", .in = "camera", .position = 0.0005};
+  all.sources = {"samples.yaml:1", "samples.yaml:40"};
+  all.numbers = {1, 3};
+  all.left_out = {{2, "samples.yaml:20", "--exclude"}};
+  all.judgement.add(Grade::use_with_care, "few \"samples\"");
+  return all;
 }
 
 TEST(JsonReport, IsReadBackAsItWasWritten) {
-  // JSON is YAML.
-  const YAML::Node json = YAML::Load(json_report(result(), {{1, 2.5, {{{0, 1.0}, {1, -0.5}}}}}));
+  const YAML::Node json = YAML::Load(json_report(findings()));  // JSON is YAML
+  EXPECT_EQ(json["verdict"].as<std::string>(), "use with care");
+  EXPECT_EQ(json["reasons"][0].as<std::string>(), "few \"samples\"");
   EXPECT_TRUE(json["converged"].as<bool>());
   EXPECT_EQ(json["termination"].as<std::string>(), "converged: \"enough\"\n");
   EXPECT_EQ(json["steps"][0]["initial_cost"].as<double>(), 2.0);
   EXPECT_EQ(json["steps"][0]["num_residuals"].as<int>(), 30);
   EXPECT_EQ(json["error_blocks"][0]["after"]["median"].as<double>(), 0.003);
+  EXPECT_EQ(json["noise"][0]["sigma"].as<double>(), 0.0011);
+  EXPECT_EQ(json["noise"][0]["sigma_given"].as<double>(), 0.002);
+  EXPECT_EQ(json["noise"][0]["held_out"].as<double>(), 0.0021);
   EXPECT_EQ(json["parameters"][0]["name"].as<std::string>(), "elbow");
   EXPECT_EQ(json["parameters"][0]["value"].as<double>(), 0.1);
-  EXPECT_EQ(json["parameters"][1]["unit"].as<std::string>(), "m");
-  EXPECT_EQ(json["observability"][0]["rank"].as<int>(), 1);
+  EXPECT_EQ(json["parameters"][0]["sigma"].as<double>(), 0.01);
+  EXPECT_TRUE(json["parameters"][0]["significant"].as<bool>());
+  EXPECT_TRUE(json["parameters"][1]["sigma"].IsNull());
+  EXPECT_FALSE(json["parameters"][2]["significant"].as<bool>());
+  EXPECT_EQ(json["pose"]["position"].as<double>(), 0.0005);
+  EXPECT_EQ(json["observability"][0]["rank"].as<int>(), 2);
   EXPECT_EQ(json["observability"][0]["unobservable"][0]["camera_z_offset"].as<double>(), -0.5);
+  EXPECT_EQ(json["observability"][0]["hold"][0].as<std::string>(), "camera_z_offset");
+  EXPECT_EQ(json["bad_samples"][0]["sample"].as<int>(), 3);
+  EXPECT_EQ(json["left_out"][0]["source"].as<std::string>(), "samples.yaml:20");
+}
+
+TEST(JsonReport, IsWrittenOfARunThatDidNotEnd) {
+  Findings failed;
+  failed.judgement.add(Grade::do_not_use, "failed");
+  const YAML::Node json = YAML::Load(json_report(failed));
+  EXPECT_EQ(json["verdict"].as<std::string>(), "do not use");
+  EXPECT_TRUE(json["pose"].IsNull());
+  EXPECT_THAT(summary_text(failed), testing::StartsWith("verdict: do not use\n  - failed\n"));
 }
 
 TEST(JsonReport, WritesNullForNotANumber) {
@@ -48,15 +103,26 @@ TEST(JsonReport, WritesNullForNotANumber) {
   EXPECT_EQ(detail::json_string("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
 }
 
-TEST(TextReport, ShowsMillimetresAndDegrees) {
-  EXPECT_THAT(error_block_table(result()), HasSubstr("10.000  ->  1.000"));
-  EXPECT_THAT(parameter_table(result()), HasSubstr("5.730 deg"));
-  EXPECT_THAT(parameter_table(result()), HasSubstr("250.000 mm"));
-  EXPECT_THAT(step_lines(result()), HasSubstr("2 parameters, 30 residuals"));
+TEST(Summary, BeginsWithTheVerdictAndShowsDistancesAndDeviations) {
+  const std::string text = summary_text(findings());
+  EXPECT_THAT(text, testing::StartsWith("verdict: use with care\n  - few \"samples\"\n"));
+  EXPECT_THAT(text, HasSubstr("Robot 'arm', 2 samples, 1 left out"));
+  EXPECT_THAT(text,
+              HasSubstr("17.321   1.732     2.100  4.000  1.100        2.000"));  // rms * sqrt 3
+  EXPECT_THAT(text, HasSubstr("elbow                 5.730  0.573   deg"));
+  EXPECT_THAT(text, HasSubstr("not determined"));
+  EXPECT_THAT(text, HasSubstr("not significant"));
+  EXPECT_THAT(text, HasSubstr("Position of 'hand' in 'camera': +- 0.5 mm"));
+  EXPECT_THAT(text, HasSubstr("hold camera_z_offset"));
+  EXPECT_THAT(text, HasSubstr("samples.yaml:40 (sample 3): error block 'hand_eye': feature 2 is "
+                              "48 mm off, all others at most 3 mm, 43.0 times the noise; does not "
+                              "fit the others"));
+  EXPECT_THAT(text, HasSubstr("samples.yaml:20 (sample 2): --exclude; left out"));
+  EXPECT_THAT(text, HasSubstr("3 parameters, 30 residuals"));
 }
 
 TEST(TextReport, SaysWhatSolvingTook) {
-  CalibrationResult r = result();
+  CalibrationResult r = findings().result;
   r.steps[0].samples = 100;
   r.steps[0].evaluations = 12;
   r.steps.push_back(r.steps[0]);  // both steps: 10 iterations, 2400 samples in 2 ms
@@ -68,18 +134,13 @@ TEST(TextReport, SaysWhatSolvingTook) {
   EXPECT_THAT(solving_text({}), HasSubstr("solving 0.0000 s (0 iterations, 0 million"));
 }
 
-TEST(TextReport, NamesUnobservableCombinations) {
-  const auto table = result().table;
-  EXPECT_EQ(observability_text("one", {2, 1.0, {}}, table), "");
-  const std::string text = observability_text("one", {1, 2.5, {{{0, 1.0}, {1, -0.5}}}}, table);
+TEST(TextReport, NamesUnobservableCombinationsAndWhatToHold) {
+  const auto table = findings().result.table;
+  EXPECT_EQ(observability_text("one", {2, 1.0, {}, {}}, table), "");
+  const std::string text = observability_text("one", {1, 2.5, {{{0, 1.0}, {1, -0.5}}}, {1}}, table);
   EXPECT_THAT(text, HasSubstr("1 of 2 parameter combinations are observable"));
   EXPECT_THAT(text, HasSubstr("+1 elbow -0.5 camera_z_offset"));
-}
-
-TEST(TextReport, WarnsOfADepthOffsetOfAQuarterMetre) {
-  const auto lines = suspicious_values(result());
-  ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0], HasSubstr("'camera_z_offset'"));
+  EXPECT_THAT(text, HasSubstr("hold camera_z_offset"));
 }
 
 TEST(Statistics, AreThoseOfTheDefinition) {

@@ -16,12 +16,12 @@ namespace kinecal {
 
 /// How a term enters the cost and reports.
 struct TermOptions {
-  double weight = 1.0;     ///< factor of the residual: scale / sigma
-  double sigma = 1.0;      ///< the standard deviation in `weight`: the weight of a feature that has
-                           ///< its own is weight * sigma / Feature::sigma
+  double weight = 1.0;  ///< factor of the residual: scale / sigma
+  double sigma = 1.0;   ///< the standard deviation in `weight`: the weight of a feature that has
+                        ///< its own is weight * sigma / Feature::sigma
   bool sigma_given = false;  ///< somebody stated `sigma`: the residuals are compared with it
-  Loss loss = {};          ///< of each feature's weighted residual
-  bool exclusive = false;  ///< use only samples in which no other sensor observes anything
+  Loss loss = {};            ///< of each feature's weighted residual
+  bool exclusive = false;    ///< use only samples in which no other sensor observes anything
   /// Use only samples with an observation of this sensor, too; empty: all samples.  It need not be a
   /// sensor of the problem, and does not count for `exclusive`: "ground" marks samples of the floor.
   std::string beside = {};

@@ -71,9 +71,9 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
   for (const Assessment& step : findings.assessments) {
     if (!step.pose || &step != &findings.assessments.back()) continue;
     const PoseUncertainty& pose = *step.pose;
-    text += fmt::format("\nPosition of '{}' in '{}': +- {}, {} at the worst pose of these samples\n",
-                        pose.frame, pose.in, reading(pose.position, "m"),
-                        reading(pose.worst_position, "m"));
+    text += fmt::format(
+        "\nPosition of '{}' in '{}': +- {}, {} at the worst pose of these samples\n", pose.frame,
+        pose.in, reading(pose.position, "m"), reading(pose.worst_position, "m"));
   }
   return text;
 }
@@ -98,7 +98,8 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
 [[nodiscard]] inline std::string captures_text(const Findings& findings) {
   std::string text;
   for (const LeftOutSample& sample : findings.left_out) {
-    text += fmt::format("  {} (sample {}): {}; left out\n", sample.source, sample.number, sample.why);
+    text +=
+        fmt::format("  {} (sample {}): {}; left out\n", sample.source, sample.number, sample.why);
   }
   if (findings.assessments.empty()) return text;
   const Assessment& step = findings.assessments.back();
@@ -109,9 +110,9 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
   for (std::size_t i = 0; i < worst.size() && (worst[i].bad || i < kWorst); ++i) {
     if (!(worst[i].times > 0.0)) break;
     const auto sample = static_cast<std::size_t>(worst[i].sample);
-    text += fmt::format("  {} (sample {}): {}{}\n", findings.sources[sample],
-                        findings.numbers[sample], capture_text(worst[i], step),
-                        worst[i].bad ? "; does not fit the others" : "");
+    text +=
+        fmt::format("  {} (sample {}): {}{}\n", findings.sources[sample], findings.numbers[sample],
+                    capture_text(worst[i], step), worst[i].bad ? "; does not fit the others" : "");
   }
   return text.empty() ? text : "Worst samples\n" + text;
 }
@@ -137,8 +138,7 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
 
 KINECAL_INLINE Findings find(const Robot& robot, const Calibration& calibration,
                              CalibrationResult result, std::span<const Sample> samples,
-                             const AssessOptions& options,
-                             const std::vector<std::string>& doubts) {
+                             const AssessOptions& options, const std::vector<std::string>& doubts) {
   Findings findings;
   findings.robot = robot.name();
   findings.result = std::move(result);

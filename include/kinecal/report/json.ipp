@@ -132,7 +132,8 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
     if (error.bad) bad.push_back(error);
   }
   const auto noise = [&](const BlockNoise& of) {
-    return detail::json(of, detail::of_block(findings.assessments, &Assessment::held_out, of.block));
+    return detail::json(of,
+                        detail::of_block(findings.assessments, &Assessment::held_out, of.block));
   };
   const auto observability = [&](const Assessment& step) {
     return detail::json(step.observability, result.table);
@@ -150,15 +151,13 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
                         [&](int i) { return detail::json_parameter(findings, i); }),
       last.pose ? detail::json(*last.pose) : "null",
       detail::json_list(findings.assessments, observability),
-      detail::json_list(bad,
-                        [&](const CaptureError& error) {
-                          return detail::json_capture(findings, last, error);
-                        }),
+      detail::json_list(
+          bad,
+          [&](const CaptureError& error) { return detail::json_capture(findings, last, error); }),
       detail::json_list(findings.left_out, write));
 }
 
-KINECAL_INLINE std::string residuals_csv(const Calibration& calibration,
-                                         const Findings& findings) {
+KINECAL_INLINE std::string residuals_csv(const Calibration& calibration, const Findings& findings) {
   std::string text = "error_block,sample,source,feature,unit,distance,residual\n";
   if (findings.result.steps.empty()) return text;
   const AnyProblem& problem = *calibration.steps[findings.result.steps.size() - 1].problem;
@@ -171,18 +170,18 @@ KINECAL_INLINE std::string residuals_csv(const Calibration& calibration,
   };
   (void)evaluate(problem, {values.data(), static_cast<std::size_t>(values.size())}, nullptr,
                  [&](int t, int sample, const TermResiduals& rows) {
-    const AnyTerm& term = problem.term(t);
-    const int size = term.feature_size();
-    for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
-      const auto r = rows.residual.segment(row, size);
-      text += fmt::format("{},{},{},{},{},{}", quoted(term.name()),
-                          findings.numbers[static_cast<std::size_t>(sample)],
-                          quoted(problem.source(sample)), row / size + 1, term.options().unit,
-                          r.norm());
-      for (Eigen::Index i = 0; i < size; ++i) text += fmt::format(",{}", r(i));
-      text += "\n";
-    }
-  });
+                   const AnyTerm& term = problem.term(t);
+                   const int size = term.feature_size();
+                   for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
+                     const auto r = rows.residual.segment(row, size);
+                     text += fmt::format("{},{},{},{},{},{}", quoted(term.name()),
+                                         findings.numbers[static_cast<std::size_t>(sample)],
+                                         quoted(problem.source(sample)), row / size + 1,
+                                         term.options().unit, r.norm());
+                     for (Eigen::Index i = 0; i < size; ++i) text += fmt::format(",{}", r(i));
+                     text += "\n";
+                   }
+                 });
   return text;
 }
 

@@ -33,7 +33,8 @@ struct Coordinates {
   Eigen::MatrixXd null;   ///< (free x others) changes that nothing determines
   /// (free) which part of each parameter nothing determines: 0 none of it, 1 all of it.
   Eigen::VectorXd lost;
-  Eigen::VectorXd scale;  ///< (free) effect of each parameter on all weighted residuals, per its unit
+  Eigen::VectorXd
+      scale;  ///< (free) effect of each parameter on all weighted residuals, per its unit
 };
 
 /// Weighted residuals of a problem and their derivatives by coordinates.
@@ -98,8 +99,8 @@ struct Refit {
 /// @param priors   factor of the priors
 /// @param settled  a step that lowers the cost by less than this part of it is the last one
 [[nodiscard]] Refit refit(AnyEvaluator& evaluator, std::span<const double> values,
-                          const LinearFit& fit, const Eigen::VectorXd& weights,
-                          double priors = 1.0, double settled = 1e-4);
+                          const LinearFit& fit, const Eigen::VectorXd& weights, double priors = 1.0,
+                          double settled = 1e-4);
 
 }  // namespace kinecal
 

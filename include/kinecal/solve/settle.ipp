@@ -48,8 +48,7 @@ inline double hold_once(AnyEvaluator& evaluator, const Eigen::VectorXd& start,
   if (by.null.cols() == 0) return 0.0;
   const Eigen::MatrixXd null = by.scale.asDiagonal() * by.null;  // orthonormal
   const Eigen::VectorXd drift =
-      null.transpose() *
-      by.scale.cwiseProduct(of_free(free, values) - of_free(free, start));
+      null.transpose() * by.scale.cwiseProduct(of_free(free, values) - of_free(free, start));
   Eigen::VectorXd held = of_free(free, values) - by.null * drift;
   for (int c = 0; c < free.size(); ++c) {
     values(free.parameters()[static_cast<std::size_t>(c)]) = held(c);

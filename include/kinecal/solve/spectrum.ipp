@@ -24,8 +24,8 @@ KINECAL_INLINE Eigen::MatrixXd error_free_information(const AnyProblem& problem,
 }
 
 KINECAL_INLINE Spectrum::Spectrum(const Eigen::MatrixXd& information)
-    : scale(information.diagonal().unaryExpr(
-          [](double d) { return d > 0.0 ? std::sqrt(d) : 1.0; })) {
+    : scale(
+          information.diagonal().unaryExpr([](double d) { return d > 0.0 ? std::sqrt(d) : 1.0; })) {
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);

@@ -113,8 +113,7 @@ KINECAL_INLINE Assessment assess(const AnyProblem& problem, const FreeSet& free,
   const LinearFit fit =
       linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
   found.rows = static_cast<int>(fit.residual.size());
-  const Eigen::MatrixXd inverse =
-      detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
   found.uncertainty = uncertainty(problem, fit, found.noise);
   found.captures = capture_errors(problem, fit);
@@ -126,8 +125,8 @@ KINECAL_INLINE Assessment assess(const AnyProblem& problem, const FreeSet& free,
     } catch (const std::domain_error&) {  // without a fold, a point ends behind a camera
       for (int t = 0; t < problem.num_terms(); ++t) {
         const AnyTerm& term = problem.term(t);
-        found.held_out.push_back({term.name(), term.options().unit, 0, 0.0,
-                                  std::numeric_limits<double>::infinity()});
+        found.held_out.push_back(
+            {term.name(), term.options().unit, 0, 0.0, std::numeric_limits<double>::infinity()});
       }
     }
   }

@@ -30,8 +30,9 @@ struct CaptureError {
   double times = 0.0;     ///< distance in standard deviations of the noise
   double limit = 0.0;     ///< of `times`: beyond it a feature is bad
   bool bad = false;       ///< beyond the limit
-  double influence = 0.0;  ///< how far the parameters move without the sample: sqrt(dz^T H dz / size),
-                           ///< 1: by their own uncertainty
+  double influence =
+      0.0;  ///< how far the parameters move without the sample: sqrt(dz^T H dz / size),
+            ///< 1: by their own uncertainty
 };
 
 /// The worst feature of each sample, by number of the sample.

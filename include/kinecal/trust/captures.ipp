@@ -22,8 +22,8 @@ class CaptureSearch {
     for (const RowBlock& block : fit.blocks) {
       const int size = problem.term(block.term).feature_size();
       for (Eigen::Index row = 0; row < block.size; row += size) {
-        features_.push_back({block.term, block.sample, static_cast<int>(row) / size,
-                             block.first + row, size});
+        features_.push_back(
+            {block.term, block.sample, static_cast<int>(row) / size, block.first + row, size});
       }
     }
   }
@@ -102,7 +102,8 @@ class CaptureSearch {
     for (int i = 0; i < kCauchy + kTukey; ++i) {
       Eigen::VectorXd weights = fit_.loss;
       for (const FeatureRows& f : features_) {
-        const Loss loss = i < kCauchy ? Loss{LossType::cauchy, 2.385} : Loss{LossType::tukey, 4.685};
+        const Loss loss =
+            i < kCauchy ? Loss{LossType::cauchy, 2.385} : Loss{LossType::tukey, 4.685};
         const double s = distance(f) / sigma_of(f), squared = s * s / f.size;
         weights.segment(f.row, f.size) *= loss(squared).derivative;
       }
@@ -162,10 +163,10 @@ class CaptureSearch {
   const AnyProblem& problem_;
   const LinearFit& fit_;
   std::vector<FeatureRows> features_;
-  std::vector<bool> bad_;       ///< by sample
-  std::vector<double> sigma_;   ///< of weighted residual components, by term
-  Eigen::VectorXd residual_;    ///< of the present fit
-  Eigen::MatrixXd inverse_;     ///< of its information
+  std::vector<bool> bad_;      ///< by sample
+  std::vector<double> sigma_;  ///< of weighted residual components, by term
+  Eigen::VectorXd residual_;   ///< of the present fit
+  Eigen::MatrixXd inverse_;    ///< of its information
 };
 
 /// Leave-one-out influence of each sample, by down-dating: without its rows J_s the coordinates move

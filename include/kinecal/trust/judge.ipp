@@ -50,8 +50,8 @@ inline void judge_freedom(const Assessment& step, Judgement& judgement) {
   const double freedom = step.rows - parameters;
   if (freedom >= parameters) return;
   judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,
-                "step '" + step.step + "': " + std::to_string(step.rows) +
-                    " residuals for " + std::to_string(static_cast<int>(parameters)) +
+                "step '" + step.step + "': " + std::to_string(step.rows) + " residuals for " +
+                    std::to_string(static_cast<int>(parameters)) +
                     " parameters leave little to check them; record more samples");
 }
 
@@ -92,7 +92,8 @@ inline void judge_captures(const Assessment& step, const AnyProblem& problem,
     if (p.unit == "m") return {0.1, 0.5};
     return {30.0 * kDegree, 90.0 * kDegree};
   }
-  if (problem.robot().has_joint(owner)) return p.unit == "m" ? Limits{0.2, 1.0} : Limits{0.5, kNever};
+  if (problem.robot().has_joint(owner))
+    return p.unit == "m" ? Limits{0.2, 1.0} : Limits{0.5, kNever};
   if (problem.frames().contains(owner)) return {kNever, kNever};  // a virtual frame may be anywhere
   if (p.unit == "m") return {0.1, kNever};
   return p.unit == "1" ? Limits{0.2, kNever} : Limits{kNever, kNever};
@@ -118,14 +119,14 @@ inline void judge_values(const CalibrationStep& step, const CalibrationResult& r
     const double travel = limited->upper - limited->lower;
     if (std::abs(parameter.value) > travel) {
       judgement.add(Grade::do_not_use, "the offset of '" + parameter.name + "' is " +
-                                             reading(parameter.value, parameter.unit) +
-                                             ", but the joint travels only " +
-                                             reading(travel, parameter.unit));
+                                           reading(parameter.value, parameter.unit) +
+                                           ", but the joint travels only " +
+                                           reading(travel, parameter.unit));
     }
   }
   for (const int p : assessment.at_bound) {
     judgement.add(Grade::use_with_care, "'" + result.table[p].name + "' ended at its bound " +
-                                              reading(result.table[p].value, result.table[p].unit));
+                                            reading(result.table[p].value, result.table[p].unit));
   }
 }
 
@@ -135,13 +136,14 @@ inline void judge_pose(const Assessment& step, Judgement& judgement) {
   const std::string pose = "the position of '" + step.pose->frame + "' in '" + step.pose->in + "'";
   if (!step.pose->determined) {
     judgement.add(Grade::use_with_care,
-                  pose + " depends on a combination of parameters that these samples do not "
-                         "determine; see 'cannot be determined'");
+                  pose +
+                      " depends on a combination of parameters that these samples do not "
+                      "determine; see 'cannot be determined'");
   }
   if (!kPosition.exceeded(step.pose->position)) return;
-  judgement.add(kPosition.grade(step.pose->position),
-                pose + " is known to " + reading(step.pose->position, "m") +
-                    " only; record more samples");
+  judgement.add(
+      kPosition.grade(step.pose->position),
+      pose + " is known to " + reading(step.pose->position, "m") + " only; record more samples");
 }
 
 }  // namespace detail

@@ -52,8 +52,8 @@ KINECAL_INLINE std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,
     constexpr double kNoFreedom = 1e-6;  // the parameters fit every row
     if (of.freedom < kNoFreedom * rows || rows == 0.0) continue;
     of.sigma = of.unit_sigma * std::sqrt(squares[t] / of.freedom);
-    of.robust = of.unit_sigma * robust_sigma(distances[t], of.components) *
-                std::sqrt(rows / of.freedom);
+    of.robust =
+        of.unit_sigma * robust_sigma(distances[t], of.components) * std::sqrt(rows / of.freedom);
   }
   return noise;
 }

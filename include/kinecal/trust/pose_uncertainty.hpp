@@ -43,8 +43,8 @@ struct PoseUncertainty {
 /// @param samples  poses at which it is computed; those that lack a joint of the chain are left out
 /// @throws RobotError  if a link does not exist, or no chain joins the two
 [[nodiscard]] PoseUncertainty pose_uncertainty(const AnyProblem& problem, const FreeSet& free,
-                                               std::span<const double> values,
-                                               const LinearFit& fit, const Uncertainty& known,
+                                               std::span<const double> values, const LinearFit& fit,
+                                               const Uncertainty& known,
                                                std::span<const Sample> samples,
                                                const FrameOnRobot& frame, const FrameOnRobot& in);
 

@@ -56,8 +56,8 @@ class TipDerivative {
 
  private:
   [[nodiscard]] std::vector<JointState<double>> states(const Sample& sample) const {
-    return measured_joint_states(
-        chain_, [&](const std::string& joint) { return *sample.position(joint); });
+    return measured_joint_states(chain_,
+                                 [&](const std::string& joint) { return *sample.position(joint); });
   }
 
   RuntimeChain chain_;
@@ -74,12 +74,10 @@ KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const
                                                 std::span<const double> values,
                                                 const LinearFit& fit, const Uncertainty& known,
                                                 std::span<const Sample> samples,
-                                                const FrameOnRobot& frame,
-                                                const FrameOnRobot& in) {
+                                                const FrameOnRobot& frame, const FrameOnRobot& in) {
   PoseUncertainty result{.frame = frame.name(), .in = in.name()};
   const auto chain_to = [&](const FrameOnRobot& to) {
-    RuntimeChain chain =
-        make_chain(problem.robot(), problem.base(), to.link, problem.frames());
+    RuntimeChain chain = make_chain(problem.robot(), problem.base(), to.link, problem.frames());
     if (!to.frame.empty()) chain = with_virtual_frame(std::move(chain), to.frame);
     return detail::TipDerivative(problem, free, values, std::move(chain));
   };

@@ -18,9 +18,10 @@ namespace kinecal {
 
 /// How well the free parameters of a step are known.
 struct Uncertainty {
-  Eigen::MatrixXd coordinates;  ///< (coordinates x coordinates) covariance of LinearFit's coordinates
-  Eigen::MatrixXd covariance;   ///< (free x free), units of the parameters; zero along directions
-                                ///< that nothing determines
+  Eigen::MatrixXd
+      coordinates;  ///< (coordinates x coordinates) covariance of LinearFit's coordinates
+  Eigen::MatrixXd covariance;  ///< (free x free), units of the parameters; zero along directions
+                               ///< that nothing determines
   /// Standard deviation of each free parameter; infinite if samples and priors do not determine it.
   Eigen::VectorXd deviation;
 };

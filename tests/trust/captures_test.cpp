@@ -1,0 +1,101 @@
+#include "kinecal/trust/captures.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "support/noisy_scene.hpp"
+
+namespace kinecal {
+namespace {
+
+/// Ruins ten samples: another LED, 5 cm off, moved while capturing, in turn.
+std::vector<int> ruin_ten(test::NoisyScene& scene, unsigned seed) {
+  std::vector<int> order(scene.samples.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::mt19937 random(seed);
+  std::shuffle(order.begin(), order.end(), random);
+  order.resize(10);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    Sample& sample = scene.samples[static_cast<std::size_t>(order[i])];
+    std::vector<Feature>& features = sample.observations[0].features;
+    if (i % 3 == 0) {
+      std::swap(features[0].point, features[1].point);
+    } else if (i % 3 == 1) {
+      features[2].point.x() += 0.05;
+    } else {
+      for (double& position : sample.joint_positions) position += 0.03;
+    }
+  }
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+std::vector<int> bad_ones(const Assessment& found) {
+  std::vector<int> bad;
+  for (const CaptureError& error : found.captures) {
+    if (error.bad) bad.push_back(error.sample);
+  }
+  return bad;
+}
+
+TEST(Captures, NamesTheTenThatAreRuinedAndNoOther) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    test::NoisyScene scene(100, seed);
+    const std::vector<int> ruined = ruin_ten(scene, seed);
+    EXPECT_EQ(bad_ones(scene.solve_and_assess()), ruined) << "seed " << seed;
+  }
+}
+
+TEST(Captures, NamesNoneWhereNoneIsRuined) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    test::NoisyScene scene(50, seed);
+    EXPECT_TRUE(bad_ones(scene.solve_and_assess()).empty()) << "seed " << seed;
+  }
+}
+
+TEST(Captures, DoNotDependOnTheOrderOfSamples) {
+  test::NoisyScene scene(60);
+  (void)ruin_ten(scene, 3);
+  const Assessment one = scene.solve_and_assess();
+  std::reverse(scene.samples.begin(), scene.samples.end());
+  const Assessment other = scene.solve_and_assess();
+  for (std::size_t i = 0; i < 60; ++i) {
+    EXPECT_EQ(one.captures[i].bad, other.captures[59 - i].bad);
+    EXPECT_NEAR(one.captures[i].times, other.captures[59 - i].times, 1e-6 * one.captures[i].times);
+  }
+}
+
+TEST(Captures, SayWhichFeatureIsOffAndHowFarTheOthersAre) {
+  test::NoisyScene scene(50);
+  scene.samples[17].observations[0].features[2].point.y() += 0.048;
+  const Assessment found = scene.solve_and_assess();
+  EXPECT_THAT(bad_ones(found), testing::ElementsAre(17));
+  const CaptureError& error = found.captures[17];
+  EXPECT_EQ(error.feature, 2);
+  EXPECT_NEAR(error.distance, 0.048, 5.0 * test::kPointNoise);
+  EXPECT_LT(error.others, 5.0 * test::kPointNoise);
+  EXPECT_GT(error.times, 40.0);
+}
+
+TEST(Captures, HaveTheInfluenceThatLeavingThemOutHas) {
+  test::NoisyScene scene(15);
+  scene.samples[4].observations[0].features[0].point.x() += 0.005;
+  scene.solve();
+  const auto evaluator = scene.solved().evaluator(scene.free());
+  const LinearFit fit = scene.linear(*evaluator);
+  const std::vector<CaptureError> captures = capture_errors(scene.solved(), fit);
+  const Eigen::MatrixXd hessian = information(fit, fit.loss);
+  const double noise = fit.residual.norm() / std::sqrt(180.0 - 10.0);
+  for (const std::size_t sample : {0u, 4u, 9u}) {
+    const Eigen::VectorXd moved = scene.values_without({sample}) - scene.values();
+    const Eigen::VectorXd of_free = moved(scene.free().parameters());
+    const Eigen::VectorXd z = fit.coordinates.basis.colPivHouseholderQr().solve(of_free);
+    const double expected = std::sqrt(z.dot(hessian * z) / 10.0) / noise;
+    EXPECT_NEAR(captures[sample].influence, expected, 0.01 * expected + 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace kinecal

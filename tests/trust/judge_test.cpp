@@ -1,0 +1,177 @@
+#include "kinecal/trust/judge.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/noisy_scene.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+
+/// A calibration that is good, to be spoiled in one point.
+struct Judged {
+  test::NoisyScene scene{40};
+  std::vector<Assessment> assessments;
+
+  Judged() { assessments = {scene.solve_and_assess()}; }
+  [[nodiscard]] Judgement judgement(const std::vector<std::string>& doubts = {}) const {
+    return judge(scene.calibration, scene.result, assessments, doubts);
+  }
+  [[nodiscard]] BlockNoise& noise() { return assessments[0].noise[0]; }
+  void set(const char* parameter, double value) { scene.result.table[parameter].value = value; }
+};
+
+void expect(const Judgement& judgement, Grade verdict, const char* reason) {
+  EXPECT_EQ(judgement.verdict, verdict) << to_string(judgement.verdict);
+  if (verdict == Grade::good) {
+    EXPECT_THAT(judgement.reasons, testing::IsEmpty());
+  } else {
+    ASSERT_FALSE(judgement.reasons.empty());
+    EXPECT_THAT(judgement.reasons.front(), HasSubstr(reason));
+  }
+}
+
+TEST(Judge, IsGoodWhereEverythingIsAsItWasSaid) {
+  expect(Judged().judgement(), Grade::good, "");
+}
+
+TEST(Judge, RefusesWhatDidNotConverge) {
+  Judged judged;
+  judged.scene.result.converged = false;
+  judged.scene.result.termination = "did not converge: no way down";
+  expect(judged.judgement(), Grade::do_not_use, "no way down");
+}
+
+TEST(Judge, ComparesTheNoiseWithTheSigmaThatWasGiven) {
+  for (const auto& [times, verdict] : {std::pair(2.9, Grade::good),
+                                       {3.1, Grade::use_with_care},
+                                       {9.9, Grade::use_with_care},
+                                       {10.1, Grade::do_not_use}}) {
+    Judged judged;
+    judged.noise().sigma = judged.noise().robust = times * judged.noise().given;
+    judged.assessments[0].held_out.clear();
+    expect(judged.judgement(), verdict, "sigma 1 mm given, residuals show");
+  }
+}
+
+TEST(Judge, ComparesTheNoiseWithWhatRobotsReachWhereNoSigmaWasGiven) {
+  for (const auto& [metres, verdict] : {std::pair(0.0049, Grade::good),
+                                        {0.0051, Grade::use_with_care},
+                                        {0.019, Grade::use_with_care},
+                                        {0.021, Grade::do_not_use}}) {
+    Judged judged;
+    judged.noise().given = 0.0;
+    judged.noise().sigma = judged.noise().robust = metres;
+    judged.assessments[0].held_out.clear();
+    expect(judged.judgement(), verdict, "the model does not fit these samples");
+  }
+  for (const auto& [pixels, verdict] :
+       {std::pair(2.9, Grade::good), {3.1, Grade::use_with_care}, {10.1, Grade::do_not_use}}) {
+    Judged judged;
+    judged.noise().unit = "px";
+    judged.noise().given = 0.0;
+    judged.noise().sigma = judged.noise().robust = pixels;
+    judged.assessments[0].held_out.clear();
+    expect(judged.judgement(), verdict, "px");
+  }
+}
+
+TEST(Judge, WantsMoreResidualsThanParameters) {
+  for (const auto& [rows, verdict] : {std::pair(20, Grade::good),
+                                      {19, Grade::use_with_care},
+                                      {15, Grade::use_with_care},
+                                      {14, Grade::do_not_use}}) {
+    Judged judged;
+    judged.assessments[0].rows = rows;  // 10 parameters
+    expect(judged.judgement(), verdict, "residuals for 10 parameters leave little");
+  }
+}
+
+TEST(Judge, ComparesTheHeldOutErrorWithTheNoise) {
+  for (const auto& [times, verdict] :
+       {std::pair(1.45, Grade::good), {1.55, Grade::use_with_care}, {3.05, Grade::do_not_use}}) {
+    Judged judged;
+    judged.assessments[0].held_out[0].held_out = times * std::sqrt(3.0) * judged.noise().sigma;
+    expect(judged.judgement(), verdict, "on samples held out");
+  }
+}
+
+TEST(Judge, CountsSamplesThatDoNotFitTheOthers) {
+  for (const auto& [bad, verdict] : {std::pair(4, Grade::good),
+                                     {5, Grade::use_with_care},
+                                     {10, Grade::use_with_care},
+                                     {11, Grade::do_not_use}}) {
+    Judged judged;
+    for (int i = 0; i < bad; ++i) {
+      judged.assessments[0].captures[static_cast<std::size_t>(i)].bad = true;
+    }
+    expect(judged.judgement(), verdict, "of 40 samples do not fit the others");
+  }
+}
+
+TEST(Judge, DoubtsJointsThatAreFarOff) {
+  constexpr double kDegree = 0.017453292519943295;
+  for (const auto& [degrees, verdict] :
+       {std::pair(29.0, Grade::good), {-31.0, Grade::use_with_care}, {91.0, Grade::do_not_use}}) {
+    Judged judged;
+    judged.set("elbow", degrees * kDegree);
+    expect(judged.judgement(), verdict, "'elbow' changed by");
+  }
+}
+
+TEST(Judge, RefusesAnOffsetBeyondTheJointsTravel) {
+  Judged judged;
+  const auto limits = judged.scene.solved().robot().joint("elbow").limits;
+  if (!limits) GTEST_SKIP() << "the scene's elbow has no limits";
+  judged.set("elbow", 1.01 * (limits->upper - limits->lower));
+  expect(judged.judgement(), Grade::do_not_use, "");
+}
+
+TEST(Judge, DoubtsIntrinsicsAndDepthThatAreFarOff) {
+  for (const auto& [name, value] :
+       {std::pair("camera_fx", 0.21), {"camera_z_offset", -0.11}, {"head_pan_x", 0.21}}) {
+    Judged judged;
+    judged.set(name, value);
+    expect(judged.judgement(), Grade::use_with_care, name);
+  }
+}
+
+TEST(Judge, WantsThePoseThatMattersToBeKnown) {
+  for (const auto& [metres, verdict] : {std::pair(0.0049, Grade::good),
+                                        {0.0051, Grade::use_with_care},
+                                        {0.021, Grade::do_not_use}}) {
+    Judged judged;
+    judged.assessments[0].pose->position = metres;
+    expect(judged.judgement(), verdict, "the position of 'hand' in 'camera_optical_frame'");
+  }
+  Judged judged;
+  judged.assessments[0].pose->determined = false;
+  expect(judged.judgement(), Grade::use_with_care, "do not determine");
+}
+
+TEST(Judge, NamesParametersAtTheirBounds) {
+  Judged judged;
+  judged.assessments[0].at_bound = {judged.scene.result.table.index("wrist")};
+  expect(judged.judgement(), Grade::use_with_care, "'wrist' ended at its bound");
+}
+
+TEST(Judge, PassesDoubtsOnAndPutsTheGravestReasonFirst) {
+  Judged judged;
+  expect(judged.judgement({"positions look like degrees"}), Grade::use_with_care, "degrees");
+  judged.scene.result.converged = false;
+  judged.scene.result.termination = "failed";
+  const Judgement both = judged.judgement({"positions look like degrees"});
+  EXPECT_THAT(both.reasons, testing::ElementsAre("failed", "positions look like degrees"));
+}
+
+TEST(Reading, IsInTheUnitThatPeopleRead) {
+  EXPECT_EQ(reading(0.0034, "m"), "3.4 mm");
+  EXPECT_EQ(reading(0.01, "rad"), "0.573 deg");
+  EXPECT_EQ(reading(1.25, "px"), "1.25 px");
+  EXPECT_EQ(reading(0.5, "1"), "0.5");
+}
+
+}  // namespace
+}  // namespace kinecal
