@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/io/doubts/rising.hpp"
+
 namespace kinecal::cli {
 
 /// 0: done; 1: bad input; 2: did not converge.
@@ -13,7 +15,8 @@ enum ExitCode { kDone = 0, kBadInput = 1, kNotConverged = 2 };
 struct CalibrateOptions {
   std::string urdf, config, output;
   std::vector<std::string> samples;
-  std::vector<std::string> cameras;  ///< NAME=FILE
+  std::vector<std::string> cameras;     ///< NAME=FILE
+  Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
   std::string offsets = "rising";
   bool upstream_names = false;
   bool dry_run = false;
@@ -27,7 +30,8 @@ int calibrate(const CalibrateOptions& options);
 struct CheckOptions {
   std::string urdf, config;
   std::vector<std::string> samples;
-  std::vector<std::string> cameras;  ///< NAME=FILE
+  std::vector<std::string> cameras;     ///< NAME=FILE
+  Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
 };
 
 /// Lists every error in the input, without solving.

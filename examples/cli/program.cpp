@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -37,6 +38,18 @@ void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
       ->allow_extra_args(false);
 }
 
+void add_recorded(CLI::App& command, kinecal::Recorded& recorded) {
+  const std::map<std::string, kinecal::Recorded> names = {{"after", kinecal::Recorded::after},
+                                                          {"before", kinecal::Recorded::before}};
+  command
+      .add_option(
+          "--samples-recorded", recorded,
+          "when, as to <calibration rising> of the URDF: after it was written, the default: "
+          "the recorded positions contain it; or before: it is added to them")
+      ->transform(CLI::Transformer(names))
+      ->type_name("after|before");
+}
+
 void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   add_input(command, options.urdf, options.config);
   command
@@ -45,6 +58,7 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
       ->required()
       ->type_name("FILE");
   add_cameras(command, options.cameras);
+  add_recorded(command, options.recorded);
   command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
   command
       .add_option(
@@ -192,6 +206,7 @@ void add_check(CLI::App& command, CheckOptions& options) {
   add_input(command, options.urdf, options.config);
   command.add_option("--samples", options.samples, "recorded samples")->type_name("FILE");
   add_cameras(command, options.cameras);
+  add_recorded(command, options.recorded);
 }
 
 void add_inspect(CLI::App& command, std::vector<std::string>& samples) {
