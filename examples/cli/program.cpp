@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -39,15 +38,16 @@ void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
 }
 
 void add_recorded(CLI::App& command, kinecal::Recorded& recorded) {
-  const std::map<std::string, kinecal::Recorded> names = {{"after", kinecal::Recorded::after},
-                                                          {"before", kinecal::Recorded::before}};
   command
-      .add_option(
-          "--samples-recorded", recorded,
-          "when, as to <calibration rising> of the URDF: after it was written, the default: "
-          "the recorded positions contain it; or before: it is added to them")
-      ->transform(CLI::Transformer(names))
-      ->type_name("after|before");
+      .add_option_function<std::string>(
+          "--samples-recorded",
+          [&recorded](const std::string& when) {
+            recorded = when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
+          },
+          "before or after <calibration rising> of the URDF was written: after, the recorded "
+          "positions contain it; before, it is added to them")
+      ->check(CLI::IsMember({"after", "before"}))
+      ->default_str("after");
 }
 
 void add_calibrate(CLI::App& command, CalibrateOptions& options) {
