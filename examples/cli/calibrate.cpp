@@ -79,7 +79,8 @@ int calibrate(const CalibrateOptions& options) {
     throw InputError("--output is required (or --dry-run)");
   }
   const Clock::time_point start = Clock::now();
-  const Input input = read_input(options.urdf, options.config, options.samples, options.cameras);
+  const Input input =
+      read_input(options.urdf, options.config, options.samples, options.cameras, options.recorded);
   print(input.diagnostics);
   if (!input.diagnostics.errors.empty()) return kBadInput;
 

@@ -8,7 +8,8 @@
 namespace kinecal::cli {
 
 int check(const CheckOptions& options) {
-  const Input input = read_input(options.urdf, options.config, options.samples, options.cameras);
+  const Input input =
+      read_input(options.urdf, options.config, options.samples, options.cameras, options.recorded);
   print(input.diagnostics);
   const std::size_t errors = input.diagnostics.errors.size();
   if (errors > 0) {
@@ -23,7 +24,12 @@ int check(const CheckOptions& options) {
                  step.problem->num_samples(), step.free.size());
     }
   }
-  fmt::print("no errors found\n");
+  const std::size_t doubts = input.diagnostics.doubts.size();
+  if (doubts == 0) {
+    fmt::print("no errors found\n");
+  } else {
+    fmt::print("no errors found, but {} doubt{}\n", doubts, doubts == 1 ? "" : "s");
+  }
   return kDone;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/io/doubts/rising.hpp"
+
 namespace kinecal::cli {
 
 /// 0: done; 1: bad input; 2: the verdict is "do not use", or the solver did not converge.
@@ -13,7 +15,8 @@ enum ExitCode { kDone = 0, kBadInput = 1, kNotUsable = 2 };
 struct CalibrateOptions {
   std::string urdf, config, output;
   std::vector<std::string> samples;
-  std::vector<std::string> cameras;  ///< NAME=FILE
+  std::vector<std::string> cameras;     ///< NAME=FILE
+  Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
   std::string offsets = "rising";
   std::string report;          ///< report.json is written there, too, whatever the verdict
   std::vector<int> exclude;    ///< samples to leave out, from 1
@@ -31,7 +34,8 @@ int calibrate(const CalibrateOptions& options);
 struct CheckOptions {
   std::string urdf, config;
   std::vector<std::string> samples;
-  std::vector<std::string> cameras;  ///< NAME=FILE
+  std::vector<std::string> cameras;     ///< NAME=FILE
+  Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
 };
 
 /// Lists every error in the input, without solving.

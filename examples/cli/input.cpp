@@ -12,6 +12,7 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/config/read_config.hpp"
+#include "kinecal/io/doubts/find_doubts.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 
 namespace kinecal::cli {
@@ -52,7 +53,8 @@ Recording read_recordings(const std::vector<std::string>& files, Diagnostics& di
 }
 
 Input read_input(const std::string& urdf, const std::string& config,
-                 const std::vector<std::string>& samples, const std::vector<std::string>& cameras) {
+                 const std::vector<std::string>& samples, const std::vector<std::string>& cameras,
+                 Recorded recorded) {
   Input input;
   Diagnostics& diagnostics = input.diagnostics;
   const auto read_robot = [&](auto&& text) {
@@ -87,7 +89,13 @@ Input read_input(const std::string& urdf, const std::string& config,
   input.robot = *robot;
   input.config = *configuration;
   if (diagnostics.errors.size() == before) {
+    if (recorded == Recorded::before) {
+      add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
+    }
     input.calibration = assemble(*configuration, *robot, input.samples, diagnostics);
+    find_doubts({input.config, input.robot, input.urdf_text, input.urdf, input.samples,
+                 input.calibration, recorded},
+                diagnostics);
     return input;
   }
   // Blocks of a wrong configuration are left out; the rest is still checked against the robot.
@@ -102,6 +110,7 @@ void print(const Diagnostics& diagnostics) {
   for (const std::string& warning : diagnostics.warnings) {
     fmt::print(stderr, "warning: {}\n", warning);
   }
+  for (const std::string& doubt : diagnostics.doubts) fmt::print(stderr, "doubt: {}\n", doubt);
   for (const std::string& error : diagnostics.errors) fmt::print(stderr, "error: {}\n", error);
 }
 

@@ -37,6 +37,19 @@ void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
       ->allow_extra_args(false);
 }
 
+void add_recorded(CLI::App& command, kinecal::Recorded& recorded) {
+  command
+      .add_option_function<std::string>(
+          "--samples-recorded",
+          [&recorded](const std::string& when) {
+            recorded = when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
+          },
+          "before or after <calibration rising> of the URDF was written: after, the recorded "
+          "positions contain it; before, it is added to them")
+      ->check(CLI::IsMember({"after", "before"}))
+      ->default_str("after");
+}
+
 void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   add_input(command, options.urdf, options.config);
   command
@@ -45,6 +58,7 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
       ->required()
       ->type_name("FILE");
   add_cameras(command, options.cameras);
+  add_recorded(command, options.recorded);
   command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
   command
       .add_option(
@@ -207,6 +221,7 @@ void add_check(CLI::App& command, CheckOptions& options) {
   add_input(command, options.urdf, options.config);
   command.add_option("--samples", options.samples, "recorded samples")->type_name("FILE");
   add_cameras(command, options.cameras);
+  add_recorded(command, options.recorded);
 }
 
 void add_inspect(CLI::App& command, std::vector<std::string>& samples) {

@@ -28,7 +28,9 @@ struct SourceLocation {
 /// What readers found: "file:line: message".  With errors, what was read is incomplete.
 struct Diagnostics {
   std::vector<std::string> errors;    ///< what makes the input unusable
-  std::vector<std::string> warnings;  ///< what looks wrong but can be used
+  std::vector<std::string> warnings;  ///< what was left out or assumed; the result is not affected
+  std::vector<std::string> doubts;    ///< what looks wrong but could be right: reasons to check the
+                                      ///< result before it is used
 
   /// Adds an error.
   void error(const SourceLocation& place, const std::string& message) {
@@ -37,6 +39,11 @@ struct Diagnostics {
   /// Adds a warning.
   void warning(const SourceLocation& place, const std::string& message) {
     warnings.push_back(place.str() + ": " + message);
+  }
+
+  /// Adds a doubt.
+  void doubt(const SourceLocation& place, const std::string& message) {
+    doubts.push_back(place.str() + ": " + message);
   }
 
   /// @throws InputError  with all errors, one a line, if there are any

@@ -1,0 +1,101 @@
+// Definitions of likely_causes.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/doubts/hypotheses.ipp"
+#include "kinecal/io/doubts/likely_causes.hpp"
+#include "kinecal/io/doubts/occurrences.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// A calibration solved: its cost and its error blocks.
+struct SolvedSamples {
+  double cost = 0.0;
+  std::vector<BlockStatistics> blocks;
+};
+
+/// Assembles and solves; nullopt if the samples cannot be used so, or if the fit is not finite.
+[[nodiscard]] inline std::optional<SolvedSamples> solve_samples(const Config& config,
+                                                                const Robot& robot,
+                                                                std::span<const Sample> samples,
+                                                                const Calibrator& solve) {
+  Diagnostics quiet;
+  const Calibration calibration = assemble(config, robot, samples, quiet);
+  if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;
+  const CalibrationResult result = solve(calibration);
+  if (result.steps.empty() || !std::isfinite(result.steps.back().final_cost)) return std::nullopt;
+  return SolvedSamples{result.steps.back().final_cost, result.blocks};
+}
+
+/// At most 200 samples: enough to see what fits.
+[[nodiscard]] inline std::vector<Sample> some_of(std::span<const Sample> samples) {
+  constexpr std::size_t kMost = 200;
+  const std::size_t step = (samples.size() + kMost - 1) / kMost;
+  std::vector<Sample> some;
+  for (std::size_t i = 0; i < samples.size(); i += std::max<std::size_t>(step, 1)) {
+    some.push_back(samples[i]);
+  }
+  return some;
+}
+
+/// "the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm", of the block that falls most.
+[[nodiscard]] inline std::string fall_of(const SolvedSamples& before, const SolvedSamples& after) {
+  std::string text = fmt::format("the cost falls from {:.3g} to {:.3g}", before.cost, after.cost);
+  double most = 1.0;
+  for (const BlockStatistics& block : before.blocks) {
+    for (const BlockStatistics& same : after.blocks) {
+      const double ratio = block.after.mean / std::max(same.after.mean, 1e-300);
+      if (same.name != block.name || !(ratio > most)) continue;
+      most = ratio;
+      text = fmt::format("the mean residual of '{}' falls from {} to {}", block.name,
+                         residual_text(block.after.mean, block.unit),
+                         residual_text(same.after.mean, same.unit));
+    }
+  }
+  return text;
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
+                                                      std::span<const Sample> samples,
+                                                      const Calibrator& solve) {
+  constexpr double kExplains = 0.1;  // of the cost
+  const Calibrator solver =
+      solve ? solve : [](const Calibration& calibration) { return calibrate(calibration); };
+  const std::vector<Sample> some = detail::some_of(samples);
+  const auto now = detail::solve_samples(config, robot, some, solver);
+  std::vector<std::pair<double, std::string>> found;
+  for (const auto& hypothesis :
+       detail::hypotheses(config, detail::used_joints(config, robot, some))) {
+    std::vector<Sample> changed = some;
+    Config changed_config = config;
+    if (hypothesis.correct) std::for_each(changed.begin(), changed.end(), hypothesis.correct);
+    if (hypothesis.correct_config) hypothesis.correct_config(changed_config);
+    const auto then = detail::solve_samples(changed_config, robot, changed, solver);
+    if (!then || (now && then->cost >= kExplains * now->cost)) continue;
+    found.emplace_back(then->cost,
+                       hypothesis.undone + ", " +
+                           (now ? detail::fall_of(*now, *then) : "the samples can be solved"));
+  }
+  double best = HUGE_VAL;
+  for (const auto& [cost, sentence] : found) best = std::min(best, cost);
+  for (auto& [cost, sentence] : found)
+    cost = std::max(cost, 1.5 * best);  // alike: the simplest first
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> causes;
+  for (auto& [cost, sentence] : found) causes.push_back(std::move(sentence));
+  return causes;
+}
+
+}  // namespace kinecal

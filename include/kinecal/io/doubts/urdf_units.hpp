@@ -1,0 +1,25 @@
+// Lengths and angles of a URDF: millimetres, degrees, xacro that was not expanded.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/io/config/config.hpp"
+#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal::detail {
+
+/// Error: xacro elements or ${...} in the text; origins between the base link and a model in
+/// millimetres, kilometres or degrees.  Doubt: a single one of them; limits in degrees.
+/// @param text               the URDF, as parse_urdf() took it
+/// @param name_for_messages  its file
+void check_urdf_units(const Config& config, const Robot& robot, const std::string& text,
+                      const std::string& name_for_messages, Diagnostics& diagnostics);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/io/doubts/urdf_units.ipp"
+#endif

@@ -1,0 +1,93 @@
+// Mistakes that are found by undoing them.
+#include "kinecal/io/doubts/likely_causes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "support/arm_scene.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class LikelyCauses : public test::ArmScene {
+ protected:
+  [[nodiscard]] std::vector<std::string> causes() const {
+    return likely_causes(config(), parse_urdf(urdf, "arm.urdf"), samples);
+  }
+  /// The first sentence.
+  [[nodiscard]] std::string first() const {
+    const auto all = causes();
+    return all.empty() ? "" : all[0];
+  }
+};
+
+TEST_F(LikelyCauses, ThereAreNoneForSamplesThatAreRight) {
+  EXPECT_THAT(causes(), IsEmpty());
+}
+
+TEST_F(LikelyCauses, TwoJointsExchangedAreNamedWithBothResiduals) {
+  for (Sample& sample : samples) std::swap(position(sample, "elbow"), position(sample, "roll"));
+  EXPECT_THAT(first(), testing::ContainsRegex(
+                           "^with the positions of 'elbow' and 'roll' exchanged, the mean residual "
+                           "of 'measured' falls from [0-9.]+ mm to 0\\.[0-9]+ mm$"));
+}
+
+TEST_F(LikelyCauses, OneJointsSignIsNamed) {
+  for (Sample& sample : samples) position(sample, "roll") *= -1.0;
+  EXPECT_THAT(first(), HasSubstr("with the positions of 'roll' negated"));
+}
+
+TEST_F(LikelyCauses, UnitsAreNamed) {
+  const auto good = samples;
+  for (Sample& sample : samples) {
+    for (double& q : sample.joint_positions) q *= 180.0 / std::numbers::pi;
+  }
+  EXPECT_THAT(first(), HasSubstr("with joint positions taken as degrees"));
+  samples = good;
+  for (Sample& sample : samples) {
+    for (Feature& feature : sample.observations[1].features) feature.point *= 1000.0;
+  }
+  EXPECT_THAT(first(), HasSubstr("with the points of 'tracker' taken as millimetres"));
+}
+
+TEST_F(LikelyCauses, FeaturesInReverseOrderAreNamed) {
+  for (Sample& sample : samples) {
+    std::swap(sample.observations[1].features[0].point, sample.observations[1].features[1].point);
+  }
+  EXPECT_THAT(first(), HasSubstr("in reverse order"));
+}
+
+TEST_F(LikelyCauses, NamesInTheOrderOfTheAlphabetAreNamed) {
+  for (Sample& sample : samples) {
+    std::sort(sample.joint_names.begin(), sample.joint_names.end());  // positions stay as they are
+  }
+  EXPECT_THAT(first(), HasSubstr("in the order of the chain, names being alphabetical"));
+}
+
+TEST_F(LikelyCauses, FramesOfModelsExchangedAreNamed) {
+  replace(config_text, "frame: tool", "frame: other");
+  replace(config_text, "frame: base_link", "frame: tool");
+  replace(config_text, "frame: other", "frame: base_link");
+  for (Sample& sample : samples) {
+    for (Feature& feature : sample.observations[0].features) feature.frame.clear();
+  }
+  EXPECT_THAT(first(), HasSubstr("with the frames of the models 'arm' and 'tracker' exchanged"));
+}
+
+TEST_F(LikelyCauses, AreSolvedWithTheGivenFunction) {
+  int calls = 0;
+  (void)likely_causes(config(), parse_urdf(urdf, "arm.urdf"), samples,
+                      [&](const Calibration& calibration) {
+                        ++calls;
+                        return calibrate(calibration);
+                      });
+  EXPECT_GT(calls, 15) << "5 signs and 10 pairs";
+}
+
+}  // namespace
+}  // namespace kinecal
