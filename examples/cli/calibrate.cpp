@@ -96,6 +96,7 @@ int calibrate(const CalibrateOptions& options) {
       result.converged && !why.empty()) {
     findings.judgement.add(Grade::do_not_use, why);
   }
+  add_likely_causes(input, fitted);
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   if (!options.report.empty()) write_file(options.report, json_report(findings));

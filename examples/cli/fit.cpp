@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kinecal/io/assemble.hpp"
+#include "kinecal/io/doubts/likely_causes.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -50,9 +51,9 @@ Fit fit_samples(const Input& input, const Selection& selection, const CalibrateO
   diagnostics.throw_if_errors();
   AssessOptions assessing;
   assessing.folds = options.folds > 0 ? options.folds : static_cast<int>(fitted.samples.size());
-  fitted.findings =
-      find(input.robot, fitted.calibration,
-           kinecal::calibrate(fitted.calibration, progress, solving), fitted.samples, assessing);
+  fitted.findings = find(input.robot, fitted.calibration,
+                         kinecal::calibrate(fitted.calibration, progress, solving), fitted.samples,
+                         assessing, input.diagnostics.doubts);
   fitted.findings.numbers = std::move(numbers);
   fitted.findings.left_out = selection.left_out();
   return fitted;
@@ -99,6 +100,16 @@ Fit fit(const Input& input, const CalibrateOptions& options, const Progress& pro
         !leave_out_ruined(fitted, selection)) {
       return fitted;
     }
+  }
+}
+
+void add_likely_causes(const Input& input, Fit& fitted) {
+  Findings& findings = fitted.findings;
+  const bool bad = !findings.result.converged || findings.assessments.empty() ||
+                   fits_badly(findings.assessments.back());
+  if (!bad) return;
+  for (const std::string& cause : likely_causes(input.config, input.robot, fitted.samples)) {
+    findings.judgement.add(Grade::do_not_use, "likely cause: " + cause);
   }
 }
 

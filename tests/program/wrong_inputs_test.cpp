@@ -1,8 +1,7 @@
 // Inputs that can be read but are wrong: none ends with exit code 0 and files.  And odd ones that are
 // right: they are accepted without error or doubt.
 //
-// `kByVerdict` marks inputs that nothing can refuse before solving: their residuals show it.  For
-// these, the test asks that the program ends in order.
+// `kByVerdict` marks inputs that nothing can refuse before solving: their residuals show it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -420,10 +419,13 @@ TEST_P(WrongInputs, AreNotCalibrated) {
   Files files = wrong.set.files();
   wrong.change(files);
   const test::Outcome result = calibrate(files);
-  EXPECT_THAT(result.code, testing::AnyOf(0, 1, 2)) << "crashed: " << result.err;
-  if (wrong.when == kByVerdict) return;
-  EXPECT_NE(result.code, 0) << result.out << result.err;
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+  if (wrong.when == kByVerdict) {
+    EXPECT_EQ(result.code, 2) << result.out << result.err;
+    EXPECT_THAT(result.out, testing::StartsWith("verdict: do not use\n"));
+    return;
+  }
+  EXPECT_EQ(result.code, 1) << result.out << result.err;
   EXPECT_THAT(result.err, HasSubstr(wrong.message));
   EXPECT_THAT(result.err, HasSubstr("error: "));
   EXPECT_EQ(result.out, "");
@@ -557,6 +559,7 @@ TEST_P(OddInputs, AreCalibratedWithoutErrorOrDoubt) {
   odd.change(files);
   const test::Outcome result = calibrate(files);
   EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_THAT(result.out, testing::StartsWith("verdict: good\n"));
   EXPECT_THAT(result.err, Not(HasSubstr("error: ")));
   EXPECT_THAT(result.err, Not(HasSubstr("doubt: ")));
   EXPECT_TRUE(fs::exists(folder_ / "out/calibrated.urdf"));

@@ -54,6 +54,10 @@ struct Judgement {
                               const std::vector<Assessment>& assessments,
                               const std::vector<std::string>& doubts = {});
 
+/// True if the noise of an error block is a reason not to call a step good: something is wrong with
+/// the model or the samples.
+[[nodiscard]] bool fits_badly(const Assessment& step);
+
 /// A number in the unit that people read: "3.4 mm", "0.21 deg", "1.2 px", "0.4 %" of "1".
 [[nodiscard]] std::string reading(double value, std::string_view unit);
 

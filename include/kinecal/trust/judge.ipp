@@ -165,6 +165,12 @@ KINECAL_INLINE std::string reading(double value, std::string_view unit) {
   return text;
 }
 
+KINECAL_INLINE bool fits_badly(const Assessment& step) {
+  Judgement of_noise;
+  detail::judge_noise(step, of_noise);
+  return of_noise.verdict != Grade::good;
+}
+
 KINECAL_INLINE Judgement judge(const Calibration& calibration, const CalibrationResult& result,
                                const std::vector<Assessment>& assessments,
                                const std::vector<std::string>& doubts) {
