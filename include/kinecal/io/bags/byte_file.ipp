@@ -6,15 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <istream>
 #include <span>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/io/text_file.hpp"
 
 namespace kinecal::detail {
 
@@ -25,8 +24,7 @@ struct CutOffError : BytesError {
 
 /// @throws BytesError  if the file does not exist, is a folder or may not be read
 [[nodiscard]] inline std::ifstream open_bytes(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw BytesError("is a folder, not a file");
+  if (const std::string why = why_no_file(path); !why.empty()) throw BytesError(why);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw BytesError(std::string("cannot be opened: ") + std::strerror(errno));

@@ -15,9 +15,9 @@
 namespace kinecal {
 
 KINECAL_INLINE Recording read_recording(const std::string& path, Diagnostics& diagnostics,
-                                        unsigned threads) {
+                                        unsigned threads, const ProgressMeter& meter) {
   if (recording_format(path) == RecordingFormat::yaml) {
-    return {read_samples(path, diagnostics, threads), {}};
+    return {read_samples(path, diagnostics, threads, meter), {}};
   }
   Recording recording;
   const std::size_t errors_before = diagnostics.errors.size();
