@@ -17,7 +17,8 @@ struct CalibrateOptions {
   std::string offsets = "rising";
   bool upstream_names = false;
   bool dry_run = false;
-  int threads = 0;  ///< zero: one per core
+  bool force = false;  ///< replace results
+  int threads = 0;     ///< zero: one per core
   std::string cost = "compressed";
 };
 
@@ -46,6 +47,12 @@ struct InitOptions {
 
 /// Writes a first configuration from a URDF and a few answers.
 int init(const InitOptions& options);
+
+struct DescribeOptions {
+  std::string format;  ///< man, bash or zsh
+  std::string output;  ///< empty: the standard output
+  bool force = false;  ///< replace a file
+};
 
 struct ConvertOptions {
   std::string input, output;
