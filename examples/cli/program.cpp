@@ -317,14 +317,19 @@ void add_commands(Commands& commands) {
       add_rpy, rpy);
 }
 
-/// `help` and `help COMMAND` are `--help` and `COMMAND --help`.
-void replace_help(std::vector<std::string>& arguments) {
+/// `help` and `help COMMAND` are `--help` and `COMMAND --help`.  A word that is not a command stays, and
+/// is refused.
+void replace_help(const CLI::App& app, std::vector<std::string>& arguments) {
   if (arguments.empty() || arguments.back() != "help") return;
   arguments.pop_back();
   const std::string command = arguments.empty() ? "" : arguments.back();
-  const bool is_option = command.starts_with("-");
-  arguments = {"--help"};
-  if (!command.empty() && !is_option) arguments.push_back(command);
+  if (command.empty() || command.starts_with("-")) {
+    arguments = {"--help"};
+  } else {
+    const auto known = app.get_subcommands(
+        [&](const CLI::App* candidate) { return candidate->get_name() == command; });
+    arguments = !known.empty() ? std::vector<std::string>{"--help", command} : std::vector{command};
+  }
 }
 
 int run(int argc, char** argv) {
@@ -344,7 +349,7 @@ int run(int argc, char** argv) {
       [&](const DescribeOptions& options) { return describe(app, options); });
   app.get_subcommand("describe")->group("");  // for those who make packages
   std::vector<std::string> arguments = arguments_of(argc, argv);
-  replace_help(arguments);
+  replace_help(app, arguments);
   const std::vector<std::string> given = arguments;
   try {
     app.parse(arguments);

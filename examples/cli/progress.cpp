@@ -47,7 +47,7 @@ ProgressMeter ProgressLine::meter() {
 }
 
 void ProgressLine::show(double fraction, const std::string& what) {
-  constexpr std::chrono::milliseconds kQuick(200), kBetween(100);
+  constexpr std::chrono::milliseconds kQuick(50), kBetween(100);
   const Clock::time_point now = Clock::now();
   if (what != task_) {
     task_ = what;

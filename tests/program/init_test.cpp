@@ -223,7 +223,10 @@ TEST_F(Init, TakesSeveralReflectors) {
   EXPECT_EQ(check("ur5e").code, 0);
   EXPECT_THAT(init("ur5e", "--target tracker --force --target-frame smr,smr").err,
               HasSubstr("--target-frame: 'smr' occurs twice"));
-  EXPECT_THAT(init("panda", "--target world_checkerboard --target-frame a,b").err,
+  EXPECT_THAT(init("panda",
+                   "--force --target world_checkerboard --camera camera_color_optical_frame "
+                   "--target-frame a,b")
+                  .err,
               HasSubstr("--target-frame: only a tracker has several reflectors"));
 }
 
