@@ -10,10 +10,12 @@
 #include <istream>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/io/bags/bytes.hpp"
 #include "kinecal/io/text_file.hpp"
+#include "kinecal/samples/progress_meter.hpp"
 
 namespace kinecal::detail {
 
@@ -42,6 +44,13 @@ class ByteFile {
     in_.seekg(0);
   }
 
+  /// Reports the place after each megabyte.
+  /// @param what  is being done
+  void show_progress(const ProgressMeter& meter, std::string what) {
+    meter_ = meter;
+    what_ = std::move(what);
+  }
+
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] std::uint64_t place() const { return place_; }
   [[nodiscard]] std::uint64_t left() const { return size_ - place_; }
@@ -65,6 +74,10 @@ class ByteFile {
       throw CutOffError(at_byte(place_) + "reading the file fails here");
     }
     place_ += bytes.size();
+    if (meter_ && place_ / kReported != reported_) {
+      reported_ = place_ / kReported;
+      meter_(double(place_) / double(size_), what_);
+    }
   }
 
   /// @throws CutOffError  if there are fewer bytes
@@ -92,9 +105,14 @@ class ByteFile {
                       std::to_string(left()) + " left");
   }
 
+  static constexpr std::uint64_t kReported = 1'000'000;
+
   std::istream& in_;
   std::uint64_t size_ = 0;
   std::uint64_t place_ = 0;
+  ProgressMeter meter_;
+  std::string what_;
+  std::uint64_t reported_ = 0;  ///< megabyte of the last report
 };
 
 }  // namespace kinecal::detail

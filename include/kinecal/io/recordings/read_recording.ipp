@@ -39,7 +39,7 @@ KINECAL_INLINE Recording read_recording(const std::string& path, Diagnostics& di
     const TopicUse use = use_of(topic);
     return use == TopicUse::samples || use == TopicUse::urdf;
   };
-  read_bag(path, {wants, handle}, diagnostics);
+  read_bag(path, {wants, handle, meter}, diagnostics);
   recording.samples = samples.take(diagnostics);
   if (number == 0 && diagnostics.errors.size() == errors_before) {
     diagnostics.error({path, 0},
