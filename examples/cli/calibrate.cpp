@@ -46,7 +46,7 @@ ResultFileOptions file_options(const CalibrateOptions& options) {
   return files;
 }
 
-/// Results must not replace their own input.
+/// Results must not replace their own input, and other files only on demand.
 void check_targets(const CalibrateOptions& options, const std::filesystem::path& folder,
                    const std::vector<OutputFile>& files) {
   std::vector<std::string> inputs = options.samples;
@@ -62,7 +62,21 @@ void check_targets(const CalibrateOptions& options, const std::filesystem::path&
       throw OutputError((folder / file.name).string() +
                         ": would replace an input; choose another --output");
     }
+    const auto there = std::filesystem::symlink_status(folder / file.name);
+    const bool is_file =
+        std::filesystem::is_regular_file(there) || std::filesystem::is_symlink(there);
+    if (options.force || !is_file) continue;
+    throw OutputError((folder / file.name).string() +
+                      ": exists; use --force to replace it, or choose another --output");
   }
+}
+
+/// What can be known of the results before the work.
+void check_first_targets(const CalibrateOptions& options) {
+  std::vector<OutputFile> files = {{"report.json", ""}};
+  if (!options.upstream_names)
+    files.insert(files.end(), {{"calibrated.urdf", ""}, {"calibration.yaml", ""}});
+  check_targets(options, options.output, files);
 }
 
 SolveOptions solve_options(const CalibrateOptions& options) {
@@ -78,6 +92,7 @@ int calibrate(const CalibrateOptions& options) {
   if (options.output.empty() && !options.dry_run) {
     throw InputError("--output is required (or --dry-run)");
   }
+  if (!options.dry_run) check_first_targets(options);
   const Clock::time_point start = Clock::now();
   const Input input =
       read_input(options.urdf, options.config, options.samples, options.cameras, options.recorded);

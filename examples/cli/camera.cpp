@@ -8,6 +8,7 @@
 #include "input.hpp"
 #include "kinecal/io/camera_info.hpp"
 #include "kinecal/io/cameras/read_camera_file.hpp"
+#include "kinecal/io/printable.hpp"
 #include "output_file.hpp"
 
 namespace kinecal::cli {
@@ -21,7 +22,7 @@ void print_row(const char* title, std::span<const double> numbers) {
 
 void print_camera(const CameraInfo& camera) {
   fmt::print("{:<14} {} x {} pixels\n", "size", camera.width, camera.height);
-  fmt::print("{:<14} {}\n", "distortion", camera.distortion_model);
+  fmt::print("{:<14} {}\n", "distortion", printable(camera.distortion_model));
   print_row("D", camera.d);
   print_row("K", camera.k);
   print_row("R", camera.r);

@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "words.hpp"
 
 namespace kinecal::cli {
 
@@ -13,15 +14,16 @@ int check(const CheckOptions& options) {
   print(input.diagnostics);
   const std::size_t errors = input.diagnostics.errors.size();
   if (errors > 0) {
-    fmt::print(stderr, "{} error{} found\n", errors, errors == 1 ? "" : "s");
+    fmt::print(stderr, "{} found\n", counted(errors, "error"));
     return kBadInput;
   }
   for (const CalibrationStep& step : input.calibration.steps) {
     if (input.samples.empty()) {
       fmt::print("step '{}': fits the robot; samples were not given\n", step.name);
     } else {
-      fmt::print("step '{}': {} samples, {} free parameters\n", step.name,
-                 step.problem->num_samples(), step.free.size());
+      fmt::print("step '{}': {}, {}\n", step.name,
+                 counted(static_cast<std::size_t>(step.problem->num_samples()), "sample"),
+                 counted(static_cast<std::size_t>(step.free.size()), "free parameter"));
     }
   }
   const std::size_t doubts = input.diagnostics.doubts.size();

@@ -23,8 +23,9 @@ struct CalibrateOptions {
   bool keep_outliers = false;  ///< use samples that do not fit the others
   bool upstream_names = false;
   bool dry_run = false;
-  int folds = 5;    ///< for held-out errors; 0: leave-one-out
-  int threads = 0;  ///< zero: one per core
+  bool force = false;  ///< replace results
+  int folds = 5;       ///< for held-out errors; 0: leave-one-out
+  int threads = 0;     ///< zero: one per core
   std::string cost = "compressed";
 };
 
@@ -54,6 +55,12 @@ struct InitOptions {
 
 /// Writes a first configuration from a URDF and a few answers.
 int init(const InitOptions& options);
+
+struct DescribeOptions {
+  std::string format;  ///< man, bash or zsh
+  std::string output;  ///< empty: the standard output
+  bool force = false;  ///< replace a file
+};
 
 struct ConvertOptions {
   std::string input, output;

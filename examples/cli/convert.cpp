@@ -17,6 +17,8 @@
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
 #include "output_file.hpp"
+#include "progress.hpp"
+#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -43,7 +45,8 @@ Content read_yaml(const std::string& input, Diagnostics& diagnostics) {
   Content content;
   Diagnostics found;
   try {
-    content.samples = read_samples(input, found);
+    ProgressLine line;
+    content.samples = read_samples(input, found, 0, line.meter());
   } catch (const InputError& error) {
     found.errors.emplace_back(error.what());
   }
@@ -87,9 +90,9 @@ Content read_content(const ConvertOptions& options, Diagnostics& diagnostics) {
              : read_bag_content(options.input, diagnostics);
 }
 
-std::string counted(const Content& content) {
-  if (content.samples.empty()) return fmt::format("{} poses", content.poses.size());
-  return fmt::format("{} samples", content.samples.size());
+std::string counted_content(const Content& content) {
+  if (content.samples.empty()) return counted(content.poses.size(), "pose");
+  return counted(content.samples.size(), "sample");
 }
 
 /// Writes everything that was read, as YAML.
@@ -102,7 +105,7 @@ std::string write_yaml(const Content& content, const std::string& output) {
     write_samples(text, content.samples);
   }
   write_file(output, text.str());
-  return counted(content);
+  return counted_content(content);
 }
 
 /// Writes a bag from a bag, or from what was read.
@@ -117,10 +120,11 @@ std::optional<std::string> write_bag(const ConvertOptions& options, Encoding enc
   const OutputFolder folder(folder_of(options.output));  // creates it if it is missing
   BagOutput bag(options.output, encoding,
                 encoding == Encoding::cdr ? best_mcap_compression() : Compression::none);
-  std::string words = counted(content);
+  std::string words = counted_content(content);
   if (from_bag) {
     const Clouds clouds = options.drop_clouds ? Clouds::drop : Clouds::keep;
-    words = fmt::format("{} messages", convert_bag(options.input, bag, clouds, diagnostics));
+    const auto messages = convert_bag(options.input, bag, clouds, diagnostics);
+    words = counted(static_cast<std::size_t>(messages), "message");
   } else {
     write_samples(bag, content.samples);
     write_poses(bag, content.poses);

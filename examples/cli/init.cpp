@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include "commands.hpp"
@@ -28,33 +30,45 @@ std::string ask_link(const Robot& robot, const Question& question) {
   });
 }
 
-std::string check_target(const std::string& word) {
-  if (init_target(word)) return "";
+/// @param has_camera  whether the robot seems to have one
+std::string check_target(const std::string& word, bool has_camera = true) {
+  if (const auto target = init_target(word)) {
+    if (has_camera || !needs_camera(*target)) return "";
+    return "no link of the URDF looks like a camera; add it to the URDF, or give --camera LINK";
+  }
   std::vector<std::string_view> words;
   for (const InitTargetWord& known : kInitTargets) words.push_back(known.word);
   return fmt::format("'{}' is not a target{}", word, did_you_mean(word, words));
 }
 
-/// One or two targets: the floor may come with another one.
-void answer_targets(const InitOptions& options, InitAnswers& answers) {
-  std::vector<std::string> words = options.targets;
-  if (words.empty()) {
-    Question question{"--target", "What is the robot measured against?", {}};
-    for (const InitTargetWord& known : kInitTargets) {
-      question.choices.push_back({std::string(known.word), std::string(known.says)});
-    }
-    words = {ask(question, check_target)};
-    const InitTarget target = *init_target(words.front());
-    if (needs_camera(target) && target != InitTarget::ground && on_a_terminal() &&
-        options.camera_type != "camera2d") {
-      const Question floor{"--target", "Does the camera also see the floor, in separate samples?",
-                           choices({"no", "yes"})};
-      const std::string seen = ask(floor, [](const std::string& word) -> std::string {
-        return word == "no" || word == "yes" ? "" : "yes or no";
-      });
-      if (seen == "yes") words.push_back("ground");
-    }
+/// Asks for the targets that this robot can have.
+void ask_targets(const Robot& robot, InitOptions& options) {
+  std::vector<std::string>& words = options.targets;
+  const bool has_camera = !options.camera.empty() || !propose_cameras(robot).empty();
+  Question question{"--target", "What is the robot measured against?", {}};
+  for (const InitTargetWord& known : kInitTargets) {
+    if (!has_camera && needs_camera(known.target)) continue;
+    question.choices.push_back({std::string(known.word), std::string(known.says)});
   }
+  if (!has_camera) fmt::print("No link of the URDF looks like a camera.\n");
+  words = {ask(question, [&](const std::string& word) { return check_target(word, has_camera); })};
+  const InitTarget target = *init_target(words.front());
+  if (!needs_camera(target) || target == InitTarget::ground || !on_a_terminal() ||
+      options.camera_type == "camera2d") {
+    return;
+  }
+  const Question floor{"--target", "Does the camera also see the floor, in separate samples?",
+                       choices({"no", "yes"})};
+  const std::string seen = ask(floor, [](const std::string& word) -> std::string {
+    return word == "no" || word == "yes" ? "" : "yes or no";
+  });
+  if (seen == "yes") words.push_back("ground");
+}
+
+/// One or two targets: the floor may come with another one.
+void answer_targets(const Robot& robot, InitOptions& options, InitAnswers& answers) {
+  if (options.targets.empty()) ask_targets(robot, options);
+  const std::vector<std::string>& words = options.targets;
   bool is_chosen = false;
   for (const std::string& word : words) {
     if (const std::string why = check_target(word); !why.empty()) {
@@ -78,25 +92,24 @@ void answer_targets(const InitOptions& options, InitAnswers& answers) {
   answers.with_ground = false;
 }
 
-void answer_camera(const Robot& robot, const InitOptions& options, InitAnswers& answers) {
+void answer_camera(const Robot& robot, InitOptions& options, InitAnswers& answers) {
   if (answers.camera.empty()) {
-    answers.camera =
+    answers.camera = options.camera =
         ask_link(robot, {"--camera", "Which link is the camera's optical frame (z ahead, y down)?",
                          choices(propose_cameras(robot))});
   }
   const bool floor = answers.with_ground || answers.target == InitTarget::ground;
-  if (!options.camera_type.empty()) {
-    answers.camera_type = options.camera_type;
-  } else if (on_a_terminal() && !floor) {
+  if (options.camera_type.empty() && on_a_terminal() && !floor) {
     const Question question{
         "--camera-type",
         "What does the camera measure?",
         {{"camera3d", "points in metres: a depth camera"}, {"camera2d", "pixels"}}};
-    answers.camera_type = ask(question, [](const std::string& type) -> std::string {
+    options.camera_type = ask(question, [](const std::string& type) -> std::string {
       return type == "camera3d" || type == "camera2d" ? "" : "camera3d or camera2d";
     });
   }
-  answers.camera_name = ask_unless_given(
+  if (!options.camera_type.empty()) answers.camera_type = options.camera_type;
+  answers.camera_name = options.camera_name = ask_unless_given(
       options.camera_name,
       {"--robot-camera-name", "What do the samples call the camera (sensor_name)?",
        choices({answers.camera_name})},
@@ -105,32 +118,57 @@ void answer_camera(const Robot& robot, const InitOptions& options, InitAnswers& 
       });
 }
 
+/// The words between commas.
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> words;
+  std::istringstream in(text);
+  for (std::string word; std::getline(in, word, ',');) {
+    const auto begin = word.find_first_not_of(' ');
+    if (begin == std::string::npos) continue;
+    words.push_back(word.substr(begin, word.find_last_not_of(' ') + 1 - begin));
+  }
+  return words;
+}
+
+/// The frame of a board, or those of one or several reflectors.
+void set_target_frames(const std::string& given, InitAnswers& answers) {
+  std::vector<std::string> names = split(given);
+  if (names.empty()) return;
+  answers.target_frame = names.front();
+  answers.more_reflectors.assign(names.begin() + 1, names.end());
+}
+
 /// Names that have a proposal: the base, and frames that the URDF does not contain.
-void answer_names(const Robot& robot, const InitOptions& options, InitAnswers& answers) {
+void answer_names(const Robot& robot, InitOptions& options, InitAnswers& answers) {
   const InitAnswers proposed = with_proposals(robot, answers);
   const auto frame = [&](const std::string& given, const Question& question) {
-    return ask_unless_given(given, question, [&](const std::string& name) {
-      return why_not([&](Diagnostics& d) { check_init_frame(robot, question.option, name, d); });
+    return ask_unless_given(given, question, [&](const std::string& names) {
+      return why_not([&](Diagnostics& d) {
+        for (const std::string& name : split(names)) {
+          check_init_frame(robot, question.option, name, d);
+        }
+      });
     });
   };
   const bool tracker = answers.target == InitTarget::tracker;
   if (needs_target_frame(answers.target)) {
-    answers.target_frame =
-        frame(options.target_frame,
-              {"--target-frame",
-               fmt::format("What do the samples call the frame of the {} (frame_id)?",
-                           tracker ? "reflector" : "board"),
-               choices({proposed.target_frame})});
+    options.target_frame = frame(
+        options.target_frame,
+        {"--target-frame",
+         fmt::format("What do the samples call the frame of the {} (frame_id{})?",
+                     tracker ? "reflector" : "board", tracker ? "; several: with commas" : ""),
+         choices({proposed.target_frame})});
+    set_target_frames(options.target_frame, answers);
   }
   if (tracker) {
-    answers.tracker_frame =
+    answers.tracker_frame = options.tracker_frame =
         frame(options.tracker_frame,
               {"--tracker-frame", "What do the samples call the frame of the tracker (frame_id)?",
                choices({proposed.tracker_frame})});
   }
   if (proposed.base.empty()) return;  // a link does not exist; initial_config() reports it
   const bool floor = answers.with_ground || answers.target == InitTarget::ground;
-  answers.base = ask_unless_given(
+  answers.base = options.base = ask_unless_given(
       options.base,
       {"--base",
        fmt::format("In which link are measurements compared{}?",
@@ -149,9 +187,11 @@ void check_given(const Robot& robot, const InitOptions& options) {
         std::pair("--camera", options.camera)}) {
     if (!link.empty()) check_init_link(robot, option, link, diagnostics);
   }
-  for (const auto& [option, frame] : {std::pair("--target-frame", options.target_frame),
-                                      std::pair("--tracker-frame", options.tracker_frame)}) {
-    if (!frame.empty()) check_init_frame(robot, option, frame, diagnostics);
+  for (const std::string& frame : split(options.target_frame)) {
+    check_init_frame(robot, "--target-frame", frame, diagnostics);
+  }
+  if (!options.tracker_frame.empty()) {
+    check_init_frame(robot, "--tracker-frame", options.tracker_frame, diagnostics);
   }
   diagnostics.throw_if_errors();
 }
@@ -170,17 +210,19 @@ void warn_of_idle(const InitOptions& options, InitTarget target) {
   warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
 }
 
-InitAnswers answer(const Robot& robot, const InitOptions& options) {
+/// @param options  receives the answers, so that they can be given as options
+InitAnswers answer(const Robot& robot, InitOptions& options) {
   check_given(robot, options);
   InitAnswers answers;
   answers.base = options.base;
   answers.arm = options.arm;
   answers.camera = options.camera;
-  answer_targets(options, answers);
+  answer_targets(robot, options, answers);
   warn_of_idle(options, answers.target);
   if (needs_arm(answers.target) && answers.arm.empty()) {
-    answers.arm = ask_link(robot, {"--arm", "Which link is at the end of the arm, with the target?",
-                                   choices(propose_arms(robot))});
+    answers.arm = options.arm =
+        ask_link(robot, {"--arm", "Which link is at the end of the arm, with the target?",
+                         choices(propose_arms(robot))});
   }
   if (needs_camera(answers.target)) answer_camera(robot, options, answers);
   answer_names(robot, options, answers);
@@ -193,15 +235,48 @@ std::string as_word(const std::string& text) {
   return is_plain ? text : "'" + text + "'";
 }
 
+/// The call with all that was given and answered.
+std::string call_of(const InitOptions& options) {
+  std::string call = "kinecal init --urdf " + as_word(options.urdf), targets;
+  for (const std::string& target : options.targets) {
+    targets += (targets.empty() ? "" : ",") + target;
+  }
+  for (const auto& [option, value] :
+       {std::pair("--target", targets), std::pair("--arm", options.arm),
+        std::pair("--camera", options.camera), std::pair("--camera-type", options.camera_type),
+        std::pair("--robot-camera-name", options.camera_name),
+        std::pair("--target-frame", options.target_frame),
+        std::pair("--tracker-frame", options.tracker_frame), std::pair("--base", options.base)}) {
+    if (!value.empty()) call += std::string(" ") + option + " " + as_word(value);
+  }
+  return call;
+}
+
+/// The configuration; after questions, an error comes with the call that gives their answers.
+std::string configure(const Robot& robot, InitOptions options) {
+  const InitOptions given = options;
+  try {
+    return initial_config(robot, answer(robot, options));
+  } catch (const InputError& error) {
+    const std::string call = call_of(options);
+    if (!on_a_terminal() || call == call_of(given)) throw;
+    throw InputError(std::string(error.what()) + "\nto keep your answers: " + call);
+  }
+}
+
 }  // namespace
 
 int init(const InitOptions& options) {
   const auto check = [&] { check_output(options.output, {options.urdf}, options.force); };
   check();  // before any question
   const Robot robot = read_urdf(options.urdf);
-  const std::string text = initial_config(robot, answer(robot, options));
+  const std::string text = configure(robot, options);
   check();  // the file may have appeared meanwhile
   write_file(options.output, text);
+  if (text.find("sigma: ") != std::string::npos) {
+    fmt::print("note: each sigma in {} is a guess; write the accuracy of your sensors\n",
+               options.output);
+  }
   fmt::print("wrote {}\nnext: kinecal check --urdf {} --config {}\n", options.output,
              as_word(options.urdf), as_word(options.output));
   return kDone;

@@ -13,7 +13,9 @@
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/io/doubts/find_doubts.hpp"
+#include "kinecal/io/printable.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "progress.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -33,6 +35,7 @@ auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(re
 
 Recording read_recordings(const std::vector<std::string>& files, Diagnostics& diagnostics) {
   Recording all;
+  ProgressLine line;
   std::vector<std::string> before;
   for (const std::string& file : files) {
     std::error_code missing;
@@ -43,7 +46,8 @@ Recording read_recordings(const std::vector<std::string>& files, Diagnostics& di
       diagnostics.warning({file, 0}, "is given twice, so its samples count twice");
     }
     before.push_back(file);
-    auto read = attempt([&] { return read_recording(file, diagnostics); }, diagnostics);
+    auto read =
+        attempt([&] { return read_recording(file, diagnostics, 0, line.meter()); }, diagnostics);
     if (!read) continue;
     all.samples.insert(all.samples.end(), std::make_move_iterator(read->samples.begin()),
                        std::make_move_iterator(read->samples.end()));
@@ -108,10 +112,14 @@ Input read_input(const std::string& urdf, const std::string& config,
 
 void print(const Diagnostics& diagnostics) {
   for (const std::string& warning : diagnostics.warnings) {
-    fmt::print(stderr, "warning: {}\n", warning);
+    fmt::print(stderr, "warning: {}\n", printable(warning));
   }
-  for (const std::string& doubt : diagnostics.doubts) fmt::print(stderr, "doubt: {}\n", doubt);
-  for (const std::string& error : diagnostics.errors) fmt::print(stderr, "error: {}\n", error);
+  for (const std::string& error : diagnostics.errors) {
+    fmt::print(stderr, "error: {}\n", printable(error));
+  }
+  for (const std::string& doubt : diagnostics.doubts) {
+    fmt::print(stderr, "doubt: {}\n", printable(doubt));
+  }
 }
 
 }  // namespace kinecal::cli

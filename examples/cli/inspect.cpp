@@ -8,9 +8,11 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/bag_topics.hpp"
 #include "kinecal/io/recordings/pose_messages.hpp"
 #include "kinecal/report/text.hpp"
+#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -70,7 +72,7 @@ void print_joints(const std::vector<Sample>& samples) {
                fmt::format("{:.4f}", range.upper),
                fmt::format("{:.4f}", range.upper - range.lower)});
   }
-  fmt::print("Joints (radians or metres)\n{}\n", table.str());
+  fmt::print("Joints (radians or metres)\n{}\n", printable(table.str()));
 }
 
 void print_sensors(const std::vector<Sample>& samples) {
@@ -83,7 +85,7 @@ void print_sensors(const std::vector<Sample>& samples) {
                sensor.least == sensor.most ? fmt::format("{}", sensor.most)
                                            : fmt::format("{}-{}", sensor.least, sensor.most)});
   }
-  fmt::print("Sensors\n{}\n", table.str());
+  fmt::print("Sensors\n{}\n", printable(table.str()));
 }
 
 /// Prints gaps: joints or sensors that only some samples have, features without numbers.
@@ -91,8 +93,8 @@ void print_gaps(const std::vector<Sample>& samples) {
   std::string gaps;
   const auto add = [&](const std::string& what, std::size_t count) {
     if (count < samples.size()) {
-      gaps += fmt::format("  {} is missing in {} of {} samples\n", what, samples.size() - count,
-                          samples.size());
+      gaps += fmt::format("  {} is missing in {} of {}\n", what, samples.size() - count,
+                          counted(samples.size(), "sample"));
     }
   };
   for (const auto& [name, range] : joint_ranges(samples)) {
@@ -101,21 +103,24 @@ void print_gaps(const std::vector<Sample>& samples) {
   for (const auto& [name, sensor] : sensor_contents(samples)) {
     add(fmt::format("sensor '{}'", name), sensor.samples);
     if (sensor.not_numbers > 0) {
-      gaps += fmt::format("  sensor '{}': {} features are not numbers\n", name, sensor.not_numbers);
+      gaps += fmt::format("  sensor '{}': {}\n", name,
+                          sensor.not_numbers == 1
+                              ? "1 feature is not a number"
+                              : fmt::format("{} features are not numbers", sensor.not_numbers));
     }
   }
-  fmt::print("Gaps\n{}", gaps.empty() ? "  none\n" : gaps);
+  fmt::print("Gaps\n{}", gaps.empty() ? "  none\n" : printable(gaps));
 }
 
 void print_topics(const std::string& file, const std::vector<TopicContent>& topics) {
-  fmt::print("{}: {}\n", file, to_string(recording_format(file)));
+  fmt::print("{}: {}\n", printable(file), to_string(recording_format(file)));
   TextTable table({"topic", "type", "used as", "messages", "kB"}, 3);
   for (const TopicContent& topic : topics) {
     table.add({topic.name, topic.type, std::string(to_string(topic.use)),
                fmt::format("{}", topic.messages),
                fmt::format("{:.1f}", 1e-3 * double(topic.bytes))});
   }
-  fmt::print("{}\n", table.str());
+  fmt::print("{}\n", printable(table.str()));
 }
 
 /// Prints poses to capture: joints, and the features to look for.
@@ -128,11 +133,11 @@ void print_poses(const std::vector<CapturePose>& poses) {
     for (const std::string& finder : poses[i].features) ++finders[finder];
     if (poses[i].features.empty()) ++finders["(all)"];
   }
-  fmt::print("{} poses to capture\n\n", poses.size());
+  fmt::print("{} to capture\n\n", counted(poses.size(), "pose"));
   print_joints(samples);
   TextTable table({"looked for", "poses"});
   for (const auto& [finder, count] : finders) table.add({finder, fmt::format("{}", count)});
-  fmt::print("Features\n{}\n", table.str());
+  fmt::print("Features\n{}\n", printable(table.str()));
 }
 
 /// Prints the topics of bags, and poses.
@@ -178,7 +183,7 @@ int inspect(const std::vector<std::string>& files) {
   if (of_bags.errors.empty()) print(of_samples);  // else they would be printed twice
   if (!of_bags.errors.empty() || !of_samples.errors.empty()) return kBadInput;
   if (used.empty()) return kDone;
-  fmt::print("{} samples\n\n", samples.size());
+  fmt::print("{}\n\n", counted(samples.size(), "sample"));
   print_joints(samples);
   print_sensors(samples);
   print_gaps(samples);

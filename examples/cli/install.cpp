@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/io/printable.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -65,7 +66,8 @@ int install(const InstallOptions& options) {
     throw InputError("a result is required (or --restore, or --date)");
   }
   if (!options.date) return install_result(options);
-  fmt::print("{}\n", installed_date(options.folder, options.launch, launch_names(options.names)));
+  fmt::print("{}\n", printable(installed_date(options.folder, options.launch,
+                                              launch_names(options.names))));
   return kDone;
 }
 

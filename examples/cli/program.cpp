@@ -12,6 +12,9 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "describe.hpp"
+#include "kinecal/io/printable.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
 
 namespace {
 
@@ -85,6 +88,7 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                   "parts into which samples are divided for held-out errors; 0: leave-one-out")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
+  command.add_flag("--force", options.force, "replace the results that are in the folder");
   command
       .add_option("--threads", options.threads,
                   "number of threads, default: one per core; the result does not depend on it")
@@ -112,7 +116,8 @@ void add_init(CLI::App& command, InitOptions& options) {
   command
       .add_option(
           "--target-frame", options.target_frame,
-          "frame_id of the board's corners or of the reflector in the samples, not a link of "
+          "frame_id of the board's corners or of the reflector in the samples (several reflectors: "
+          "with commas), not a link of "
           "the URDF; default: 'checkerboard' or 'smr'")
       ->type_name("NAME");
   command
@@ -235,6 +240,35 @@ void add_rpy(CLI::App& command, RpyOptions& options) {
   command.add_flag("--to-vector", options.to_vector, "the numbers are roll, pitch, yaw");
 }
 
+void add_describe(CLI::App& command, DescribeOptions& options) {
+  command
+      .add_option("format", options.format,
+                  "man: a manual page; bash, zsh: completion of commands and options")
+      ->required()
+      ->check(CLI::IsMember({"man", "bash", "zsh"}));
+  command.add_option("--output", options.output, "the file to write")->type_name("FILE");
+  command.add_flag("--force", options.force, "replace the file that is there");
+}
+
+/// An argument that begins like an option and is none of the command; empty if there is none.
+std::string unknown_option(const CLI::App& command, const std::vector<std::string>& arguments) {
+  for (auto argument = arguments.rbegin(); argument != arguments.rend(); ++argument) {
+    const std::string option = argument->substr(0, argument->find('='));
+    if (!option.starts_with("--") || option == "--") continue;
+    if (command.get_option_no_throw(option) == nullptr) return option;
+  }
+  return "";
+}
+
+/// Names of the options of a command: "--urdf".
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
 /// The commands of the program, and which of them the arguments call.
 class Commands {
  public:
@@ -244,7 +278,7 @@ class Commands {
   /// @param run       runs the command
   template <class Options>
   void add(const char* name, const char* says, void (*describe)(CLI::App&, Options&),
-           int (*run)(const Options&)) {
+           const std::function<int(const Options&)>& run) {
     const auto options = std::make_shared<Options>();
     names_.push_back(name);
     CLI::App* const command = app_.add_subcommand(name, says);
@@ -255,56 +289,103 @@ class Commands {
   [[nodiscard]] int run_called() const { return called_(); }
 
   /// The message about wrong arguments.
-  [[nodiscard]] std::string refusal(const std::string& first, const CLI::Error& error) const {
+  /// @param arguments  the last one first
+  [[nodiscard]] std::string refusal(const std::vector<std::string>& arguments,
+                                    const CLI::Error& error) const {
+    const std::string first = arguments.empty() ? "" : arguments.back();
     std::string names;
     for (const std::string& name : names_) {
-      if (name == first) {
-        return std::string("error: ") + error.what() + "; 'kinecal " + name +
-               " --help' lists its options\n";
-      }
+      if (name == first) return refusal_of(*app_.get_subcommand(name), arguments, error);
       names += (names.empty() ? "" : ", ") + name;
     }
+    const std::string meant = kinecal::did_you_mean(first, names_);
     return "error: " +
            (first.empty() ? "no command is given" : "'" + first + "' is not a command") +
-           "; use one of " + names + "\n";
+           (meant.empty() ? "; use one of " + names : meant) + "\n";
   }
 
  private:
+  static std::string refusal_of(const CLI::App& command, const std::vector<std::string>& arguments,
+                                const CLI::Error& error) {
+    const std::string unknown = unknown_option(command, arguments), name = command.get_name();
+    std::string what = error.what();
+    if (!unknown.empty()) {
+      what = "'" + unknown + "' is not an option of '" + name + "'" +
+             kinecal::did_you_mean(unknown, option_names(command));
+    }
+    return "error: " + what + (what.ends_with("?") ? " " : "; ") + "'kinecal " + name +
+           " --help' lists its options\n";
+  }
+
   CLI::App& app_;
   std::vector<std::string> names_;
   std::function<int()> called_;
 };
+
+void add_commands(Commands& commands) {
+  commands.add<InitOptions>(
+      "init", "write a first configuration from a URDF; asks for what the options leave open",
+      add_init, init);
+  commands.add<CheckOptions>("check", "list every error in the input at once, without calibrating",
+                             add_check, check);
+  commands.add<CalibrateOptions>(
+      "calibrate", "calibrate the robot and write its corrected URDF and camera files",
+      add_calibrate, calibrate);
+  commands.add<InstallOptions>(
+      "install", "copy a result to the robot and set it in the launch file; or go back",
+      add_install, install);
+  commands.add<std::vector<std::string>>(
+      "inspect", "show what is in recordings: topics, sensors, features, joints, gaps", add_inspect,
+      inspect);
+  commands.add<ConvertOptions>("convert", "write samples or poses in another format", add_convert,
+                               convert);
+  commands.add<CameraOptions>("camera", "show a camera file, and write it as camera_info",
+                              add_camera, camera);
+  commands.add<RpyOptions>(
+      "rpy",
+      "convert a rotation vector (a b c of a free frame) to roll, pitch, yaw (a URDF's), or back",
+      add_rpy, rpy);
+}
+
+/// `help` and `help COMMAND` are `--help` and `COMMAND --help`.  A word that is not a command stays, and
+/// is refused.
+void replace_help(const CLI::App& app, std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments.back() != "help") return;
+  arguments.pop_back();
+  const std::string command = arguments.empty() ? "" : arguments.back();
+  if (command.empty() || command.starts_with("-")) {
+    arguments = {"--help"};
+  } else {
+    const auto known = app.get_subcommands(
+        [&](const CLI::App* candidate) { return candidate->get_name() == command; });
+    arguments = !known.empty() ? std::vector<std::string>{"--help", command} : std::vector{command};
+  }
+}
 
 int run(int argc, char** argv) {
   CLI::App app("Calibrates robots: corrects joint zeros, frames and cameras from recorded samples.",
                "kinecal");
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
-  app.footer("'kinecal COMMAND --help' lists the options of a command.");
+  app.footer("'kinecal help COMMAND' lists the options of a command.");
   Commands commands(app);
-  commands.add("init",
-               "write a first configuration from a URDF; asks for what the options leave open",
-               add_init, init);
-  commands.add("check", "list every error in the input at once, without calibrating", add_check,
-               check);
-  commands.add("calibrate", "calibrate the robot and write its corrected URDF and camera files",
-               add_calibrate, calibrate);
-  commands.add("install", "copy a result to the robot and set it in the launch file; or go back",
-               add_install, install);
-  commands.add("inspect", "show what is in recordings: topics, sensors, features, joints, gaps",
-               add_inspect, inspect);
-  commands.add("convert", "write samples or poses in another format", add_convert, convert);
-  commands.add("camera", "show a camera file, and write it as camera_info", add_camera, camera);
-  commands.add(
-      "rpy",
-      "convert a rotation vector (a b c of a free frame) to roll, pitch, yaw (a URDF's), or back",
-      add_rpy, rpy);
+  add_commands(commands);
+  std::string of;
+  app.add_subcommand("help", "show this help, or that of a command")
+      ->add_option("command", of)
+      ->type_name("COMMAND");
+  commands.add<DescribeOptions>(
+      "describe", "print a manual page or shell completion", add_describe,
+      [&](const DescribeOptions& options) { return describe(app, options); });
+  app.get_subcommand("describe")->group("");  // for those who make packages
+  std::vector<std::string> arguments = arguments_of(argc, argv);
+  replace_help(app, arguments);
+  const std::vector<std::string> given = arguments;
   try {
-    app.parse(arguments_of(argc, argv));
+    app.parse(arguments);
   } catch (const CLI::ParseError& e) {
-    const std::string first = argc > 1 ? argv[1] : "";
     app.failure_message(
-        [&](const CLI::App*, const CLI::Error& error) { return commands.refusal(first, error); });
+        [&](const CLI::App*, const CLI::Error& error) { return commands.refusal(given, error); });
     return app.exit(e) == 0 ? kDone : kBadInput;
   }
   const int code = commands.run_called();
@@ -321,7 +402,7 @@ int run_program(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "error: %s\n", e.what());
+    std::fprintf(stderr, "error: %s\n", printable(e.what()).c_str());
   }
   return cli::kBadInput;
 }

@@ -80,6 +80,11 @@ std::string ask(const Question& question, const WhyNot& why_not) {
     line = begin == std::string::npos
                ? ""
                : line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1);
+    if (line.empty() && question.choices.empty()) {
+      throw InputError(question.option +
+                       ": not answered, and the URDF suggests nothing; nothing "
+                       "is written");
+    }
     const auto answer = understood(question, line);
     if (!answer) {
       fmt::print("  there is no such number\n");

@@ -29,7 +29,8 @@ using WhyNot = std::function<std::string(const std::string& answer)>;
 [[nodiscard]] bool on_a_terminal();
 
 /// Asks until the answer is good.  Without a terminal, takes the only choice.
-/// @throws InputError  without a terminal, if there is not exactly one choice; or if the input ends
+/// @throws InputError  without a terminal, if there is not exactly one choice; if the input ends; or
+///                     if there is no choice and the answer is empty
 [[nodiscard]] std::string ask(const Question& question, const WhyNot& why_not);
 
 /// The given answer, or else the typed one; without a terminal, the first choice.

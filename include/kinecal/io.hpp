@@ -47,6 +47,7 @@
 #include "kinecal/io/messages/value.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/io/poses/poses.hpp"
+#include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/bag_output.hpp"
 #include "kinecal/io/recordings/bag_topics.hpp"
 #include "kinecal/io/recordings/convert.hpp"

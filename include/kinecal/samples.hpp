@@ -2,4 +2,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/samples/sample.hpp"

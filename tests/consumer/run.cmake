@@ -59,6 +59,12 @@ if(PROGRAM AND NOT MODE STREQUAL source)
   if(NOT installed STREQUAL built)
     message(FATAL_ERROR "installed: ${installed}built: ${built}")
   endif()
+  foreach(file man/man1/kinecal.1 bash-completion/completions/kinecal
+               zsh/vendor-completions/_kinecal)
+    if(NOT EXISTS ${prefix}/share/${file})
+      message(FATAL_ERROR "${file} is not installed")
+    endif()
+  endforeach()
 endif()
 
 file(COPY ${SOURCE}/tests/consumer/ DESTINATION ${WORK}/consumer)

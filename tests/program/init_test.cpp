@@ -183,6 +183,59 @@ TEST_F(Init, DoesNotAskWhatOptionsSay) {
   EXPECT_EQ(check("panda").code, 0);
 }
 
+TEST_F(Init, ProposesNoTargetOfACameraWhereThereIsNone) {
+  const Outcome asked = type("ur5e", "", "leds\n\n\n\n\n\n");
+  EXPECT_EQ(asked.code, 0) << asked.out;
+  EXPECT_THAT(asked.out,
+              AllOf(HasSubstr("measured against? [tracker]: "), Not(HasSubstr("checkerboard")),
+                    HasSubstr("no link of the URDF looks like a camera; add it to the URDF")));
+  EXPECT_EQ(check("ur5e").code, 0);
+  const Outcome silent = init("ur5e", "--force");
+  EXPECT_EQ(silent.code, 0) << silent.err;
+  EXPECT_THAT(silent.out, HasSubstr("--target tracker (the only one)"));
+}
+
+TEST_F(Init, EndsWhereAQuestionHasNoProposalAndNoAnswer) {
+  const Outcome asked = type("ur5e", "--target leds --arm tool0", "\n");
+  EXPECT_EQ(asked.code, 1) << asked.out;
+  EXPECT_THAT(asked.out, AllOf(HasSubstr("--camera: not answered, and the URDF suggests nothing")));
+  EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
+}
+
+TEST_F(Init, KeepsTheAnswersWhenAnErrorFollowsThem) {
+  // The camera of the Panda is on its hand, so it cannot see LEDs on it from elsewhere.
+  const Outcome asked = type("panda", "", "1\n\npanda_hand\n\n\neye\n\n");
+  EXPECT_EQ(asked.code, 1) << asked.out;
+  const std::string call = "kinecal init --urdf " + urdf("panda") +
+                           " --target leds --arm panda_hand --camera camera_color_optical_frame "
+                           "--camera-type camera3d --robot-camera-name eye --base panda_link0";
+  EXPECT_THAT(asked.out,
+              AllOf(HasSubstr("error: --camera: "), HasSubstr("to keep your answers: " + call)));
+}
+
+TEST_F(Init, TakesSeveralReflectors) {
+  const Outcome made =
+      init("ur5e", "--target tracker --arm tool0 --target-frame smr_1,smr_2,smr_3");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(read("calibrate.yaml"),
+              AllOf(HasSubstr("{name: smr_1, x: true"), HasSubstr("{name: smr_2, x: true"),
+                    HasSubstr("{name: smr_3, x: true"), HasSubstr("{name: smr_3, x: 0.0")));
+  EXPECT_EQ(check("ur5e").code, 0);
+  EXPECT_THAT(init("ur5e", "--target tracker --force --target-frame smr,smr").err,
+              HasSubstr("--target-frame: 'smr' occurs twice"));
+  EXPECT_THAT(init("panda",
+                   "--force --target world_checkerboard --camera camera_color_optical_frame "
+                   "--target-frame a,b")
+                  .err,
+              HasSubstr("--target-frame: only a tracker has several reflectors"));
+}
+
+TEST_F(Init, SaysThatItsSigmaIsAGuess) {
+  const Outcome made = init("ur5e", "--target tracker --arm tool0");
+  EXPECT_THAT(made.out, HasSubstr("note: each sigma in calibrate.yaml is a guess"));
+  EXPECT_THAT(read("calibrate.yaml"), HasSubstr("0.0001 is a guess, write yours"));
+}
+
 TEST_F(Init, WritesNothingWhereTheAnswersEnd) {
   const Outcome left = type("fetch", "", "1\n\n\x04");
   EXPECT_EQ(left.code, 1) << left.out;
@@ -209,8 +262,9 @@ TEST_F(Init, WritesWhatCalibratesARealRobotAsItStands) {
     const Outcome made =
         run(KINECAL_PROGRAM " init --force" + robot + " " + set.options + " < /dev/null");
     ASSERT_EQ(made.code, 0) << made.err;
-    const Outcome done = run(KINECAL_PROGRAM " calibrate --config calibrate.yaml --output out" +
-                             robot + " --samples " + (test::data_folder() / set.samples).string());
+    const Outcome done =
+        run(KINECAL_PROGRAM " calibrate --force --config calibrate.yaml --output out" + robot +
+            " --samples " + (test::data_folder() / set.samples).string());
     ASSERT_EQ(done.code, 0) << done.err;
     const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
     constexpr double kLoss =

@@ -68,7 +68,7 @@ class OpenBlocksProgram : public test::ProgramTest {
     write("calibrate.yaml", "base_link: base\n" + config);
     return run(std::string(KINECAL_PROGRAM) +
                " calibrate --urdf arm.urdf --config calibrate.yaml --samples samples.yaml "
-               "--output result");
+               "--output result --force");
   }
   [[nodiscard]] double value(const std::string& name) {
     return YAML::Load(read("result/calibration.yaml"))[name].as<double>();

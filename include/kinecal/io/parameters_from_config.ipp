@@ -95,10 +95,27 @@ inline bool add_joint_model(ParameterTable& table, const Robot& robot, const std
   return false;
 }
 
+/// Reports a fixed frame that the robot has, and warns of one that no feature is in.
+inline void check_fixed_frame(const FreeFrameConfig& frame, const Robot& robot,
+                              const std::set<std::string>& recorded, bool have_samples,
+                              Diagnostics& diagnostics) {
+  if (robot.has_joint(frame.name) || robot.has_link(frame.name)) {
+    diagnostics.error(frame.place,
+                      fmt::format("fixed frame '{}' is a {} of the robot, whose URDF says where it "
+                                  "is; fixed_frames are beyond the link of a model",
+                                  frame.name, robot.has_joint(frame.name) ? "joint" : "link"));
+  } else if (have_samples && !recorded.contains(frame.name)) {
+    diagnostics.warning(frame.place,
+                        fmt::format("fixed frame '{}': no feature of the samples is in it{}",
+                                    frame.name, did_you_mean(frame.name, recorded)));
+  }
+}
+
 /// Reports a free frame that is neither a joint nor a virtual frame of recorded features.
 inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
                         const std::set<std::string>& recorded, bool have_samples,
                         Diagnostics& diagnostics) {
+  if (frame.is_fixed) return check_fixed_frame(frame, robot, recorded, have_samples, diagnostics);
   if (robot.has_joint(frame.name)) return;
   if (robot.has_link(frame.name)) {
     const Joint* joint = robot.parent_joint(frame.name);

@@ -128,9 +128,16 @@ class MountedSensor {
     if (it != chain_by_frame_.end() && !(own && it->second != 0)) return it->second;
     std::vector<std::string> known;
     for (const auto& [name, chain] : chain_by_frame_) known.push_back(name);
-    throw SampleError("sensor '" + mount_.name + "': a feature is in frame '" + frame +
-                      "', which is not the sensor's frame '" + mount_.frame + "'" +
-                      (own ? "" : " and not a free frame") + did_you_mean(frame, known));
+    throw SampleError(
+        "sensor '" + mount_.name + "': a feature is in frame '" + frame +
+        "', which is not the sensor's frame '" + mount_.frame + "'" +
+        (own ? "; correct the frame of the sensor's model, or the frame_id of the feature"
+             : ", nor a free or fixed frame; declare it under fixed_frames, if its "
+               "pose in '" +
+                   mount_.frame +
+                   "' is known, or free_frames; or correct "
+                   "the frame_id of the feature") +
+        did_you_mean(frame, known));
   }
 
   /// Position, cosine and sine of each joint of a chain.

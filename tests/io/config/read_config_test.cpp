@@ -229,6 +229,40 @@ block prior outrageous board 0 1 none 1 joint_scale=0 mean=0 mean_a=0 mean_b=0 m
 )");
 }
 
+TEST(ReadConfig, AFixedFrameIsAFrameWithoutFreeAxesAndWithItsPose) {
+  const Reading ros1 = read(with(kRos1, "error_blocks:",
+                                 "fixed_frames:\n - {name: smr, x: 0.05, z: -0.1, yaw: 0.5}\n"
+                                 "error_blocks:"));
+  const Reading ros2 = read(with(kRos2, "      error_blocks",
+                                 "      fixed_frames: [smr]\n"
+                                 "      smr: {x: 0.05, z: -0.1, yaw: 0.5}\n      error_blocks"));
+  for (const Reading* reading : {&ros1, &ros2}) {
+    EXPECT_THAT(reading->errors, IsEmpty());
+    EXPECT_THAT(reading->warnings, IsEmpty());
+    ASSERT_EQ(reading->step().free_frames.size(), 2u);
+    const FreeFrameConfig& frame = reading->step().free_frames[1];
+    EXPECT_EQ(frame.name, "smr");
+    EXPECT_TRUE(frame.is_fixed);
+    EXPECT_EQ(frame.axes, (std::array<bool, 6>{}));
+    std::map<std::string, double> values;
+    for (const auto& value : reading->step().initial_values) values[value.name] = value.value;
+    EXPECT_EQ(values, (std::map<std::string, double>{{"smr_x", 0.05},
+                                                     {"smr_y", 0.0},
+                                                     {"smr_z", -0.1},
+                                                     {"smr_a", 0.0},
+                                                     {"smr_b", 0.0},
+                                                     {"smr_c", 0.5}}));
+  }
+  EXPECT_THAT(errors(with(kRos1, "error_blocks:",
+                          "fixed_frames:\n - {name: board, x: 0.05}\nerror_blocks:")),
+              ElementsAre(HasSubstr("fixed frame 'board': is one of free_frames, too")));
+}
+
+TEST(ReadConfig, TextsWithControlCharactersAreErrors) {
+  EXPECT_THAT(errors(with(kRos1, "frame: gripper", "frame: \"grip\\eper\"")),
+              ElementsAre("calibrate.yaml:3: model 'arm': frame is 'grip\\x1bper', not a text"));
+}
+
 TEST(ReadConfig, ItemsKeepTheLineThatTheUserHasToMend) {
   const Reading ros1 = read(kRos1), ros2 = read(kRos2);
   EXPECT_EQ(ros1.step().models[1].place.line, 4);

@@ -156,6 +156,65 @@ TEST_F(ReadCsvSamples, AConstantHasTheUnitOfItsObservation) {
   EXPECT_EQ(samples.at(0).observations.at(0).features.at(0).point, Vector3<double>(0, 0.5, 0));
 }
 
+TEST_F(ReadCsvSamples, TakesSeveralFramesOfOneSensor) {
+  const auto samples = read("q1,ax,ay,az,bx,by,bz\n0.5,1,2,3,4,5,6\n",
+                            "joints: {columns: {pan: q1}}\nobservations:\n"
+                            " - {sensor: arm, frame: smr_1, constant: [0, 0, 0]}\n"
+                            " - {sensor: tracker, frame: laser, points: [[ax, ay, az]]}\n"
+                            " - {sensor: arm, frame: board, constant: [[0, 0, 0], [0.1, 0, 0]]}\n"
+                            " - {sensor: tracker, frame: laser, points: [[bx, by, bz]]}\n");
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  ASSERT_EQ(samples[0].observations.size(), 2u);
+  const auto& arm = samples[0].observation("arm")->features;
+  ASSERT_EQ(arm.size(), 3u);
+  EXPECT_EQ(arm[0].frame, "smr_1");
+  EXPECT_EQ(arm[1].frame, "board");
+  EXPECT_EQ(arm[2].frame, "board");
+  EXPECT_EQ(arm[2].point, Vector3<double>(0.1, 0.0, 0.0));
+  const auto& tracker = samples[0].observation("tracker")->features;
+  ASSERT_EQ(tracker.size(), 2u);
+  EXPECT_EQ(tracker[1].point, Vector3<double>(4.0, 5.0, 6.0));
+}
+
+TEST_F(ReadCsvSamples, TakesTheFrameOfARowFromAColumn) {
+  const std::string mapping =
+      "joints: {columns: {pan: q1}}\nobservations:\n"
+      " - {sensor: arm, frame_column: ball, constant: [0, 0, 0]}\n"
+      " - {sensor: tracker, frame: laser, points: [[x, y, z]]}\n";
+  const std::string table = "q1,ball,x,y,z\n0.5,smr_a,1,2,3\n0.6,smr_b,1,2,3\n";
+  const auto samples = read(table, mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_EQ(samples[0].observation("arm")->features[0].frame, "smr_a");
+  EXPECT_EQ(samples[1].observation("arm")->features[0].frame, "smr_b");
+  EXPECT_EQ(samples[1].observation("tracker")->features[0].frame, "laser");
+  (void)read(with(table, "smr_b", ""), mapping);
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("t.csv:3: column 'ball' is empty; it names the frame")));
+  (void)read(table, with(mapping, "frame_column: ball", "frame: hand, frame_column: ball"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:3: sensor 'arm': has frame and")));
+  (void)read(table, with(mapping, "frame_column: ball", "frame_column: [ball, x]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("one column names the frame")));
+}
+
+TEST_F(ReadCsvSamples, SaysThatAHeaderLooksLikeData) {
+  const std::string mapping =
+      "joints: {columns: {pan: 1}}\n"
+      "observations: [{sensor: arm, frame: hand, points: [[2, 3, 4]]}]\n";
+  EXPECT_THAT(read("0.5,1,2,3\n0.25,4,5,6\n", mapping), testing::SizeIs(1));
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(AllOf(HasSubstr("t.csv:1: row 1 looks like data"),
+                                                       HasSubstr("write 'header: false'"))));
+  (void)read("1,2,3,4\n0.25,4,5,6\n", mapping);
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty()) << "it counts the columns";
+  (void)read("0.5,1,2,3\n0.25,4,5,6\n", "header: false\n" + mapping);
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+  (void)read("0.5,1,2,3\n0.25,4,5,6\n", with(mapping, "pan: 1", "pan: q1"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("column 'q1' is not in the table's header")));
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("row 1 looks like data")));
+}
+
 TEST_F(ReadCsvSamples, DoesNotDependOnTheLocale) {
   const std::locale before =
       std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
@@ -225,7 +284,8 @@ TEST_F(ReadCsvSamples, ReportsErrorsOfTheMappingWithTheirLines) {
   (void)read(kTable, with(kMapping, "   constant: [0, 0.5, 0]\n", ""));
   EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("has none of points, pixels")));
   (void)read(kTable, with(kMapping, "sensor: camera", "sensor: arm"));
-  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("sensor 'arm': occurs twice")));
+  EXPECT_THAT(diagnostics_.errors,
+              testing::Contains(HasSubstr("sensor 'arm': has pixels here and points")));
   (void)read(kTable, "[1, 2]");
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the file is a list, not a map")));
 }

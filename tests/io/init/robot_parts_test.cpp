@@ -37,6 +37,46 @@ TEST(ProposeArms, NamesNeitherHeadsNorFingersNorCameras) {
                           "r_gripper_tool_frame"));
 }
 
+/// A robot of joints in a row, each with its type: base, link1, link2, ...
+std::vector<Joint> row(const std::vector<std::pair<std::string, JointType>>& joints) {
+  std::vector<Joint> all;
+  for (const auto& [name, type] : joints) {
+    const std::string parent = all.empty() ? "base" : all.back().child;
+    all.push_back({name, type, parent, "link" + std::to_string(all.size() + 1), {}});
+  }
+  return all;
+}
+
+TEST(ProposeArms, EndsBeforeTheMotorsOfAGripper) {
+  constexpr JointType kTurns = JointType::revolute, kSlides = JointType::prismatic;
+  for (const auto& [name, type] :
+       {std::pair("gripper_motor_screw_joint", kTurns), std::pair("left_finger_joint", kTurns),
+        std::pair("rh_thumb_1", kTurns), std::pair("gripper_joint", kSlides)}) {
+    const auto joints = row({{"a", kTurns},
+                             {"b", kTurns},
+                             {"c", kTurns},
+                             {"d", kTurns},
+                             {name, type},
+                             {"tip_joint", JointType::fixed}});
+    EXPECT_THAT(propose_arms(Robot("r", joints)), ElementsAre("link4")) << name;
+  }
+  auto mimicked = row({{"a", kTurns}, {"b", kTurns}, {"c", kTurns}, {"d", kTurns}, {"e", kTurns}});
+  mimicked.push_back({"f", kTurns, "link4", "other", {}});
+  mimicked.back().mimic = Mimic{"e", -1.0, 0.0};
+  EXPECT_THAT(propose_arms(Robot("r", mimicked)), ElementsAre("link4"));
+  const auto wrist = row({{"a", kTurns}, {"b", kTurns}, {"c", kTurns}, {"gripper_roll", kTurns}});
+  EXPECT_THAT(propose_arms(Robot("r", wrist)), ElementsAre("link4")) << "a wrist";
+}
+
+TEST(ProposeArms, NamesNoWheels) {
+  constexpr JointType kTurns = JointType::continuous;
+  EXPECT_THAT(propose_arms(Robot("r", row({{"lift", kTurns},
+                                           {"swing", kTurns},
+                                           {"caster_rotation", kTurns},
+                                           {"wheel", kTurns}}))),
+              IsEmpty());
+}
+
 TEST(ProposeCameras, NamesTheOpticalFrameOfColourFirst) {
   const auto fetch = propose_cameras(example("robots/fetch/fetch"));
   ASSERT_FALSE(fetch.empty());

@@ -132,6 +132,30 @@ TEST_F(RecordingTest, OfSamplesAndAUrdfIsReadAgain) {
   EXPECT_THAT(diagnostics_.errors, ElementsAre());
 }
 
+TEST_F(RecordingTest, TellsHowMuchHasBeenRead) {
+  std::vector<Sample> samples(500);
+  for (Sample& sample : samples) {
+    sample.joint_names = {"elbow"};
+    sample.joint_positions = {0.5};
+    sample.observations = {{"arm", std::vector<Feature>(100, Feature{"hand", {1.0, 2.0, 3.0}})}};
+  }
+  for (const auto& [name, encoding] :
+       {std::pair("large.bag", Encoding::ros1), std::pair("large.mcap", Encoding::cdr)}) {
+    BagOutput bag(path(name), encoding);
+    write_samples(bag, samples);
+    bag.finish();
+    ASSERT_GT(std::filesystem::file_size(path(name)), 2'000'000u);
+    std::vector<double> fractions;
+    const auto meter = [&, file = path(name)](double fraction, const std::string& what) {
+      fractions.push_back(fraction);
+      EXPECT_EQ(what, "reading " + file);
+    };
+    EXPECT_EQ(read_recording(path(name), diagnostics_, 1, meter).samples.size(), 500u);
+    EXPECT_THAT(fractions, testing::SizeIs(testing::Ge(2u))) << name;
+    EXPECT_THAT(fractions, testing::Each(testing::AllOf(testing::Gt(0.0), testing::Le(1.0))));
+  }
+}
+
 TEST_F(RecordingTest, OfACompressedFileIsRead) {
   if (!is_available(Compression::zstd)) GTEST_SKIP() << "built without zstd";
   BagOutput bag(path("a.mcap"), Encoding::cdr);

@@ -1,6 +1,9 @@
 #include "kinecal/io/results/file_set.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
@@ -26,6 +29,41 @@ TEST_F(FileSet, ReplacesFilesAndLeavesNothingElse) {
   EXPECT_EQ(read("a"), "3");
   EXPECT_EQ(read("b"), "4");
   EXPECT_EQ(count(), 2);
+}
+
+TEST_F(FileSet, SweepsTheFoldersOfRunsThatWereKilled) {
+  for (const char* name : {".kinecal-abc123", ".kinecal-def456"}) {
+    fs::create_directory(folder_ / name);
+    write(std::string(name) + "/half", "written");
+  }
+  write(".kinecal-file12", "not a folder");
+  fs::create_directory(folder_ / ".kinecal-of-somebody");
+  const int alive = ::open((folder_ / ".kinecal-def456").c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(alive, LOCK_EX), 0);
+  OutputFolder(folder_).write({{"a", "1"}});
+  EXPECT_FALSE(fs::exists(folder_ / ".kinecal-abc123"));
+  EXPECT_TRUE(fs::exists(folder_ / ".kinecal-def456/half")) << "a run that is alive holds its lock";
+  EXPECT_TRUE(fs::exists(folder_ / ".kinecal-file12"));
+  EXPECT_TRUE(fs::exists(folder_ / ".kinecal-of-somebody"));
+  ::close(alive);
+  OutputFolder(folder_).write({{"a", "2"}});
+  EXPECT_FALSE(fs::exists(folder_ / ".kinecal-def456"));
+  EXPECT_EQ(read("a"), "2");
+}
+
+/// Each run sweeps while others make their folders.
+TEST_F(FileSet, RunsThatSweepDoNotDisturbEachOther) {
+  std::vector<std::thread> runs;
+  for (int r = 0; r < 4; ++r) {
+    runs.emplace_back([&, r] {
+      for (int i = 0; i < 50; ++i) {
+        EXPECT_NO_THROW(
+            OutputFolder(folder_).write({{"f" + std::to_string(r), std::to_string(i)}}));
+      }
+    });
+  }
+  for (std::thread& run : runs) run.join();
+  EXPECT_EQ(count(), 4);
 }
 
 TEST_F(FileSet, WritesNothingWhenOneFileCannotBePlaced) {

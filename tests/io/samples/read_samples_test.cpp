@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -211,7 +214,58 @@ TEST(ReadSamples, FolderIsAnError) {
   Diagnostics diagnostics;
   const std::string folder = ::testing::TempDir();
   EXPECT_THAT(read_samples(folder, diagnostics), IsEmpty());
-  EXPECT_THAT(diagnostics.errors, ElementsAre(folder + ": is a folder, not a file of samples"));
+  EXPECT_THAT(diagnostics.errors, ElementsAre(folder + ": is a folder, not a file"));
+}
+
+TEST(ReadSamples, APipeIsAnErrorAndIsNotOpened) {
+  const std::string path = ::testing::TempDir() + "kinecal_pipe_" + std::to_string(getpid());
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  Diagnostics diagnostics;
+  EXPECT_THAT(read_samples(path, diagnostics), IsEmpty());
+  EXPECT_THAT(diagnostics.errors, ElementsAre(StartsWith(path + ": is a pipe, not a file; write")));
+  std::filesystem::remove(path);
+}
+
+TEST(ReadSamples, MisspeltKeysOfKinecalAreDoubtedOnce) {
+  const std::string good =
+      kJoints +
+      "conditions: {load: 1}\nobservations:\n- sensor_name: arm\n  features:\n"
+      "  - {header: {frame_id: hand}, point: {x: 0, y: 0, z: 0}, sigma: 0.1}\n---\n";
+  EXPECT_THAT(read_text(good + good).diagnostics.warnings, IsEmpty());
+  const auto spoilt = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return read_text(text + text).diagnostics;
+  };
+  EXPECT_THAT(
+      spoilt("sigma:", "sigam:").warnings,
+      ElementsAre(HasSubstr("features: unknown key 'sigam' is skipped; did you mean 'sigma'?")));
+  EXPECT_THAT(spoilt("sigma:", "Sigma:").warnings, ElementsAre(HasSubstr("mean 'sigma'?")));
+  EXPECT_THAT(spoilt("conditions:", "condition:").warnings,
+              ElementsAre(HasSubstr("sample: unknown key 'condition' is skipped; did you mean "
+                                    "'conditions'?")));
+  EXPECT_THAT(spoilt("sigma:", "stamp:").warnings, IsEmpty()) << "another word";
+}
+
+TEST(ReadSamples, TellsHowMuchHasBeenRead) {
+  std::string text;
+  while (text.size() < 1'000'000) text += kSample;
+  const std::string path = ::testing::TempDir() + "kinecal_meter_" + std::to_string(getpid());
+  std::ofstream(path) << text;
+  Diagnostics diagnostics;
+  std::vector<double> fractions;
+  const auto meter = [&](double fraction, const std::string& what) {
+    fractions.push_back(fraction);
+    EXPECT_EQ(what, "reading " + path);
+  };
+  (void)read_samples(path, diagnostics, 2, meter);
+  std::filesystem::remove(path);
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  ASSERT_GE(fractions.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_GT(fractions.front(), 0.0);
+  EXPECT_LT(fractions.front(), 0.6);
+  EXPECT_GT(fractions.back(), 0.999);
 }
 
 TEST(ReadSamples, FileWithoutSamplesIsAnError) {

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/samples/progress_meter.hpp"
 
 namespace kinecal {
 
@@ -55,6 +56,8 @@ struct BagReader {
   std::function<bool(const BagTopic&)> wants;
   /// Takes each wanted message.
   std::function<void(const BagMessage&)> handle;
+  /// Is told the place in the file that is being read; not of SQLite.
+  ProgressMeter meter = {};
 };
 
 }  // namespace kinecal

@@ -6,15 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <istream>
 #include <span>
 #include <string>
-#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "kinecal/io/bags/bytes.hpp"
+#include "kinecal/io/text_file.hpp"
+#include "kinecal/samples/progress_meter.hpp"
 
 namespace kinecal::detail {
 
@@ -25,8 +26,7 @@ struct CutOffError : BytesError {
 
 /// @throws BytesError  if the file does not exist, is a folder or may not be read
 [[nodiscard]] inline std::ifstream open_bytes(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw BytesError("is a folder, not a file");
+  if (const std::string why = why_no_file(path); !why.empty()) throw BytesError(why);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw BytesError(std::string("cannot be opened: ") + std::strerror(errno));
@@ -42,6 +42,13 @@ class ByteFile {
     if (!in_ || end < 0) throw BytesError("its size is unknown; it must be a file, not a pipe");
     size_ = static_cast<std::uint64_t>(end);
     in_.seekg(0);
+  }
+
+  /// Reports the place after each megabyte.
+  /// @param what  is being done
+  void show_progress(const ProgressMeter& meter, std::string what) {
+    meter_ = meter;
+    what_ = std::move(what);
   }
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
@@ -67,6 +74,10 @@ class ByteFile {
       throw CutOffError(at_byte(place_) + "reading the file fails here");
     }
     place_ += bytes.size();
+    if (meter_ && place_ / kReported != reported_) {
+      reported_ = place_ / kReported;
+      meter_(double(place_) / double(size_), what_);
+    }
   }
 
   /// @throws CutOffError  if there are fewer bytes
@@ -94,9 +105,14 @@ class ByteFile {
                       std::to_string(left()) + " left");
   }
 
+  static constexpr std::uint64_t kReported = 1'000'000;
+
   std::istream& in_;
   std::uint64_t size_ = 0;
   std::uint64_t place_ = 0;
+  ProgressMeter meter_;
+  std::string what_;
+  std::uint64_t reported_ = 0;  ///< megabyte of the last report
 };
 
 }  // namespace kinecal::detail

@@ -33,11 +33,13 @@ struct FreeParamConfig {
   SourceLocation place;  ///< where the file frees it
 };
 
-/// `free_frames:`  a joint's frame or a virtual frame, and its free axes.
+/// `free_frames:`  a joint's frame or a virtual frame, and its free axes; or `fixed_frames:` (kinecal
+/// only), a virtual frame whose pose is known.
 struct FreeFrameConfig {
   std::string name;            ///< joint of the URDF or virtual frame
   std::array<bool, 6> axes{};  ///< x y z roll pitch yaw
   SourceLocation place;        ///< where the file frees it
+  bool is_fixed = false;       ///< of fixed_frames: no axis is free, initial_values hold its pose
 };
 
 /// `free_frames_initial_values:`  where a free frame starts.
@@ -91,7 +93,7 @@ struct StepConfig {
   int max_num_iterations = 1000;                              ///< of the solver
   std::vector<ModelConfig> models;                            ///< `models:`
   std::vector<FreeParamConfig> free_params;                   ///< `free_params:`
-  std::vector<FreeFrameConfig> free_frames;                   ///< `free_frames:`
+  std::vector<FreeFrameConfig> free_frames;                   ///< also those of `fixed_frames:`
   std::vector<FrameInitialValueConfig> frame_initial_values;  ///< `free_frames_initial_values:`
   std::vector<InitialValueConfig> initial_values;             ///< `initial_values:`
   std::vector<BoundConfig> bounds;                            ///< `bounds:`

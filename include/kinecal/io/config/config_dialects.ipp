@@ -28,9 +28,9 @@ inline void read_ros1_steps(ConfigMap& file, ConfigMap& steps, ConfigProgress& p
   for (const std::string& name : names) {
     auto step = steps.map(*steps.use(name), "step '" + name + "'");
     if (!step) continue;
-    step->inherit(
-        maps.empty() ? file : maps.back(),
-        {"models", "free_params", "free_frames", "free_frames_initial_values", "error_blocks"});
+    step->inherit(maps.empty() ? file : maps.back(),
+                  {"models", "free_params", "free_frames", "fixed_frames",
+                   "free_frames_initial_values", "error_blocks"});
     read_step(*step, find_ros1_items, name, max_num_iterations, progress);
     maps.push_back(std::move(*step));
   }

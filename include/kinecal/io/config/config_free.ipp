@@ -70,6 +70,41 @@ inline void check_free_axes(const ConfigMap& map, const FreeFrameConfig& frame) 
   return frame;
 }
 
+/// The pose of a frame from its keys x y z roll pitch yaw, zero by default.
+[[nodiscard]] inline FrameInitialValueConfig read_frame_pose(ConfigItem& item) {
+  FrameInitialValueConfig pose;
+  pose.name = item.name;
+  pose.place = item.place;
+  if (!item.map) return pose;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i % 3);
+    (i < 3 ? pose.xyz : pose.rpy)(axis) = item.map->number(kConfigAxes[i], 0.0);
+  }
+  item.map->report_unknown();
+  return pose;
+}
+
+/// `fixed_frames:`  a frame of features, beyond the link of their model, at a pose that is known.  It
+/// is a virtual frame without a free axis.
+/// @return  the values of its parameters
+[[nodiscard]] inline std::vector<InitialValueConfig> read_fixed_frame(ConfigItem& item,
+                                                                      StepConfig& step) {
+  const FrameInitialValueConfig pose = read_frame_pose(item);
+  const auto same = [&](const FreeFrameConfig& frame) { return frame.name == pose.name; };
+  if (std::any_of(step.free_frames.begin(), step.free_frames.end(), same) && item.map) {
+    item.map->error(item.place, "is one of free_frames, too; list it once");
+  }
+  step.free_frames.push_back({pose.name, {}, pose.place, true});
+  Eigen::Matrix<double, 6, 1> values;
+  values << pose.xyz, log(rotation_from_rpy(pose.rpy));
+  std::vector<InitialValueConfig> all;
+  for (std::size_t i = 0; i < 6; ++i) {
+    all.push_back({parameter_name(pose.name, kFrameAxes[i]), values(static_cast<Eigen::Index>(i)),
+                   pose.place});
+  }
+  return all;
+}
+
 /// Warns of an initial value along axes that are not free.  The axes of a rotation are the
 /// components of its rotation vector, as for free parameters.
 inline void check_initial_axes(const ConfigMap& map, const FrameInitialValueConfig& initial,
@@ -89,16 +124,9 @@ inline void check_initial_axes(const ConfigMap& map, const FrameInitialValueConf
 /// @param free  the axes that are free in this step or one before it
 [[nodiscard]] inline FrameInitialValueConfig read_frame_initial_value(ConfigItem& item,
                                                                       const FreeAxes& free) {
-  FrameInitialValueConfig initial;
-  initial.name = item.name;
-  initial.place = item.place;
+  const FrameInitialValueConfig initial = read_frame_pose(item);
   if (!item.map) return initial;
-  ConfigMap& map = *item.map;
-  for (std::size_t i = 0; i < 6; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i % 3);
-    (i < 3 ? initial.xyz : initial.rpy)(axis) = map.number(kConfigAxes[i], 0.0);
-  }
-  map.report_unknown();
+  const ConfigMap& map = *item.map;
   if (const auto frame = free.find(item.name); frame != free.end()) {
     check_initial_axes(map, initial, frame->second);
     return initial;

@@ -40,6 +40,7 @@ struct ConfigItemKind {
 
 inline const ConfigItemKind kModelItems{"models", "model", ""};
 inline const ConfigItemKind kFreeFrameItems{"free_frames", "free frame", ""};
+inline const ConfigItemKind kFixedFrameItems{"fixed_frames", "fixed frame", ""};
 inline const ConfigItemKind kErrorBlockItems{"error_blocks", "error block", ""};
 inline const ConfigItemKind kInitialValueItems{"free_frames_initial_values",
                                                "initial value of free frame", "_initial_values"};

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "kinecal/io/printable.hpp"
 #include "kinecal/io/yaml/yaml_node.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 
@@ -30,14 +31,15 @@ namespace kinecal::detail {
   if (node.is_map()) return "a map";
   if (!node.is_scalar()) return "empty";
   constexpr std::size_t kShown = 60;  // the file may not be a configuration at all
-  std::string text = node.text;
+  std::string text = printable(node.text);
   if (text.size() > kShown) text = text.substr(0, kShown) + "...";
   return is_config_scalar(node) ? "'" + text + "'" : "'" + node.tag + " " + text + "'";
 }
 
-/// A text of at least one character.
+/// A text of at least one character, without control characters: texts are names, and are printed.
 [[nodiscard]] inline std::optional<std::string> config_text(const YamlNode& node) {
   if (!is_config_scalar(node) || node.text.empty()) return std::nullopt;
+  if (has_control_characters(node.text)) return std::nullopt;
   return node.text;
 }
 

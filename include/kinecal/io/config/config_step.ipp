@@ -99,6 +99,10 @@ inline void read_step(ConfigMap& map, const FindConfigItems& find, const std::st
     auto& axes = progress.free_axes[frame.name];
     for (std::size_t i = 0; i < 6; ++i) axes[i] = axes[i] || frame.axes[i];
   }
+  std::vector<InitialValueConfig> fixed;
+  for (ConfigItem& item : find(map, kFixedFrameItems)) {
+    for (const InitialValueConfig& value : read_fixed_frame(item, step)) fixed.push_back(value);
+  }
   for (ConfigItem& item : find(map, kInitialValueItems)) {
     step.frame_initial_values.push_back(read_frame_initial_value(item, progress.free_axes));
   }
@@ -106,6 +110,7 @@ inline void read_step(ConfigMap& map, const FindConfigItems& find, const std::st
     step.error_blocks.push_back(read_block(item, step.models));
   }
   step.initial_values = read_initial_values(map);
+  step.initial_values.insert(step.initial_values.end(), fixed.begin(), fixed.end());
   step.bounds = read_bounds(map);
   check_step(map, step);
   map.report_unknown();

@@ -9,7 +9,8 @@
 //   observations:
 //    - sensor: arm
 //      frame: reflector
-//      constant: [0, 0, 0]          # the same point in every row; unit as for points
+//      constant: [0, 0, 0]          # the same point in every row; unit as for points.  Several:
+//                                   #   [[0, 0, 0], [0.1, 0, 0]]
 //    - sensor: tracker
 //      frame: tracker_frame
 //      unit: millimetres            # metres (default) or millimetres
@@ -18,7 +19,9 @@
 //      frame: optical_frame
 //      pixels: [[u1, v1], [u2, v2]]
 //
-// A column is given by its name or by its number from 1.  Each point becomes a feature.
+// A column is given by its name or by its number from 1.  Each point becomes a feature.  A sensor may
+// occur several times, each time with another frame: its features follow one another.  If the frame
+// changes from row to row, frame_column: reflector takes the place of frame.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -64,6 +67,7 @@ struct CsvCondition {
 struct CsvObservation {
   std::string sensor;                         ///< sensor_name of the observation
   std::string frame;                          ///< in which its points are given
+  CsvSum frame_column;                        ///< one column that names the frame; empty: `frame`
   CsvUnit unit;                               ///< of the columns of its points
   std::vector<std::array<CsvSum, 3>> points;  ///< the third sum of a pixel is empty: zero
   std::vector<Vector3<double>> constants;     ///< metres

@@ -87,28 +87,66 @@ inline void read_csv_points(ConfigMap& map, const std::string& key, std::size_t 
   }
 }
 
-/// `constant: [x, y, z]`, in the observation's unit
+/// `constant: [x, y, z]`, or a list of such points, in the observation's unit
 inline void read_csv_constant(ConfigMap& map, CsvObservation& observation) {
   const ConfigEntry* entry = map.find("constant");
   if (entry == nullptr) return;
-  Vector3<double> point = Vector3<double>::Zero();
-  bool good = entry->value.is_list() && entry->value.items.size() == 3;
-  for (std::size_t i = 0; good && i < 3; ++i) {
-    const auto number = config_number(entry->value.items[i]);
-    good = number && std::isfinite(*number);
-    if (good) point(static_cast<Eigen::Index>(i)) = *number;
+  const auto add = [&](const YamlNode& node) {
+    Vector3<double> point = Vector3<double>::Zero();
+    bool good = node.is_list() && node.items.size() == 3;
+    for (std::size_t i = 0; good && i < 3; ++i) {
+      const auto number = config_number(node.items[i]);
+      good = number && std::isfinite(*number);
+      if (good) point(static_cast<Eigen::Index>(i)) = *number;
+    }
+    if (!good) {
+      map.error(entry->place,
+                "constant is not a list of three numbers, [x, y, z], nor a list of such lists");
+    }
+    observation.constants.push_back(observation.unit.millimetres ? point / 1000.0 : point);
+  };
+  const YamlNode& value = entry->value;
+  if (value.is_list() && !value.items.empty() && value.items.front().is_list()) {
+    for (const YamlNode& point : value.items) add(point);
+  } else {
+    add(value);
   }
-  if (!good) {
-    map.error(entry->place, "constant is not a list of three numbers, [x, y, z]");
+}
+
+/// `frame:` or `frame_column:`
+inline void read_csv_frame(ConfigMap& map, CsvObservation& observation) {
+  const ConfigEntry* column = map.find("frame_column");
+  if (column == nullptr) {
+    observation.frame = map.required_text("frame").value_or("");
+    return;
   }
-  observation.constants.push_back(observation.unit.millimetres ? point / 1000.0 : point);
+  if (map.find("frame") != nullptr) {
+    map.error(column->place, "has frame and frame_column; give one of them");
+  }
+  observation.frame_column = read_csv_sum(map, column->value, column->place);
+  if (observation.frame_column.size() > 1) {
+    map.error(column->place, "frame_column is a list; one column names the frame");
+  }
+}
+
+/// Reports a sensor that measures points in one entry and pixels in another.
+inline void check_csv_kinds(const ConfigMap& map, const CsvMapping& mapping,
+                            const CsvObservation& observation) {
+  const auto in_pixels = [](const CsvObservation& o) {
+    return !o.points.empty() && o.points.front()[2].empty();
+  };
+  for (const CsvObservation& known : mapping.observations) {
+    if (known.sensor != observation.sensor || in_pixels(known) == in_pixels(observation)) continue;
+    map.error(map.place(), "has pixels here and points elsewhere; give the sensors two names");
+    return;
+  }
 }
 
 inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
   CsvObservation observation;
   observation.sensor = map.required_text("sensor").value_or("");
   if (!observation.sensor.empty()) map.set_subject("sensor '" + observation.sensor + "'");
-  observation.frame = map.required_text("frame").value_or("");
+  read_csv_frame(map, observation);
   const bool has_pixels = map.peek("pixels") != nullptr;
   if (!has_pixels) observation.unit = read_csv_unit(map, false);
   read_csv_constant(map, observation);
@@ -120,11 +158,7 @@ inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
     map.error(map.place(), "has " + std::string(kinds == 0 ? "none" : "more than one") +
                                " of points, pixels and constant; give exactly one");
   }
-  for (const CsvObservation& known : mapping.observations) {
-    if (known.sensor == observation.sensor) {
-      map.error(map.place(), "occurs twice; list all of its points in one");
-    }
-  }
+  check_csv_kinds(map, mapping, observation);
   map.report_unknown();
   mapping.observations.push_back(std::move(observation));
 }

@@ -92,6 +92,7 @@ class CsvSamples {
       conditions_.push_back(find(condition.columns));
     }
     for (const CsvObservation& observation : mapping.observations) {
+      frames_.push_back(find(observation.frame_column));
       for (const auto& point : observation.points) {
         for (const CsvSum& sum : point) points_.push_back(find(sum));
       }
@@ -122,21 +123,8 @@ class CsvSamples {
       sample.conditions[mapping_.conditions[i].name] = value(row, conditions_[i], {});
     }
     std::size_t next = 0;
-    for (const CsvObservation& observation : mapping_.observations) {
-      Observation seen{observation.sensor, {}};
-      for (const auto& point : observation.constants) {
-        seen.features.push_back({observation.frame, point});
-      }
-      for (const auto& point : observation.points) {
-        Vector3<double> p;
-        for (Eigen::Index k = 0; k < 3; ++k) p(k) = value(row, points_[next++], observation.unit);
-        if (!observation.unit.millimetres && !point[2].empty()) {
-          doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0,
-                "metres");
-        }
-        seen.features.push_back({observation.frame, p});
-      }
-      sample.observations.push_back(std::move(seen));
+    for (std::size_t i = 0; i < mapping_.observations.size(); ++i) {
+      add_features(row, mapping_.observations[i], frames_[i], next, sample);
     }
     if (!complete) return std::nullopt;
     return sample;
@@ -153,6 +141,35 @@ class CsvSamples {
  private:
   static constexpr std::size_t kReported = 20;  ///< bad cells, one by one
   using Indices = std::vector<std::pair<std::size_t, const CsvColumn*>>;
+
+  /// Adds the features of one entry to the observation of its sensor.
+  /// @param next  index in points_ of its first number; advanced beyond its last one
+  void add_features(const CsvRow& row, const CsvObservation& observation, const Indices& column,
+                    std::size_t& next, Sample& sample) {
+    const std::string frame = column.empty() ? observation.frame : text(row, column.front());
+    auto seen = std::find_if(sample.observations.begin(), sample.observations.end(),
+                             [&](const Observation& o) { return o.sensor == observation.sensor; });
+    if (seen == sample.observations.end()) {
+      seen = sample.observations.insert(seen, Observation{observation.sensor, {}});
+    }
+    for (const auto& point : observation.constants) seen->features.push_back({frame, point});
+    for (const auto& point : observation.points) {
+      Vector3<double> p;
+      for (Eigen::Index k = 0; k < 3; ++k) p(k) = value(row, points_[next++], observation.unit);
+      if (!observation.unit.millimetres && !point[2].empty()) {
+        doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0, "metres");
+      }
+      seen->features.push_back({frame, p});
+    }
+  }
+
+  /// The name in a cell; empty for a bad cell, which is reported.
+  [[nodiscard]] std::string text(const CsvRow& row, const Indices::value_type& column) {
+    const bool exists = column.first < row.cells.size();
+    std::string name = exists ? row.cells[column.first] : "";
+    if (name.empty()) bad_cell(row, *column.second, "is empty; it names the frame of the row");
+    return name;
+  }
 
   Indices find(const CsvSum& sum) {
     Indices indices;
@@ -209,10 +226,27 @@ class CsvSamples {
   CsvColumns columns_;
   std::string file_;
   Diagnostics& diagnostics_;
-  std::vector<Indices> joints_, conditions_, points_;  ///< in the order of the mapping
+  std::vector<Indices> joints_, conditions_, frames_, points_;  ///< in the order of the mapping
   std::size_t bad_cells_ = 0;
   std::set<std::string> doubted_;  ///< joints and sensors with a warning
 };
+
+/// Warns of a header that contains numbers only, unless it counts the columns.
+inline void doubt_csv_header(const CsvRow& row, const std::string& file, Diagnostics& diagnostics) {
+  bool counts = true;
+  double before = std::numeric_limits<double>::quiet_NaN();
+  for (const std::string& cell : row.cells) {
+    const std::optional<double> number = csv_number(cell);
+    if (!number) return;
+    counts =
+        counts && (std::isnan(before) ? *number == 0.0 || *number == 1.0 : *number == before + 1.0);
+    before = *number;
+  }
+  if (counts) return;
+  diagnostics.warning({file, row.line},
+                      "row 1 looks like data, but counts as the header; if it is data, write "
+                      "'header: false' in the columns' file and give columns by number, from 1");
+}
 
 }  // namespace detail
 
@@ -228,6 +262,7 @@ KINECAL_INLINE std::vector<Sample> csv_samples(std::string_view text, const CsvM
   for (const detail::CsvRow& row : rows) columns = std::max(columns, row.cells.size());
   std::vector<std::string> header;
   if (mapping.header) {
+    detail::doubt_csv_header(rows.front(), file, diagnostics);
     header = rows.front().cells;
     columns = header.size();
     rows.erase(rows.begin());

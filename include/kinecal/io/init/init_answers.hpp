@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kinecal {
 
@@ -68,7 +69,8 @@ struct InitAnswers {
   std::string camera;                    ///< link of the camera: its optical frame, z ahead
   std::string camera_type = "camera3d";  ///< camera3d (points in metres) or camera2d (pixels)
   std::string camera_name = "camera";    ///< sensor_name of the samples, prefix of its parameters
-  std::string target_frame = {};   ///< of the board or the reflector, the frame_id of its points
+  std::string target_frame = {};  ///< of the board or the reflector, the frame_id of its points
+  std::vector<std::string> more_reflectors = {};  ///< frames of further ones, with a tracker
   std::string tracker_frame = {};  ///< of a laser tracker, the frame_id of what it measures
 };
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinecal/io/init/check_answers.ipp"
 #include "kinecal/io/init/initial_config.hpp"
 #include "kinecal/io/init/plan_targets.ipp"
 #include "kinecal/io/yaml/yaml_text.hpp"
@@ -143,45 +144,6 @@ namespace detail {
                    "influence than one at 3 sigma, so one bad capture does not ruin the result.",
                    plan.error_blocks, false);
   return text;
-}
-
-/// Checks the answers before anything is planned.
-/// @throws InputError  with all their errors
-inline void check_answers(const Robot& robot, const InitAnswers& answers) {
-  Diagnostics diagnostics;
-  const InitTarget target = answers.target;
-  check_init_link(robot, "--base", answers.base, diagnostics);
-  if (needs_arm(target)) check_init_link(robot, "--arm", answers.arm, diagnostics);
-  if (needs_camera(target)) {
-    check_init_link(robot, "--camera", answers.camera, diagnostics);
-    const std::array<std::string, 2> types = {"camera3d", "camera2d"};
-    if (std::find(types.begin(), types.end(), answers.camera_type) == types.end()) {
-      diagnostics.error({"--camera-type", 0},
-                        fmt::format("'{}' is neither camera3d nor camera2d{}", answers.camera_type,
-                                    did_you_mean(answers.camera_type, types)));
-    }
-    check_init_camera_name("--robot-camera-name", answers.camera_name, diagnostics);
-  }
-  if (needs_target_frame(target)) {
-    check_init_frame(robot, "--target-frame", answers.target_frame, diagnostics);
-  }
-  if (target == InitTarget::tracker) {
-    check_init_frame(robot, "--tracker-frame", answers.tracker_frame, diagnostics);
-    if (answers.target_frame == answers.tracker_frame) {
-      diagnostics.error({"--tracker-frame", 0},
-                        "'" + answers.tracker_frame +
-                            "' is the frame of the reflector too; give the tracker another one");
-    }
-  }
-  const bool floor = target == InitTarget::ground || answers.with_ground;
-  if (floor && target == InitTarget::tracker) {
-    diagnostics.error(
-        {"--target", 0},
-        "tracker and ground have no parameters in common; make a configuration for each");
-  } else if (floor && answers.camera_type == "camera2d") {
-    diagnostics.error({"--camera-type", 0}, "the floor is seen by depth cameras only: camera3d");
-  }
-  diagnostics.throw_if_errors();
 }
 
 }  // namespace detail

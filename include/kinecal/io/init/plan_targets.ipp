@@ -106,7 +106,12 @@ namespace kinecal::detail {
                     answers.arm, answers.base));
   }
   const std::string &tracker = answers.tracker_frame, &reflector = answers.target_frame;
-  add_chain_model(plan, "The arm: the reflector is point (0, 0, 0) of frame " + reflector + ".",
+  std::vector<std::string> reflectors = answers.more_reflectors;
+  reflectors.insert(reflectors.begin(), reflector);
+  add_chain_model(plan,
+                  reflectors.size() == 1
+                      ? "The arm: the reflector is point (0, 0, 0) of frame " + reflector + "."
+                      : "The arm: each reflector is point (0, 0, 0) of its frame.",
                   "arm", answers.arm);
   add_chain_model(
       plan,
@@ -117,17 +122,19 @@ namespace kinecal::detail {
       plan, tracker,
       "Where the tracker stands, seen from link " + name_to_yaml(answers.base) +
           ".  The URDF does not contain this frame; it is the frame_id of the measured points.");
-  free_frame(plan, reflector,
-             "Where the reflector (SMR) is in link " + name_to_yaml(answers.arm) +
-                 "; a point has no rotation.  The URDF does not contain this frame either.",
-             true);
+  for (const std::string& frame : reflectors) {
+    free_frame(plan, frame,
+               "Where the reflector (SMR) is in link " + name_to_yaml(answers.arm) +
+                   "; a point has no rotation.  The URDF does not contain this frame either.",
+               true);
+  }
   add_initial_value(plan, tracker,
                     "Measure by hand where the tracker stands and how it is turned.  An accuracy "
                     "of 0.5 m and 60 degrees is enough.");
-  add_initial_value(plan, reflector, "");
+  for (const std::string& frame : reflectors) add_initial_value(plan, frame, "");
   plan.error_blocks.push_back(
       {"Both observe the same point.  sigma combines the accuracy of the tracker and the "
-       "repeatability of the robot, in metres.",
+       "repeatability of the robot, in metres: 0.0001 is a guess, write yours.",
        "measured",
        {{"type", "chain3d_to_chain3d"},
         {"model_a", "arm"},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <set>
 #include <string>
 #include <string_view>
@@ -58,19 +59,55 @@ namespace detail {
   return count;
 }
 
+/// Whether the name of a joint, or of the link that it moves, contains one of these words.
+[[nodiscard]] inline bool is_called(const Joint& joint, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(), [&](const char* word) {
+    return contains_word(joint.name, word) || contains_word(joint.child, word);
+  });
+}
+
+/// Whether a joint at the end of a chain moves a finger: it mimics another or is mimicked, or is
+/// called so, beyond an arm.
+/// @param turning  number of joints above it that turn
+[[nodiscard]] inline bool moves_a_finger(const Robot& robot, const Joint& joint,
+                                         std::ptrdiff_t turning) {
+  constexpr std::ptrdiff_t kArm = 3;
+  if (joint.mimic) return true;
+  if (turning < kArm) return false;
+  const auto& joints = robot.joints();
+  const bool is_mimicked = std::any_of(joints.begin(), joints.end(), [&](const Joint& other) {
+    return other.mimic && other.mimic->joint == joint.name;
+  });
+  return is_mimicked || is_called(joint, {"finger", "knuckle", "thumb", "jaw", "claw"}) ||
+         (joint.type == JointType::prismatic && is_called(joint, {"gripper"})) ||
+         (is_called(joint, {"gripper"}) && is_called(joint, {"motor"}));
+}
+
 /// The end of an arm without the fingers of its gripper and the cameras on its wrist.
 [[nodiscard]] inline std::string end_of_arm(const Robot& robot, std::string link) {
   for (;;) {
     const std::vector<const Joint*> way = joints_to_root(robot, link);
-    if (way.empty()) return link;
-    const Joint& last = *way.front();
+    const auto last =
+        std::find_if(way.begin(), way.end(), [](const Joint* j) { return moves(j->type); });
+    if (last == way.end()) return link;
     const auto turning =
-        std::count_if(way.begin(), way.end(), [](const Joint* j) { return turns(j->type); });
-    const bool finger = last.mimic || (last.type == JointType::prismatic && turning >= 3 &&
-                                       contains_word(last.name, "finger"));
-    if (!finger && !looks_like_camera(link)) return link;
-    link = last.parent;
+        std::count_if(last + 1, way.end(), [](const Joint* j) { return turns(j->type); });
+    if (moves_a_finger(robot, **last, turning)) {
+      link = (*last)->parent;
+    } else if (looks_like_camera(link)) {
+      link = way.front()->parent;
+    } else {
+      return link;
+    }
   }
+}
+
+/// Whether a wheel or a caster is on the way to a link.
+[[nodiscard]] inline bool is_on_a_wheel(const Robot& robot, const std::string& link) {
+  const std::vector<const Joint*> way = joints_to_root(robot, link);
+  return std::any_of(way.begin(), way.end(), [](const Joint* joint) {
+    return moves(joint->type) && is_called(*joint, {"wheel", "caster"});
+  });
 }
 
 }  // namespace detail
@@ -81,7 +118,7 @@ KINECAL_INLINE std::vector<std::string> propose_arms(const Robot& robot) {
   for (const Joint& joint : robot.joints()) parents.insert(joint.parent);
   std::vector<std::pair<std::size_t, std::string>> ends;
   for (const Joint& joint : robot.joints()) {
-    if (parents.contains(joint.child)) continue;
+    if (parents.contains(joint.child) || detail::is_on_a_wheel(robot, joint.child)) continue;
     const std::string end = detail::end_of_arm(robot, joint.child);
     const std::size_t own = detail::own_joints(robot, end);
     const auto same = [&](const auto& known) { return known.second == end; };

@@ -16,6 +16,7 @@
 #include "kinecal/io/config/config_map.ipp"
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/io/poses/poses.hpp"
+#include "kinecal/io/text_file.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/linkage.hpp"
 
@@ -74,6 +75,7 @@ namespace detail {
 }  // namespace detail
 
 KINECAL_INLINE bool is_poses_yaml(const std::string& path) {
+  if (!detail::why_no_file(path).empty()) return false;
   std::ifstream file(path);
   bool is_first = true;
   for (std::string line; std::getline(file, line);) {

@@ -17,6 +17,7 @@
 #include "kinecal/io/bags/rosbag2/read_bag.hpp"
 #include "kinecal/io/bags/rosbag2/read_db3.hpp"
 #include "kinecal/io/recordings/read_bag.hpp"
+#include "kinecal/io/text_file.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {
@@ -30,6 +31,7 @@ KINECAL_INLINE std::string_view to_string(RecordingFormat format) {
 KINECAL_INLINE RecordingFormat recording_format(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return RecordingFormat::ros2_bag;
+  if (!detail::why_no_file(path).empty()) return RecordingFormat::yaml;
   std::array<char, 16> first{};
   std::ifstream(path, std::ios::binary).read(first.data(), first.size());
   const Bytes bytes = std::as_bytes(std::span(first));

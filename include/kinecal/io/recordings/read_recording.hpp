@@ -22,8 +22,9 @@ struct Recording {
 /// Reads YAML, a ROS 1 bag, MCAP or a ROS 2 bag, recognized by its content.
 /// @param diagnostics  receives every error, also that there are no samples
 /// @param threads      as for read_samples()
+/// @param meter        the same
 [[nodiscard]] Recording read_recording(const std::string& path, Diagnostics& diagnostics,
-                                       unsigned threads = 0);
+                                       unsigned threads = 0, const ProgressMeter& meter = {});
 
 }  // namespace kinecal
 

@@ -15,9 +15,9 @@
 namespace kinecal {
 
 KINECAL_INLINE Recording read_recording(const std::string& path, Diagnostics& diagnostics,
-                                        unsigned threads) {
+                                        unsigned threads, const ProgressMeter& meter) {
   if (recording_format(path) == RecordingFormat::yaml) {
-    return {read_samples(path, diagnostics, threads), {}};
+    return {read_samples(path, diagnostics, threads, meter), {}};
   }
   Recording recording;
   const std::size_t errors_before = diagnostics.errors.size();
@@ -39,7 +39,7 @@ KINECAL_INLINE Recording read_recording(const std::string& path, Diagnostics& di
     const TopicUse use = use_of(topic);
     return use == TopicUse::samples || use == TopicUse::urdf;
   };
-  read_bag(path, {wants, handle}, diagnostics);
+  read_bag(path, {wants, handle, meter}, diagnostics);
   recording.samples = samples.take(diagnostics);
   if (number == 0 && diagnostics.errors.size() == errors_before) {
     diagnostics.error({path, 0},

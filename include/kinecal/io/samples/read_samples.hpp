@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kinecal/io/diagnostics.hpp"
+#include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -23,10 +24,12 @@ namespace kinecal {
 ///                     has no samples.  Nothing is thrown; the caller calls throw_if_errors()
 /// @param threads      threads to read with, at most; 0 for as many as there are processors.  The
 ///                     result does not depend on it
+/// @param meter        is told how much of the file has been read
 /// @return             joint positions in radians or metres; points in metres or pixels, in the
 ///                     frame they name; Sample::source is "path:line"
 [[nodiscard]] std::vector<Sample> read_samples(const std::string& path, Diagnostics& diagnostics,
-                                               unsigned threads = 0);
+                                               unsigned threads = 0,
+                                               const ProgressMeter& meter = {});
 
 }  // namespace kinecal
 

@@ -18,15 +18,15 @@
 
 #include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/samples/sample_file.ipp"
+#include "kinecal/io/text_file.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
 KINECAL_INLINE std::vector<Sample> read_samples(const std::string& path, Diagnostics& diagnostics,
-                                                unsigned threads) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    diagnostics.error({path, 0}, "is a folder, not a file of samples");
+                                                unsigned threads, const ProgressMeter& meter) {
+  if (const std::string why = detail::why_no_file(path); !why.empty()) {
+    diagnostics.error({path, 0}, why);
     return {};
   }
   errno = 0;
@@ -36,9 +36,10 @@ KINECAL_INLINE std::vector<Sample> read_samples(const std::string& path, Diagnos
     return {};
   }
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-  std::error_code unknown;  // a pipe has no size: then only the number of threads counts
+  std::error_code unknown;  // of a device: then only the number of threads counts
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
   detail::SampleFile file(in, path);
+  if (!unknown) file.show_progress(size, meter);
   const std::uintmax_t pieces = size / detail::SampleFile::kPieceBytes + 1;
   file.read(static_cast<std::size_t>(std::min<std::uintmax_t>(threads, pieces)));
   if (in.bad()) {

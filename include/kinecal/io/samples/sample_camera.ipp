@@ -38,6 +38,13 @@ struct SampleErrors {
     if (!too_many()) errors.push_back({line, std::move(text)});
   }
   void warn(int line, std::string text) { warnings.push_back({line, std::move(text)}); }
+  /// Warns of something that probably repeats in every sample.
+  void warn_once(int line, std::string text) {
+    for (const Message& known : warnings) {
+      if (known.text == text) return;
+    }
+    warn(line, std::move(text));
+  }
 };
 
 inline void report(const SampleErrors& all, const std::string& file, Diagnostics& diagnostics) {

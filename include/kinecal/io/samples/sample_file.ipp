@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <future>
 #include <istream>
@@ -23,6 +25,7 @@
 #include "kinecal/io/samples/sample_handler.ipp"
 #include "kinecal/io/yaml/yaml_events.ipp"
 #include "kinecal/io/yaml/yaml_pieces.ipp"
+#include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
@@ -66,6 +69,13 @@ class SampleFile {
   SampleFile(std::istream& in, std::string file, std::size_t piece_bytes = kPieceBytes)
       : file_(std::move(file)), pieces_(in, piece_bytes) {}
 
+  /// Reports how far reading is.
+  /// @param bytes  size of the file
+  void show_progress(std::uintmax_t bytes, const ProgressMeter& meter) {
+    bytes_ = bytes;
+    meter_ = meter;
+  }
+
   /// Reads the file to its end, or to the first text that is not YAML, or up to too many errors.
   void read(std::size_t threads) {
     std::vector<std::future<void>> others;
@@ -88,7 +98,7 @@ class SampleFile {
       std::move(piece.samples.begin(), piece.samples.end(), std::back_inserter(samples));
       piece.samples = {};
       for (auto& [line, text] : piece.errors.errors) all.add(line, std::move(text));
-      for (auto& [line, text] : piece.errors.warnings) all.warn(line, std::move(text));
+      for (auto& [line, text] : piece.errors.warnings) all.warn_once(line, std::move(text));
       if (piece.sample_line > 0) sample_line = piece.sample_line;
       if (piece.not_yaml) all.add(piece.not_yaml->line, not_yaml(*piece.not_yaml, sample_line));
       if (piece.stops() || all.too_many()) break;
@@ -106,6 +116,10 @@ class SampleFile {
       std::optional<YamlPiece> piece;
       if (!stopped_) piece = next();
       if (!piece) return;
+      done_ += piece->text.size();
+      if (meter_ && bytes_ > 0) {
+        meter_(std::min(1.0, double(done_) / double(bytes_)), "reading " + file_);
+      }
       SamplePiece& read = read_.emplace_back();  // keeps its address while others are added
       lock.unlock();
       read = read_sample_piece(file_, *piece);
@@ -154,6 +168,8 @@ class SampleFile {
   YamlPieces pieces_;
   std::deque<SamplePiece> read_;  ///< in the order of the file
   bool stopped_ = false;
+  ProgressMeter meter_;
+  std::uintmax_t bytes_ = 0, done_ = 0;  ///< of the file, for the meter
 };
 
 }  // namespace kinecal::detail

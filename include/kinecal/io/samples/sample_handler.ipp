@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/io/samples/misspelt_keys.ipp"
 #include "kinecal/io/samples/sample_builder.ipp"
 #include "kinecal/io/samples/sample_schema.ipp"
 #include "kinecal/io/yaml/yaml_events.ipp"
@@ -117,7 +118,8 @@ class SampleHandler {
     level.at_key = false;
     key_line_ = line;
     value_node_ = text.empty() ? SampleNode::unknown : sample_child(level.node, text);
-    if (value_node_ == SampleNode::unknown) return;
+    if (value_node_ == SampleNode::unknown)
+      return doubt_sample_key(builder_.errors(), level.node, line, text);
     if (value_node_ == SampleNode::condition) return builder_.key(line, text);
     if ((seen_ & sample_bit(value_node_)) != 0) {
       error(level.node, line,

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "kinecal/geometry/rpy.hpp"
+#include "kinecal/io/printable.hpp"
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/io/urdf/urdf_text.ipp"
@@ -61,6 +62,12 @@ inline void check_urdf_joint(const UrdfText& source, pugi::xml_node joint,
       diagnostics.error(place, "joint '" + name + "' has no <" + end + " link=\"...\"/>");
     }
   }
+  for (const std::string& text :
+       {name, std::string(joint.child("parent").attribute("link").value()),
+        std::string(joint.child("child").attribute("link").value())}) {
+    if (!has_control_characters(text)) continue;
+    diagnostics.error(place, "the name '" + printable(text) + "' has a control character");
+  }
   (void)source.vector(joint.child("origin"), "xyz", diagnostics);
   (void)source.vector(joint.child("origin"), "rpy", diagnostics);
   (void)source.vector(joint.child("axis"), "xyz", diagnostics);
@@ -85,6 +92,11 @@ inline void check_urdf_joint(const UrdfText& source, pugi::xml_node joint,
 /// message.  (urdfdom would also leak links that form a circle.)
 inline void check_urdf_joints(const UrdfText& source) {
   Diagnostics diagnostics;
+  const std::string robot = source.robot().attribute("name").value();
+  if (has_control_characters(robot)) {
+    diagnostics.error(source.place(source.robot()),
+                      "the name '" + printable(robot) + "' has a control character");
+  }
   std::vector<Joint> joints;
   for (pugi::xml_node node : source.robot().children("joint")) {
     check_urdf_joint(source, node, diagnostics);

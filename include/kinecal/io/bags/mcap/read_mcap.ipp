@@ -22,6 +22,7 @@ KINECAL_INLINE void read_mcap(std::istream& in, const std::string& name, const B
     try {
       if (!messages) {
         file.emplace(in);
+        file->show_progress(reader.meter, "reading " + name);
         messages.emplace(*file, reader, SourceLocation{name, 0}, diagnostics);
       }
       return messages->next();

@@ -35,7 +35,9 @@ class Ros1BagReading {
  public:
   Ros1BagReading(std::istream& in, std::string name, const BagReader& reader,
                  Diagnostics& diagnostics)
-      : file_(in), messages_(std::move(name), reader, diagnostics) {}
+      : file_(in), messages_(name, reader, diagnostics) {
+    file_.show_progress(reader.meter, "reading " + name);
+  }
 
   void read() {
     try {

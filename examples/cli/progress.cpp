@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "progress.hpp"
+
+#include <fmt/core.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/io/printable.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// Columns of the terminal.
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
+  return known ? size.ws_col : 80;
+}
+
+/// "3 s", "2 min".
+std::string duration(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", std::ceil(seconds));
+  return fmt::format("{:.0f} min", std::ceil(seconds / 60.0));
+}
+
+}  // namespace
+
+std::string progress_text(double fraction, const std::string& what, double seconds) {
+  const double done = std::clamp(fraction, 0.0, 1.0);
+  std::string text = fmt::format("{}: {:.0f} %", printable(what), std::floor(100.0 * done));
+  if (done > 0.0) text += fmt::format(", {} left", duration(seconds * (1.0 - done) / done));
+  return text;
+}
+
+ProgressLine::ProgressLine() : on_a_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+ProgressLine::~ProgressLine() {
+  if (is_visible_) fmt::print(stderr, "\r\033[K");
+}
+
+ProgressMeter ProgressLine::meter() {
+  if (!on_a_terminal_) return {};
+  return [this](double fraction, const std::string& what) { show(fraction, what); };
+}
+
+void ProgressLine::show(double fraction, const std::string& what) {
+  constexpr std::chrono::milliseconds kQuick(50), kBetween(100);
+  const Clock::time_point now = Clock::now();
+  if (what != task_) {
+    task_ = what;
+    begin_ = now;
+  }
+  if (now - begin_ < kQuick || now - shown_ < kBetween) return;
+  shown_ = now;
+  is_visible_ = true;
+  std::string text =
+      progress_text(fraction, what, std::chrono::duration<double>(now - begin_).count());
+  const std::size_t width = terminal_width() - 1;
+  if (text.size() > width) text = "..." + text.substr(text.size() - (width - 3));
+  fmt::print(stderr, "\r{}\033[K", text);
+  std::fflush(stderr);
+}
+
+}  // namespace kinecal::cli

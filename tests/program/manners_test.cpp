@@ -1,0 +1,261 @@
+// How the program behaves towards its user: help, completion, wrong letters, files that are there,
+// pipes, progress, and what reaches the terminal.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <regex>
+#include <set>
+
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Manners : public test::ProgramTest {
+ protected:
+  Manners() {
+    const fs::path examples = fs::path(KINECAL_SOURCE_DIR) / "examples";
+    fs::copy(examples / "csv/tracker.csv", folder_);
+    fs::copy(examples / "csv/columns.yaml", folder_);
+    fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
+  }
+  /// The program, for ten seconds at most.
+  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
+    return run("timeout 10 " KINECAL_PROGRAM " " + arguments + " < /dev/null");
+  }
+  /// Writes samples.yaml and calibrate.yaml.
+  void prepare() const {
+    ASSERT_EQ(kinecal("convert tracker.csv samples.yaml --columns columns.yaml").code, 0);
+    ASSERT_EQ(kinecal("init --urdf ur5e.urdf --target tracker --arm tool0").code, 0);
+  }
+  /// Replaces every occurrence of a text in a file.
+  void replace(const std::string& file, const std::string& from, const std::string& to) const {
+    std::string text = read(file);
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+      text.replace(at, from.size(), to);
+    }
+    write(file, text);
+  }
+  /// What the program prints on a terminal.
+  [[nodiscard]] std::string on_a_terminal(const std::string& arguments) const {
+    int terminal = -1;
+    const std::string call =
+        "cd " + folder_.string() + " && exec timeout 60 " KINECAL_PROGRAM " " + arguments;
+    const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+    if (child == 0) {
+      execl("/bin/sh", "sh", "-c", call.c_str(), nullptr);
+      _exit(127);
+    }
+    std::string printed;
+    pollfd readable{terminal, POLLIN, 0};
+    char buffer[4096];
+    ssize_t size = 0;
+    while (poll(&readable, 1, 60000) > 0 && (size = ::read(terminal, buffer, sizeof buffer)) > 0) {
+      printed.append(buffer, static_cast<std::size_t>(size));
+    }
+    close(terminal);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return printed;
+  }
+};
+
+const std::string kCalibrate =
+    "calibrate --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --output out ";
+
+TEST_F(Manners, ResultsAreReplacedOnlyIfForcedAndBeforeAnyWork) {
+  prepare();
+  ASSERT_EQ(kinecal(kCalibrate).code, 0);
+  write("out/calibration.yaml", "mine");
+  EXPECT_EQ(kinecal(kCalibrate).code, 1);
+  EXPECT_EQ(read("out/calibration.yaml"), "mine");
+  for (const std::string file : {"calibrated.urdf", "calibration.yaml", "report.json"}) {
+    fs::remove_all(folder_ / "other");
+    fs::create_directory(folder_ / "other");
+    write("other/" + file, "mine");
+    const Outcome refused =
+        kinecal("calibrate --urdf none --config none --samples none --output other");
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_EQ(refused.err, "error: other/" + file +
+                               ": exists; use --force to replace it, or choose another --output\n");
+  }
+  EXPECT_EQ(kinecal(kCalibrate + "--dry-run").code, 0);
+  EXPECT_EQ(kinecal(kCalibrate + "--force").code, 0);
+  EXPECT_THAT(read("out/calibration.yaml"), HasSubstr("urdf: calibrated.urdf"));
+}
+
+TEST_F(Manners, HelpOfACommandIsItsHelp) {
+  EXPECT_EQ(kinecal("help").out, kinecal("--help").out);
+  EXPECT_EQ(kinecal("help calibrate").out, kinecal("calibrate --help").out);
+  EXPECT_THAT(kinecal("help").out, HasSubstr("  help  "));
+  EXPECT_THAT(kinecal("help").out, Not(HasSubstr("describe"))) << "for those who make packages";
+  const Outcome wrong = kinecal("help calibrat");
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("'calibrat' is not a command; did you mean 'calibrate'?"));
+}
+
+TEST_F(Manners, ProposesTheOptionThatWasMeant) {
+  const Outcome samples = kinecal("calibrate --urdf a --config b --smples c --output d");
+  EXPECT_EQ(samples.code, 1);
+  EXPECT_THAT(samples.err, HasSubstr("error: '--smples' is not an option of 'calibrate'; did you "
+                                     "mean '--samples'?"));
+  EXPECT_THAT(kinecal("check --conifg=b").err, HasSubstr("did you mean '--config'?"));
+  EXPECT_THAT(kinecal("rpy 1 2 3 --xyz").err, HasSubstr("'--xyz' is not an option of 'rpy'; "));
+  EXPECT_THAT(kinecal("calibrate --urdf a").err, HasSubstr("--config is required"));
+}
+
+/// The words of --help that are commands, or options of a command.
+std::set<std::string> words_of(const std::string& help, const std::string& pattern) {
+  std::set<std::string> words;
+  const std::regex expression(pattern);
+  for (std::sregex_iterator it(help.begin(), help.end(), expression), end; it != end; ++it) {
+    words.insert((*it)[1]);
+  }
+  return words;
+}
+
+TEST_F(Manners, ManualAndCompletionHaveAllCommandsAndOptions) {
+  const std::string help = kinecal("help").out;
+  const auto commands = words_of(help.substr(help.find("Subcommands:")), "\n  ([a-z]+) ");
+  ASSERT_EQ(commands.size(), 9u);
+  const std::string man = kinecal("describe man").out, bash = kinecal("describe bash").out,
+                    zsh = kinecal("describe zsh").out;
+  for (const std::string& command : commands) {
+    EXPECT_THAT(man, HasSubstr("\n.SS " + command + "\n"));
+    EXPECT_THAT(bash, HasSubstr("\n    " + command + ") words="));
+    EXPECT_THAT(zsh, HasSubstr("\n    " + command + ")\n"));
+    const auto options = words_of(kinecal("help " + command).out, "  (?:-h,)?(--[a-z-]+)");
+    EXPECT_THAT(options, testing::Contains("--help"));
+    const auto part = [&](const std::string& text, const std::string& begin,
+                          const std::string& end) {
+      const std::size_t from = text.find(begin);
+      return text.substr(from, text.find(end, from + begin.size()) - from);
+    };
+    for (const std::string& option : options) {
+      EXPECT_THAT(part(bash, "\n    " + command + ") words=", ";;") + " ",
+                  testing::ContainsRegex(option + "[ \"]"));
+      EXPECT_THAT(part(zsh, "\n    " + command + ")\n", ";;"), HasSubstr("'*" + option + "["));
+      if (option == "--help") continue;
+      EXPECT_THAT(part(man, "\n.SS " + command + "\n", "\n.S"),
+                  HasSubstr("\\fB" + std::regex_replace(option, std::regex("-"), "\\-") + "\\fR"));
+    }
+  }
+}
+
+TEST_F(Manners, BashCompletesCommandsOptionsAndValues) {
+  ASSERT_EQ(kinecal("describe bash --output c.bash").code, 0);
+  const auto completed = [&](const std::string& words, int at) {
+    write("ask.sh", "source ./c.bash\nCOMP_WORDS=(kinecal " + words + ")\nCOMP_CWORD=" +
+                        std::to_string(at) + "\n_kinecal\necho \"${COMPREPLY[*]}\"\n");
+    const Outcome outcome = run("bash ask.sh");
+    EXPECT_EQ(outcome.err, "");
+    return outcome.out;
+  };
+  EXPECT_EQ(completed("cal", 1), "calibrate\n");
+  EXPECT_EQ(completed("calibrate --sam", 2), "--samples\n");
+  EXPECT_EQ(completed("calibrate --offsets o", 3), "origin\n");
+  EXPECT_EQ(completed("help ins", 2), "install inspect\n");
+  EXPECT_EQ(completed("calibrate --urdf x", 3), "\n") << "files, which bash completes";
+}
+
+TEST_F(Manners, TheManualIsFormattedWithoutWarnings) {
+  ASSERT_EQ(kinecal("describe man --output kinecal.1").code, 0);
+  if (run("groff --version").code != 0) GTEST_SKIP() << "there is no groff";
+  const Outcome formatted = run("groff -man -Tascii -ww kinecal.1");
+  EXPECT_EQ(formatted.code, 0);
+  EXPECT_EQ(formatted.err, "");
+  EXPECT_THAT(formatted.out, HasSubstr("calibrate"));
+}
+
+TEST_F(Manners, APipeWithoutAWriterNeverBlocks) {
+  prepare();
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  for (const std::string call :
+       {"check --urdf pipe --config calibrate.yaml", "check --urdf ur5e.urdf --config pipe",
+        "check --urdf ur5e.urdf --config calibrate.yaml --samples pipe", "inspect pipe",
+        "convert pipe a.yaml", "convert pipe a.bag", "convert pipe a.yaml --columns columns.yaml",
+        "convert tracker.csv a.yaml --columns pipe", "camera pipe", "init --urdf pipe --force"}) {
+    const Outcome outcome = kinecal(call);
+    EXPECT_EQ(outcome.code, 1) << call;  // 124: it had to be stopped
+    EXPECT_THAT(outcome.err, HasSubstr("pipe: is a pipe, not a file; write")) << call;
+  }
+}
+
+TEST_F(Manners, NoControlCharacterOfAFileReachesTheTerminal) {
+  prepare();
+  replace("samples.yaml", "elbow_joint", "\"\\eelbow_joint\\r\"");
+  for (const std::string call :
+       {"check --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml",
+        "inspect samples.yaml"}) {
+    const Outcome outcome = kinecal(call);
+    EXPECT_THAT(outcome.out + outcome.err, AllOf(Not(HasSubstr("\x1b")), Not(HasSubstr("\r"))));
+    EXPECT_THAT(outcome.out + outcome.err, HasSubstr("\\x1belbow_joint\\x0d")) << call;
+  }
+  write("odd.yaml", "base_link: \"\\e[31mbase\"\n");
+  EXPECT_THAT(kinecal("check --urdf ur5e.urdf --config odd.yaml").err,
+              AllOf(HasSubstr("\\x1b[31mbase"), Not(HasSubstr("\x1b"))));
+  replace("ur5e.urdf", "elbow_joint", "elbow&#27;[0m");
+  EXPECT_THAT(kinecal("init --urdf ur5e.urdf --target tracker --force").err,
+              AllOf(HasSubstr("has a control character"), Not(HasSubstr("\x1b"))));
+}
+
+TEST_F(Manners, CountsAgreeInNumber) {
+  prepare();
+  const std::string text = read("samples.yaml");
+  write("one.yaml", text.substr(0, text.find("---\n") + 4));
+  EXPECT_THAT(kinecal("inspect one.yaml").out, testing::StartsWith("1 sample\n"));
+  EXPECT_THAT(kinecal("inspect samples.yaml").out, testing::StartsWith("60 samples\n"));
+  EXPECT_THAT(kinecal("convert one.yaml again.yaml").out, HasSubstr("again.yaml: 1 sample\n"));
+}
+
+TEST_F(Manners, AFeatureInAnUnknownFrameGetsTheRemediesAndAFixedFrameIsOne) {
+  prepare();
+  replace("samples.yaml", "frame_id: smr", "frame_id: ball");
+  const Outcome refused = kinecal(kCalibrate);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("samples.yaml:1: sensor 'arm': a feature is in frame 'ball'"),
+                    HasSubstr("declare it under fixed_frames, if its pose in 'tool0' is known"),
+                    HasSubstr("or correct the frame_id of the feature")));
+  const std::string config = read("calibrate.yaml");
+  const auto with_fixed = [&](const std::string& frame) {
+    write("calibrate.yaml", config);
+    replace("calibrate.yaml",
+            "\nerror_blocks:", "\nfixed_frames:\n - " + frame + "\nerror_blocks:");
+  };
+  with_fixed("{name: ball, x: 0.012, y: -0.031, z: 0.087}");
+  const Outcome done = kinecal(kCalibrate);
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(read("out/calibration.yaml"),
+              AllOf(HasSubstr("ball_x: 0.012\n"), HasSubstr("ball_z: 0.087\n")));
+  with_fixed("{name: elbow_joint}");
+  EXPECT_THAT(kinecal(kCalibrate + "--force").err,
+              HasSubstr("fixed frame 'elbow_joint' is a joint of the robot, whose URDF says"));
+}
+
+TEST_F(Manners, ShowsHowFarReadingIsOnATerminalOnly) {
+  prepare();
+  const std::string once = read("samples.yaml");
+  std::string text;
+  while (text.size() < 30'000'000) text += once;
+  write("large.yaml", text);
+  const std::string printed = on_a_terminal("inspect large.yaml");
+  EXPECT_THAT(printed, testing::ContainsRegex("\rreading large.yaml: [0-9]+ %, [0-9]+ s left"));
+  EXPECT_LT(printed.rfind(" left\x1b[K"), printed.find("\r\x1b[K")) << "the line is erased";
+  const Outcome silent = kinecal("inspect large.yaml");
+  EXPECT_EQ(silent.err, "");
+}
+
+}  // namespace
+}  // namespace kinecal
