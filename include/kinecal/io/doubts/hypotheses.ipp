@@ -133,7 +133,7 @@ inline void add_model_hypotheses(const Config& config, std::vector<Hypothesis>& 
   const std::vector<ModelConfig> models = models_of(config);
   for (std::size_t a = 0; a < models.size(); ++a) {
     for (std::size_t b = a + 1; b < models.size(); ++b) {
-      const ModelConfig first = models[a], second = models[b];
+      const ModelConfig &first = models[a], &second = models[b];
       if (first.frame != second.frame) {
         all.push_back({fmt::format("with the frames of the models '{}' and '{}' exchanged",
                                    first.name, second.name),
