@@ -109,9 +109,10 @@ int calibrate(const CalibrateOptions& options) {
   const CalibrationResult& result = findings.result;
   if (const std::string why = impossible_camera(fitted.calibration, result.table, fitted.samples);
       result.converged && !why.empty()) {
-    findings.judgement.add(Grade::do_not_use, why);
+    findings.judgement.verdict = Grade::do_not_use;
+    findings.judgement.reasons.insert(findings.judgement.reasons.begin(), why);
   }
-  add_likely_causes(input, fitted);
+  add_causes(input, fitted);
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   if (!options.report.empty()) write_file(options.report, json_report(findings));

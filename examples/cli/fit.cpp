@@ -4,10 +4,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
 #include "kinecal/io/assemble.hpp"
+#include "kinecal/io/doubts/check_offsets.hpp"
 #include "kinecal/io/doubts/likely_causes.hpp"
 
 namespace kinecal::cli {
@@ -38,8 +40,9 @@ class Selection {
   std::vector<LeftOutSample> left_out_;
 };
 
-Fit fit_samples(const Input& input, const Selection& selection, const CalibrateOptions& options,
-                const Progress& progress, const SolveOptions& solving) {
+Fit fit_samples(const Input& input, const Config& config, const Selection& selection,
+                const CalibrateOptions& options, const Progress& progress,
+                const SolveOptions& solving) {
   Fit fitted;
   std::vector<int> numbers;
   for (const int i : selection.used()) {
@@ -47,7 +50,7 @@ Fit fit_samples(const Input& input, const Selection& selection, const CalibrateO
     numbers.push_back(i + 1);
   }
   Diagnostics diagnostics;  // warnings have been printed
-  fitted.calibration = assemble(input.config, input.robot, fitted.samples, diagnostics);
+  fitted.calibration = assemble(config, input.robot, fitted.samples, diagnostics);
   diagnostics.throw_if_errors();
   AssessOptions assessing;
   assessing.folds = options.folds > 0 ? options.folds : static_cast<int>(fitted.samples.size());
@@ -56,6 +59,47 @@ Fit fit_samples(const Input& input, const Selection& selection, const CalibrateO
                          assessing, input.diagnostics.doubts);
   fitted.findings.numbers = std::move(numbers);
   fitted.findings.left_out = selection.left_out();
+  return fitted;
+}
+
+/// Error blocks without a sigma for which an estimate matters: those with a loss, whose scale is in
+/// sigmas, and several of a step, which are weighed against each other.
+std::vector<BlockConfig*> blocks_to_estimate(Config& config) {
+  std::vector<BlockConfig*> all;
+  for (StepConfig& step : config.steps) {
+    std::vector<BlockConfig*> without;
+    for (BlockConfig& block : step.error_blocks) {
+      if (block.param.empty() && !block.sigma) without.push_back(&block);
+    }
+    for (BlockConfig* block : without) {
+      if (without.size() > 1 || block->loss.type != "none") all.push_back(block);
+    }
+  }
+  return all;
+}
+
+/// Fits, and fits again with the noise of each block that has no sigma in its place, until it stays.
+Fit fit_with_estimates(const Input& input, const Selection& selection,
+                       const CalibrateOptions& options, const Progress& progress,
+                       const SolveOptions& solving) {
+  Config config = input.config;
+  const std::vector<BlockConfig*> blocks = blocks_to_estimate(config);
+  Fit fitted = fit_samples(input, config, selection, options, progress, solving);
+  constexpr int kRounds = 10;
+  for (int round = 0; round < kRounds && fitted.findings.result.converged; ++round) {
+    bool changed = false;
+    for (BlockConfig* block : blocks) {
+      const BlockNoise* noise =
+          detail::of_block(fitted.findings.assessments, &Assessment::noise, block->name);
+      if (noise == nullptr || !(noise->robust > 0.0)) continue;
+      constexpr double kStays = 0.01;
+      const double before = block->estimated_sigma.value_or(1.0);
+      changed = changed || std::abs(noise->robust - before) > kStays * before;
+      block->estimated_sigma = noise->robust;
+    }
+    if (!changed) break;
+    fitted = fit_samples(input, config, selection, options, progress, solving);
+  }
   return fitted;
 }
 
@@ -95,7 +139,7 @@ Fit fit(const Input& input, const CalibrateOptions& options, const Progress& pro
   }
   constexpr int kRounds = 5;
   for (int round = 0;; ++round) {
-    Fit fitted = fit_samples(input, selection, options, progress, solving);
+    Fit fitted = fit_with_estimates(input, selection, options, progress, solving);
     if (options.keep_outliers || round == kRounds || !fitted.findings.result.converged ||
         !leave_out_ruined(fitted, selection)) {
       return fitted;
@@ -103,8 +147,17 @@ Fit fit(const Input& input, const CalibrateOptions& options, const Progress& pro
   }
 }
 
-void add_likely_causes(const Input& input, Fit& fitted) {
+void add_causes(const Input& input, Fit& fitted) {
   Findings& findings = fitted.findings;
+  if (findings.result.converged) {
+    Diagnostics offsets;
+    check_offsets({input.config, input.robot, input.urdf_text, input.urdf, fitted.samples,
+                   fitted.calibration},
+                  findings.result.table, offsets);
+    for (const std::string& error : offsets.errors) {
+      findings.judgement.add(Grade::do_not_use, error);
+    }
+  }
   const bool bad = !findings.result.converged || findings.assessments.empty() ||
                    fits_badly(findings.assessments.back());
   if (!bad) return;

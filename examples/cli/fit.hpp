@@ -23,7 +23,8 @@ struct Fit {
 [[nodiscard]] Fit fit(const Input& input, const CalibrateOptions& options, const Progress& progress,
                       const SolveOptions& solving);
 
-/// Adds mistakes that explain a bad fit to its reasons: with them it is not to be used.
-void add_likely_causes(const Input& input, Fit& fitted);
+/// Adds offsets that cannot be, and mistakes that explain a bad fit, to its reasons: with them it is not
+/// to be used.
+void add_causes(const Input& input, Fit& fitted);
 
 }  // namespace kinecal::cli

@@ -31,6 +31,17 @@ auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(re
   }
 }
 
+/// Assembles what was read, and doubts it.
+void assemble_input(Input& input, Recorded recorded) {
+  if (recorded == Recorded::before) {
+    add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
+  }
+  input.calibration = assemble(input.config, input.robot, input.samples, input.diagnostics);
+  find_doubts({input.config, input.robot, input.urdf_text, input.urdf, input.samples,
+               input.calibration, recorded},
+              input.diagnostics);
+}
+
 }  // namespace
 
 Recording read_recordings(const std::vector<std::string>& files, Diagnostics& diagnostics) {
@@ -93,13 +104,7 @@ Input read_input(const std::string& urdf, const std::string& config,
   input.robot = *robot;
   input.config = *configuration;
   if (diagnostics.errors.size() == before) {
-    if (recorded == Recorded::before) {
-      add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
-    }
-    input.calibration = assemble(*configuration, *robot, input.samples, diagnostics);
-    find_doubts({input.config, input.robot, input.urdf_text, input.urdf, input.samples,
-                 input.calibration, recorded},
-                diagnostics);
+    assemble_input(input, recorded);
     return input;
   }
   // Blocks of a wrong configuration are left out; the rest is still checked against the robot.

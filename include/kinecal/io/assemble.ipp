@@ -18,18 +18,52 @@ namespace detail {
   return name == "tukey" ? LossType::tukey : LossType::none;
 }
 
+/// Numbers of samples in which a block's first model observes something: alone, and beside another
+/// model of the step.
+struct Company {
+  int alone = 0, beside = 0;
+};
+[[nodiscard]] inline Company company_of(const BlockConfig& block, const StepConfig& step,
+                                        std::span<const Sample> samples) {
+  Company count;
+  for (const Sample& sample : samples) {
+    const auto observes = [&](const std::string& model) {
+      const Observation* seen = sample.observation(model);
+      return seen != nullptr && !seen->features.empty();
+    };
+    if (block.models.empty() || !observes(block.models.front())) continue;
+    const bool beside =
+        std::any_of(step.models.begin(), step.models.end(), [&](const ModelConfig& model) {
+          return model.name != block.models.front() && observes(model.name);
+        });
+    ++(beside ? count.beside : count.alone);
+  }
+  return count;
+}
+
+/// True if a block of a plane takes only the samples in which its model observes alone, although
+/// nothing says so: where there are such samples, what was observed beside another model, such as the
+/// LEDs of a gripper, is not the plane.
+[[nodiscard]] inline bool is_exclusive_by_default(const BlockConfig& block, const StepConfig& step,
+                                                  std::span<const Sample> samples) {
+  if (block.type != "chain3d_to_plane" || block.exclusive || !block.ground.empty()) return false;
+  const Company count = company_of(block, step, samples);
+  return count.alone > 0 && count.beside > 0;
+}
+
 /// @throws std::exception  if the block's numbers are impossible or its sensors do not fit
-inline void add_block(AnyProblem& problem, const BlockConfig& block) {
+inline void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive) {
   const BlockEntry* entry = registry().block(block.type);
   if (entry == nullptr) throw std::invalid_argument("no type '" + block.type + "'");
   TermOptions options;
   options.type = block.type;
   options.unit = entry->unit;
-  options.exclusive = block.exclusive;
+  options.exclusive = exclusive;
   options.beside = block.ground;
   options.loss = {loss_type(block.loss.type), block.loss.scale};
-  options.weight = 1.0 / block.sigma;
-  options.sigma = block.sigma;
+  options.sigma = block.sigma.value_or(block.estimated_sigma.value_or(1.0));
+  options.sigma_given = block.sigma.has_value();
+  options.weight = 1.0 / options.sigma;
   if (const auto scale = block.numbers.find("scale"); scale != block.numbers.end()) {
     options.weight *= scale->second;
   }
@@ -86,10 +120,17 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
                                                              paired < count) {
       diagnostics.warning(
           block->place,
-          fmt::format("error block '{0}' also takes the {1} samples in which other sensors observe "
-                      "something together with '{2}'; write 'samples: alone' in it to leave them "
-                      "out",
-                      term.name(), paired, block->models.front()));
+          fmt::format(
+              "error block '{0}' also takes the {1} samples in which other sensors observe "
+              "something together with '{2}'; write 'samples: exclusive' in it to leave them "
+              "out",
+              term.name(), paired, block->models.front()));
+    } else if (is_exclusive_by_default(*block, step, samples)) {
+      diagnostics.warning(
+          block->place,
+          fmt::format("error block '{}' takes only the samples in which '{}' observes alone; write "
+                      "'samples: all' in it to take the others, too",
+                      term.name(), block->models.front()));
     }
   }
   if (total == 0) {
@@ -170,7 +211,8 @@ inline void warn_of_held_priors(const Config& config, const ParameterTable& tabl
 
 /// Adds the sensors and error blocks of a step.
 /// @return  false, with errors, if they do not fit the robot
-inline bool add_models(AnyProblem& problem, const StepConfig& step, Diagnostics& diagnostics) {
+inline bool add_models(AnyProblem& problem, const StepConfig& step, std::span<const Sample> samples,
+                       Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   for (const ModelConfig& model : step.models) {
     try {
@@ -182,7 +224,8 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step, Diagnostics&
   if (diagnostics.errors.size() != before) return false;
   for (const BlockConfig& block : step.error_blocks) {
     try {
-      add_block(problem, block);
+      add_block(problem, block,
+                block.exclusive.value_or(is_exclusive_by_default(block, step, samples)));
     } catch (const std::exception& e) {
       const std::string what = e.what(), subject = "error block '" + block.name + "'";
       diagnostics.error(block.place,
@@ -221,7 +264,7 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
     std::unique_ptr<AnyProblem> problem = make_problem(
         robot, config.base_link, detail::with_bounds(calibration.table, step, diagnostics), frames);
     detail::warn_of_unknown_sensors(step, samples, diagnostics);
-    if (!detail::add_models(*problem, step, diagnostics)) continue;
+    if (!detail::add_models(*problem, step, samples, diagnostics)) continue;
     detail::add_samples(*problem, samples, diagnostics);
     if (!diagnostics.errors.empty()) continue;
     if (!samples.empty()) detail::check_terms(step, *problem, samples, diagnostics);

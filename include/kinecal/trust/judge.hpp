@@ -3,11 +3,11 @@
 // Do not use                                          Use with care
 //   a step did not converge
 //   noise 10 x the sigma that was given                 3 x
-//   without sigma: noise of 20 mm, 10 px                5 mm, 3 px
+//   without sigma: distances of 20 mm, 12 px            8 mm, 4 px
 //   freedom less than half of the parameters            less than the parameters
 //   held-out error 3 x the fitted one                   1.5 x
 //   a quarter of the samples does not fit               a tenth
-//   a joint's offset beyond its travel, or 90 degrees   30 degrees; other changes that are too large
+//   a joint's offset of 90 degrees                      30 degrees; other changes that are too large
 //   the pose in question is known to 20 mm only         to 5 mm; a direction of it not at all
 //                                                       a parameter ended at a bound
 //                                                       doubts about the input

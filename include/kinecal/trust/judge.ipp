@@ -24,7 +24,7 @@ struct Limits {
 };
 
 inline void judge_noise(const Assessment& step, Judgement& judgement) {
-  constexpr Limits kTimes{3.0, 10.0}, kMetres{0.005, 0.02}, kPixels{3.0, 10.0};
+  constexpr Limits kTimes{3.0, 10.0}, kMetres{0.008, 0.02}, kPixels{4.0, 12.0};
   for (const BlockNoise& noise : step.noise) {
     if (noise.features == 0 || noise.freedom <= 0.0) continue;
     // Of both estimates: a few bad captures raise the one, a wrong model raises both.
@@ -37,9 +37,11 @@ inline void judge_noise(const Assessment& step, Judgement& judgement) {
                                              reading(noise.given, noise.unit) + " given, " + shown);
     } else if (noise.unit == "m" || noise.unit == "px") {
       const Limits& limits = noise.unit == "m" ? kMetres : kPixels;
-      if (!limits.exceeded(sigma)) continue;
-      judgement.add(limits.grade(sigma), "error block '" + noise.block + "': " + shown +
-                                             "; the model does not fit these samples");
+      const double distance = sigma * std::sqrt(noise.components);
+      if (!limits.exceeded(distance)) continue;
+      judgement.add(limits.grade(distance),
+                    "error block '" + noise.block + "': residuals show distances of " +
+                        reading(distance, noise.unit) + "; the model does not fit these samples");
     }
   }
 }
@@ -112,16 +114,6 @@ inline void judge_values(const CalibrationStep& step, const CalibrationResult& r
                         reading(parameter.value - parameter.initial, parameter.unit) +
                         "; is the URDF or its initial value wrong, or do these samples not "
                         "determine it?");
-    }
-    if (!problem.robot().has_joint(parameter.name)) continue;
-    const auto& limited = problem.robot().joint(parameter.name).limits;
-    if (!limited || !(limited->upper > limited->lower)) continue;
-    const double travel = limited->upper - limited->lower;
-    if (std::abs(parameter.value) > travel) {
-      judgement.add(Grade::do_not_use, "the offset of '" + parameter.name + "' is " +
-                                           reading(parameter.value, parameter.unit) +
-                                           ", but the joint travels only " +
-                                           reading(travel, parameter.unit));
     }
   }
   for (const int p : assessment.at_bound) {

@@ -133,8 +133,9 @@ std::string describe(const Config& config) {
       out << "bound " << b.name << " " << b.lower << " " << b.upper << "\n";
     }
     for (const auto& b : step.error_blocks) {
-      out << "block " << b.name << " " << b.type << " " << b.param << " " << b.exclusive << " "
-          << b.sigma << " " << b.loss.type << " " << b.loss.scale;
+      out << "block " << b.name << " " << b.type << " " << b.param << " "
+          << b.exclusive.value_or(false) << " " << b.sigma.value_or(1.0) << " " << b.loss.type
+          << " " << b.loss.scale;
       for (const auto& model : b.models) out << " " << model;
       for (const auto& [name, number] : b.numbers) out << " " << name << "=" << number;
       out << "\n";

@@ -6,7 +6,9 @@
 
 #include <numbers>
 
+#include "kinecal/io/samples/read_samples.hpp"
 #include "support/arm_scene.hpp"
+#include "support/data.hpp"
 
 namespace kinecal {
 namespace {
@@ -18,6 +20,8 @@ using testing::IsEmpty;
 /// Positions are anywhere within the limits; 'lift' may travel from -1.2 to 1.4.
 class CheckOffsets : public test::ArmScene {
  protected:
+  bool is_initial = false;  ///< the offset is the initial value
+
   [[nodiscard]] Diagnostics with_offset(const std::string& joint, double offset) const {
     const Config read = config();
     const Robot robot = parse_urdf(urdf, "arm.urdf");
@@ -26,6 +30,7 @@ class CheckOffsets : public test::ArmScene {
     const Calibration calibration = assemble(read, robot, samples, diagnostics);
     ParameterTable table = calibration.table;
     table[table.index(joint)].value = offset;
+    if (is_initial) table[table.index(joint)].initial = offset;
     check_offsets({read, robot, urdf, name, samples, calibration}, table, diagnostics);
     return diagnostics;
   }
@@ -68,8 +73,36 @@ TEST_F(CheckOffsets, AreNotBlamedForPositionsThatWereOutsideBefore) {
 
 TEST_F(CheckOffsets, OfAJointWithoutLimitsCanOnlyBeLarge) {
   replace(urdf, "name=\"lift\" type=\"revolute\"", "name=\"lift\" type=\"continuous\"");
-  EXPECT_THAT(with_offset("lift", 2.8).errors, IsEmpty());
-  EXPECT_THAT(with_offset("lift", 2.8).doubts, ElementsAre(HasSubstr("160.4 deg")));
+  EXPECT_THAT(with_offset("lift", 2.7).errors, IsEmpty());
+  EXPECT_THAT(with_offset("lift", 2.7).doubts, ElementsAre(HasSubstr("154.7 deg")));
+}
+
+TEST_F(CheckOffsets, OfHalfATurnLookLikeAWrongSignUnlessTheyAreKnown) {
+  while (urdf.find("revolute") != std::string::npos) replace(urdf, "revolute", "continuous");
+  EXPECT_THAT(with_offset("elbow", 3.1).errors,
+              ElementsAre(HasSubstr("the offset of 'elbow' is 177.6 deg, half a turn")));
+  is_initial = true;
+  EXPECT_THAT(with_offset("elbow", 3.1).errors, IsEmpty());
+  EXPECT_THAT(with_offset("elbow", 3.1).doubts, IsEmpty());
+}
+
+/// The mirror image of the robot fits as well as the robot: only its offsets show it.
+TEST(CheckRealOffsets, AFirstJointWithTheWrongSignIsFoundByTheOffsetsItCosts) {
+  KINECAL_NEEDS_DATA("ur5_tracker");
+  const auto folder = test::data_folder() / "ur5_tracker";
+  const std::string name = (folder / "ur5.urdf").string(), text = read_urdf_text(name);
+  const Robot robot = parse_urdf(text, name);
+  Diagnostics diagnostics;
+  const Config read = read_config((folder / "offsets.yaml").string(), diagnostics);
+  auto samples = read_samples((folder / "grid.yaml").string(), diagnostics);
+  for (Sample& sample : samples) sample.joint_positions[0] *= -1.0;  // shoulder_pan_joint
+  const Calibration calibration = assemble(read, robot, samples, diagnostics);
+  const CalibrationResult result = calibrate(calibration);
+  ASSERT_TRUE(result.converged);
+  EXPECT_LT(result.blocks[0].after.median, 1e-3) << "it does not fit, which is easier to see";
+  check_offsets({read, robot, text, name, samples, calibration}, result.table, diagnostics);
+  EXPECT_THAT(diagnostics.errors,
+              ElementsAre(HasSubstr("'shoulder_lift_joint' is -179.9 deg, half a turn")));
 }
 
 }  // namespace

@@ -108,6 +108,12 @@ TEST_F(JointPositions, UnderExchangedNamesNameThePair) {
                                 HasSubstr("if these two names are exchanged"))));
 }
 
+TEST_F(JointPositions, WithTheWrongSignAreAnError) {
+  for (Sample& sample : samples) position(sample, "elbow") *= -1.0;
+  EXPECT_THAT(found().errors, ElementsAre(AllOf(HasSubstr("position of 'elbow' is -"),
+                                                HasSubstr("within them with the other sign"))));
+}
+
 TEST_F(JointPositions, InTheOrderOfTheAlphabetAreAnError) {
   for (Sample& sample : samples) {
     std::sort(sample.joint_names.begin(), sample.joint_names.end());  // positions stay as they are

@@ -55,6 +55,26 @@ TEST_F(LikelyCauses, UnitsAreNamed) {
   EXPECT_THAT(first(), HasSubstr("with the points of 'tracker' taken as millimetres"));
 }
 
+TEST_F(LikelyCauses, LengthsThatAreFreeDoNotShrinkWithThePoints) {
+  replace(
+      config_text, "free_frames:\n",
+      "free_frames:\n - {name: lift, x: true, y: true, z: true}\n"
+      " - {name: elbow, x: true, y: true, z: true}\n - {name: roll, x: true, y: true, z: true}\n"
+      " - {name: flex, x: true, y: true, z: true}\n - {name: flange, x: true, y: true, z: true}\n");
+  for (Sample& sample : samples) {
+    for (Observation& seen : sample.observations) seen.features.resize(1);
+    sample.observations[0].features[0].point.setZero();
+  }
+  EXPECT_THAT(causes(), IsEmpty());
+}
+
+TEST_F(LikelyCauses, AxesOfPointsAreNamed) {
+  for (Sample& sample : samples) {
+    for (Feature& feature : sample.observations[1].features) feature.point.y() *= -1.0;
+  }
+  EXPECT_THAT(first(), HasSubstr("with the points of 'tracker' mirrored"));
+}
+
 TEST_F(LikelyCauses, FeaturesInReverseOrderAreNamed) {
   for (Sample& sample : samples) {
     std::swap(sample.observations[1].features[0].point, sample.observations[1].features[1].point);

@@ -9,12 +9,12 @@ namespace {
 TEST(Occurrences, NameTheFirstAndCountTheOthers) {
   Occurrences found;
   EXPECT_EQ(found.others(), "");
-  found.add(3);
+  EXPECT_TRUE(found.add(4));
   EXPECT_EQ(found.others(), "");
-  found.add(5);
+  EXPECT_TRUE(found.add(3));
   EXPECT_EQ(found.first, 3u);
   EXPECT_EQ(found.others(), " (and in 1 more sample)");
-  found.add(6);
+  EXPECT_FALSE(found.add(6));
   EXPECT_EQ(found.others(), " (and in 2 more samples)");
 }
 

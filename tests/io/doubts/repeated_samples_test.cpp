@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "support/arm_scene.hpp"
 
 namespace kinecal {
@@ -38,6 +40,28 @@ TEST_F(RepeatedSamples, SomeCopiesAreADoubtAndAFewAWarning) {
   const Diagnostics few = found();
   EXPECT_THAT(few.doubts, IsEmpty());
   EXPECT_THAT(few.warnings, ElementsAre(HasSubstr("is a copy")));
+}
+
+TEST_F(RepeatedSamples, TheFirstOfTheFileIsNamed) {
+  for (const std::size_t i : {9, 2, 5}) {
+    samples.push_back(samples[i]);
+    samples.back().source = "copy_of_" + std::to_string(i);
+  }
+  EXPECT_THAT(found().doubts, ElementsAre(HasSubstr(
+                                  "copy_of_9: the sample is a copy of that at s.yaml:91 (and in 2 "
+                                  "more samples)")));
+}
+
+TEST_F(RepeatedSamples, ManyAtOnePoseTakeNoTime) {
+  const Sample one = samples[4];
+  for (int i = 0; i < 20000; ++i) {
+    samples.push_back(one);
+    samples.back().observations[1].features[0].point.x() += 1e-8 * (i + 1);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THAT(found().errors, IsEmpty());
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(seconds.count(), 20.0) << "quadratic: every pair of samples is compared";
 }
 
 TEST_F(RepeatedSamples, NoiseAtOnePoseIsRight) {

@@ -78,11 +78,14 @@ struct BlockConfig {
   std::vector<std::string> models;  ///< in the order of the registry's keys; empty for outrageous
   std::string param;                ///< outrageous: joint, frame or parameter
   std::map<std::string, double> numbers;  ///< by key; defaults filled in
-  bool exclusive =
-      false;             ///< `samples: exclusive` (or alone): only samples without observations of
-                         ///< other models
-  std::string ground;    ///< camera3d_to_ground: only samples with an observation of this sensor
-  double sigma = 1.0;    ///< standard deviation, units of the residual
+  /// `samples: exclusive` (or alone): only samples without observations of other models; empty: not
+  /// given.
+  std::optional<bool> exclusive = {};
+  std::string ground;  ///< camera3d_to_ground: only samples with an observation of this sensor
+  std::optional<double> sigma =
+      {};  ///< standard deviation, units of the residual; empty: not given
+  std::optional<double> estimated_sigma =
+      {};                ///< from residuals, in place of one that is not given
   LossConfig loss;       ///< of each feature
   SourceLocation place;  ///< where the file defines it
 };

@@ -83,8 +83,10 @@ inline std::string read_choice(ConfigMap& map, const std::string& key, const std
 
 /// The keys of every block: sigma, loss, samples.
 inline void read_block_weighting(ConfigMap& map, BlockConfig& block) {
-  block.sigma = map.positive("sigma", block.sigma);
-  block.exclusive = read_choice(map, "samples", "all", {"all", "exclusive", "alone"}) != "all";
+  if (map.find("sigma") != nullptr) block.sigma = map.positive("sigma", 1.0);
+  if (map.find("samples") != nullptr) {
+    block.exclusive = read_choice(map, "samples", "all", {"all", "exclusive", "alone"}) != "all";
+  }
   auto loss = map.map("loss", kErrorBlockItems.subject(block.name) + ": loss");
   if (!loss) return;
   if (loss->find("type") == nullptr) loss->error(loss->place(), "type is missing");

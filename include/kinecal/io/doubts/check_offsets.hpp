@@ -13,8 +13,9 @@
 namespace kinecal {
 
 /// Error: an offset is greater than the joint's travel, or moves recorded positions more than 20
-/// degrees (10 cm) beyond its limits, further than they were before.  Doubt: it is greater than 20
-/// degrees, or 10 cm.
+/// degrees (10 cm) beyond its limits, further than they were before, or is half a turn from its initial
+/// value: the mirror image of a robot fits as well as the robot.  Doubt: it is more than 20 degrees, or
+/// 10 cm, from its initial value.
 /// @param input       what was calibrated; places are those of the URDF's limits
 /// @param calibrated  the table after the calibration
 void check_offsets(const CalibrationInput& input, const ParameterTable& calibrated,

@@ -23,6 +23,11 @@ namespace detail {
                            : fmt::format("{:.1f} mm", 1e3 * offset);
 }
 
+/// The offset between half a turn and minus half a turn, for joints that turn.
+[[nodiscard]] inline double as_angle(const Joint& joint, double offset) {
+  return turns(joint.type) ? std::remainder(offset, 2 * std::numbers::pi) : offset;
+}
+
 /// The recorded position that is furthest outside its limits after the offset.
 struct FurthestOutside {
   double position = 0.0;  ///< with the offset
@@ -44,14 +49,16 @@ struct FurthestOutside {
 
 KINECAL_INLINE void check_offsets(const CalibrationInput& input, const ParameterTable& calibrated,
                                   Diagnostics& diagnostics) {
+  constexpr double kHalfTurn = 2.8;  // radians: to 20 degrees
   const detail::UrdfText source(input.urdf_text, input.urdf);
   for (const detail::UsedJoint& used :
        detail::used_joints(input.config, input.robot, input.samples)) {
     const Joint& joint = used.joint;
     const int parameter = calibrated.find(joint.name);
     if (parameter < 0) continue;
-    double offset = calibrated[parameter].value;
-    if (turns(joint.type)) offset = std::remainder(offset, 2 * std::numbers::pi);
+    const double offset = detail::as_angle(joint, calibrated[parameter].value);
+    const double change =
+        detail::as_angle(joint, calibrated[parameter].value - calibrated[parameter].initial);
     const pugi::xml_node node = source.joint(joint.name), limit = node.child("limit");
     const SourceLocation place = source.place(limit ? limit : node);
     const std::string subject =
@@ -68,8 +75,15 @@ KINECAL_INLINE void check_offsets(const CalibrationInput& input, const Parameter
                         fmt::format("{}: with it, the joint was at {:.4g}, but its limits are "
                                     "{}; the result cannot be right",
                                     subject, most.position, used.limits_text()));
-    } else if (std::abs(offset) > (turns(joint.type) ? 0.35 : 0.1)) {
-      diagnostics.doubt(place, subject + "; zeros of joints are seldom so far off");
+    } else if (turns(joint.type) && std::abs(change) > kHalfTurn) {
+      diagnostics.error(place, subject +
+                                   ", half a turn: this is what the wrong sign of a joint, or a "
+                                   "URDF with other zeros, looks like; if it is known to be, "
+                                   "give it as an initial value");
+    } else if (std::abs(change) > (turns(joint.type) ? 0.35 : 0.1)) {
+      diagnostics.doubt(place, subject +
+                                   "; zeros of joints are seldom so far off; if it is known to "
+                                   "be, give it as an initial value");
     }
   }
 }

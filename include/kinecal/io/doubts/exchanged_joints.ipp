@@ -165,4 +165,33 @@ inline bool report_order(std::span<const UsedJoint> joints, std::span<const Samp
   return false;
 }
 
+/// Error, or doubt if only few positions show it: the positions of one joint have the wrong sign.
+/// @returns  indices of the joints that were reported: none or one
+inline std::vector<std::size_t> report_negated(std::span<const UsedJoint> joints,
+                                               std::span<const Sample> samples,
+                                               Diagnostics& diagnostics) {
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const UsedJoint& joint = joints[j];
+    const std::size_t all = joint.positions.size(), outside = count_outside(joint, joint);
+    if (!are_many(outside, all) || 50 * (count_all_outside(joints) - outside) > all) continue;
+    UsedJoint negated = joint;
+    for (double& position : negated.positions) position = -position;
+    if (50 * count_outside(joint, negated) > all) continue;
+    std::size_t at = 0;
+    while (!is_outside(joint, joint.positions[at])) ++at;
+    const SourceLocation place = place_of(samples, joint.samples[at]);
+    const std::string text = fmt::format(
+        "position of '{}' is {:.4g}; its limits are {}; all of its positions are within them with "
+        "the other sign; compare the direction of the joint with the driver",
+        joint.joint.name, joint.positions[at], joint.limits_text());
+    if (2 * outside > all) {
+      diagnostics.error(place, text);
+    } else {
+      diagnostics.doubt(place, text);
+    }
+    return {j};
+  }
+  return {};
+}
+
 }  // namespace kinecal::detail

@@ -22,6 +22,7 @@ struct Hypothesis {
   std::string undone;  ///< "with the positions of 'a' and 'b' exchanged"
   std::function<void(Sample&)> correct = {};
   std::function<void(Config&)> correct_config = {};
+  double shrinks = 1.0;  ///< lengths, and with them residuals, by this factor
 };
 
 /// The position of a joint in a sample; nullptr if it has none.
@@ -104,15 +105,26 @@ inline void add_sensor_hypotheses(const Config& config, std::vector<Hypothesis>&
                      });
                    }});
     if (pixels.contains(name)) continue;
-    for (const double factor : {1e-3, 1e3}) {
-      all.push_back({fmt::format("with the points of '{}' {}", name,
-                                 factor < 1.0 ? "taken as millimetres" : "multiplied by 1000"),
-                     [=](Sample& s) {
-                       each(s, [=](Observation& seen) {
-                         for (Feature& feature : seen.features) feature.point *= factor;
-                       });
-                     }});
-    }
+    const auto points = [each](auto&& change) {
+      return [=](Sample& s) {
+        each(s, [=](Observation& seen) {
+          for (Feature& feature : seen.features) feature.point = change(feature.point);
+        });
+      };
+    };
+    using Point = Vector3<double>;
+    const std::string of = fmt::format("with the points of '{}' ", name);
+    all.push_back({of + "taken as millimetres",
+                   points([](const Point& p) -> Point { return 1e-3 * p; }),
+                   {},
+                   1e-3});
+    all.push_back(
+        {of + "multiplied by 1000", points([](const Point& p) -> Point { return 1e3 * p; })});
+    all.push_back({of + "mirrored, as if its axes were left-handed",
+                   points([](const Point& p) { return Point(p.x(), -p.y(), p.z()); })});
+    all.push_back(
+        {of + "turned from the axes of a link (x forward) to those of a camera (z forward)",
+         points([](const Point& p) { return Point(-p.y(), -p.z(), p.x()); })});
   }
 }
 
@@ -121,7 +133,7 @@ inline void add_model_hypotheses(const Config& config, std::vector<Hypothesis>& 
   const std::vector<ModelConfig> models = models_of(config);
   for (std::size_t a = 0; a < models.size(); ++a) {
     for (std::size_t b = a + 1; b < models.size(); ++b) {
-      const ModelConfig first = models[a], second = models[b];
+      const ModelConfig &first = models[a], &second = models[b];
       if (first.frame != second.frame) {
         all.push_back({fmt::format("with the frames of the models '{}' and '{}' exchanged",
                                    first.name, second.name),

@@ -1,4 +1,4 @@
-// Joint positions against the limits of the URDF: degrees, exchanged names, absurd numbers.
+// Joint positions against the limits of the URDF: degrees, exchanged names, wrong signs, absurd numbers.
 //
 // Robots exceed their limits a little, by their own offsets: that is a warning.  Positions that are
 // far outside but inside after a conversion, or under another joint's name, have that cause.

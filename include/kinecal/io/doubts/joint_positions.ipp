@@ -98,8 +98,7 @@ inline bool report_absurd(const UsedJoint& joint, std::span<const Sample> sample
   for (std::size_t i = 0; i < joint.positions.size(); ++i) {
     const double q = joint.positions[i];
     if (std::abs(q) <= most) continue;
-    if (absurd.count == 0) first = q;
-    absurd.add(joint.samples[i]);
+    if (absurd.add(joint.samples[i])) first = q;
   }
   if (absurd.count == 0) return false;
   diagnostics.error(place_of(samples, absurd.first),
@@ -144,9 +143,10 @@ KINECAL_INLINE void check_joint_positions(std::span<const UsedJoint> joints,
                                           std::span<const Sample> samples,
                                           Diagnostics& diagnostics) {
   std::vector<bool> explained(joints.size(), false);
-  const std::vector<std::size_t> exchanged = report_exchanged(joints, samples, diagnostics);
-  for (const std::size_t j : exchanged) explained[j] = true;
-  if (exchanged.empty() && report_order(joints, samples, diagnostics)) return;
+  std::vector<std::size_t> renamed = report_negated(joints, samples, diagnostics);
+  if (renamed.empty()) renamed = report_exchanged(joints, samples, diagnostics);
+  for (const std::size_t j : renamed) explained[j] = true;
+  if (renamed.empty() && report_order(joints, samples, diagnostics)) return;
   for (const bool turning : {true, false}) {
     std::vector<std::size_t> wrong = in_other_unit(joints, turning);
     std::erase_if(wrong, [&](std::size_t j) { return explained[j]; });

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/doubts/hypotheses.ipp"
@@ -28,17 +29,21 @@ struct SolvedSamples {
                                                                 const Robot& robot,
                                                                 std::span<const Sample> samples,
                                                                 const Calibrator& solve) {
+  constexpr int kEnough = 100;  // iterations; what fits is found in far fewer
   Diagnostics quiet;
-  const Calibration calibration = assemble(config, robot, samples, quiet);
+  Calibration calibration = assemble(config, robot, samples, quiet);
+  for (CalibrationStep& step : calibration.steps) {
+    step.max_num_iterations = std::min(step.max_num_iterations, kEnough);
+  }
   if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;
   const CalibrationResult result = solve(calibration);
   if (result.steps.empty() || !std::isfinite(result.steps.back().final_cost)) return std::nullopt;
   return SolvedSamples{result.steps.back().final_cost, result.blocks};
 }
 
-/// At most 200 samples: enough to see what fits.
+/// At most 100 samples: enough to see what fits.
 [[nodiscard]] inline std::vector<Sample> some_of(std::span<const Sample> samples) {
-  constexpr std::size_t kMost = 200;
+  constexpr std::size_t kMost = 100;
   const std::size_t step = (samples.size() + kMost - 1) / kMost;
   std::vector<Sample> some;
   for (std::size_t i = 0; i < samples.size(); i += std::max<std::size_t>(step, 1)) {
@@ -47,14 +52,15 @@ struct SolvedSamples {
   return some;
 }
 
-/// "the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm", of the block that falls most.
+/// "the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm", of the block that falls most; of a
+/// prior only if no other falls.
 [[nodiscard]] inline std::string fall_of(const SolvedSamples& before, const SolvedSamples& after) {
   std::string text = fmt::format("the cost falls from {:.3g} to {:.3g}", before.cost, after.cost);
   double most = 1.0;
   for (const BlockStatistics& block : before.blocks) {
     for (const BlockStatistics& same : after.blocks) {
       const double ratio = block.after.mean / std::max(same.after.mean, 1e-300);
-      if (same.name != block.name || !(ratio > most)) continue;
+      if (same.name != block.name || block.unit == "1" || !(ratio > most)) continue;
       most = ratio;
       text = fmt::format("the mean residual of '{}' falls from {} to {}", block.name,
                          residual_text(block.after.mean, block.unit),
@@ -62,6 +68,29 @@ struct SolvedSamples {
     }
   }
   return text;
+}
+
+/// A mistake that explains the residuals.
+struct Cause {
+  double cost = 0.0;  ///< without it
+  std::string sentence;
+};
+
+/// The sentences, the lowest costs first; alike costs in the order of the hypotheses.  What only
+/// explains a part beside a better one is left out, and so is what does the same to the samples.
+[[nodiscard]] inline std::vector<std::string> sentences(std::vector<Cause> found) {
+  constexpr double kAlike = 1.5, kPartly = 100.0;
+  double best = HUGE_VAL;
+  for (const Cause& cause : found) best = std::min(best, cause.cost);
+  std::erase_if(found, [&](const Cause& cause) { return cause.cost > kPartly * best; });
+  std::set<double> costs;
+  std::erase_if(found, [&](const Cause& cause) { return !costs.insert(cause.cost).second; });
+  for (Cause& cause : found) cause.cost = std::max(cause.cost, kAlike * best);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Cause& a, const Cause& b) { return a.cost < b.cost; });
+  std::vector<std::string> all;
+  for (Cause& cause : found) all.push_back(std::move(cause.sentence));
+  return all;
 }
 
 }  // namespace detail
@@ -74,7 +103,7 @@ KINECAL_INLINE std::vector<std::string> likely_causes(const Config& config, cons
       solve ? solve : [](const Calibration& calibration) { return calibrate(calibration); };
   const std::vector<Sample> some = detail::some_of(samples);
   const auto now = detail::solve_samples(config, robot, some, solver);
-  std::vector<std::pair<double, std::string>> found;
+  std::vector<detail::Cause> found;
   for (const auto& hypothesis :
        detail::hypotheses(config, detail::used_joints(config, robot, some))) {
     std::vector<Sample> changed = some;
@@ -82,20 +111,13 @@ KINECAL_INLINE std::vector<std::string> likely_causes(const Config& config, cons
     if (hypothesis.correct) std::for_each(changed.begin(), changed.end(), hypothesis.correct);
     if (hypothesis.correct_config) hypothesis.correct_config(changed_config);
     const auto then = detail::solve_samples(changed_config, robot, changed, solver);
-    if (!then || (now && then->cost >= kExplains * now->cost)) continue;
-    found.emplace_back(then->cost,
-                       hypothesis.undone + ", " +
-                           (now ? detail::fall_of(*now, *then) : "the samples can be solved"));
+    if (!then) continue;
+    const double cost = then->cost / (hypothesis.shrinks * hypothesis.shrinks);
+    if (now && cost >= kExplains * now->cost) continue;
+    found.push_back({cost, hypothesis.undone + ", " +
+                               (now ? detail::fall_of(*now, *then) : "the samples can be solved")});
   }
-  double best = HUGE_VAL;
-  for (const auto& [cost, sentence] : found) best = std::min(best, cost);
-  for (auto& [cost, sentence] : found)
-    cost = std::max(cost, 1.5 * best);  // alike: the simplest first
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<std::string> causes;
-  for (auto& [cost, sentence] : found) causes.push_back(std::move(sentence));
-  return causes;
+  return detail::sentences(std::move(found));
 }
 
 }  // namespace kinecal

@@ -38,8 +38,12 @@ struct Occurrences {
   std::size_t first = 0;  ///< index of the first one
 
   /// Counts a sample.
-  void add(std::size_t sample) {
-    if (count++ == 0) first = sample;
+  /// @returns  true if it is the first one so far
+  bool add(std::size_t sample) {
+    const bool is_first = count == 0 || sample < first;
+    if (is_first) first = sample;
+    ++count;
+    return is_first;
   }
   /// " (and in 3 more samples)"; empty if it occurs once.
   [[nodiscard]] std::string others() const {

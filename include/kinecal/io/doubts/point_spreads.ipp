@@ -91,9 +91,12 @@ inline void compare_spreads(const RecordedPoints& fixed, const RecordedPoints& a
       arm.model.name, of_arm, fixed.model.name, of_fixed);
   const std::string unit = unit_of_factor(factor);
   if (fixed.is_constant) {
-    diagnostics.error(place, text +
-                                 "; it records the same features in every sample though the "
-                                 "robot moves: its driver or topic has stopped");
+    diagnostics.error(
+        place,
+        text + fmt::format("; it records the same features in every sample though the robot "
+                           "moves: its driver or topic has stopped, or the frames of '{}' and "
+                           "'{}' are exchanged in the configuration",
+                           arm.model.name, fixed.model.name));
   } else if (!unit.empty()) {
     diagnostics.error(place,
                       text + fmt::format("; they look like {}; points must be in metres", unit));

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/io/doubts/occurrences.hpp"
@@ -50,14 +52,28 @@ namespace kinecal::detail {
   return most;
 }
 
-/// True if the two samples have the same observations.
-[[nodiscard]] inline bool are_copies(const Sample& a, const Sample& b) {
-  if (a.observations.size() != b.observations.size() || a.conditions != b.conditions) return false;
-  for (const Observation& seen : a.observations) {
-    const Observation* other = b.observation(seen.sensor);
-    if (other == nullptr || change_between(seen, *other) != 0.0) return false;
+/// All that the sensors recorded in a sample, for comparison.
+using RecordedNumbers = std::pair<std::vector<std::string>, std::vector<double>>;
+
+[[nodiscard]] inline RecordedNumbers recorded_in(const Sample& sample) {
+  RecordedNumbers all;
+  const auto add = [&](double number) {  // what is not a number must be comparable, too
+    all.second.push_back(std::isnan(number) ? HUGE_VAL : number);
+  };
+  for (const Observation& seen : sample.observations) {
+    all.first.push_back(seen.sensor);
+    for (const Feature& feature : seen.features) {
+      all.first.push_back(feature.frame);
+      for (const double number : feature.point) add(number);
+      if (!feature.rotation) continue;
+      for (const double number : feature.rotation->reshaped()) add(number);
+    }
   }
-  return true;
+  for (const auto& [name, value] : sample.conditions) {
+    all.first.push_back(name);
+    add(value);
+  }
+  return all;
 }
 
 /// The sensor that sees something else while another one sees the same; nullptr if there is none.
@@ -78,51 +94,67 @@ namespace kinecal::detail {
   return same > 0 ? changed : nullptr;
 }
 
+/// What is repeated in all samples.
+struct Repetitions {
+  Occurrences copies, contradictions;
+  std::size_t copied = 0;  ///< the sample of which copies.first is a copy
+  std::size_t before = 0;  ///< the sample that contradictions.first contradicts
+  std::string sensor;      ///< that sees something else
+};
+
+/// Adds the samples of one pose.
+inline void add_repetitions(const std::vector<std::size_t>& group, std::span<const Sample> samples,
+                            const std::set<std::string>& pixels, Repetitions& all) {
+  if (group.size() < 2) return;
+  std::map<RecordedNumbers, std::size_t> known;
+  for (const std::size_t s : group) {
+    const auto [first, is_new] = known.emplace(recorded_in(samples[s]), s);
+    if (!is_new) {
+      if (all.copies.add(s)) all.copied = first->second;
+    } else if (const Observation* seen =
+                   contradiction(samples[s], samples[group.front()], pixels)) {
+      if (all.contradictions.add(s)) all.sensor = seen->sensor, all.before = group.front();
+    }
+  }
+}
+
+/// Error, doubt or warning: samples that are copies of others.
+inline void report_copies(const Repetitions& found, std::span<const Sample> samples,
+                          Diagnostics& diagnostics) {
+  const Occurrences& copies = found.copies;
+  if (copies.count == 0) return;
+  const SourceLocation place = place_of(samples, copies.first);
+  const std::string text = fmt::format("the sample is a copy of that at {}{}",
+                                       place_of(samples, found.copied).str(), copies.others());
+  if (copies.count + 1 == samples.size()) {
+    diagnostics.error(place, fmt::format("all {} samples are the same one: joint positions and "
+                                         "features are equal; record different poses",
+                                         samples.size()));
+  } else if (50 * copies.count > samples.size()) {
+    diagnostics.doubt(place, text + "; copies count twice and say nothing new; remove them");
+  } else {
+    diagnostics.warning(place, text);
+  }
+}
+
 KINECAL_INLINE std::size_t check_repeated_samples(const Config& config,
                                                   std::span<const UsedJoint> joints,
                                                   std::span<const Sample> samples,
                                                   Diagnostics& diagnostics) {
   const std::set<std::string> pixels = pixel_models(config);
-  Occurrences copies, contradictions;
-  std::size_t copied = 0, before = 0;
-  std::string sensor;
+  Repetitions found;
   for (const auto& group : samples_by_pose(joints, samples.size())) {
-    for (std::size_t i = 1; i < group.size(); ++i) {
-      const Sample& sample = samples[group[i]];
-      const auto same = std::find_if(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(i),
-                                     [&](std::size_t s) { return are_copies(samples[s], sample); });
-      if (same != group.begin() + static_cast<std::ptrdiff_t>(i)) {
-        if (copies.count == 0) copied = *same;
-        copies.add(group[i]);
-      } else if (const Observation* seen = contradiction(sample, samples[group[0]], pixels)) {
-        if (contradictions.count == 0) sensor = seen->sensor, before = group[0];
-        contradictions.add(group[i]);
-      }
-    }
+    add_repetitions(group, samples, pixels, found);
   }
-  const std::size_t distinct = samples.size() - copies.count;
-  if (copies.count > 0) {
-    const SourceLocation place = place_of(samples, copies.first);
-    const std::string text = fmt::format("the sample is a copy of that at {}{}",
-                                         place_of(samples, copied).str(), copies.others());
-    if (distinct == 1) {
-      diagnostics.error(place, fmt::format("all {} samples are the same one: joint positions and "
-                                           "features are equal; record different poses",
-                                           samples.size()));
-    } else if (50 * copies.count > samples.size()) {
-      diagnostics.doubt(place, text + "; copies count twice and say nothing new; remove them");
-    } else {
-      diagnostics.warning(place, text);
-    }
-  }
-  if (contradictions.count > 0) {
+  report_copies(found, samples, diagnostics);
+  if (const Occurrences& contradictions = found.contradictions; contradictions.count > 0) {
     diagnostics.doubt(
         place_of(samples, contradictions.first),
         fmt::format("the joint positions are those of {}, but sensor '{}' sees "
                     "something else{}; was the robot moving, or did the target slip?",
-                    place_of(samples, before).str(), sensor, contradictions.others()));
+                    place_of(samples, found.before).str(), found.sensor, contradictions.others()));
   }
-  return distinct;
+  return samples.size() - found.copies.count;
 }
 
 }  // namespace kinecal::detail

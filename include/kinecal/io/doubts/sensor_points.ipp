@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/io/doubts/camera_features.ipp"
 #include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/point_spreads.ipp"
 #include "kinecal/io/doubts/sensor_points.hpp"
@@ -83,11 +84,13 @@ inline bool report_absurd_points(const RecordedPoints& recorded, std::span<const
   const double most = recorded.in_metres ? 1e5 : 1e6;  // metres, or pixels and readings
   Occurrences absurd;
   double first = 0.0;
+  std::size_t last = 0;
   for (std::size_t i = 0; i < recorded.points.size(); ++i) {
     const double size = recorded.points[i].cwiseAbs().maxCoeff();
     if (size <= most) continue;
-    if (absurd.count == 0) first = size;
-    if (absurd.count == 0 || absurd.first != recorded.samples[i]) absurd.add(recorded.samples[i]);
+    if (absurd.count > 0 && last == recorded.samples[i]) continue;  // the sample is counted
+    last = recorded.samples[i];
+    if (absurd.add(last)) first = size;
   }
   if (absurd.count == 0) return false;
   diagnostics.error(place_of(samples, absurd.first),
@@ -132,50 +135,6 @@ inline void check_distances(const RecordedPoints& recorded, double reach,
   } else if (recorded.is_measured && recorded.moves && size < 0.01) {
     diagnostics.error(place, text + "; no camera sees so close; points must be in metres");
   }
-}
-
-/// Error or doubt: pixels that are none.
-inline void check_pixels(const RecordedPoints& recorded, std::span<const Sample> samples,
-                         Diagnostics& diagnostics) {
-  const Observation* seen = samples[recorded.samples.front()].observation(recorded.model.name);
-  if (!seen->camera || seen->camera->width <= 0 || seen->camera->height <= 0) return;
-  const double width = seen->camera->width, height = seen->camera->height;
-  double most = 0.0;
-  Occurrences outside;
-  for (std::size_t i = 0; i < recorded.points.size(); ++i) {
-    const double u = recorded.points[i].x(), v = recorded.points[i].y();
-    most = std::max({most, std::abs(u), std::abs(v)});
-    const bool is_outside =
-        u < -0.1 * width || u > 1.1 * width || v < -0.1 * height || v > 1.1 * height;
-    if (!is_outside || (outside.count > 0 && outside.first == recorded.samples[i])) continue;
-    outside.add(recorded.samples[i]);
-  }
-  if (most < 4.0 && recorded.points.size() > 3) {
-    diagnostics.error(
-        place_of(samples, recorded.samples.front()),
-        fmt::format("no feature of sensor '{}' is beyond {:.3g} pixels of an image of "
-                    "{}x{}; they look like metres or normalized coordinates",
-                    recorded.model.name, most, width, height));
-  } else if (outside.count > 0) {
-    diagnostics.doubt(
-        place_of(samples, outside.first),
-        fmt::format("a feature of sensor '{}' is outside its image of {}x{} pixels{}; "
-                    "is it the camera_info of another camera or size?",
-                    recorded.model.name, width, height, outside.others()));
-  }
-}
-
-/// Error: a camera that records the same in every sample though the robot moves.
-inline void check_frozen(const RecordedPoints& recorded, std::span<const Sample> samples,
-                         Diagnostics& diagnostics) {
-  const auto last = recorded.samples.back();
-  if (!recorded.is_measured || !recorded.is_constant || recorded.samples.front() == last) return;
-  if (samples[last].joint_positions == samples[recorded.samples.front()].joint_positions) return;
-  diagnostics.error(
-      place_of(samples, recorded.samples.front()),
-      fmt::format("sensor '{}' records the same features, to the last digit, in every "
-                  "sample though the robot moves; its driver or topic has stopped",
-                  recorded.model.name));
 }
 
 KINECAL_INLINE void check_sensor_points(const Config& config, const Robot& robot,
