@@ -66,6 +66,7 @@ void check_targets(const CalibrateOptions& options, const std::filesystem::path&
 SolveOptions solve_options(const CalibrateOptions& options) {
   SolveOptions solving;
   solving.threads = options.threads;
+  solving.random_starts = options.starts;
   if (options.cost == "stacked") solving.form = CostForm::stacked;
   return solving;
 }
@@ -88,6 +89,9 @@ int calibrate(const CalibrateOptions& options) {
   const CalibrationResult result =
       kinecal::calibrate(input.calibration, progress_line(), solve_options(options));
   end_progress_line();
+  for (const StepResult& step : result.steps) {
+    if (step.starts.searched()) fmt::print("{}\n", to_string(step.starts));
+  }
   const std::vector<Observability> observability = observe(input.calibration, result);
   const bool ran = !result.steps.empty() && result.steps.back().iterations > 0;
   if (result.converged || ran) {

@@ -18,6 +18,7 @@ struct CalibrateOptions {
   bool upstream_names = false;
   bool dry_run = false;
   int threads = 0;  ///< zero: one per core
+  int starts = 0;   ///< random ones, beside the one of the configuration
   std::string cost = "compressed";
 };
 

@@ -7,6 +7,7 @@
 #include "kinecal/io/config/config_free.ipp"
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/io/sample_warnings.ipp"
+#include "kinecal/io/unknown_frames.ipp"
 
 namespace kinecal {
 
@@ -192,6 +193,36 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step, Diagnostics&
   return diagnostics.errors.size() == before;
 }
 
+/// What a step needs to search for the poses that nobody gave: the frames, and a few samples, with
+/// lines of sight in place of pixels, because a search also looks where the camera does not.
+inline void prepare_search(CalibrationStep& step, const Config& config, const StepConfig& of_config,
+                           const Robot& robot, std::span<const Sample> samples) {
+  const ParameterTable& table = step.problem->table();
+  step.unknown_frames = unknown_frames(config, of_config, robot, table, step.free);
+  if (step.unknown_frames.empty()) return;
+  StepConfig of_step = of_config;
+  Diagnostics ignored;  // of the whole problem, they are known
+  std::vector<BlockConfig> pixels;
+  std::erase_if(of_step.error_blocks, [&](const BlockConfig& block) {
+    const BlockEntry* entry = registry().block(block.type);
+    const bool is_pixel = entry != nullptr && entry->read_as == PointToPixel::kType;
+    if (is_pixel) pixels.push_back(block);
+    return is_pixel;
+  });
+  auto few = make_problem(robot, config.base_link, table, frames_of(config));
+  if (!add_models(*few, of_step, ignored)) return;
+  for (const BlockConfig& block : pixels) {
+    few->add_built_in(block.name, PointToRay{}, block.models,
+                      {.exclusive = block.exclusive, .beside = block.ground});
+  }
+  std::set<std::string> eyes;
+  for (const ModelConfig& model : of_step.models) {
+    if (model.type == PinholeCamera::kType) eyes.insert(model.name);
+  }
+  add_samples(*few, few_samples(samples, eyes), ignored);
+  if (few->num_residuals() > 0) step.excerpt = std::move(few);
+}
+
 }  // namespace detail
 KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
                                     std::span<const Sample> samples, Diagnostics& diagnostics) {
@@ -229,6 +260,9 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
     calibration.steps.push_back({step.name, step.max_num_iterations, std::move(problem),
                                  std::move(free),
                                  detail::initial_assignments(step, calibration.table)});
+    if (!samples.empty()) {
+      detail::prepare_search(calibration.steps.back(), config, step, robot, samples);
+    }
   }
   return calibration;
 }

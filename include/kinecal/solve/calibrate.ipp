@@ -40,7 +40,8 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
     if (progress) {
       options.progress = [&](int iteration, double cost) { progress(step.name, iteration, cost); };
     }
-    StepResult solved = solve(*step.problem, step.free, values, options);
+    StepResult solved = solve_from_starts(*step.problem, step.free, values, options,
+                                          step.unknown_frames, step.excerpt.get());
     solved.name = step.name;
     for (int parameter : step.free.parameters()) {
       const auto& known = result.calibrated;
