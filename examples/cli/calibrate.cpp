@@ -82,6 +82,7 @@ void check_first_targets(const CalibrateOptions& options) {
 SolveOptions solve_options(const CalibrateOptions& options) {
   SolveOptions solving;
   solving.threads = options.threads;
+  solving.random_starts = options.starts;
   if (options.cost == "stacked") solving.form = CostForm::stacked;
   return solving;
 }

@@ -26,6 +26,7 @@ struct CalibrateOptions {
   bool force = false;  ///< replace results
   int folds = 5;       ///< for held-out errors; 0: leave-one-out
   int threads = 0;     ///< zero: one per core
+  int starts = 0;      ///< random ones, beside the one of the configuration
   std::string cost = "compressed";
 };
 

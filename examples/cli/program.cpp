@@ -94,6 +94,13 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                   "number of threads, default: one per core; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command
+      .add_option(
+          "--starts", options.starts,
+          "also solve from N random starts, the same ones each time: joints up to 10 degrees "
+          "or 2 cm off, frames up to 10 degrees and 5 cm; the lowest minimum is taken")
+      ->check(CLI::Range(0, 100000))
+      ->type_name("N");
+  command
       .add_option("--cost", options.cost,
                   "how Ceres gets the samples: compressed sums them, stacked keeps every feature "
                   "(slower, for comparison)")

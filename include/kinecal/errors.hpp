@@ -12,6 +12,7 @@
 #include "kinecal/errors/point_to_pixel.hpp"
 #include "kinecal/errors/point_to_plane.hpp"
 #include "kinecal/errors/point_to_point.hpp"
+#include "kinecal/errors/point_to_ray.hpp"
 #include "kinecal/errors/point_to_sphere.hpp"
 #include "kinecal/errors/pose_to_pose.hpp"
 #include "kinecal/errors/prior.hpp"

@@ -68,6 +68,9 @@ TEST(OpenBlocks, PoseToPose) {
 TEST(OpenBlocks, RayToRay) {
   check_block(RayToRay{}, {"eye", "left"});
 }
+TEST(OpenBlocks, PointToRay) {
+  check_block(PointToRay{}, {"camera", "eye"});
+}
 TEST(OpenBlocks, PointDistance) {
   check_block(PointDistance{0.3}, {"camera", "elbow_point"});
 }

@@ -580,7 +580,7 @@ class Recalibration : public Inputs {
   [[nodiscard]] test::Outcome again(const std::string& options) const {
     return run(KINECAL_PROGRAM
                " calibrate --urdf out/calibrated.urdf --config c.yaml --samples s.yaml --output "
-               "twice " +
+               "twice --force " +
                options);
   }
 };

@@ -302,6 +302,47 @@ TEST(Solve, GivesTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+/// Solves with at most so many iterations.
+StepResult solved_in(int iterations, const std::vector<Sample>& samples, double weight) {
+  Problem problem = test::scene_problem();
+  TermOptions options;
+  options.weight = weight;
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, options);
+  for (const Sample& sample : samples) problem.add_sample(sample);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+  SolveOptions solving;
+  solving.max_num_iterations = iterations;
+  return solve(problem, free_of(problem.table(), kObservable), values, solving);
+}
+
+// Units of chi-square: twice the cost over the variance of the residuals, which is known only from
+// the residuals if no sigma was given.
+TEST(Solve, WithoutIterationsLeftItHasConvergedIfTheNoiseIsLargerThanWhatIsLeft) {
+  const std::vector<Sample> samples = noisy_samples(20, 1e-3);
+  const StepResult all = solved_in(1000, samples, 1.0);
+  ASSERT_TRUE(all.converged) << all.termination;
+  const double variance = 2.0 * all.final_cost / (all.num_residuals - all.num_parameters);
+  int refused = 0, accepted = 0;
+  for (int most = 1; most < all.iterations; ++most) {
+    const StepResult cut = solved_in(most, samples, 1.0);
+    if (cut.termination.find("iterations are used up") == std::string::npos) continue;
+    const double left = 2.0 * (cut.final_cost - all.final_cost) / variance;
+    if (cut.converged) {
+      ++accepted;
+      EXPECT_LT(left, 2e-3) << cut.termination;
+      EXPECT_TRUE(cut.termination.starts_with("converged: ")) << cut.termination;
+    } else {
+      ++refused;
+      EXPECT_GT(left, 0.5e-3) << cut.termination;
+      EXPECT_TRUE(cut.termination.starts_with("did not converge: ")) << cut.termination;
+    }
+    EXPECT_EQ(solved_in(most, samples, 1000.0).converged, cut.converged)
+        << "a sigma changes nothing";
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(accepted, 0);
+}
+
 TEST(Solve, CountsWhatItSolved) {
   Problem problem = test::scene_problem();
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});

@@ -21,6 +21,7 @@ TEST(CheckBlock, HoldsForTheBuiltInBlocks) {
   EXPECT_EQ(check_block(PlaneToPlane{2.0, 3.0}), kLawsHold);
   EXPECT_EQ(check_block(PoseToPose{1000.0, 700.0}), kLawsHold);
   EXPECT_EQ(check_block(RayToRay{}), kLawsHold);
+  EXPECT_EQ(check_block(PointToRay{}, V(2, 4, 6), Ray<double>{{0, 0, 0}, {1, 2, 3}}), kLawsHold);
   EXPECT_EQ(check_block(PointDistance{0.3}, V(1, 0.2, 0.3), V(1, 0.2, 0)), kLawsHold);
   EXPECT_EQ(check_block(PointToSphere{{0.1, 0.2, 0.3}, 0.4}, V(0.1, 0.6, 0.3)), kLawsHold);
   EXPECT_EQ(check_block(PointToLine({0.1, -0.2, 0.3}, {1.0, 2.0, -0.5}), V(1.1, 1.8, -0.2)),

@@ -68,11 +68,11 @@ TEST(Judge, ComparesTheNoiseWithWhatRobotsReachWhereNoSigmaWasGiven) {
     expect(judged.judgement(), verdict, "the model does not fit these samples");
   }
   for (const auto& [pixels, verdict] :
-       {std::pair(2.9, Grade::good), {3.1, Grade::use_with_care}, {10.1, Grade::do_not_use}}) {
+       {std::pair(3.9, Grade::good), {4.1, Grade::use_with_care}, {12.1, Grade::do_not_use}}) {
     Judged judged;
     judged.noise().unit = "px";
     judged.noise().given = 0.0;
-    judged.noise().sigma = judged.noise().robust = pixels;
+    judged.noise().sigma = judged.noise().robust = pixels / std::sqrt(3.0);
     judged.assessments[0].held_out.clear();
     expect(judged.judgement(), verdict, "px");
   }

@@ -25,6 +25,7 @@ extern template class detail::BlockTerm<PointToLine, Packet>;
 extern template class detail::BlockTerm<PointToSphere, Packet>;
 extern template class detail::BlockTerm<PoseToPose, Packet>;
 extern template class detail::BlockTerm<RayToRay, Packet>;
+extern template class detail::BlockTerm<PointToRay, Packet>;
 
 extern template class detail::SensorView<double>;
 extern template class detail::LocalSums<double>;
@@ -41,5 +42,6 @@ extern template class detail::BlockTerm<PointToLine, double>;
 extern template class detail::BlockTerm<PointToSphere, double>;
 extern template class detail::BlockTerm<PoseToPose, double>;
 extern template class detail::BlockTerm<RayToRay, double>;
+extern template class detail::BlockTerm<PointToRay, double>;
 
 }  // namespace kinecal

@@ -3,72 +3,16 @@
 #pragma once
 
 #include "kinecal/evaluation/make_problem.hpp"
+#include "kinecal/io/add_blocks.ipp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/config/config_free.ipp"
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/io/sample_warnings.ipp"
+#include "kinecal/io/unknown_frames.ipp"
 
 namespace kinecal {
 
 namespace detail {
-
-[[nodiscard]] inline LossType loss_type(const std::string& name) {
-  if (name == "huber") return LossType::huber;
-  if (name == "cauchy") return LossType::cauchy;
-  return name == "tukey" ? LossType::tukey : LossType::none;
-}
-
-/// Numbers of samples in which a block's first model observes something: alone, and beside another
-/// model of the step.
-struct Company {
-  int alone = 0, beside = 0;
-};
-[[nodiscard]] inline Company company_of(const BlockConfig& block, const StepConfig& step,
-                                        std::span<const Sample> samples) {
-  Company count;
-  for (const Sample& sample : samples) {
-    const auto observes = [&](const std::string& model) {
-      const Observation* seen = sample.observation(model);
-      return seen != nullptr && !seen->features.empty();
-    };
-    if (block.models.empty() || !observes(block.models.front())) continue;
-    const bool beside =
-        std::any_of(step.models.begin(), step.models.end(), [&](const ModelConfig& model) {
-          return model.name != block.models.front() && observes(model.name);
-        });
-    ++(beside ? count.beside : count.alone);
-  }
-  return count;
-}
-
-/// True if a block of a plane takes only the samples in which its model observes alone, although
-/// nothing says so: where there are such samples, what was observed beside another model, such as the
-/// LEDs of a gripper, is not the plane.
-[[nodiscard]] inline bool is_exclusive_by_default(const BlockConfig& block, const StepConfig& step,
-                                                  std::span<const Sample> samples) {
-  if (block.type != "chain3d_to_plane" || block.exclusive || !block.ground.empty()) return false;
-  const Company count = company_of(block, step, samples);
-  return count.alone > 0 && count.beside > 0;
-}
-
-/// @throws std::exception  if the block's numbers are impossible or its sensors do not fit
-inline void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive) {
-  const BlockEntry* entry = registry().block(block.type);
-  if (entry == nullptr) throw std::invalid_argument("no type '" + block.type + "'");
-  TermOptions options;
-  options.type = block.type;
-  options.unit = entry->unit;
-  options.exclusive = exclusive;
-  options.beside = block.ground;
-  options.loss = {loss_type(block.loss.type), block.loss.scale};
-  options.sigma = block.sigma.value_or(block.estimated_sigma.value_or(1.0));
-  options.sigma_given = block.sigma.has_value();
-  options.weight = 1.0 / options.sigma;
-  if (const auto scale = block.numbers.find("scale"); scale != block.numbers.end()) {
-    options.weight *= scale->second;
-  }
-  entry->add(problem, block, options);
-}
 
 inline void add_samples(AnyProblem& problem, std::span<const Sample> samples,
                         Diagnostics& diagnostics) {
@@ -235,6 +179,36 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step, std::span<co
   return diagnostics.errors.size() == before;
 }
 
+/// What a step needs to search for the poses that nobody gave: the frames, and a few samples, with
+/// lines of sight in place of pixels, because a search also looks where the camera does not.
+inline void prepare_search(CalibrationStep& step, const Config& config, const StepConfig& of_config,
+                           const Robot& robot, std::span<const Sample> samples) {
+  const ParameterTable& table = step.problem->table();
+  step.unknown_frames = unknown_frames(config, of_config, robot, table, step.free);
+  if (step.unknown_frames.empty()) return;
+  StepConfig of_step = of_config;
+  Diagnostics ignored;  // of the whole problem, they are known
+  std::vector<BlockConfig> pixels;
+  std::erase_if(of_step.error_blocks, [&](const BlockConfig& block) {
+    const BlockEntry* entry = registry().block(block.type);
+    const bool is_pixel = entry != nullptr && entry->read_as == PointToPixel::kType;
+    if (is_pixel) pixels.push_back(block);
+    return is_pixel;
+  });
+  auto few = make_problem(robot, config.base_link, table, frames_of(config));
+  if (!add_models(*few, of_step, samples, ignored)) return;
+  for (const BlockConfig& block : pixels) {
+    few->add_built_in(block.name, PointToRay{}, block.models,
+                      {.exclusive = block.exclusive.value_or(false), .beside = block.ground});
+  }
+  std::set<std::string> eyes;
+  for (const ModelConfig& model : of_step.models) {
+    if (model.type == PinholeCamera::kType) eyes.insert(model.name);
+  }
+  add_samples(*few, few_samples(samples, eyes), ignored);
+  if (few->num_residuals() > 0) step.excerpt = std::move(few);
+}
+
 }  // namespace detail
 KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
                                     std::span<const Sample> samples, Diagnostics& diagnostics) {
@@ -272,6 +246,9 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
     calibration.steps.push_back({step.name, step.max_num_iterations, std::move(problem),
                                  std::move(free),
                                  detail::initial_assignments(step, calibration.table)});
+    if (!samples.empty()) {
+      detail::prepare_search(calibration.steps.back(), config, step, robot, samples);
+    }
   }
   return calibration;
 }

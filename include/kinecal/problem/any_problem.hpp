@@ -22,6 +22,7 @@
 #include "kinecal/errors/point_to_pixel.hpp"
 #include "kinecal/errors/point_to_plane.hpp"
 #include "kinecal/errors/point_to_point.hpp"
+#include "kinecal/errors/point_to_ray.hpp"
 #include "kinecal/errors/point_to_sphere.hpp"
 #include "kinecal/errors/pose_to_pose.hpp"
 #include "kinecal/errors/ray_to_ray.hpp"
@@ -39,8 +40,9 @@ class AnyEvaluator;
 /// The sensors that the library has compiled.
 using BuiltInSensor = std::variant<ChainPoint, ChainPose, DepthCamera, PinholeCamera>;
 /// The error blocks that the library has compiled.
-using BuiltInBlock = std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane,
-                                  PointDistance, PointToLine, PointToSphere, PoseToPose, RayToRay>;
+using BuiltInBlock =
+    std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
+                 PointToSphere, PoseToPose, RayToRay, PointToRay>;
 
 /// A calibration problem.  Add sensors, then error blocks and priors, then samples.
 class AnyProblem {

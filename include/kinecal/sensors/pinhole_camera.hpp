@@ -73,7 +73,8 @@ struct PinholeCamera {
     const S u = (m.point.x() - s[2] * (1.0 + v[2])) / fx;
     const S w = (m.point.y() - s[3] * (1.0 + v[3])) / fy;
     S x = u, y = w;
-    for (int i = 0; i < kUndistortions; ++i) {
+    const int iterations = is_distorted(s) ? kUndistortions : 0;
+    for (int i = 0; i < iterations; ++i) {
       const Eigen::Matrix<S, 2, 1> seen = distorted(x, y, s);
       x = x + (u - seen.x());
       y = y + (w - seen.y());
@@ -85,6 +86,17 @@ struct PinholeCamera {
 
  private:
   static constexpr int kUndistortions = 30;  ///< of a fixed-point iteration
+
+  /// True if some lane has a coefficient that is not zero.
+  template <class Q>
+  [[nodiscard]] static bool is_distorted(const std::array<Q, 9>& s) {
+    for (std::size_t k = 4; k < 9; ++k) {
+      for (int i = 0; i < kLanes<Q>; ++i) {
+        if (lane(s[k], i) != 0.0) return true;
+      }
+    }
+    return false;
+  }
 
   template <class S, class Q>
   [[nodiscard]] static Eigen::Matrix<S, 2, 1> distorted(const S& x, const S& y,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinecal/solve/solve.hpp"
+#include "kinecal/solve/starts.hpp"
 #include "kinecal/solve/statistics.hpp"
 
 namespace kinecal {
@@ -22,6 +23,8 @@ struct CalibrationStep {
   FreeSet free;                         ///< the parameters that the step calibrates
   /// Table index and value of parameters that are set before the step starts.
   std::vector<std::pair<int, double>> assignments;
+  std::vector<UnknownFrame> unknown_frames = {};  ///< whose pose is searched for
+  std::unique_ptr<AnyProblem> excerpt = nullptr;  ///< a few samples for that search; null: all
 };
 
 /// Everything that calibrate() needs.

@@ -42,7 +42,8 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
       options.progress = [&](int iteration, double cost) { progress(step.name, iteration, cost); };
     }
     const Eigen::VectorXd start = values;
-    StepResult solved = solve(*step.problem, step.free, values, options);
+    StepResult solved = solve_from_starts(*step.problem, step.free, values, options,
+                                          step.unknown_frames, step.excerpt.get());
     if (solved.converged) {
       wrap_angles(*step.problem, step.free, values);
       solved.final_cost = hold_undetermined(*step.problem, step.free, start, values);

@@ -9,6 +9,7 @@
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/solve/start_summary.hpp"
 
 namespace kinecal {
 
@@ -28,6 +29,7 @@ struct SolveOptions {
   double function_tolerance = 1e-14;
   CostForm form = CostForm::compressed;  ///< how Ceres gets the samples
   int threads = 0;                       ///< zero: one per core; the result does not depend on it
+  int random_starts = 0;                 ///< of calibrate(), beside the one given; solve() has one
   /// Called after each iteration with its number and cost.
   std::function<void(int iteration, double cost)> progress = {};
 };
@@ -46,6 +48,7 @@ struct StepResult {
   CostForm form = CostForm::compressed;  ///< the one that was used
   int samples = 0;                       ///< of the problem
   int evaluations = 0;                   ///< how often Ceres evaluated all samples
+  StartSummary starts = {};              ///< of solve_from_starts(), if there were several
 };
 
 /// Minimizes the cost of a problem over its free parameters.

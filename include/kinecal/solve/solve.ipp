@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/solve/minimize.ipp"
@@ -58,6 +59,47 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
   for (const int p : free.parameters()) {
     values(p) = std::clamp(values(p), table[p].lower, table[p].upper);
   }
+}
+
+/// By how much chi-square could still fall, to second order: g^T H^-1 g, over the variance of the
+/// residuals.  With it, 2 cost / (residuals - parameters) is one, whether a sigma was given or not.
+/// Parameters that are held at a bound do not move.
+[[nodiscard]] inline double possible_decrease(AnyEvaluator& evaluator,
+                                              const Eigen::VectorXd& values,
+                                              const StepResult& result) {
+  const AnyProblem& problem = evaluator.problem();
+  const FreeSet inside(within_bounds(evaluator, values, Losses::as_given), problem.table().size());
+  if (inside.size() == 0) return 0.0;
+  const NormalEquations normal = problem.evaluator(inside)->normal_equations(
+      {values.data(), static_cast<std::size_t>(values.size())});
+  // The first rows of the equivalent residual are A^-T g, with H = A^T A.
+  const Eigen::VectorXd projected = EquivalentResidual(normal).residual.head(inside.size());
+  const int spare = std::max(1, result.num_residuals - result.num_parameters);
+  const double variance = 2.0 * normal.cost / spare;
+  return variance > 0.0 ? projected.squaredNorm() / variance : 0.0;
+}
+
+/// How a solve that did not fail ended.  One that ran out of iterations has converged if what is left
+/// is nothing beside the noise.
+inline void judge_convergence(AnyEvaluator& evaluator, const Eigen::VectorXd& values,
+                              const Minimum& last, StepResult& result) {
+  constexpr double kNegligible =
+      1e-3;  // of chi-square, whose noise is sqrt(2 (residuals - parameters))
+  result.converged = last.converged;
+  result.termination = (last.converged ? "converged: " : "did not converge: ") + last.message;
+  if (last.converged) return;
+  std::ostringstream what;
+  what.precision(2);
+  const double decrease = possible_decrease(evaluator, values, result);
+  result.converged = decrease < kNegligible;
+  what << (result.converged ? "converged: " : "did not converge: ") << result.iterations
+       << " iterations are used up, ";
+  if (result.converged) {
+    what << "but what is left is noise: chi-square could fall by " << decrease;
+  } else {
+    what << "and chi-square could still fall by about " << decrease;
+  }
+  result.termination = what.str();
 }
 
 /// Costs and counts at the start; false, with the reason, if there is nothing to solve.
@@ -120,8 +162,7 @@ KINECAL_INLINE StepResult solve(const AnyProblem& problem, const FreeSet& free,
     result.termination = "failed: the loss of '" + term +
                          "' leaves out half of its features or more; is its scale too small?";
   } else {
-    result.converged = last.converged;
-    result.termination = (last.converged ? "converged: " : "did not converge: ") + last.message;
+    detail::judge_convergence(*evaluator, x, last, result);
     result.final_cost = last.cost;
     values = x;
   }

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "kinecal/trust/captures.hpp"
+#include "kinecal/trust/influence.ipp"
 #include "kinecal/trust/noise.hpp"
 #include "kinecal/trust/observability.hpp"
 
@@ -34,8 +34,8 @@ class CaptureSearch {
     if (std::find(bad_.begin(), bad_.end(), true) != bad_.end()) {
       fit_robustly();
       mark();
-      constexpr int kRounds = 10;
-      for (int round = 0; round < kRounds; ++round) {
+      constexpr int kRefits = 10;
+      for (int round = 0; round < kRefits; ++round) {
         const std::vector<bool> before = bad_;
         fit_without(bad_);
         mark();
@@ -168,33 +168,6 @@ class CaptureSearch {
   Eigen::VectorXd residual_;   ///< of the present fit
   Eigen::MatrixXd inverse_;    ///< of its information
 };
-
-/// Leave-one-out influence of each sample, by down-dating: without its rows J_s the coordinates move
-/// by H^-1 J_s^T (1 - J_s H^-1 J_s^T)^-1 r_s.
-inline void set_influences(const LinearFit& fit, std::vector<CaptureError>& captures) {
-  const Eigen::MatrixXd hessian = information(fit, fit.loss);
-  const Eigen::MatrixXd inverse = Spectrum(hessian).pseudo_inverse();
-  const double n = std::max<double>(1.0, static_cast<double>(fit.size()));
-  const double rows = std::max(1.0, static_cast<double>(fit.residual.size()) - n);
-  const double noise = std::sqrt(fit.residual.cwiseAbs2().dot(fit.loss) / rows);
-  for (std::size_t b = 0; b < fit.blocks.size();) {
-    std::size_t end = b;
-    Eigen::Index size = 0;
-    while (end < fit.blocks.size() && fit.blocks[end].sample == fit.blocks[b].sample) {
-      size += fit.blocks[end++].size;
-    }
-    const Eigen::Index first = fit.blocks[b].first;  // the blocks of a sample follow each other
-    const Eigen::VectorXd root = fit.loss.segment(first, size).cwiseSqrt();
-    const Eigen::MatrixXd j = root.asDiagonal() * fit.jacobian.middleRows(first, size);
-    const Eigen::VectorXd r = root.cwiseProduct(fit.residual.segment(first, size));
-    const Eigen::MatrixXd left =
-        Eigen::MatrixXd::Identity(size, size) - j * inverse * j.transpose();
-    const Eigen::VectorXd step = inverse * (j.transpose() * left.fullPivLu().solve(r));
-    captures[static_cast<std::size_t>(fit.blocks[b].sample)].influence =
-        noise > 0.0 ? std::sqrt(std::max(0.0, step.dot(hessian * step)) / n) / noise : 0.0;
-    b = end;
-  }
-}
 
 }  // namespace detail
 

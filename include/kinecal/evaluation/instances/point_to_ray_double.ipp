@@ -1,0 +1,9 @@
+// The error block PointToRay in double.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/evaluation/problem.hpp"
+
+namespace kinecal {
+
+template class detail::BlockTerm<PointToRay, double>;
+
+}  // namespace kinecal

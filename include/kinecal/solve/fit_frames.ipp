@@ -1,0 +1,134 @@
+// Fitting frames alone.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iterator>
+
+#include "kinecal/evaluation/parallel.hpp"
+#include "kinecal/solve/frame_fit.ipp"
+
+namespace kinecal::detail {
+
+inline constexpr int kGrid = 60, kRounds = 5;
+
+KINECAL_INLINE Vector3<double> rotation_of(const UnknownFrame& frame,
+                                           const Eigen::VectorXd& values) {
+  Vector3<double> vector = Vector3<double>::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (frame.axes[3 + k] >= 0) vector(static_cast<int>(k)) = values(frame.axes[3 + k]);
+  }
+  return vector;
+}
+
+/// True if two fits ended at one minimum.
+[[nodiscard]] inline bool same_fit(const FittedFrames& a, const FittedFrames& b,
+                                   std::span<const UnknownFrame> frames) {
+  constexpr double kEqual = 1e-5, kClose = 1e-2;  // relative
+  constexpr double kSameWay = 0.2;                // radians
+  const double more = std::max(a.cost, b.cost), difference = std::abs(a.cost - b.cost);
+  if (difference <= kEqual * more) return true;
+  return difference <= kClose * more &&
+         std::all_of(frames.begin(), frames.end(), [&](const UnknownFrame& frame) {
+           const Matrix3<double> turn =
+               exp(rotation_of(frame, a.values)).transpose() * exp(rotation_of(frame, b.values));
+           return log(turn).norm() < kSameWay;
+         });
+}
+
+/// Distinct fits, lowest cost first; of equal ones, the one of the first start.
+[[nodiscard]] inline std::vector<FittedFrames> distinct(std::vector<FittedFrames> fits,
+                                                        std::span<const UnknownFrame> frames) {
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  std::vector<FittedFrames> all;
+  for (FittedFrames& fit : fits) {
+    if (!std::isfinite(fit.cost)) break;
+    const auto same = std::find_if(all.begin(), all.end(), [&](const FittedFrames& known) {
+      return same_fit(known, fit, frames);
+    });
+    if (same == all.end()) {
+      all.push_back(std::move(fit));
+    } else {
+      same->starts += fit.starts;
+    }
+  }
+  return all;
+}
+
+KINECAL_INLINE int grid_size(std::span<const UnknownFrame> frames) {
+  const bool turns = std::any_of(frames.begin(), frames.end(),
+                                 [](const UnknownFrame& frame) { return frame.turns(); });
+  return turns ? kGrid : 0;
+}
+
+/// The values of a start.  A round takes every fifth rotation of a finer grid, which is as even.  Each
+/// frame goes through the grid in strides of its own, so that the combinations of several frames are
+/// spread, too.
+[[nodiscard]] inline Eigen::VectorXd start_values(std::span<const UnknownFrame> frames, int start,
+                                                  int round, Eigen::VectorXd values) {
+  constexpr std::array<int, 4> kStrides = {1, 89, 47, 161};  // share no factor with the count
+  constexpr int kCount = kRounds * kGrid;
+  std::size_t turning = 0;
+  for (const UnknownFrame& frame : frames) {
+    if (!frame.turns()) continue;
+    const int stride = kStrides[turning++ % kStrides.size()];
+    set_grid_rotation(frame, (kRounds * start + round) * stride % kCount, kCount, values);
+  }
+  return values;
+}
+
+using Evaluators = std::vector<std::unique_ptr<AnyEvaluator>>;
+
+/// Goes on with fits, one on each evaluator at a time.
+inline void go_on(std::vector<FittedFrames>& fits, int iterations, Evaluators& evaluators,
+                  std::span<const UnknownFrame> frames) {
+  const int threads = static_cast<int>(evaluators.size());
+  for_each_piece(static_cast<int>(fits.size()), threads, [&](int i, int thread) {
+    FrameFit fit(*evaluators[static_cast<std::size_t>(thread)], frames);
+    FittedFrames& at = fits[static_cast<std::size_t>(i)];
+    at.cost = fit(at.values, iterations);
+  });
+}
+
+/// One round of starts.  After a few iterations, only the best go on: most time would go to the others.
+[[nodiscard]] inline std::vector<FittedFrames> fit_round(Evaluators& evaluators,
+                                                         std::span<const UnknownFrame> frames,
+                                                         const Eigen::VectorXd& values, int round) {
+  constexpr int kFirst = 6, kMost = 40;  // iterations
+  constexpr std::size_t kGoOn = 15;
+  std::vector<FittedFrames> fits;
+  for (int start = 0; start < kGrid; ++start) {
+    fits.push_back({0.0, start_values(frames, start, round, values), 1});
+  }
+  go_on(fits, kFirst, evaluators, frames);
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  fits.resize(kGoOn);
+  go_on(fits, kMost, evaluators, frames);
+  return fits;
+}
+
+KINECAL_INLINE FrameFits fit_frames(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
+                                    const Eigen::VectorXd& values, int threads) {
+  constexpr int kOftenEnough = 5;
+  FrameFits all;
+  if (grid_size(frames) == 0) return all;
+  std::vector<int> columns;
+  for (const UnknownFrame& frame : frames) {
+    std::copy_if(frame.axes.begin(), frame.axes.end(), std::back_inserter(columns),
+                 [](int parameter) { return parameter >= 0; });
+  }
+  const FreeSet free(columns, excerpt.table().size());
+  Evaluators evaluators(static_cast<std::size_t>(std::min(number_of_threads(threads), kGrid)));
+  for (auto& evaluator : evaluators) evaluator = excerpt.evaluator(free, 1);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<FittedFrames> fits = fit_round(evaluators, frames, values, round);
+    std::move(fits.begin(), fits.end(), std::back_inserter(all.minima));
+    all.minima = distinct(std::move(all.minima), frames);
+    all.starts += kGrid;
+    if (!all.minima.empty() && all.minima.front().starts >= kOftenEnough) break;
+  }
+  return all;
+}
+
+}  // namespace kinecal::detail

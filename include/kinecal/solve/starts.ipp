@@ -1,0 +1,194 @@
+// Solving from several starts.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/evaluation/parallel.hpp"
+#include "kinecal/solve/random_start.ipp"
+#include "kinecal/solve/starts.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// A solve: where it started and ended.
+struct Attempt {
+  Eigen::VectorXd start, values;
+  StepResult result;
+};
+
+/// All starts of a step.
+class Starts {
+ public:
+  Starts(const AnyProblem& problem, const FreeSet& free, const SolveOptions& options,
+         const Eigen::VectorXd& from)
+      : problem_(problem), free_(free), options_(options) {
+    const double cost = cost_at(*problem.evaluator(free, options.threads), from);
+    if (std::isfinite(cost)) floor_ = kRounding * cost;
+  }
+
+  /// Solves from the values that the configuration gives.  Takes the result if it is as good as those
+  /// before.
+  void solve_plain(const Eigen::VectorXd& start) {
+    Attempt plain{start, start, {}};
+    if (!solve_plain(plain)) return;
+    count(plain);
+    if (!is_better(best_.result, plain.result)) best_ = std::move(plain);
+  }
+
+  /// Searches for the poses of frames and solves from the best few fits.
+  void search(const AnyProblem& excerpt, std::span<const UnknownFrame> frames,
+              const Eigen::VectorXd& from) {
+    summary_.frames.clear();
+    for (const UnknownFrame& frame : frames) {
+      if (frame.turns()) summary_.frames.push_back(frame.name);
+    }
+    std::vector<Eigen::VectorXd> starts;
+    const auto evaluator = problem_.evaluator(free_, options_.threads);
+    double least = 0.0;
+    const FrameFits fits = fit_frames(excerpt, frames, from, options_.threads);
+    summary_.starts += fits.starts;
+    for (const FittedFrames& fit : fits.minima) {
+      if (starts.empty()) least = fit.cost;
+      if (starts.size() == kFinished || fit.cost > kWorthFinishing * least + floor_) break;
+      if (std::isfinite(cost_at(*evaluator, fit.values))) starts.push_back(fit.values);
+    }
+    solve_all(starts);
+  }
+
+  /// Solves from starts around that of the best solve so far.
+  void solve_random() {
+    summary_.random_starts = options_.random_starts;
+    const Eigen::VectorXd from =
+        best_.result.converged ? best_.start : Eigen::VectorXd(best_.values);
+    std::vector<Eigen::VectorXd> starts;
+    for (int n = 0; n < options_.random_starts; ++n)
+      starts.push_back(random_start_near(problem_, free_, from, n));
+    solve_all(starts);
+  }
+
+  /// True if the best solve so far gives reason to doubt the poses of the URDF.
+  [[nodiscard]] bool ended_badly(std::span<const UnknownFrame> frames) const {
+    constexpr double kLikely = std::numbers::pi / 6.0;  // a bracket that is mounted as drawn
+    return !best_.result.converged ||
+           std::any_of(frames.begin(), frames.end(), [&](const UnknownFrame& frame) {
+             return frame.has_guess && rotation_of(frame, best_.values).norm() > kLikely;
+           });
+  }
+
+  /// The result, and its values if it has some.
+  [[nodiscard]] StepResult finish(Eigen::VectorXd& values, double seconds) {
+    StepResult result = std::move(best_.result);
+    values = std::move(best_.values);
+    summary_.seconds = seconds;
+    for (std::size_t i = 0; result.converged && i < summary_.minima.size(); ++i) {
+      const FoundMinimum& minimum = summary_.minima[i];
+      if (result.final_cost > minimum.cost * (1.0 + kSameCost) + floor_) continue;
+      summary_.taken = static_cast<int>(i);
+      break;
+    }
+    if (summary_.searched()) result.starts = std::move(summary_);
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t kFinished = 4;       // fits that are solved with everything free
+  static constexpr double kWorthFinishing = 100.0;  // of the least cost: ten times the error
+  static constexpr double kRounding = 1e-16;        // of the cost at the start
+
+  [[nodiscard]] static double cost_at(AnyEvaluator& evaluator, const Eigen::VectorXd& values) {
+    const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
+    return evaluator.normal_equations(all, false).cost;
+  }
+
+  /// @returns  false if it gave up, because a search has found a minimum that it does not come near.
+  ///           Astray, a solve takes a hundred times as long
+  [[nodiscard]] bool solve_plain(Attempt& plain) const {
+    constexpr int kTrial = 50;         // iterations
+    constexpr double kFarAbove = 2.0;  // times the cost that was found
+    if (best_.result.converged && options_.max_num_iterations > kTrial) {
+      SolveOptions trial = options_;
+      trial.max_num_iterations = kTrial;
+      Eigen::VectorXd values = plain.start;
+      const StepResult result = solve(problem_, free_, values, trial);
+      const bool may_go_on = result.iterations >= kTrial;
+      if (may_go_on && result.final_cost > kFarAbove * best_.result.final_cost + floor_)
+        return false;
+      if (!may_go_on) {
+        plain.values = std::move(values);
+        plain.result = result;
+        return true;
+      }
+    }
+    plain.result = solve(problem_, free_, plain.values, options_);
+    return true;
+  }
+
+  void count(const Attempt& attempt) {
+    if (attempt.result.converged) {
+      add_minimum(summary_, attempt.result.final_cost, floor_);
+    } else {
+      ++summary_.failed;
+    }
+  }
+
+  /// Solves side by side, and keeps the best; the order decides between equals.
+  void solve_all(const std::vector<Eigen::VectorXd>& starts) {
+    const int n = static_cast<int>(starts.size());
+    std::vector<Attempt> attempts(starts.size());
+    SolveOptions options = options_;
+    options.threads = 1;
+    options.progress = {};
+    for_each_piece(n, number_of_threads(options_.threads), [&](int i, int) {
+      Attempt& attempt = attempts[static_cast<std::size_t>(i)];
+      attempt.start = attempt.values = starts[static_cast<std::size_t>(i)];
+      attempt.result = solve(problem_, free_, attempt.values, options);
+    });
+    for (Attempt& attempt : attempts) {
+      count(attempt);
+      if (is_better(attempt.result, best_.result)) best_ = std::move(attempt);
+    }
+  }
+
+  [[nodiscard]] bool is_better(const StepResult& a, const StepResult& b) const {
+    if (a.converged != b.converged) return a.converged;
+    return a.converged && a.final_cost < b.final_cost * (1.0 - kSameCost) - floor_;
+  }
+
+  const AnyProblem& problem_;
+  const FreeSet& free_;
+  const SolveOptions& options_;
+  StartSummary summary_;
+  Attempt best_;
+  double floor_ = 0.0;  ///< costs below are rounding
+};
+
+}  // namespace detail
+
+KINECAL_INLINE StepResult solve_from_starts(const AnyProblem& problem, const FreeSet& free,
+                                            Eigen::VectorXd& values, const SolveOptions& options,
+                                            std::span<const UnknownFrame> unknown,
+                                            const AnyProblem* excerpt) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Eigen::VectorXd from = values;
+  const AnyProblem& few = excerpt != nullptr ? *excerpt : problem;
+  detail::Starts starts(problem, free, options, from);
+  std::vector<UnknownFrame> without_guess;
+  std::copy_if(unknown.begin(), unknown.end(), std::back_inserter(without_guess),
+               [](const UnknownFrame& frame) { return !frame.has_guess; });
+  if (detail::grid_size(without_guess) > 0) starts.search(few, without_guess, from);
+  starts.solve_plain(from);
+  if (without_guess.size() < unknown.size() && starts.ended_badly(unknown)) {
+    starts.search(few, unknown, from);
+  }
+  if (options.random_starts > 0) starts.solve_random();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  return starts.finish(values, seconds.count());
+}
+
+}  // namespace kinecal
