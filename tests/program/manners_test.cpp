@@ -235,11 +235,13 @@ TEST_F(Manners, AFeatureInAnUnknownFrameGetsTheRemediesAndAFixedFrameIsOne) {
             "\nerror_blocks:", "\nfixed_frames:\n - " + frame + "\nerror_blocks:");
   };
   with_fixed("{name: ball, x: 0.012, y: -0.031, z: 0.087}");
-  replace("calibrate.yaml", "sigma: 0.0001", "sigma: 0.01");  // it is another reflector
-  const Outcome done = kinecal(kCalibrate);
+  const Outcome done =
+      kinecal("check --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml");
   EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(read("out/calibration.yaml"),
-              AllOf(HasSubstr("ball_x: 0.012\n"), HasSubstr("ball_z: 0.087\n")));
+  // A reflector that is elsewhere does not fit.
+  const Outcome elsewhere = kinecal(kCalibrate + "--report r.json");
+  EXPECT_EQ(elsewhere.code, 2) << elsewhere.err;
+  EXPECT_THAT(elsewhere.out, HasSubstr("sigma 0.1 mm given, residuals show"));
   with_fixed("{name: elbow_joint}");
   EXPECT_THAT(kinecal(kCalibrate + "--force").err,
               HasSubstr("fixed frame 'elbow_joint' is a joint of the robot, whose URDF says"));
