@@ -61,10 +61,11 @@ inline void judge_held_out(const Assessment& step, Judgement& judgement) {
   constexpr Limits kTimes{1.5, 3.0};
   for (std::size_t t = 0; t < step.held_out.size(); ++t) {
     const HeldOutError& error = step.held_out[t];
-    // Against the noise: the fitted error of few samples is smaller than it.
+    // Few samples are fitted better than their noise; outliers under a loss are in both errors.
     const double noise = step.noise[t].sigma * std::sqrt(step.noise[t].components);
-    if (error.features == 0 || !(noise > 0.0)) continue;
-    const double times = error.held_out / noise;
+    const double expected = std::max(noise, error.fitted);
+    if (error.features == 0 || !(expected > 0.0)) continue;
+    const double times = error.held_out / expected;
     if (!kTimes.exceeded(times)) continue;
     judgement.add(kTimes.grade(times),
                   "error block '" + error.block + "': " + reading(error.held_out, error.unit) +
