@@ -175,5 +175,33 @@ TEST(UnknownPoses, ACameraAndABoardAreFoundAnywhere) {
   }
 }
 
+/// The URDF puts the bracket there, less so much.
+Scenario with_guess(Scenario scenario, const Vector3<double>& turn) {
+  std::vector<Joint> joints = scenario.robot.joints();
+  Pose<double>& origin = joints.back().origin;
+  origin = scenario.truth.front().second;
+  origin.rotation = Matrix3<double>(origin.rotation * exp(turn));
+  origin.translation += Vector3<double>(0.01, -0.01, 0.02);
+  scenario.robot = Robot("gantry", joints);
+  return scenario;
+}
+
+TEST(UnknownPoses, ABoardIsFoundWithTheCameraAboutWhereTheUrdfHasIt) {
+  for (int n = 0; n < kRepetitions; ++n) {
+    const Scenario scenario = test::board_scenario(n % 2 == 0, static_cast<std::uint64_t>(n));
+    const Calibration guessed = with_guess(scenario, {0.05, -0.1, 0.05}).calibration();
+    expect_found(guessed, test::cost_from_truth(scenario, scenario.calibration()));
+    EXPECT_THAT(calibrate(guessed).steps[0].starts.frames, ElementsAre("board"));
+  }
+}
+
+TEST(UnknownPoses, ACameraIsFoundThatTheUrdfTurnsTheWrongWay) {
+  for (int n = 0; n < kRepetitions; ++n) {
+    const Scenario scenario = test::board_scenario(n % 2 == 0, static_cast<std::uint64_t>(n));
+    const Calibration wrong = with_guess(scenario, {1.2, -1.2, 0.8}).calibration();
+    expect_found(wrong, test::cost_from_truth(scenario, scenario.calibration()));
+  }
+}
+
 }  // namespace
 }  // namespace kinecal
