@@ -69,7 +69,7 @@ TEST(OpenBlocks, RayToRay) {
   check_block(RayToRay{}, {"eye", "left"});
 }
 TEST(OpenBlocks, PointToRay) {
-  check_block(PointToRay{}, {"camera", "eye"});
+  check_block(PointToRay{}, {"camera", "left"});
 }
 TEST(OpenBlocks, PointDistance) {
   check_block(PointDistance{0.3}, {"camera", "elbow_point"});

@@ -261,6 +261,17 @@ TEST_F(Program, ExitsWith2AndWritesNothingWhenItDoesNotConverge) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+TEST_F(Program, StartsAtRandomOnRequestAndSaysWhatItFound) {
+  EXPECT_THAT(calibrate("--dry-run").out, Not(HasSubstr("start")));
+  const Outcome result = calibrate("--dry-run --starts 5");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              testing::StartsWith("5 random starts (joints within 10 degrees or 2 cm, frames "
+                                  "within 10 degrees and 5 cm); 1 minimum, cost "));
+  const auto line = [](const std::string& text) { return text.substr(0, text.find('\n')); };
+  EXPECT_EQ(line(calibrate("--dry-run --starts 5 --threads 3").out), line(result.out));
+}
+
 TEST_F(Program, ReportsTimeAndSpeed) {
   const Outcome result = calibrate();
   EXPECT_THAT(result.out,

@@ -21,8 +21,7 @@ using testing::StartsWith;
 
 class VerdictProgram : public test::ProgramTest {
  protected:
-  VerdictProgram()
-      : samples_(test::arm_samples(parse_urdf(test::kArmUrdf, "arm.urdf"), 60)) {
+  VerdictProgram() : samples_(test::arm_samples(parse_urdf(test::kArmUrdf, "arm.urdf"), 60)) {
     write("arm.urdf", test::kArmUrdf);
     write("c.yaml", test::kArmConfig);
   }
@@ -39,9 +38,7 @@ class VerdictProgram : public test::ProgramTest {
   [[nodiscard]] YAML::Node report(const std::string& file = "out/report.json") const {
     return YAML::Load(read(file));
   }
-  void ruin(std::size_t sample) {
-    samples_[sample].observations[1].features[0].point.x() += 0.05;
-  }
+  void ruin(std::size_t sample) { samples_[sample].observations[1].features[0].point.x() += 0.05; }
   /// Values of the parameters.
   [[nodiscard]] std::map<std::string, double> values() const {
     std::map<std::string, double> all;
@@ -58,8 +55,9 @@ TEST_F(VerdictProgram, IsGoodAndTheFirstLine) {
   const test::Outcome result = calibrate();
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out, StartsWith("verdict: good\n"));
-  EXPECT_THAT(result.out, AllOf(HasSubstr("held out"), HasSubstr("Position of 'tool' in 'tracker_frame'"),
-                                HasSubstr("Worst samples"), HasSubstr("Next: ")));
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("held out"), HasSubstr("Position of 'tool' in 'tracker_frame'"),
+                    HasSubstr("Worst samples"), HasSubstr("Next: ")));
   EXPECT_EQ(report()["verdict"].as<std::string>(), "good");
   EXPECT_EQ(report()["reasons"].size(), 0u);
   EXPECT_NEAR(report()["noise"][0]["sigma"].as<double>(), 5e-5, 5e-6);

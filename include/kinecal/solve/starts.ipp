@@ -109,7 +109,7 @@ class Starts {
   /// @returns  false if it gave up, because a search has found a minimum that it does not come near.
   ///           Astray, a solve takes a hundred times as long
   [[nodiscard]] bool solve_plain(Attempt& plain) const {
-    constexpr int kTrial = 50;         // iterations
+    constexpr int kTrial = 25;         // iterations
     constexpr double kFarAbove = 2.0;  // times the cost that was found
     if (best_.result.converged && options_.max_num_iterations > kTrial) {
       SolveOptions trial = options_;
