@@ -74,7 +74,8 @@ class FrameFit {
       if (settled) break;
       damping = std::max(0.1 * damping, kLeastDamping);
     }
-    return std::isfinite(at.cost) ? at.cost : kNoFit;
+    if (!std::isfinite(at.cost)) return kNoFit;
+    return at.cost;
   }
 
  private:

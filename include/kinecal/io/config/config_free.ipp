@@ -124,7 +124,7 @@ inline void check_initial_axes(const ConfigMap& map, const FrameInitialValueConf
 /// @param free  the axes that are free in this step or one before it
 [[nodiscard]] inline FrameInitialValueConfig read_frame_initial_value(ConfigItem& item,
                                                                       const FreeAxes& free) {
-  const FrameInitialValueConfig initial = read_frame_pose(item);
+  FrameInitialValueConfig initial = read_frame_pose(item);
   if (!item.map) return initial;
   const ConfigMap& map = *item.map;
   if (const auto frame = free.find(item.name); frame != free.end()) {

@@ -33,7 +33,7 @@ namespace detail {
 
 class Ros1BagReading {
  public:
-  Ros1BagReading(std::istream& in, std::string name, const BagReader& reader,
+  Ros1BagReading(std::istream& in, const std::string& name, const BagReader& reader,
                  Diagnostics& diagnostics)
       : file_(in), messages_(name, reader, diagnostics) {
     file_.show_progress(reader.meter, "reading " + name);
