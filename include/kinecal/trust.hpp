@@ -8,5 +8,6 @@
 #include "kinecal/trust/judge.hpp"
 #include "kinecal/trust/noise.hpp"
 #include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/plain_matrix.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 #include "kinecal/trust/uncertainty.hpp"

@@ -43,7 +43,7 @@ Findings findings() {
                  .robust = 0.0010,
                  .unit_sigma = 0.002}};
   step.parameters = {0, 1, 2};
-  step.uncertainty.covariance = Eigen::Vector3d(1e-4, 1.0, 1e-4).asDiagonal();
+  step.uncertainty.covariance = Eigen::MatrixXd(Eigen::Vector3d(1e-4, 1.0, 1e-4).asDiagonal());
   step.uncertainty.deviation = Eigen::Vector3d(0.01, std::numeric_limits<double>::infinity(), 0.01);
   step.held_out = {{"hand_eye", "m", 10, 0.0017, 0.0021}};
   step.captures = {{.sample = 0, .times = 1.0},

@@ -31,7 +31,7 @@ TEST(PoseUncertainty, IsThatOfTheOraclesDifferences) {
       jacobian.col(static_cast<int>(c)) =
           (hand_in_camera(sample, plus) - hand_in_camera(sample, minus)) / (2.0 * kStep);
     }
-    variances += (jacobian * found.uncertainty.covariance * jacobian.transpose()).trace();
+    variances += (jacobian * found.uncertainty.covariance.matrix() * jacobian.transpose()).trace();
   }
   ASSERT_TRUE(found.pose);
   EXPECT_EQ(found.pose->frame, "hand");

@@ -16,7 +16,7 @@ TEST(Uncertainty, IsTheTextbookCovarianceOfOneBlock) {
   const Stack rows = stack(scene.solved(), scene.free(), scene.span(values));
   const double variance = rows.residual.squaredNorm() / (360.0 - 10.0);
   const Eigen::MatrixXd expected = variance * rows.covariance().value();
-  const Eigen::MatrixXd& covariance = found.uncertainty.covariance;
+  const Eigen::MatrixXd covariance = found.uncertainty.covariance.matrix();
   EXPECT_LT((covariance - expected).norm(), 1e-8 * expected.norm()) << covariance << "\n\n"
                                                                     << expected;
 }
@@ -78,9 +78,10 @@ TEST(Uncertainty, IsInfiniteOnlyForWhatIsNotDetermined) {
 
 TEST(Correlations, AreListedAboveTheLimitTheLargestFirst) {
   Uncertainty known;
-  known.covariance.resize(3, 3);
-  known.covariance << 4.0, 1.9, 0.2, 1.9, 1.0, -0.095, 0.2, -0.095, 0.01;
-  known.deviation = known.covariance.diagonal().cwiseSqrt();
+  Eigen::Matrix3d covariance;
+  covariance << 4.0, 1.9, 0.2, 1.9, 1.0, -0.095, 0.2, -0.095, 0.01;
+  known.covariance = covariance;
+  known.deviation = covariance.diagonal().cwiseSqrt();
   const std::vector<Correlation> pairs = high_correlations(known);
   ASSERT_EQ(pairs.size(), 3u);  // 0 and 2 are the same up to a factor, 0.95 are the other two
   EXPECT_EQ(pairs[0].b, 2);

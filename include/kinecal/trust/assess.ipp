@@ -52,7 +52,7 @@ namespace detail {
           values[static_cast<std::size_t>(p)] - problem.table()[p].initial;
       determined = determined && std::isfinite(known.deviation(of_owner[i]));
     }
-    const Spectrum spectrum(known.covariance(of_owner, of_owner));
+    const Spectrum spectrum(known.covariance.matrix()(of_owner, of_owner));
     group.rank = static_cast<int>(change.size() - spectrum.null);
     group.statistic = change.dot(spectrum.pseudo_inverse() * change);
     if (determined && group.rank > 0 && group.statistic < 2.0 * group.rank) idle.push_back(group);

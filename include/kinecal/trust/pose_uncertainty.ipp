@@ -82,13 +82,14 @@ KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const
     return detail::TipDerivative(problem, free, values, std::move(chain));
   };
   detail::TipDerivative of_frame = chain_to(frame), of_in = chain_to(in);
+  const Eigen::MatrixXd covariance = known.covariance.matrix();
   double positions = 0.0, rotations = 0.0;
   int poses = 0;
   for (const Sample& sample : samples) {
     if (!of_frame.has_joints(sample) || !of_in.has_joints(sample)) continue;
     const Vector3<double> p_base = of_frame.tip(sample);
     const Eigen::MatrixXd jacobian = of_frame.at(sample, p_base) - of_in.at(sample, p_base);
-    const Eigen::MatrixXd variance = jacobian * known.covariance * jacobian.transpose();
+    const Eigen::MatrixXd variance = jacobian * covariance * jacobian.transpose();
     const double position = variance.topLeftCorner<3, 3>().trace(),
                  rotation = variance.bottomRightCorner<3, 3>().trace();
     positions += position;

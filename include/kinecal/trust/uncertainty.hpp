@@ -13,17 +13,18 @@
 #include <vector>
 
 #include "kinecal/trust/noise.hpp"
+#include "kinecal/trust/plain_matrix.hpp"
 
 namespace kinecal {
 
 /// How well the free parameters of a step are known.
 struct Uncertainty {
   Eigen::MatrixXd
-      coordinates;  ///< (coordinates x coordinates) covariance of LinearFit's coordinates
-  Eigen::MatrixXd covariance;  ///< (free x free), units of the parameters; zero along directions
-                               ///< that nothing determines
+      coordinates;         ///< (coordinates x coordinates) covariance of LinearFit's coordinates
+  PlainMatrix covariance;  ///< (free x free), units of the parameters; zero along directions
+                           ///< that nothing determines
   /// Standard deviation of each free parameter; infinite if samples and priors do not determine it.
-  Eigen::VectorXd deviation;
+  PlainMatrix deviation;
 };
 
 /// Covariance of the free parameters.

@@ -86,16 +86,15 @@ KINECAL_INLINE Uncertainty uncertainty(const AnyProblem& problem, const LinearFi
     middle = detail::noise_information(fit, noise);
   }
   const Eigen::MatrixXd inverse = detail::Spectrum(hessian).pseudo_inverse();
-  Uncertainty known;
-  known.coordinates = inverse * middle * inverse;
   const Coordinates& by = fit.coordinates;
-  known.covariance = by.basis * known.coordinates * by.basis.transpose();
-  known.deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd coordinates = inverse * middle * inverse;
+  const Eigen::MatrixXd covariance = by.basis * coordinates * by.basis.transpose();
+  Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   constexpr double kLost = 0.03;  // more than this of a parameter is not determined
   for (Eigen::Index i = 0; i < by.lost.size(); ++i) {
-    if (by.lost(i) > kLost) known.deviation(i) = std::numeric_limits<double>::infinity();
+    if (by.lost(i) > kLost) deviation(i) = std::numeric_limits<double>::infinity();
   }
-  return known;
+  return {coordinates, covariance, deviation};
 }
 
 KINECAL_INLINE std::vector<Correlation> high_correlations(const Uncertainty& known, double limit) {
