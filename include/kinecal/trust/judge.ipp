@@ -47,8 +47,7 @@ inline void judge_noise(const Assessment& step, Judgement& judgement) {
 }
 
 inline void judge_freedom(const Assessment& step, Judgement& judgement) {
-  const double parameters =
-      std::max<double>(1.0, static_cast<double>(step.uncertainty.coordinates.rows()));
+  const double parameters = std::max(1, step.uncertainty.determined);
   const double freedom = step.rows - parameters;
   if (freedom >= parameters) return;
   judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,

@@ -19,8 +19,7 @@ namespace kinecal {
 
 /// How well the free parameters of a step are known.
 struct Uncertainty {
-  Eigen::MatrixXd
-      coordinates;         ///< (coordinates x coordinates) covariance of LinearFit's coordinates
+  int determined = 0;      ///< number of directions that samples and priors determine
   PlainMatrix covariance;  ///< (free x free), units of the parameters; zero along directions
                            ///< that nothing determines
   /// Standard deviation of each free parameter; infinite if samples and priors do not determine it.

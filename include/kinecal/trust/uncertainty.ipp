@@ -94,7 +94,7 @@ KINECAL_INLINE Uncertainty uncertainty(const AnyProblem& problem, const LinearFi
   for (Eigen::Index i = 0; i < by.lost.size(); ++i) {
     if (by.lost(i) > kLost) deviation(i) = std::numeric_limits<double>::infinity();
   }
-  return {coordinates, covariance, deviation};
+  return {static_cast<int>(coordinates.rows()), covariance, deviation};
 }
 
 KINECAL_INLINE std::vector<Correlation> high_correlations(const Uncertainty& known, double limit) {
