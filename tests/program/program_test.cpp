@@ -309,8 +309,8 @@ TEST_F(Program, CalibratesAlikeAtEachLevelOfTheProcessor) {
     }
     const std::string masked = loader + " --glibc-hwcaps-mask " + level + " " KINECAL_PROGRAM;
     EXPECT_THAT(run("--version", masked).out, HasSubstr("(" + level + ","));
-    const Outcome result =
-        run("calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output out", masked);
+    const Outcome result = run(
+        "calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output out --force", masked);
     ASSERT_EQ(result.code, 0) << level << ": " << result.err;
     EXPECT_THAT(result.out, HasSubstr("samples a second, " + level + ")"));
     const double cost =
