@@ -155,13 +155,17 @@ class Program : public test::ProgramTest {
                more);
   }
 
+  [[nodiscard]] Outcome check(const std::string& more = "") const {
+    return run("check --urdf tiny.urdf --config c.yaml --samples s.yaml " + more);
+  }
+
   /// The input as it stands is refused with this message, by check too, and nothing is written.
   void expect_refused(const testing::Matcher<std::string>& message) const {
     const Outcome result = calibrate();
     EXPECT_EQ(result.code, 1) << result.out << result.err;
     EXPECT_THAT(result.err, message);
     EXPECT_FALSE(fs::exists(folder_ / "out"));
-    const Outcome checked = run("check --urdf tiny.urdf --config c.yaml --samples s.yaml");
+    const Outcome checked = check();
     EXPECT_EQ(checked.code, 1) << checked.out;
     EXPECT_THAT(checked.err, message);
   }
@@ -683,12 +687,27 @@ TEST_F(Program, ReadsTheUrdfFromAPipe) {
   EXPECT_TRUE(fs::exists(folder_ / "out/calibrated.urdf"));
 }
 
-TEST_F(Program, ListsUnobservableCombinations) {
+/// What follows `--hold` in a text.
+std::string to_hold(const std::string& text) {
+  const std::size_t at = text.find("--hold");
+  return at > text.size() ? "" : text.substr(at, text.find('\n', at) - at);
+}
+
+TEST_F(Program, SaysWhatCannotBeDeterminedAndHoldsIt) {
   spoil("c.yaml", " - elbow", " - elbow\n - shoulder");
   const Outcome result = calibrate();  // the shoulder turns about the same axis as the mast's yaw
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("parameter combinations are"), HasSubstr("shoulder"),
-                                HasSubstr("mast_joint_")));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("1 of 9 parameters cannot be determined"),
+                                HasSubstr("shoulder"), HasSubstr("mast_joint_")));
+  const std::string hold = to_hold(result.out);
+  EXPECT_EQ(to_hold(check().out), hold);
+  const Outcome held = calibrate(hold);
+  EXPECT_EQ(held.code, 0) << held.err;
+  EXPECT_THAT(held.out, Not(HasSubstr("cannot be determined")));
+  EXPECT_THAT(held.out, HasSubstr("calibrate: 8 parameters"));
+  EXPECT_THAT(check(hold).out, Not(HasSubstr("cannot be determined")));
+  EXPECT_THAT(calibrate("--dry-run --hold elbwo").err,
+              HasSubstr("--hold elbwo: no step frees it; did you mean 'elbow'?"));
 }
 
 TEST_F(Program, RefusesFewerResidualsThanParameters) {

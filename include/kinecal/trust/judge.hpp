@@ -10,6 +10,8 @@
 //   a joint's offset of 90 degrees                      30 degrees; other changes that are too large
 //   the pose in question is known to 20 mm only         to 5 mm; a direction of it not at all
 //                                                       a parameter ended at a bound
+//                                                       a parameter known to 5 degrees, 20 mm, 5 %
+//                                                       or 20 px only
 //                                                       doubts about the input
 //
 // Freedom is the number of residuals minus that of determined parameters.  Combinations of parameters

@@ -122,6 +122,19 @@ inline void judge_values(const CalibrationStep& step, const CalibrationResult& r
   }
 }
 
+inline void judge_weak(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
+  if (step.weak.parameters.empty()) return;
+  std::string hold;
+  for (const int p : step.weak.hold) hold += " " + table[p].name;
+  const Parameter& first = table[step.weak.hold.front()];
+  const std::size_t others = step.weak.parameters.size() - 1;
+  judgement.add(Grade::use_with_care,
+                "these samples hardly determine '" + first.name + "' (+- " +
+                    reading(step.deviation(step.weak.hold.front()).value_or(0.0), first.unit) +
+                    ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
+                    "; record poses that differ more, or hold:" + hold);
+}
+
 inline void judge_pose(const Assessment& step, Judgement& judgement) {
   if (!step.pose) return;
   constexpr Limits kPosition{0.005, 0.02};
@@ -176,6 +189,7 @@ KINECAL_INLINE Judgement judge(const Calibration& calibration, const Calibration
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
     detail::judge_values(step, result, assessments[s], judgement);
+    if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_pose(assessments[s], judgement);
   }
   for (const std::string& doubt : doubts) judgement.add(Grade::use_with_care, doubt);
