@@ -10,6 +10,7 @@
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/reading.hpp"
 #include "kinecal/trust/reluctance.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
