@@ -93,7 +93,7 @@ inline void judge_captures(const Assessment& step, const AnyProblem& problem,
   const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
   if (p.name == owner && problem.robot().has_joint(owner)) {
     if (p.unit == "m") return {0.1, 0.5};
-    return {15.0 * kDegree, 90.0 * kDegree};
+    return {15.0 * kDegree, 45.0 * kDegree};
   }
   const bool searched = std::any_of(
       step.unknown_frames.begin(), step.unknown_frames.end(),
@@ -101,12 +101,12 @@ inline void judge_captures(const Assessment& step, const AnyProblem& problem,
   if (searched) return {kNever, kNever};
   if (problem.robot().has_joint(owner)) {  // robots are built more precisely than things mounted
     const bool moving = moves(problem.robot().joint(owner).type);
-    if (p.unit == "m") return {moving ? 0.05 : 0.2, 1.0};
-    return {(moving ? 15.0 : 30.0) * kDegree, kNever};
+    if (p.unit == "m") return moving ? Limits{0.05, 0.3} : Limits{0.2, 1.0};
+    return moving ? Limits{15.0 * kDegree, 60.0 * kDegree} : Limits{30.0 * kDegree, kNever};
   }
   if (problem.frames().contains(owner)) return {kNever, kNever};
   if (p.unit == "m") return {0.1, kNever};
-  return p.unit == "1" ? Limits{0.09, kNever} : Limits{kNever, kNever};
+  return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};
 }
 
 inline void judge_values(const CalibrationStep& step, const CalibrationResult& result,
