@@ -4,23 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "kinecal/trust/judge.hpp"
+#include "kinecal/trust/plausible_change.ipp"
 
 namespace kinecal {
 
 namespace detail {
-
-/// Two limits of a figure: from the first on, use with care; from the second on, do not use.
-struct Limits {
-  double care, refuse;
-
-  [[nodiscard]] bool exceeded(double figure) const { return !(figure < care); }
-  [[nodiscard]] Grade grade(double figure) const {
-    return !(figure < refuse) ? Grade::do_not_use : Grade::use_with_care;
-  }
-};
 
 inline void judge_noise(const Assessment& step, Judgement& judgement) {
   constexpr Limits kTimes{3.0, 10.0}, kMetres{0.008, 0.02}, kPixels{4.0, 12.0};
@@ -84,29 +74,16 @@ inline void judge_captures(const Assessment& step, const AnyProblem& problem,
                     std::to_string(problem.num_samples()) + " samples do not fit the others");
 }
 
-/// The largest change of a parameter that a calibration should make; a frame that was searched for or
-/// that is not in the URDF may be anywhere.
-[[nodiscard]] inline Limits plausible_change(const CalibrationStep& step, int parameter) {
-  const AnyProblem& problem = *step.problem;
-  constexpr double kNever = 1e300, kDegree = std::numbers::pi / 180.0;
-  const Parameter& p = problem.table()[parameter];
-  const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
-  if (p.name == owner && problem.robot().has_joint(owner)) {
-    if (p.unit == "m") return {0.1, 0.5};
-    return {15.0 * kDegree, 45.0 * kDegree};
-  }
-  const bool searched = std::any_of(
-      step.unknown_frames.begin(), step.unknown_frames.end(),
-      [&](const UnknownFrame& frame) { return frame.name == owner && !frame.has_guess; });
-  if (searched) return {kNever, kNever};
-  if (problem.robot().has_joint(owner)) {  // robots are built more precisely than things mounted
-    const bool moving = moves(problem.robot().joint(owner).type);
-    if (p.unit == "m") return moving ? Limits{0.05, 0.3} : Limits{0.2, 1.0};
-    return moving ? Limits{15.0 * kDegree, 60.0 * kDegree} : Limits{30.0 * kDegree, kNever};
-  }
-  if (problem.frames().contains(owner)) return {kNever, kNever};
-  if (p.unit == "m") return {0.1, kNever};
-  return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};
+inline void judge_change(const Assessment& step, const AnyProblem& problem, Judgement& judgement) {
+  if (!step.change) return;
+  constexpr double kThird = 1.0 / 3.0;
+  judgement.add(step.change->noise_left < kThird ? Grade::do_not_use : Grade::use_with_care,
+                "'" + step.change->owner + "' seems to have changed during the recording, before " +
+                    problem.source(step.change->sample) +
+                    ": with one value before and another after, "
+                    "the noise falls to " +
+                    reading(1e2 * step.change->noise_left, "1") +
+                    " %; calibrate with the samples of one part");
 }
 
 inline void judge_values(const CalibrationStep& step, const CalibrationResult& result,
@@ -180,6 +157,7 @@ KINECAL_INLINE Judgement judge(const Calibration& calibration, const Calibration
     detail::judge_freedom(assessments[s], judgement);
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
+    if (last) detail::judge_change(assessments[s], *step.problem, judgement);
     detail::judge_values(step, result, assessments[s], judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_pose(assessments[s], judgement);
