@@ -84,7 +84,12 @@ Input read_input(const std::string& urdf, const std::string& config,
   std::optional<Robot> robot;
   if (!urdf.empty()) robot = read_robot([&] { return read_urdf_text(urdf); });
   const std::size_t before = diagnostics.errors.size();
-  auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
+  auto configuration = attempt(
+      [&] {
+        input.config_text = detail::read_yaml_text(config);
+        return parse_config(input.config_text, config, diagnostics);
+      },
+      diagnostics);
   const bool configuration_is_good = diagnostics.errors.size() == before;
   Recording recording = read_recordings(samples, diagnostics);
   input.samples = std::move(recording.samples);

@@ -4,4 +4,5 @@
 
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/json.hpp"
+#include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/report/text.hpp"

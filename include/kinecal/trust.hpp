@@ -4,10 +4,13 @@
 
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/captures.hpp"
+#include "kinecal/trust/drift.hpp"
+#include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/judge.hpp"
 #include "kinecal/trust/noise.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
+#include "kinecal/trust/pose_change.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 #include "kinecal/trust/uncertainty.hpp"

@@ -176,7 +176,7 @@ TEST_F(Program, CalibratesAndWritesAllFiles) {
                            "rgb_camera.yaml", "report.json"}) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   }
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 6) << "left something";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 8) << "left something";
   EXPECT_NEAR(YAML::LoadFile((folder_ / "out/calibration.yaml").string())["elbow"].as<double>(),
               0.02, 1e-9);
   const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
@@ -245,7 +245,8 @@ TEST_F(Program, UpstreamNamesCarryTheDateAndLeaveOutTheNameCamera) {
                                                    MatchesRegex("calibration_" + date + "\\.yaml"),
                                                    MatchesRegex("depth_" + date + "\\.yaml"),
                                                    MatchesRegex("rgb_" + date + "\\.yaml"),
-                                                   "report.json", "residuals.csv"));
+                                                   "report.json", "residuals.csv", "original.urdf",
+                                                   "config.yaml"));
 }
 
 TEST_F(Program, DryRunWritesNothing) {
@@ -630,7 +631,7 @@ TEST_F(Program, WritesNothingWhenTheDiskIsFullHalfWay) {
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_EQ(read("out/calibrated.urdf"), before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 6) << "left something";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 8) << "left something";
 }
 
 TEST_F(Program, RefusesToReplaceItsInput) {
