@@ -92,15 +92,15 @@ void choose_recorded(const Result& result, const NewSampleOptions& options, NewS
   if (!take_off(result, fresh.problem(), with.samples)) return;
   assemble_new(result, with);
   if (!with.diagnostics.errors.empty()) return;
+  constexpr double kClearly = 0.8;  // of the residuals; else nothing was installed
+  const double ratio = std::sqrt(with.misfit / fresh.misfit);
   const bool takes_with =
-      options.recorded ? *options.recorded == Recorded::after : with.misfit < fresh.misfit;
-  const double taken = std::sqrt(takes_with ? with.misfit : fresh.misfit),
-               other = std::sqrt(takes_with ? fresh.misfit : with.misfit);
+      options.recorded ? *options.recorded == Recorded::after : ratio < kClearly;
   fresh.assumed = fmt::format(
-      "taken as recorded {} calibrated.urdf and its cameras in force: residuals are {:.1f} times "
-      "the "
-      "noise, else {:.1f}",
-      takes_with ? "with" : "without", taken, other);
+      "taken as recorded {} the result was installed: {} residuals would be {:.1f} times as large "
+      "(--samples-recorded)",
+      takes_with ? "after" : "before", takes_with ? "before," : "after,",
+      takes_with ? 1.0 / ratio : ratio);
   if (!takes_with) return;
   fresh.samples = std::move(with.samples);
   fresh.calibration = std::move(with.calibration);

@@ -108,29 +108,31 @@ std::string missed_text(const Check& check, const std::vector<MissedSample>& mis
   return text;
 }
 
-std::string chance_text(double probability) {
+/// "7 %", "0.03 %"
+std::string percent(double share) {
+  return fmt::format("{:.{}g} %", 100.0 * share, share > 0.995 ? 3 : 2);
+}
+
+std::string confidence_text(double probability) {
   constexpr double kLeast = 1e-6;
-  return probability < kLeast ? "less than once in a million"
-                              : fmt::format("{:.2g} % of the time", 100.0 * probability);
+  if (probability < kLeast) return "confidence above 99.9999 %";
+  const int digits = 2 + static_cast<int>(std::ceil(-std::log10(probability)));
+  return fmt::format("confidence {:.{}g} %", 100.0 * (1.0 - probability), digits);
 }
 
 std::string verdict_text(const Check& check) {
   const Drift& drift = check.drift;
   std::string text = drift.holds ? "verdict: holds\n" : "verdict: does not hold\n";
-  const double times = std::sqrt(drift.statistic / std::max(1.0, drift.freedom));
+  const std::string size =
+      fmt::format("residuals are {:.2f} times what noise and the uncertainty of the result make",
+                  std::sqrt(drift.statistic / std::max(1.0, drift.freedom)));
   if (drift.holds) {
-    text += fmt::format(
-        "  - {} of {} fit within noise and the uncertainty of the result: {:.2f} times it, as much "
-        "by "
-        "chance {}\n",
-        check.fresh.samples.size() - drift.missed.size(),
-        counted(check.fresh.samples.size(), "sample"), times, chance_text(drift.probability));
+    text += fmt::format("  - {} of {} fit: {}; chance does so in {} of cases\n",
+                        check.fresh.samples.size() - drift.missed.size(),
+                        counted(check.fresh.samples.size(), "sample"), size,
+                        percent(drift.probability));
   } else {
-    text += fmt::format(
-        "  - residuals are {:.2f} times what noise and the uncertainty of the result explain, as "
-        "much "
-        "by chance {}\n",
-        times, chance_text(drift.probability));
+    text += fmt::format("  - {}: {}\n", confidence_text(drift.probability), size);
   }
   text += missed_text(check, drift.missed);
   constexpr std::size_t kEnough = 5;

@@ -241,12 +241,12 @@ TEST_F(Program, UpstreamNamesCarryTheDateAndLeaveOutTheNameCamera) {
   }
   const std::string date = "[0-9]+_[0-9]+_[0-9]+_[0-9]+_[0-9]+_[0-9]+";
   using testing::MatchesRegex;
-  EXPECT_THAT(names, testing::UnorderedElementsAre(MatchesRegex("calibrated_" + date + "\\.urdf"),
-                                                   MatchesRegex("calibration_" + date + "\\.yaml"),
-                                                   MatchesRegex("depth_" + date + "\\.yaml"),
-                                                   MatchesRegex("rgb_" + date + "\\.yaml"),
-                                                   "report.json", "residuals.csv", "original.urdf",
-                                                   "config.yaml"));
+  EXPECT_THAT(names,
+              testing::UnorderedElementsAre(MatchesRegex("calibrated_" + date + "\\.urdf"),
+                                            MatchesRegex("calibration_" + date + "\\.yaml"),
+                                            MatchesRegex("depth_" + date + "\\.yaml"),
+                                            MatchesRegex("rgb_" + date + "\\.yaml"), "report.json",
+                                            "residuals.csv", "original.urdf", "config.yaml"));
 }
 
 TEST_F(Program, DryRunWritesNothing) {

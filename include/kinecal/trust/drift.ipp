@@ -12,8 +12,20 @@ namespace kinecal {
 
 namespace detail {
 
+/// True unless a joint would have slipped further than any does: 30 degrees or 10 cm.
+[[nodiscard]] inline bool is_plausible(const AnyProblem& problem, const Mover& mover) {
+  if (mover.is_frame || !problem.robot().has_joint(mover.owner)) return true;
+  for (std::size_t i = 0; i < mover.parameters.size(); ++i) {
+    const Parameter& parameter = problem.table()[mover.parameters[i]];
+    const double limit = parameter.unit == "rad" ? 0.5236 : 0.1;
+    if (parameter.name == mover.owner && std::abs(mover.change[i]) > limit) return false;
+  }
+  return true;
+}
+
 /// Fits one hypothesis.
-inline void try_mover(const DriftSearch& search, double level, Mover& mover) {
+inline void try_mover(const AnyProblem& problem, const DriftSearch& search, double level,
+                      Mover& mover) {
   const CleanFit found = search.clean_fit(mover.parameters);
   const Eigen::Index size = std::ssize(mover.parameters);
   const Eigen::VectorXd change = found.at.z.tail(size);
@@ -26,7 +38,7 @@ inline void try_mover(const DriftSearch& search, double level, Mover& mover) {
   mover.freedom = found.freedom;
   mover.probability = found.probability;
   mover.score = found.score();
-  mover.explains = found.probability >= level;
+  mover.explains = found.probability >= level && is_plausible(problem, mover);
   mover.missed = found.missed;
 }
 
@@ -59,7 +71,7 @@ KINECAL_INLINE Drift check_drift(const AnyProblem& problem, const CalibratedStat
   drift.holds = drift.probability >= options.level;
   if (drift.holds && drift.missed.empty()) return drift;
   for (Mover mover : search.movers()) {
-    detail::try_mover(search, options.level, mover);
+    detail::try_mover(problem, search, options.level, mover);
     if (mover.freedom >= 1.0) drift.movers.push_back(mover);
   }
   std::stable_sort(drift.movers.begin(), drift.movers.end(), [](const Mover& a, const Mover& b) {

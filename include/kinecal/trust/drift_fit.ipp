@@ -88,7 +88,7 @@ class DriftFit {
                                       const std::vector<bool>& used) const {
     DriftMinimum at{.z = Eigen::VectorXd::Zero(directions.cols()), .inverse = {}, .rows = start_};
     at.statistic = start_.cost(used);
-    constexpr int kSteps = 10;
+    constexpr int kSteps = 40;  // a board that was put up again is far away
     bool falls = true;
     for (int i = 0; i < kSteps && falls; ++i) falls = step(directions, used, at);
     return at;
