@@ -16,6 +16,7 @@
 #include "kinecal/report.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
+#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -115,8 +116,7 @@ int calibrate(const CalibrateOptions& options) {
   }
   if (!options.dry_run) check_first_targets(options);
   const Clock::time_point start = Clock::now();
-  const Input input =
-      read_input(options.urdf, options.config, options.samples, options.cameras, options.recorded);
+  const Input input = read_input(options);
   print(input.diagnostics);
   if (!input.diagnostics.errors.empty()) return kBadInput;
 
@@ -151,7 +151,7 @@ int calibrate(const CalibrateOptions& options) {
     check_targets(options, folder->path(), files);
     write(*folder, files);
   }
-  fmt::print("{} samples, {:.3f} s: reading {:.3f} s, {}\n", input.samples.size(),
+  fmt::print("{}, {:.3f} s: reading {:.3f} s, {}\n", counted(input.samples.size(), "sample"),
              seconds_since(start), reading, solving_text(result));
   return kDone;
 }

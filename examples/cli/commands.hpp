@@ -14,11 +14,18 @@ namespace kinecal::cli {
 /// not hold any more.
 enum ExitCode { kDone = 0, kBadInput = 1, kNotUsable = 2 };
 
-struct CalibrateOptions {
-  std::string urdf, config, output;
-  std::vector<std::string> samples;
-  std::vector<std::string> cameras;     ///< NAME=FILE
+/// What is calibrated, from which samples.
+struct InputOptions {
+  std::string urdf;                     ///< empty: the /robot_description of the samples' bag
+  std::string config;                   ///< file
+  std::vector<std::string> samples;     ///< files
+  std::vector<std::string> cameras;     ///< NAME=FILE, for samples without camera_info
+  std::vector<std::string> hold;        ///< parameters that are not calibrated
   Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
+};
+
+struct CalibrateOptions : InputOptions {
+  std::string output;
   std::string offsets = "rising";
   std::string report;          ///< report.json is written there, too, whatever the verdict
   std::vector<int> exclude;    ///< samples to leave out, from 1
@@ -35,15 +42,8 @@ struct CalibrateOptions {
 /// Calibrates the robot and writes the results, all or none.
 int calibrate(const CalibrateOptions& options);
 
-struct CheckOptions {
-  std::string urdf, config;
-  std::vector<std::string> samples;
-  std::vector<std::string> cameras;     ///< NAME=FILE
-  Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
-};
-
-/// Lists every error in the input, without solving.
-int check(const CheckOptions& options);
+/// Lists every error in the input and what the samples cannot determine, without calibrating.
+int check(const InputOptions& options);
 
 /// Shows what is in recordings.
 int inspect(const std::vector<std::string>& samples);

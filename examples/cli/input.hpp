@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
-#include "kinecal/io/doubts/rising.hpp"
 #include "kinecal/io/recordings/read_recording.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
@@ -26,13 +26,7 @@ struct Input {
 };
 
 /// Reads and assembles everything; errors go to Input::diagnostics.
-/// @param urdf      empty: the /robot_description of the samples' bag
-/// @param cameras   NAME=FILE, for samples without camera_info
-/// @param recorded  before: <calibration rising> of the URDF is added to the positions
-[[nodiscard]] Input read_input(const std::string& urdf, const std::string& config,
-                               const std::vector<std::string>& samples,
-                               const std::vector<std::string>& cameras = {},
-                               Recorded recorded = Recorded::after);
+[[nodiscard]] Input read_input(const InputOptions& options);
 
 /// Reads samples from several files of any format, and the URDF from the first that has one.  Errors
 /// go to the diagnostics.

@@ -25,7 +25,7 @@ struct UrdfFile {
                                                    const Calibration& calibration,
                                                    const Findings& findings,
                                                    std::span<const Sample> samples,
-                                                   const ResultFileOptions& options = {});
+                                                   ResultFileOptions options = {});
 
 /// Writes all files or none, and prints their names.
 void write(OutputFolder& folder, const std::vector<OutputFile>& files);

@@ -13,4 +13,7 @@
 #include "kinecal/trust/plain_matrix.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/reading.hpp"
+#include "kinecal/trust/reluctance.hpp"
 #include "kinecal/trust/uncertainty.hpp"
+#include "kinecal/trust/weak_parameters.hpp"

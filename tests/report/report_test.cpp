@@ -137,8 +137,8 @@ TEST(Summary, BeginsWithTheVerdictAndShowsDistancesAndDeviations) {
   EXPECT_THAT(text, HasSubstr("elbow                 5.730  0.573   deg"));
   EXPECT_THAT(text, HasSubstr("not determined"));
   EXPECT_THAT(text, HasSubstr("not significant"));
-  EXPECT_THAT(text, HasSubstr("Position of 'hand' in 'camera': +- 0.5 mm"));
-  EXPECT_THAT(text, HasSubstr("hold camera_z_offset"));
+  EXPECT_THAT(text, HasSubstr("Pose of 'hand' in 'camera': +- 0.5 mm"));
+  EXPECT_THAT(text, HasSubstr("--hold camera_z_offset"));
   EXPECT_THAT(text, HasSubstr("samples.yaml:40 (sample 3): error block 'hand_eye': feature 2 is "
                               "48 mm off, all others at most 3 mm, 43.0 times the noise; does not "
                               "fit the others"));
@@ -163,9 +163,9 @@ TEST(TextReport, NamesUnobservableCombinationsAndWhatToHold) {
   const auto table = findings().result.table;
   EXPECT_EQ(observability_text("one", {2, 1.0, {}, {}}, table), "");
   const std::string text = observability_text("one", {1, 2.5, {{{0, 1.0}, {1, -0.5}}}, {1}}, table);
-  EXPECT_THAT(text, HasSubstr("1 of 2 parameter combinations are observable"));
+  EXPECT_THAT(text, HasSubstr("1 of 2 parameters cannot be determined from these samples"));
   EXPECT_THAT(text, HasSubstr("+1 elbow -0.5 camera_z_offset"));
-  EXPECT_THAT(text, HasSubstr("hold camera_z_offset"));
+  EXPECT_THAT(text, HasSubstr("--hold camera_z_offset"));
 }
 
 TEST(Statistics, AreThoseOfTheDefinition) {

@@ -114,7 +114,7 @@ TEST(Judge, CountsSamplesThatDoNotFitTheOthers) {
 TEST(Judge, DoubtsJointsThatAreFarOff) {
   constexpr double kDegree = 0.017453292519943295;
   for (const auto& [degrees, verdict] :
-       {std::pair(29.0, Grade::good), {-31.0, Grade::use_with_care}, {91.0, Grade::do_not_use}}) {
+       {std::pair(14.0, Grade::good), {-16.0, Grade::use_with_care}, {91.0, Grade::do_not_use}}) {
     Judged judged;
     judged.set("elbow", degrees * kDegree);
     expect(judged.judgement(), verdict, "'elbow' changed by");

@@ -59,7 +59,7 @@ template <class T>
 }
 /// Standard deviation of a parameter in the last step that frees it.
 [[nodiscard]] std::optional<double> deviation_of(const Findings& findings, int parameter);
-/// "not determined", "not significant" or nothing.
+/// "not determined", "hardly determined", "not significant" or nothing.
 [[nodiscard]] std::string note_on(const Parameter& parameter, double deviation);
 
 }  // namespace detail

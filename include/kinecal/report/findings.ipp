@@ -44,6 +44,7 @@ namespace detail {
 
 KINECAL_INLINE std::string note_on(const Parameter& parameter, double deviation) {
   if (!std::isfinite(deviation)) return "not determined";
+  if (deviation > useful_deviation(parameter)) return "hardly determined";
   if (std::abs(parameter.value - parameter.initial) < 2.0 * deviation) return "not significant";
   return "";
 }
@@ -71,9 +72,10 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
   for (const Assessment& step : findings.assessments) {
     if (!step.pose || &step != &findings.assessments.back()) continue;
     const PoseUncertainty& pose = *step.pose;
-    text += fmt::format(
-        "\nPosition of '{}' in '{}': +- {}, {} at the worst pose of these samples\n", pose.frame,
-        pose.in, reading(pose.position, "m"), reading(pose.worst_position, "m"));
+    text +=
+        fmt::format("\nPose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
+                    pose.frame, pose.in, reading(pose.position, "m"), reading(pose.rotation, "rad"),
+                    reading(pose.worst_position, "m"), reading(pose.worst_rotation, "rad"));
   }
   return text;
 }

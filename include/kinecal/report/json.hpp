@@ -25,11 +25,6 @@ namespace detail {
 /// standard deviation, null if it is not determined.
 [[nodiscard]] std::string json_report(const Findings& findings);
 
-/// A row for each feature of the last step: error block, sample, its source location, feature, unit,
-/// residuals and their distance.
-/// @param calibration  the one that was solved, with its samples
-[[nodiscard]] std::string residuals_csv(const Calibration& calibration, const Findings& findings);
-
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY

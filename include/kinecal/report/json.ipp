@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/json_state.ipp"
 
@@ -38,13 +37,30 @@ KINECAL_INLINE std::string json_number(double value) {
                      json_number(s.mean), json_number(s.median), json_number(s.max));
 }
 
+[[nodiscard]] inline std::string json(const StartSummary& starts) {
+  if (!starts.searched()) return "null";
+  std::string frames, minima;
+  for (const std::string& frame : starts.frames) {
+    frames += (frames.empty() ? "" : ", ") + json_string(frame);
+  }
+  for (const FoundMinimum& minimum : starts.minima) {
+    minima += fmt::format(R"({}{{"cost": {}, "solves": {}}})", minima.empty() ? "" : ", ",
+                          json_number(minimum.cost), minimum.solves);
+  }
+  return fmt::format(
+      R"({{"frames": [{}], "starts": {}, "random_starts": {}, "failed": {}, "minima": [{}], )"
+      R"("taken": {}}})",
+      frames, starts.starts, starts.random_starts, starts.failed, minima,
+      starts.taken < 0 ? "null" : std::to_string(starts.taken));
+}
+
 [[nodiscard]] inline std::string json(const StepResult& step) {
   return fmt::format(
       R"({{"name": {}, "iterations": {}, "initial_cost": {}, "final_cost": {}, "seconds": {}, )"
-      R"("num_residuals": {}, "num_parameters": {}, "form": {}}})",
+      R"("num_residuals": {}, "num_parameters": {}, "form": {}, "starts": {}}})",
       json_string(step.name), step.iterations, json_number(step.initial_cost),
       json_number(step.final_cost), json_number(step.seconds), step.num_residuals,
-      step.num_parameters, json_string(to_string(step.form)));
+      step.num_parameters, json_string(to_string(step.form)), json(step.starts));
 }
 
 [[nodiscard]] inline std::string json(const BlockStatistics& block) {
@@ -141,34 +157,6 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
           [&](const CaptureError& error) { return detail::json_capture(findings, last, error); }),
       detail::json_list(findings.left_out, write), detail::json_covariance(findings),
       detail::json(findings.poses));
-}
-
-KINECAL_INLINE std::string residuals_csv(const Calibration& calibration, const Findings& findings) {
-  std::string text = "error_block,sample,source,feature,unit,distance,residual\n";
-  if (findings.result.steps.empty()) return text;
-  const AnyProblem& problem = *calibration.steps[findings.result.steps.size() - 1].problem;
-  const Eigen::VectorXd values = findings.result.table.values();
-  const auto quoted = [](const std::string& name) {
-    if (name.find_first_of(",\"\n") == std::string::npos) return name;
-    std::string all = "\"";
-    for (const char c : name) all += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return all + "\"";
-  };
-  (void)evaluate(problem, {values.data(), static_cast<std::size_t>(values.size())}, nullptr,
-                 [&](int t, int sample, const TermResiduals& rows) {
-                   const AnyTerm& term = problem.term(t);
-                   const int size = term.feature_size();
-                   for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
-                     const auto r = rows.residual.segment(row, size);
-                     text += fmt::format("{},{},{},{},{},{}", quoted(term.name()),
-                                         findings.numbers[static_cast<std::size_t>(sample)],
-                                         quoted(problem.source(sample)), row / size + 1,
-                                         term.options().unit, r.norm());
-                     for (Eigen::Index i = 0; i < size; ++i) text += fmt::format(",{}", r(i));
-                     text += "\n";
-                   }
-                 });
-  return text;
 }
 
 }  // namespace kinecal

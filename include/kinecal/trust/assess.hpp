@@ -13,6 +13,7 @@
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/weak_parameters.hpp"
 
 namespace kinecal {
 
@@ -32,6 +33,7 @@ struct Assessment {
   std::vector<int> parameters;          ///< table indices: columns of the uncertainty
   std::vector<int> at_bound;            ///< table indices of free parameters that ended at a bound
   Uncertainty uncertainty;              ///< of `parameters`
+  WeakParameters weak;                  ///< hardly determined ones of `parameters`
   std::vector<HeldOutError> held_out;   ///< of each error block; empty if there are too few samples
   std::vector<CaptureError> captures;   ///< of each sample
   std::vector<IdleGroup> idle;          ///< whose parameters buy nothing

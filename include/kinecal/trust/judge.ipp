@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "kinecal/trust/judge.hpp"
@@ -85,33 +84,43 @@ inline void judge_captures(const Assessment& step, const AnyProblem& problem,
                     std::to_string(problem.num_samples()) + " samples do not fit the others");
 }
 
-/// The largest change of a parameter that a calibration should make.
-[[nodiscard]] inline Limits plausible_change(const AnyProblem& problem, int parameter) {
+/// The largest change of a parameter that a calibration should make; a frame that was searched for or
+/// that is not in the URDF may be anywhere.
+[[nodiscard]] inline Limits plausible_change(const CalibrationStep& step, int parameter) {
+  const AnyProblem& problem = *step.problem;
   constexpr double kNever = 1e300, kDegree = std::numbers::pi / 180.0;
   const Parameter& p = problem.table()[parameter];
   const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
   if (p.name == owner && problem.robot().has_joint(owner)) {
     if (p.unit == "m") return {0.1, 0.5};
-    return {30.0 * kDegree, 90.0 * kDegree};
+    return {15.0 * kDegree, 90.0 * kDegree};
   }
-  if (problem.robot().has_joint(owner))
-    return p.unit == "m" ? Limits{0.2, 1.0} : Limits{0.5, kNever};
-  if (problem.frames().contains(owner)) return {kNever, kNever};  // a virtual frame may be anywhere
+  const bool searched = std::any_of(
+      step.unknown_frames.begin(), step.unknown_frames.end(),
+      [&](const UnknownFrame& frame) { return frame.name == owner && !frame.has_guess; });
+  if (searched) return {kNever, kNever};
+  if (problem.robot().has_joint(owner)) {  // robots are built more precisely than things mounted
+    const bool moving = moves(problem.robot().joint(owner).type);
+    if (p.unit == "m") return {moving ? 0.05 : 0.2, 1.0};
+    return {(moving ? 15.0 : 30.0) * kDegree, kNever};
+  }
+  if (problem.frames().contains(owner)) return {kNever, kNever};
   if (p.unit == "m") return {0.1, kNever};
-  return p.unit == "1" ? Limits{0.2, kNever} : Limits{kNever, kNever};
+  return p.unit == "1" ? Limits{0.09, kNever} : Limits{kNever, kNever};
 }
 
 inline void judge_values(const CalibrationStep& step, const CalibrationResult& result,
                          const Assessment& assessment, Judgement& judgement) {
-  const AnyProblem& problem = *step.problem;
   for (const int p : step.free.parameters()) {
     const Parameter& parameter = result.table[p];
     const double change = std::abs(parameter.value - parameter.initial);
-    const Limits limits = plausible_change(problem, p);
+    const Limits limits = plausible_change(step, p);
     if (limits.exceeded(change)) {
+      const double by = parameter.value - parameter.initial;
       judgement.add(limits.grade(change),
                     "'" + parameter.name + "' changed by " +
-                        reading(parameter.value - parameter.initial, parameter.unit) +
+                        (parameter.unit == "1" ? reading(1e2 * by, "1") + " %"
+                                               : reading(by, parameter.unit)) +
                         "; is the URDF or its initial value wrong, or do these samples not "
                         "determine it?");
     }
@@ -120,6 +129,19 @@ inline void judge_values(const CalibrationStep& step, const CalibrationResult& r
     judgement.add(Grade::use_with_care, "'" + result.table[p].name + "' ended at its bound " +
                                             reading(result.table[p].value, result.table[p].unit));
   }
+}
+
+inline void judge_weak(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
+  if (step.weak.parameters.empty()) return;
+  std::string hold;
+  for (const int p : step.weak.hold) hold += " " + table[p].name;
+  const Parameter& first = table[step.weak.hold.front()];
+  const std::size_t others = step.weak.parameters.size() - 1;
+  judgement.add(Grade::use_with_care,
+                "these samples hardly determine '" + first.name + "' (+- " +
+                    reading(step.deviation(step.weak.hold.front()).value_or(0.0), first.unit) +
+                    ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
+                    "; record poses that differ more, or hold:" + hold);
 }
 
 inline void judge_pose(const Assessment& step, Judgement& judgement) {
@@ -140,23 +162,6 @@ inline void judge_pose(const Assessment& step, Judgement& judgement) {
 
 }  // namespace detail
 
-KINECAL_INLINE std::string reading(double value, std::string_view unit) {
-  double shown = value;
-  const char* of = "";
-  if (unit == "m") {
-    shown = 1e3 * value;
-    of = " mm";
-  } else if (unit == "rad") {
-    shown = value * 180.0 / std::numbers::pi;
-    of = " deg";
-  } else if (unit == "px") {
-    of = " px";
-  }
-  char text[48];
-  (void)std::snprintf(text, sizeof text, "%.3g%s", shown, of);
-  return text;
-}
-
 KINECAL_INLINE bool fits_badly(const Assessment& step) {
   Judgement of_noise;
   detail::judge_noise(step, of_noise);
@@ -176,6 +181,7 @@ KINECAL_INLINE Judgement judge(const Calibration& calibration, const Calibration
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
     detail::judge_values(step, result, assessments[s], judgement);
+    if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_pose(assessments[s], judgement);
   }
   for (const std::string& doubt : doubts) judgement.add(Grade::use_with_care, doubt);
