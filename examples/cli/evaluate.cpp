@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/io/printable.hpp"

@@ -96,11 +96,13 @@ void choose_recorded(const Result& result, const NewSampleOptions& options, NewS
   const double ratio = std::sqrt(with.misfit / fresh.misfit);
   const bool takes_with =
       options.recorded ? *options.recorded == Recorded::after : ratio < kClearly;
-  fresh.assumed = fmt::format(
-      "taken as recorded {} the result was installed: {} residuals would be {:.1f} times as large "
-      "(--samples-recorded)",
-      takes_with ? "after" : "before", takes_with ? "before," : "after,",
-      takes_with ? 1.0 / ratio : ratio);
+  fresh.assumed = fmt::format("taken as recorded {} the result was installed (--samples-recorded)",
+                              takes_with ? "after" : "before");
+  const double other = takes_with ? 1.0 / ratio : ratio;
+  if (std::isfinite(other)) {
+    fresh.assumed += fmt::format(": {} it, residuals would be {:.1f} times as large",
+                                 takes_with ? "before" : "after", other);
+  }
   if (!takes_with) return;
   fresh.samples = std::move(with.samples);
   fresh.calibration = std::move(with.calibration);

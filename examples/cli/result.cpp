@@ -190,6 +190,9 @@ Result read_result(const std::string& folder) {
   const std::string config = needed_file(folder, kConfigCopy);
   const Report report(result.report);
   result.verdict = report.at(report.root(), "verdict").text;
+  if (result.verdict == to_string(Grade::do_not_use)) {
+    throw InputError(result.report + ": this result was judged 'do not use'; calibrate again");
+  }
   read_parameters(report, (std::filesystem::path(folder) / files.values.name).string(), result);
   read_covariance(report, result);
   read_noise(report, result);
