@@ -99,7 +99,10 @@ void choose_recorded(const Result& result, const NewSampleOptions& options, NewS
   fresh.assumed = fmt::format("taken as recorded {} the result was installed (--samples-recorded)",
                               takes_with ? "after" : "before");
   const double other = takes_with ? 1.0 / ratio : ratio;
-  if (std::isfinite(other)) {
+  constexpr double kSame = 1.05;
+  if (!options.recorded && other < kSame) {
+    fresh.assumed.clear();  // it does not matter
+  } else if (std::isfinite(other)) {
     fresh.assumed += fmt::format(": {} it, residuals would be {:.1f} times as large",
                                  takes_with ? "before" : "after", other);
   }

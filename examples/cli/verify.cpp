@@ -149,12 +149,21 @@ std::string movers_text(const Check& check) {
   if (drift.movers.empty()) return "";
   const Mover& first = drift.movers.front();
   if (!first.explains) {
+    const double rest = std::sqrt(first.statistic / std::max(1.0, first.freedom));
+    constexpr double kMostly = 0.05;
+    if (first.statistic < kMostly * drift.statistic) {
+      return fmt::format(
+          "Most of it is {}: {}\n"
+          "  but not it alone: residuals stay {:.2f} times too large, so something else has "
+          "changed, or "
+          "the result is less exact at these poses\n",
+          name_of(check, first), change_text(check, first), rest);
+    }
     return fmt::format(
         "No single joint, frame or sensor explains it: several have moved, or something that is no "
         "parameter (a bent link, another load, many bad captures)\n"
         "  nearest: {}, {}; residuals stay {:.2f} times too large\n",
-        name_of(check, first), change_text(check, first),
-        std::sqrt(first.statistic / first.freedom));
+        name_of(check, first), change_text(check, first), rest);
   }
   std::string text = "Most likely moved\n";
   constexpr int kListed = 4;

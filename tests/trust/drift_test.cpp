@@ -131,6 +131,21 @@ TEST(Drift, OfSeveralIsNotExplainedByOne) {
   for (const Mover& mover : drift.movers) EXPECT_FALSE(mover.explains) << mover.owner;
 }
 
+TEST(Drift, OfAJointByFortyDegreesIsFoundButNotBelieved) {
+  Recheck recheck(7);
+  recheck.value("elbow") += 0.7;
+  recheck.record(8, 81);
+  const Drift drift = recheck.check();
+  EXPECT_FALSE(drift.holds);
+  const auto elbow = std::find_if(drift.movers.begin(), drift.movers.end(), [](const Mover& mover) {
+    return mover.owner == "elbow" && !mover.is_frame;
+  });
+  ASSERT_NE(elbow, drift.movers.end());
+  EXPECT_NEAR(elbow->change[0], 0.7, 0.01);
+  EXPECT_GT(elbow->probability, 0.01);
+  EXPECT_FALSE(elbow->explains);
+}
+
 TEST(Drift, IsNotWhatOneBadCaptureShows) {
   Recheck recheck(4);
   recheck.record(5, 78);
