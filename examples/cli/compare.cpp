@@ -12,7 +12,6 @@
 #include "kinecal/io/printable.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
-#include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "output_file.hpp"
 #include "result.hpp"

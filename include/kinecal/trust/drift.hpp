@@ -71,7 +71,8 @@ struct Drift {
   double probability = 1.0;    ///< that chance makes it, or what a mover explains of it, larger
   std::vector<MissedSample> missed;  ///< bad captures, if the others hold
   std::vector<Mover> movers;         ///< the most likely one first; empty if the calibration holds
-  /// How many of the first movers cannot be told apart: scores that differ by less than 6.
+  /// How many of the first movers cannot be told apart: scores that differ by less than 6.  Of these,
+  /// the one with the fewest parameters is the first.
   int alike = 0;
 };
 

@@ -89,6 +89,9 @@ KINECAL_INLINE Drift check_drift(const AnyProblem& problem, const CalibratedStat
   for (const Mover& mover : drift.movers) {
     if (mover.explains == best->explains && mover.score < best->score + kTold) ++drift.alike;
   }
+  std::stable_sort(
+      drift.movers.begin(), drift.movers.begin() + drift.alike,
+      [](const Mover& a, const Mover& b) { return a.parameters.size() < b.parameters.size(); });
   return drift;
 }
 
