@@ -85,8 +85,12 @@ Input read_input(const InputOptions& options) {
     robot = read_robot([&] { return read_urdf_text(options.urdf); });
   }
   const std::size_t before = diagnostics.errors.size();
-  auto configuration =
-      attempt([&] { return read_config(options.config, diagnostics); }, diagnostics);
+  auto configuration = attempt(
+      [&] {
+        input.config_text = detail::read_yaml_text(options.config);
+        return parse_config(input.config_text, options.config, diagnostics);
+      },
+      diagnostics);
   const bool configuration_is_good = diagnostics.errors.size() == before;
   if (configuration) hold_parameters(*configuration, options.hold, diagnostics);
   Recording recording = read_recordings(options.samples, diagnostics);

@@ -17,8 +17,9 @@ namespace kinecal::cli {
 struct Input {
   Robot robot;
   Config config;
-  std::string urdf;       ///< name of the URDF in messages: its file or topic
-  std::string urdf_text;  ///< its content
+  std::string urdf;         ///< name of the URDF in messages: its file or topic
+  std::string urdf_text;    ///< its content
+  std::string config_text;  ///< content of the configuration
   std::vector<Sample> samples;
   Calibration calibration;
   Diagnostics diagnostics;

@@ -20,6 +20,16 @@ namespace {
 
 using namespace kinecal::cli;
 
+void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
+  command
+      .add_option(
+          "--camera", cameras,
+          "intrinsics of a sensor that was recorded without camera_info: camera_info, Kalibr "
+          "or OpenCV YAML; FILE:cam1 for one of several")
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
+}
+
 /// The options that say what is calibrated, from which samples.
 /// @returns  --samples
 CLI::Option* add_input(CLI::App& command, InputOptions& options) {
@@ -37,13 +47,7 @@ CLI::Option* add_input(CLI::App& command, InputOptions& options) {
           .add_option("--samples", options.samples,
                       "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
           ->type_name("FILE");
-  command
-      .add_option(
-          "--camera", options.cameras,
-          "intrinsics of a sensor that was recorded without camera_info: camera_info, Kalibr "
-          "or OpenCV YAML; FILE:cam1 for one of several")
-      ->type_name("NAME=FILE")
-      ->allow_extra_args(false);
+  add_cameras(command, options.cameras);
   command
       .add_option("--hold", options.hold,
                   "parameters that keep their initial values, though the configuration frees them")
@@ -240,6 +244,48 @@ void add_inspect(CLI::App& command, std::vector<std::string>& samples) {
   command.add_option("samples", samples, "recorded samples")->required()->type_name("FILE");
 }
 
+/// Result, samples, cameras and report of evaluate and verify.
+void add_recheck(CLI::App& command, RecheckOptions& options) {
+  command.add_option("result", options.result, "folder that calibrate wrote")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("samples", options.samples, "samples of the same robot, in any format")
+      ->required()
+      ->type_name("FILE");
+  add_cameras(command, options.cameras);
+  command
+      .add_option_function<std::string>(
+          "--samples-recorded",
+          [&options](const std::string& when) {
+            options.recorded =
+                when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
+          },
+          "before or after calibrated.urdf and the calibrated cameras were installed; default: "
+          "what "
+          "fits better")
+      ->check(CLI::IsMember({"after", "before"}));
+  command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
+}
+
+void add_verify(CLI::App& command, RecheckOptions& options) {
+  add_recheck(command, options);
+  command
+      .add_option("--level", options.level,
+                  "share of false alarms: how often a result that holds may be refused")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+}
+
+void add_compare(CLI::App& command, CompareOptions& options) {
+  command.add_option("a", options.a, "folder that calibrate wrote, the earlier one")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("b", options.b, "another one, of the same robot")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
+}
+
 void add_rpy(CLI::App& command, RpyOptions& options) {
   command.add_option("numbers", options.numbers, "A B C, or R P Y; radians")
       ->required()
@@ -340,6 +386,14 @@ void add_commands(Commands& commands) {
   commands.add<CalibrateOptions>(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files",
       add_calibrate, calibrate);
+  commands.add<RecheckOptions>("evaluate", "show how a result fits other samples, without solving",
+                               add_recheck, evaluate);
+  commands.add<RecheckOptions>(
+      "verify", "decide by a few new samples whether a result still holds, and what has moved",
+      add_verify, verify);
+  commands.add<CompareOptions>("compare",
+                               "list what differs between two results by more than its uncertainty",
+                               add_compare, compare);
   commands.add<InstallOptions>(
       "install", "copy a result to the robot and set it in the launch file; or go back",
       add_install, install);

@@ -180,7 +180,7 @@ TEST_F(Program, CalibratesAndWritesAllFiles) {
                            "rgb_camera.yaml", "report.json"}) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   }
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 6) << "left something";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 8) << "left something";
   EXPECT_NEAR(YAML::LoadFile((folder_ / "out/calibration.yaml").string())["elbow"].as<double>(),
               0.02, 1e-9);
   const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
@@ -245,11 +245,12 @@ TEST_F(Program, UpstreamNamesCarryTheDateAndLeaveOutTheNameCamera) {
   }
   const std::string date = "[0-9]+_[0-9]+_[0-9]+_[0-9]+_[0-9]+_[0-9]+";
   using testing::MatchesRegex;
-  EXPECT_THAT(names, testing::UnorderedElementsAre(MatchesRegex("calibrated_" + date + "\\.urdf"),
-                                                   MatchesRegex("calibration_" + date + "\\.yaml"),
-                                                   MatchesRegex("depth_" + date + "\\.yaml"),
-                                                   MatchesRegex("rgb_" + date + "\\.yaml"),
-                                                   "report.json", "residuals.csv"));
+  EXPECT_THAT(names,
+              testing::UnorderedElementsAre(MatchesRegex("calibrated_" + date + "\\.urdf"),
+                                            MatchesRegex("calibration_" + date + "\\.yaml"),
+                                            MatchesRegex("depth_" + date + "\\.yaml"),
+                                            MatchesRegex("rgb_" + date + "\\.yaml"), "report.json",
+                                            "residuals.csv", "original.urdf", "config.yaml"));
 }
 
 TEST_F(Program, DryRunWritesNothing) {
@@ -649,7 +650,7 @@ TEST_F(Program, WritesNothingWhenTheDiskIsFullHalfWay) {
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_EQ(read("out/calibrated.urdf"), before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 6) << "left something";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 8) << "left something";
 }
 
 TEST_F(Program, RefusesToReplaceItsInput) {

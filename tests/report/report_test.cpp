@@ -54,10 +54,12 @@ Findings findings() {
                     .times = 43.0,
                     .limit = 6.0,
                     .bad = true}};
-  step.pose = PoseUncertainty{.frame = "hand", .in = "camera", .position = 0.0005};
+  step.pose =
+      PoseUncertainty{.frame = "hand", .in = "camera", .link = "gripper", .position = 0.0005};
   all.sources = {"samples.yaml:1", "samples.yaml:40"};
   all.numbers = {1, 3};
   all.left_out = {{2, "samples.yaml:20", "--exclude"}};
+  all.poses = {{"elbow", "wrist"}, {{0.1, -0.25}, {1.0 / 3.0, 2.0}}};
   all.judgement.add(Grade::use_with_care, "few \"samples\"");
   return all;
 }
@@ -86,6 +88,29 @@ TEST(JsonReport, IsReadBackAsItWasWritten) {
   EXPECT_EQ(json["observability"][0]["hold"][0].as<std::string>(), "camera_z_offset");
   EXPECT_EQ(json["bad_samples"][0]["sample"].as<int>(), 3);
   EXPECT_EQ(json["left_out"][0]["source"].as<std::string>(), "samples.yaml:20");
+}
+
+TEST(JsonReport, HasTheCovarianceAndThePoses) {
+  Findings two = findings();  // an earlier step freed the elbow and the ankle
+  two.result.table.add({.name = "ankle"});
+  Assessment earlier = two.assessments[0];
+  earlier.parameters = {0, 3};
+  earlier.uncertainty.covariance = Eigen::Matrix2d{{9.0, 8.0}, {8.0, 4.0}};
+  two.assessments[0].uncertainty.determined = 2;
+  two.assessments.insert(two.assessments.begin(), earlier);
+  const YAML::Node json = YAML::Load(json_report(two)), covariance = json["covariance"];
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(covariance["parameters"].as<Names>(),
+            (Names{"elbow", "camera_z_offset", "wrist", "ankle"}));
+  using Numbers = std::vector<double>;
+  EXPECT_EQ(covariance["lower"][1].as<Numbers>(), (Numbers{0.0, 1.0}));
+  EXPECT_EQ(covariance["lower"][3].as<Numbers>(), (Numbers{0.0, 0.0, 0.0, 4.0}));
+  EXPECT_EQ(covariance["undetermined"][0]["camera_z_offset"].as<double>(), -0.5);
+  EXPECT_EQ(json["noise"][0]["freedom"].as<double>(), 27.0);
+  EXPECT_EQ(json["noise"][0]["components"].as<int>(), 3);
+  EXPECT_EQ(json["pose"]["link"].as<std::string>(), "gripper");
+  EXPECT_EQ(json["poses"]["joints"].as<Names>(), (Names{"elbow", "wrist"}));
+  EXPECT_EQ(json["poses"]["positions"][1].as<Numbers>(), (Numbers{0.333333, 2.0}));
 }
 
 TEST(JsonReport, IsWrittenOfARunThatDidNotEnd) {

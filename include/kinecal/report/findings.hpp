@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/judge.hpp"
@@ -29,6 +30,7 @@ struct Findings {
   std::vector<LeftOutSample> left_out;  ///< by the rule of trust/captures.hpp, or by the user
   std::vector<std::string> sources;     ///< source location of each sample of the problems
   std::vector<int> numbers;             ///< from 1, in the order of the files, of each of them
+  RecordedPoses poses = {};             ///< of the samples that were used
 };
 
 /// What is wrong with a sample: "error block 'hand_eye': feature 2 is 48 mm off, all others below 3 mm".

@@ -143,6 +143,7 @@ KINECAL_INLINE Findings find(const Robot& robot, const Calibration& calibration,
                              const AssessOptions& options, const std::vector<std::string>& doubts) {
   Findings findings;
   findings.robot = robot.name();
+  findings.poses = recorded_poses(calibration, samples);
   findings.result = std::move(result);
   for (const Sample& sample : samples) findings.sources.push_back(sample.source);
   findings.numbers.resize(samples.size());

@@ -22,7 +22,8 @@ namespace detail {
 
 /// The whole report.  Costs are 1/2 sum of squares; rms is per residual component; mean, median and
 /// max are of the features' norms.  Units are metres, radians and pixels; `sigma` of a parameter is one
-/// standard deviation, null if it is not determined.
+/// standard deviation, null if it is not determined.  `covariance` is of all parameters, row by row of
+/// the lower triangle, zero along the combinations of `undetermined`; `poses` are joint positions.
 [[nodiscard]] std::string json_report(const Findings& findings);
 
 }  // namespace kinecal

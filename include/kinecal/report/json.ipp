@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "kinecal/report/json.hpp"
+#include "kinecal/report/json_state.ipp"
 
 namespace kinecal {
 
@@ -71,29 +72,21 @@ KINECAL_INLINE std::string json_number(double value) {
 
 [[nodiscard]] inline std::string json(const Observability& observability,
                                       const ParameterTable& table) {
-  std::string combinations;
-  for (const Combination& combination : observability.unobservable) {
-    std::string factors;
-    for (const auto& [parameter, factor] : combination) {
-      factors += fmt::format("{}{}: {}", factors.empty() ? "" : ", ",
-                             json_string(table[parameter].name), json_number(factor));
-    }
-    combinations += fmt::format("{}{{{}}}", combinations.empty() ? "" : ", ", factors);
-  }
-  std::string hold;
-  for (const int p : observability.hold) {
-    hold += (hold.empty() ? "" : ", ") + json_string(table[p].name);
-  }
-  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": [{}], "hold": [{}]}})",
-                     observability.rank, json_number(observability.condition), combinations, hold);
+  const auto combination = [&](const Combination& of) { return json(of, table); };
+  const auto name = [&](int parameter) { return json_string(table[parameter].name); };
+  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": {}, "hold": {}}})",
+                     observability.rank, json_number(observability.condition),
+                     json_row(observability.unobservable, combination),
+                     json_row(observability.hold, name));
 }
 
 [[nodiscard]] inline std::string json(const BlockNoise& noise, const HeldOutError* error) {
   return fmt::format(
       R"({{"name": {}, "unit": {}, "sigma": {}, "robust_sigma": {}, "sigma_given": {}, )"
-      R"("fitted": {}, "held_out": {}}})",
+      R"("features": {}, "components": {}, "freedom": {}, "fitted": {}, "held_out": {}}})",
       json_string(noise.block), json_string(noise.unit), json_number(noise.sigma),
       json_number(noise.robust), noise.given > 0.0 ? json_number(noise.given) : "null",
+      noise.features, noise.components, json_number(noise.freedom),
       error == nullptr ? "null" : json_number(error->fitted),
       error == nullptr ? "null" : json_number(error->held_out));
 }
@@ -105,11 +98,11 @@ KINECAL_INLINE std::string json_number(double value) {
 
 [[nodiscard]] inline std::string json(const PoseUncertainty& pose) {
   return fmt::format(
-      R"({{"frame": {}, "in": {}, "position": {}, "rotation": {}, "worst_position": {}, )"
+      R"({{"frame": {}, "link": {}, "in": {}, "in_link": {}, "position": {}, "rotation": {}, "worst_position": {}, )"
       R"("worst_rotation": {}, "determined": {}}})",
-      json_string(pose.frame), json_string(pose.in), json_number(pose.position),
-      json_number(pose.rotation), json_number(pose.worst_position),
-      json_number(pose.worst_rotation), pose.determined);
+      json_string(pose.frame), json_string(pose.link), json_string(pose.in),
+      json_string(pose.in_link), json_number(pose.position), json_number(pose.rotation),
+      json_number(pose.worst_position), json_number(pose.worst_rotation), pose.determined);
 }
 
 [[nodiscard]] inline std::string json_parameter(const Findings& findings, int i) {
@@ -127,14 +120,6 @@ KINECAL_INLINE std::string json_number(double value) {
                                               const CaptureError& error) {
   const auto sample = static_cast<std::size_t>(error.sample);
   return json({findings.numbers[sample], findings.sources[sample], capture_text(error, step)});
-}
-
-/// "[\n    a,\n    b\n  ]"
-template <class Items, class Write>
-[[nodiscard]] std::string json_list(const Items& items, Write&& write) {
-  std::string list;
-  for (const auto& item : items) list += (list.empty() ? "\n    " : ",\n    ") + write(item);
-  return list.empty() ? "[]" : "[" + list + "\n  ]";
 }
 
 }  // namespace detail
@@ -158,7 +143,7 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
       "{{\n  \"verdict\": {},\n  \"reasons\": {},\n  \"converged\": {},\n  \"termination\": {},\n"
       "  \"steps\": {},\n  \"error_blocks\": {},\n  \"noise\": {},\n  \"parameters\": {},\n"
       "  \"pose\": {},\n  \"observability\": {},\n  \"bad_samples\": {},\n"
-      "  \"left_out\": {}\n}}\n",
+      "  \"left_out\": {},\n  \"covariance\": {},\n  \"poses\": {}\n}}\n",
       detail::json_string(to_string(findings.judgement.verdict)),
       detail::json_list(findings.judgement.reasons, detail::json_string), result.converged,
       detail::json_string(result.termination), detail::json_list(result.steps, write),
@@ -170,7 +155,8 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
       detail::json_list(
           bad,
           [&](const CaptureError& error) { return detail::json_capture(findings, last, error); }),
-      detail::json_list(findings.left_out, write));
+      detail::json_list(findings.left_out, write), detail::json_covariance(findings),
+      detail::json(findings.poses));
 }
 
 }  // namespace kinecal
