@@ -10,4 +10,5 @@
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/ruined.hpp"
 #include "kinecal/trust/uncertainty.hpp"
