@@ -129,7 +129,7 @@ TEST(RealResults, ASetOf24ParametersOfTheUr5CanBeHeldAtTheSameCost) {
   KINECAL_NEEDS_DATA("ur5_tracker");
   const auto folder = data_folder() / "ur5_tracker";
   const std::vector<Sample> all = samples_of(folder / "grid.yaml");
-  const auto step = static_cast<std::size_t>(1000 / test::repetitions(1000, 150));
+  const auto step = static_cast<std::size_t>(1000 / test::repetitions(1000, 250));
   std::vector<Sample> samples;  // of all parts of the grid
   for (std::size_t i = 0; i < all.size(); i += step) samples.push_back(all[i]);
   const Calibrated grid = test::calibrate_samples(read_urdf((folder / "ur5.urdf").string()),
