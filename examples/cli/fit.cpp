@@ -11,6 +11,7 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/doubts/check_offsets.hpp"
 #include "kinecal/io/doubts/likely_causes.hpp"
+#include "kinecal/trust/ruined.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -103,28 +104,6 @@ Fit fit_with_estimates(const Input& input, const Selection& selection,
   return fitted;
 }
 
-/// Leaves out the ruined samples of a fit.
-/// @returns  false if there are none, or so many that rather the model is wrong
-bool leave_out_ruined(const Fit& fitted, Selection& selection) {
-  if (fitted.findings.assessments.empty()) return false;
-  const Assessment& last = fitted.findings.assessments.back();
-  std::vector<CaptureError> ruined;
-  for (const CaptureError& error : last.captures) {
-    constexpr double kRuined = 2.0;
-    if (error.bad && error.times > kRuined * error.limit) ruined.push_back(error);
-  }
-  constexpr double kMost = 0.25;
-  if (ruined.empty() ||
-      static_cast<double>(ruined.size()) > kMost * static_cast<double>(fitted.samples.size())) {
-    return false;
-  }
-  for (const CaptureError& error : ruined) {
-    selection.leave_out(fitted.findings.numbers[static_cast<std::size_t>(error.sample)] - 1,
-                        capture_text(error, last));
-  }
-  return true;
-}
-
 }  // namespace
 
 Fit fit(const Input& input, const CalibrateOptions& options, const Progress& progress,
@@ -137,14 +116,26 @@ Fit fit(const Input& input, const CalibrateOptions& options, const Progress& pro
     }
     selection.leave_out(number - 1, "--exclude");
   }
-  constexpr int kRounds = 5;
-  for (int round = 0;; ++round) {
-    Fit fitted = fit_with_estimates(input, selection, options, progress, solving);
-    if (options.keep_outliers || round == kRounds || !fitted.findings.result.converged ||
-        !leave_out_ruined(fitted, selection)) {
-      return fitted;
-    }
-  }
+  const auto again = [&] {
+    return fit_with_estimates(input, selection, options, progress, solving);
+  };
+  if (options.keep_outliers) return again();
+  const int excluded = static_cast<int>(selection.left_out().size());
+  Fit fitted = fit_without_ruined(
+      again,
+      [](const Fit& last) -> const Assessment* {
+        const Findings& found = last.findings;
+        return found.result.converged && !found.assessments.empty() ? &found.assessments.back()
+                                                                    : nullptr;
+      },
+      [&](const Fit& last, const CaptureError& ruined) {
+        const Findings& found = last.findings;
+        selection.leave_out(found.numbers[static_cast<std::size_t>(ruined.sample)] - 1,
+                            capture_text(ruined, found.assessments.back()));
+      });
+  judge_left_out(static_cast<int>(selection.left_out().size()) - excluded,
+                 static_cast<int>(input.samples.size()) - excluded, fitted.findings.judgement);
+  return fitted;
 }
 
 void add_causes(const Input& input, Fit& fitted) {

@@ -17,8 +17,8 @@ struct Fit {
   Findings findings;
 };
 
-/// Calibrates without the samples that the options exclude, and again without those of which a
-/// feature is off by more than twice CaptureError::limit, until there is none.
+/// Calibrates without the samples that the options exclude, and again without those that do not fit the
+/// others, until there are none (trust/ruined.hpp).
 /// @throws InputError  if a sample to exclude does not exist, or too few are left
 [[nodiscard]] Fit fit(const Input& input, const CalibrateOptions& options, const Progress& progress,
                       const SolveOptions& solving);

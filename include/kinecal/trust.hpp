@@ -16,5 +16,6 @@
 #include "kinecal/trust/reading.hpp"
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/reluctance.hpp"
+#include "kinecal/trust/ruined.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 #include "kinecal/trust/weak_parameters.hpp"

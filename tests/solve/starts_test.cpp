@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/errors.hpp"
+#include "support/repetitions.hpp"
 #include "support/scene.hpp"
 
 namespace kinecal {
@@ -77,7 +78,7 @@ const Vector6 kFar = (Vector6() << 4.0, -7.0, 2.0, 1.9, -1.4, 1.6).finished();
 
 TEST(Starts, FindAFrameAnywhere) {
   const double cost_near = plain(board_problem(kNear, 30)).result.final_cost;
-  for (int turn = 0; turn < 12; ++turn) {
+  for (int turn = 0; turn < test::repetitions(12, 3); ++turn) {
     Vector6 pose = kFar;
     pose.tail<3>() = 0.26 * turn * Vector3<double>(2, turn % 3 - 1, 2).normalized();
     const Ended ended = search(board_problem(pose, 30));

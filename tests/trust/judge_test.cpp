@@ -111,6 +111,18 @@ TEST(Judge, CountsSamplesThatDoNotFitTheOthers) {
   }
 }
 
+TEST(Judge, CountsSamplesThatWereLeftOutAsTheyDoNotFit) {
+  for (const auto& [left_out, verdict] : {std::pair(0, Grade::good),
+                                          {10, Grade::good},
+                                          {11, Grade::use_with_care},
+                                          {25, Grade::use_with_care},
+                                          {26, Grade::do_not_use}}) {
+    Judgement judgement;
+    judge_left_out(left_out, 100, judgement);
+    expect(judgement, verdict, "of 100 samples do not fit the others and were left out");
+  }
+}
+
 TEST(Judge, DoubtsJointsThatAreFarOff) {
   constexpr double kDegree = 0.017453292519943295;
   for (const auto& [degrees, verdict] : {std::pair(14.0, Grade::good),

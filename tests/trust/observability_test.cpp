@@ -12,6 +12,7 @@
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
 #include "support/oracle_problem.hpp"
+#include "support/repetitions.hpp"
 
 namespace kinecal {
 namespace {
@@ -58,22 +59,22 @@ struct RankCase {
 TEST(Observability, HasTheRankAndConditionOfTheReference) {
   KINECAL_NEEDS_DATA("ur5_tracker");
   KINECAL_NEEDS_DATA("mukca_panda");
-  for (const RankCase& c : {
-           RankCase{"ur5_tracker/ur5.urdf", "ur5_tracker/base_tool.yaml", "ur5_tracker/grid.yaml",
-                    9, 0},
-           RankCase{"ur5_tracker/ur5.urdf", "ur5_tracker/full.yaml", "ur5_tracker/grid.yaml", 25,
-                    97},
-           RankCase{"ur5_tracker/ur5.urdf", "ur5_tracker/weak.yaml", "ur5_tracker/grid.yaml", 27,
-                    1.7e5},
-           RankCase{"ur5_tracker/ur5.urdf", "ur5_tracker/redundant.yaml", "ur5_tracker/grid.yaml",
-                    27, 0},
-           RankCase{"mukca_panda/panda.urdf", "mukca_panda/panda_6/minimal.yaml",
-                    "mukca_panda/panda_6/front.yaml", 30, 377},
-           RankCase{"mukca_panda/panda.urdf", "mukca_panda/panda_2/minimal.yaml",
-                    "mukca_panda/panda_2/front_center.yaml", 30, 4963},
-           RankCase{"mukca_panda/panda.urdf", "mukca_panda/panda_2/stable.yaml",
-                    "mukca_panda/panda_2/front_center.yaml", 28, 141},
-       }) {
+  std::vector<RankCase> cases = {
+      {"ur5_tracker/ur5.urdf", "ur5_tracker/base_tool.yaml", "ur5_tracker/grid.yaml", 9, 0},
+      {"mukca_panda/panda.urdf", "mukca_panda/panda_6/minimal.yaml",
+       "mukca_panda/panda_6/front.yaml", 30, 377},
+      {"mukca_panda/panda.urdf", "mukca_panda/panda_2/minimal.yaml",
+       "mukca_panda/panda_2/front_center.yaml", 30, 4963},
+      {"mukca_panda/panda.urdf", "mukca_panda/panda_2/stable.yaml",
+       "mukca_panda/panda_2/front_center.yaml", 28, 141},
+      {"mukca_panda/panda.urdf", "mukca_panda/panda_6/redundant.yaml",
+       "mukca_panda/panda_6/front.yaml", 30, 0},
+      {"ur5_tracker/ur5.urdf", "ur5_tracker/full.yaml", "ur5_tracker/grid.yaml", 25, 97},
+      {"ur5_tracker/ur5.urdf", "ur5_tracker/weak.yaml", "ur5_tracker/grid.yaml", 27, 1.7e5},
+      {"ur5_tracker/ur5.urdf", "ur5_tracker/redundant.yaml", "ur5_tracker/grid.yaml", 27, 0}};
+  const int all = static_cast<int>(cases.size());
+  cases.resize(static_cast<std::size_t>(test::repetitions(all, 5)));
+  for (const RankCase& c : cases) {
     const auto data = test::data_folder();
     const auto calibrated = test::calibrate_files(data / c.urdf, data / c.config, data / c.samples);
     const Observability found = of(calibrated);

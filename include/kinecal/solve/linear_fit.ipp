@@ -6,24 +6,13 @@
 #include <stdexcept>
 
 #include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/solve/determined_spectrum.ipp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal {
 
 namespace detail {
-
-/// Gradient and Hessian of a problem's priors.
-[[nodiscard]] inline NormalEquations prior_equations(const AnyProblem& problem, const FreeSet& free,
-                                                     std::span<const double> values) {
-  NormalEquations sums(free.size());
-  TermResiduals rows;
-  for (const PriorTerm& prior : problem.priors()) {
-    prior.evaluate(problem.table(), values, &free, rows);
-    add_prior(sums, prior.options, rows, problem.num_samples(), Losses::as_given);
-  }
-  return sums;
-}
 
 /// Visits all rows as LinearFit has them, but by free parameters.
 inline void collect(AnyEvaluator& evaluator, std::span<const double> values, bool derivatives,
@@ -58,8 +47,8 @@ inline void weigh(const AnyTerm& term, const TermResiduals& rows, Eigen::Ref<Eig
 
 KINECAL_INLINE Coordinates determined_coordinates(const AnyProblem& problem, const FreeSet& free,
                                                   std::span<const double> values) {
-  const detail::Spectrum spectrum(detail::error_free_information(problem, free, values) +
-                                  detail::prior_equations(problem, free, values).hessian);
+  const detail::Spectrum spectrum =
+      detail::determined_spectrum(problem, free, values, detail::Priors::count);
   const auto in_units = spectrum.scale.cwiseInverse().asDiagonal();
   return {in_units * spectrum.vectors.rightCols(free.size() - spectrum.null),
           in_units * spectrum.vectors.leftCols(spectrum.null),
@@ -103,8 +92,8 @@ KINECAL_INLINE Eigen::MatrixXd information(const LinearFit& fit, const Eigen::Ve
                                            double priors) {
   Eigen::MatrixXd sum = priors * fit.prior_hessian;
   const LinearFit::RowMajor weighted = weights.cwiseSqrt().asDiagonal() * fit.jacobian;
-  sum.noalias() += weighted.transpose() * weighted;
-  return sum;
+  sum.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  return sum.selfadjointView<Eigen::Lower>();
 }
 
 KINECAL_INLINE Eigen::VectorXd step_to_minimum(const LinearFit& fit, const Eigen::VectorXd& weights,

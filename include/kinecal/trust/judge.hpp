@@ -6,7 +6,8 @@
 //   without sigma: distances of 20 mm, 12 px            8 mm, 4 px
 //   freedom less than half of the parameters            less than the parameters
 //   held-out error 3 x the fitted one                   1.5 x
-//   a quarter of the samples does not fit               a tenth
+//   a quarter of the samples does not fit,              a tenth
+//   left out or not
 //   something changed during the recording: with two    half
 //   values the noise falls to a third
 //   a joint's offset of 45 degrees                      15 degrees
@@ -60,6 +61,10 @@ struct Judgement {
 [[nodiscard]] Judgement judge(const Calibration& calibration, const CalibrationResult& result,
                               const std::vector<Assessment>& assessments,
                               const std::vector<std::string>& doubts = {});
+
+/// Judges samples that were left out because they do not fit the others (ruined.hpp).
+/// @param samples  how many there were, with those left out
+void judge_left_out(int left_out, int samples, Judgement& judgement);
 
 /// True if the noise of an error block is a reason not to call a step good: something is wrong with
 /// the model or the samples.

@@ -62,16 +62,23 @@ inline void judge_held_out(const Assessment& step, Judgement& judgement) {
   }
 }
 
+/// Samples that do not fit: a few are captures gone wrong, many a model that is.
+inline void judge_share(int bad, int samples, const std::string& where, const std::string& what,
+                        Judgement& judgement) {
+  constexpr Limits kShare{0.1, 0.25};
+  const double share = static_cast<double>(bad) / std::max(1, samples);
+  if (bad == 0 || share <= kShare.care) return;
+  judgement.add(share > kShare.refuse ? Grade::do_not_use : Grade::use_with_care,
+                where + std::to_string(bad) + " of " + std::to_string(samples) +
+                    " samples do not fit the others" + what);
+}
+
 inline void judge_captures(const Assessment& step, const AnyProblem& problem,
                            Judgement& judgement) {
   const auto bad = std::count_if(step.captures.begin(), step.captures.end(),
                                  [](const CaptureError& error) { return error.bad; });
-  constexpr Limits kShare{0.1, 0.25};
-  const double share = static_cast<double>(bad) / std::max(1, problem.num_samples());
-  if (bad == 0 || share <= kShare.care) return;
-  judgement.add(share > kShare.refuse ? Grade::do_not_use : Grade::use_with_care,
-                "step '" + step.step + "': " + std::to_string(bad) + " of " +
-                    std::to_string(problem.num_samples()) + " samples do not fit the others");
+  judge_share(static_cast<int>(bad), problem.num_samples(), "step '" + step.step + "': ", "",
+              judgement);
 }
 
 inline void judge_change(const Assessment& step, const AnyProblem& problem, Judgement& judgement) {
@@ -138,6 +145,10 @@ inline void judge_pose(const Assessment& step, Judgement& judgement) {
 }
 
 }  // namespace detail
+
+KINECAL_INLINE void judge_left_out(int left_out, int samples, Judgement& judgement) {
+  detail::judge_share(left_out, samples, "", " and were left out", judgement);
+}
 
 KINECAL_INLINE bool fits_badly(const Assessment& step) {
   Judgement of_noise;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/solve/spectrum.hpp"
+#include "kinecal/solve/determined_spectrum.ipp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/reluctance.hpp"
 
@@ -88,7 +88,8 @@ inline void reduce(Eigen::MatrixXd& basis) {
 KINECAL_INLINE Observability observability(const AnyProblem& problem, const FreeSet& free,
                                            std::span<const double> values) {
   if (free.size() == 0) return {};
-  const detail::Spectrum spectrum(detail::error_free_information(problem, free, values));
+  const detail::Spectrum spectrum =
+      detail::determined_spectrum(problem, free, values, detail::Priors::ignored);
   const Eigen::VectorXd& singular = spectrum.singular;
   Observability result;
   result.rank = free.size() - static_cast<int>(spectrum.null);

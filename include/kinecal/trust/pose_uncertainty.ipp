@@ -68,6 +68,34 @@ class TipDerivative {
   Eigen::Index free_;
 };
 
+/// Root of the mean squared distance of features, metres; zero if none is in metres.
+[[nodiscard]] inline double mean_distance(const AnyProblem& problem, const LinearFit& fit) {
+  double squares = 0.0;
+  Eigen::Index features = 0;
+  for (const RowBlock& block : fit.blocks) {
+    const AnyTerm& term = problem.term(block.term);
+    if (term.options().unit != "m") continue;
+    const double weight = term.options().weight;
+    squares += fit.residual.segment(block.first, block.size).squaredNorm() / (weight * weight);
+    features += block.size / term.feature_size();
+  }
+  return features > 0 ? std::sqrt(squares / static_cast<double>(features)) : 0.0;
+}
+
+/// True if changes that nothing determines move the origin of a frame: effects of parameters do not
+/// cancel.  A turn about the features, which are as near to it as residuals are large, does not count.
+/// @param jacobian  (6 x free) of its position and rotation
+/// @param null      (free x changes)
+/// @param near      metres
+[[nodiscard]] inline bool moves_origin(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& null,
+                                       double near) {
+  const auto of_origin = jacobian.topRows<3>();
+  constexpr double kCancels = 1e-3;
+  const double turned = (jacobian.bottomRows<3>() * null).cwiseAbs().sum();
+  return (of_origin * null).cwiseAbs().sum() >
+         kCancels * (of_origin.cwiseAbs() * null.cwiseAbs()).sum() + near * turned + 1e-12;
+}
+
 }  // namespace detail
 
 KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const FreeSet& free,
@@ -84,6 +112,8 @@ KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const
   };
   detail::TipDerivative of_frame = chain_to(frame), of_in = chain_to(in);
   const Eigen::MatrixXd covariance = known.covariance.matrix();
+  const double off = detail::mean_distance(problem, fit);
+  constexpr double kNear = 3.0;  // times it: where features are
   double positions = 0.0, rotations = 0.0;
   int poses = 0;
   for (const Sample& sample : samples) {
@@ -98,14 +128,8 @@ KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const
     ++poses;
     result.worst_position = std::max(result.worst_position, std::sqrt(std::max(0.0, position)));
     result.worst_rotation = std::max(result.worst_rotation, std::sqrt(std::max(0.0, rotation)));
-    // Along what nothing determines, effects of parameters must cancel.
-    const Eigen::MatrixXd& null = fit.coordinates.null;
-    const auto of_origin = jacobian.topRows<3>();
-    constexpr double kCancels = 1e-3;
-    if ((of_origin * null).cwiseAbs().sum() >
-        kCancels * (of_origin.cwiseAbs() * null.cwiseAbs()).sum() + 1e-12) {
+    if (detail::moves_origin(jacobian, fit.coordinates.null, kNear * off))
       result.determined = false;
-    }
   }
   if (poses == 0) return result;
   result.position = std::sqrt(std::max(0.0, positions / poses));

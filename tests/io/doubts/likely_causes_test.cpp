@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/arm_scene.hpp"
+#include "support/repetitions.hpp"
 
 namespace kinecal {
 namespace {
@@ -16,6 +17,7 @@ using testing::IsEmpty;
 
 class LikelyCauses : public test::ArmScene {
  protected:
+  LikelyCauses() { samples.resize(static_cast<std::size_t>(test::repetitions(30, 18))); }
   [[nodiscard]] std::vector<std::string> causes() const {
     return likely_causes(config(), parse_urdf(urdf, "arm.urdf"), samples);
   }

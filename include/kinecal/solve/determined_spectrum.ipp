@@ -1,0 +1,90 @@
+// The spectrum of what samples determine, which error-free and measured points must both show.
+//
+// The error-free problem moves a measured point to where the model predicts it.  Where what it moves
+// is known, not measured, this shows too much: sockets on one line, moved off it by the residuals, look
+// like points that determine the turn about it.  So a direction that has no effect on the measured
+// points is not determined either.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/solve/spectrum.hpp"
+
+namespace kinecal::detail {
+
+/// What of an information matrix is left to other directions than some that are open: the least
+/// information, whatever the open ones do.
+/// @param open  (n x k) orthonormal
+[[nodiscard]] inline Eigen::MatrixXd beside(const Eigen::MatrixXd& information,
+                                            const Eigen::MatrixXd& open) {
+  if (open.cols() == 0) return information;
+  const Eigen::MatrixXd across = information * open;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(open.transpose() * across);
+  constexpr double kNothing = 1e-10;  // of the largest: residuals are 1e-5 of the robot's size
+  const double least = kNothing * information.diagonal().maxCoeff();
+  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr(
+      [&](double value) { return value > least ? 1.0 / value : 0.0; });
+  const Eigen::MatrixXd by = across * eigen.eigenvectors();
+  return information - by * inverse.asDiagonal() * by.transpose();
+}
+
+/// Takes directions without effect on the measured points from those that a spectrum determines.
+/// @param error_free  (n x n) information that the spectrum is of
+/// @param measured    (n x n) information at the measured points
+inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::MatrixXd& measured,
+                              Spectrum& spectrum) {
+  using Eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
+  const Eigen::Index rank = spectrum.singular.size() - spectrum.null;
+  if (rank == 0) return;
+  const Eigen::MatrixXd basis = spectrum.vectors.rightCols(rank);
+  const Eigen::VectorXd units = spectrum.scale.cwiseInverse();
+  const auto scaled = [&](const Eigen::MatrixXd& information) {
+    return Eigen::MatrixXd(units.asDiagonal() * information * units.asDiagonal());
+  };
+  const Eigen::MatrixXd left = beside(scaled(measured), spectrum.vectors.leftCols(spectrum.null));
+  const Eigenvalues eigen(basis.transpose() * left * basis);
+  const double least = kUnobservable * kUnobservable * eigen.eigenvalues().maxCoeff();
+  const Eigen::Index lost = (eigen.eigenvalues().array() <= least).count();
+  if (lost == 0 || lost == rank) return;
+  const Eigen::MatrixXd kept = basis * eigen.eigenvectors().rightCols(rank - lost);
+  const Eigenvalues of_kept(kept.transpose() * scaled(error_free) * kept);
+  spectrum.vectors.middleCols(spectrum.null, lost) = basis * eigen.eigenvectors().leftCols(lost);
+  spectrum.vectors.rightCols(rank - lost) = kept * of_kept.eigenvectors();
+  spectrum.singular.segment(spectrum.null, lost).setZero();
+  spectrum.singular.tail(rank - lost) = of_kept.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  spectrum.null += lost;
+}
+
+/// Gradient and Hessian of a problem's priors.
+[[nodiscard]] inline NormalEquations prior_equations(const AnyProblem& problem, const FreeSet& free,
+                                                     std::span<const double> values) {
+  NormalEquations sums(free.size());
+  TermResiduals rows;
+  for (const PriorTerm& prior : problem.priors()) {
+    prior.evaluate(problem.table(), values, &free, rows);
+    add_prior(sums, prior.options, rows, problem.num_samples(), Losses::as_given);
+  }
+  return sums;
+}
+
+/// Whether priors determine parameters, too.
+enum class Priors { count, ignored };
+
+/// The spectrum of what samples determine.
+[[nodiscard]] inline Spectrum determined_spectrum(const AnyProblem& problem, const FreeSet& free,
+                                                  std::span<const double> values, Priors priors) {
+  const Eigen::MatrixXd of_priors = prior_equations(problem, free, values).hessian;
+  Eigen::MatrixXd error_free = error_free_information(problem, free, values);
+  if (priors == Priors::count) error_free += of_priors;
+  Spectrum spectrum(error_free);
+  NormalEquations measured = problem.evaluator(free)->normal_equations(values);
+  if (!std::isfinite(measured.cost)) return spectrum;  // a residual is undefined
+  if (priors == Priors::ignored) measured.hessian -= of_priors;
+  take_away_null_of(error_free, measured.hessian, spectrum);
+  return spectrum;
+}
+
+}  // namespace kinecal::detail

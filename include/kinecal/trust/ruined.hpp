@@ -1,0 +1,41 @@
+// Samples that are left out: ruined captures, which no noise explains.
+//
+// A sample is ruined if it is bad (captures.hpp) in the fit of the samples that are not.  Ruined samples
+// are left out and the others fitted again, until there are none.  Where more than a quarter of the
+// samples of a fit would be ruined, rather the model is wrong: none is left out.  Nothing in this
+// depends on the order of samples.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/trust/assess.hpp"
+
+namespace kinecal {
+
+/// The ruined samples of a fit, in their order; empty if there are none, or too many.
+[[nodiscard]] std::vector<CaptureError> ruined_captures(const Assessment& last);
+
+/// Fits, and fits again without ruined samples, until there are none.
+/// @param fit        the fit of the samples that have not been left out, of any type
+/// @param last       assessment of a fit's last step; nullptr if there is nothing to judge
+/// @param leave_out  takes a fit and a sample of it to leave out of the next one
+/// @returns  the last fit
+template <class Fit, class Last, class LeaveOut>
+[[nodiscard]] auto fit_without_ruined(const Fit& fit, const Last& last, const LeaveOut& leave_out) {
+  constexpr int kRounds = 5;
+  for (int round = 0;; ++round) {
+    auto fitted = fit();
+    const Assessment* assessment = last(fitted);
+    if (round == kRounds || assessment == nullptr) return fitted;
+    const std::vector<CaptureError> ruined = ruined_captures(*assessment);
+    if (ruined.empty()) return fitted;
+    for (const CaptureError& error : ruined) leave_out(fitted, error);
+  }
+}
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/ruined.ipp"
+#endif

@@ -1,0 +1,216 @@
+// Monte Carlo: how often the 95 % interval of a parameter, and of the gripper's position in the
+// camera's frame, covers the truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "support/repetitions.hpp"
+#include "support/simulated.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::Simulated;
+
+/// Half the width of the 95 % interval in standard deviations: Student's t.
+/// Source: Abramowitz, Stegun, Handbook of Mathematical Functions, 26.7.5.
+double student(double freedom) {
+  const double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z;
+  return z + (z3 + z) / (4.0 * freedom) +
+         (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * freedom * freedom);
+}
+
+TEST(Student, IsThatOfTheTables) {
+  EXPECT_NEAR(student(10.0), 2.228, 3e-3);
+  EXPECT_NEAR(student(35.0), 2.030, 1e-3);
+  EXPECT_NEAR(student(1e9), 1.960, 1e-3);
+}
+
+/// Calibrates samples of a configuration and assesses the result.
+struct Calibrated {
+  CalibrationResult result;
+  Assessment found;
+};
+
+Calibrated calibrate_once(const Simulated& simulated, const std::vector<Sample>& samples) {
+  const Calibration calibration = simulated.calibration(samples);
+  SolveOptions solving;
+  solving.threads = 1;
+  Calibrated once{calibrate(calibration, {}, solving), {}};
+  EXPECT_TRUE(once.result.converged) << once.result.termination;
+  once.found = assess(calibration, once.result, samples, {.folds = 0}).back();
+  return once;
+}
+
+/// The same with the noise of each block in place of its sigma, as the program does.
+Calibrated calibrate_with_estimates(Simulated simulated, const std::vector<Sample>& samples) {
+  Calibrated once = calibrate_once(simulated, samples);
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t b = 0; b < once.found.noise.size(); ++b) {
+      simulated.config.steps.back().error_blocks[b].estimated_sigma = once.found.noise[b].robust;
+    }
+    once = calibrate_once(simulated, samples);
+  }
+  return once;
+}
+
+using Calibrate = std::function<Calibrated(const Simulated&, const std::vector<Sample>&)>;
+
+/// How often each interval covers the truth.
+class Coverage {
+ public:
+  Coverage(const Simulated& simulated, const Calibrate& calibrate, int runs)
+      : simulated_(simulated), runs_(runs) {
+    const Calibration calibration = simulated.calibration(simulated.exact);
+    const FreeSet& free = calibration.steps.back().free;
+    find_poses(calibration.table, free);
+    for (int run = 0; run < runs; ++run) {
+      const auto seed = static_cast<std::uint64_t>(run) + 1000;
+      add(calibrate(simulated, simulated.samples(seed)));
+    }
+  }
+
+  /// Checks the counts and prints them.
+  void check() const {
+    const double sigma = std::sqrt(0.95 * 0.05 / runs_);
+    double sum = 0.0, least = 1.0, most = 0.0;
+    std::string worst;
+    for (const auto& [name, covered] : covered_) {
+      const double share = static_cast<double>(covered) / runs_;
+      EXPECT_NEAR(share, 0.95, kSigmas * sigma + 0.5 / runs_) << name;
+      sum += share;
+      if (share < least) worst = name;
+      least = std::min(least, share);
+      most = std::max(most, share);
+    }
+    const double mean = sum / static_cast<double>(covered_.size());
+    const double of_position = std::sqrt(squares_ / variances_);
+    std::printf(
+        "%s: %d calibrations, %zu intervals: %.2f %% cover the truth, the least %.1f %% "
+        "(%s), the most %.1f %%; errors of position / stated: %.3f\n",
+        simulated_.name.c_str(), runs_, covered_.size(), 100.0 * mean, 100.0 * least, worst.c_str(),
+        100.0 * most, of_position);
+    testing::Test::RecordProperty("coverage", std::to_string(mean));
+    testing::Test::RecordProperty("position_error_over_stated", std::to_string(of_position));
+    EXPECT_NEAR(mean, 0.95, std::max(0.02, kSigmas * sigma));
+    EXPECT_NEAR(of_position, 1.0, std::max(0.05, kSigmas / std::sqrt(2.0 * runs_)));
+  }
+
+ private:
+  static constexpr double kSigmas = 4.0;  // of a share; of some 100 of them, none is beyond
+
+  /// Poses at which the gripper's position is asked for, and its derivative there.
+  void find_poses(const ParameterTable& table, const FreeSet& free) {
+    truth_ = simulated_.truth_of(table);
+    const std::size_t step = std::max<std::size_t>(1, simulated_.exact.size() / 4);
+    for (std::size_t i = 0; i < simulated_.exact.size() && poses_.size() < 4; i += step) {
+      const Sample& sample = simulated_.exact[i];
+      Eigen::MatrixXd jacobian(3, free.size());
+      for (int c = 0; c < free.size(); ++c) {
+        constexpr double kStep = 1e-6;
+        Eigen::VectorXd above = truth_, below = truth_;
+        above(free.parameters()[static_cast<std::size_t>(c)]) += kStep;
+        below(free.parameters()[static_cast<std::size_t>(c)]) -= kStep;
+        jacobian.col(c) = (simulated_.gripper_in_camera(table, sample, above) -
+                           simulated_.gripper_in_camera(table, sample, below)) /
+                          (2.0 * kStep);
+      }
+      poses_.push_back({&sample, jacobian});
+    }
+  }
+
+  void add(const Calibrated& once) {
+    const Assessment& found = once.found;
+    double freedom = 0.0;
+    for (const BlockNoise& noise : found.noise) freedom += noise.freedom;
+    const double width = student(freedom);
+    const ParameterTable& table = once.result.table;
+    const auto count = [&](const std::string& name, double error, double deviation) {
+      covered_[name] += std::abs(error) <= width * deviation ? 1 : 0;
+    };
+    for (std::size_t c = 0; c < found.parameters.size(); ++c) {
+      const double deviation = found.uncertainty.deviation(static_cast<Eigen::Index>(c));
+      const Parameter& parameter = table[found.parameters[c]];
+      if (!std::isfinite(deviation)) continue;
+      count(parameter.name, parameter.value - truth_(found.parameters[c]), deviation);
+    }
+    const Eigen::VectorXd values = table.values();
+    const Eigen::MatrixXd covariance = found.uncertainty.covariance.matrix();
+    for (std::size_t p = 0; p < poses_.size(); ++p) {
+      const auto& [sample, jacobian] = poses_[p];
+      const Vector3<double> error = simulated_.gripper_in_camera(table, *sample, values) -
+                                    simulated_.gripper_in_camera(table, *sample, truth_);
+      const Eigen::Matrix3d variance = jacobian * covariance * jacobian.transpose();
+      for (int k = 0; k < 3; ++k) {
+        count("gripper at pose " + std::to_string(p) + " " + "xyz"[k], error(k),
+              std::sqrt(variance(k, k)));
+      }
+    }
+    ASSERT_TRUE(found.pose.has_value());
+    variances_ += found.pose->position * found.pose->position;
+    double squares = 0.0;
+    for (const Sample& sample : simulated_.exact) {
+      squares += (simulated_.gripper_in_camera(table, sample, values) -
+                  simulated_.gripper_in_camera(table, sample, truth_))
+                     .squaredNorm();
+    }
+    squares_ += squares / static_cast<double>(simulated_.exact.size());
+  }
+
+  const Simulated& simulated_;
+  int runs_;
+  Eigen::VectorXd truth_;
+  std::vector<std::pair<const Sample*, Eigen::MatrixXd>> poses_;
+  std::map<std::string, int> covered_;
+  double squares_ = 0.0, variances_ = 0.0;  ///< of positions
+};
+
+int runs() {
+  return test::repetitions(500, 20);
+}
+
+TEST(Coverage, OfTheFetchAndItsLeds) {
+  const Simulated fetch = test::fetch_and_leds();
+  Coverage(fetch, calibrate_once, runs()).check();
+}
+
+TEST(Coverage, OfTheFetchWithARobustLossAndOutliers) {
+  Simulated fetch = test::fetch_and_leds();
+  fetch.name += ", outliers, Huber";
+  fetch.outliers = 0.1;
+  BlockConfig& block = fetch.config.steps.front().error_blocks.front();
+  block.sigma = fetch.sigma;
+  block.loss = {"huber", 2.0};
+  Coverage(fetch, calibrate_once, runs()).check();
+}
+
+TEST(Coverage, OfTheFetchItsLedsAndTheFloorWithSigmasThatAreEstimated) {
+  Simulated fetch = test::fetch_and_leds(60, 10);
+  fetch.name += " and the floor, estimated sigmas";
+  Coverage(fetch, calibrate_with_estimates, test::repetitions(500, 8)).check();
+}
+
+TEST(Coverage, OfAnArmAndATrackerAtTwentyPoses) {
+  KINECAL_NEEDS_DATA("ur5_tracker");
+  const Simulated ur5 = test::ur5_and_tracker();
+  Coverage(ur5, calibrate_once, runs()).check();
+}
+
+TEST(Coverage, OfACameraAndABoard) {
+  const Simulated board = test::camera_and_board();
+  Coverage(board, calibrate_once, runs()).check();
+}
+
+TEST(Coverage, OfACameraAndABoardWithARobustLoss) {
+  Simulated board = test::camera_and_board();
+  board.name += ", outliers, Cauchy";
+  board.outliers = 0.1;
+  board.config.steps.front().error_blocks.front().sigma = board.sigma;
+  board.config.steps.front().error_blocks.front().loss = {"cauchy", 2.4};
+  Coverage(board, calibrate_once, runs()).check();
+}
+
+}  // namespace
+}  // namespace kinecal
