@@ -56,6 +56,7 @@ TEST(Drift, RaisesFalseAlarmsAtTheStatedRate) {
     EXPECT_EQ(drift.freedom, 60.0 - 12.0 * static_cast<double>(drift.missed.size()));
   }
   // Three standard deviations of a binomial distribution: 4.4 of 20.  Bonferroni errs on the safe side.
+  RecordProperty("alarms", alarms);
   EXPECT_LE(alarms, 20 + 13);
   EXPECT_GE(alarms, 4);
 }
