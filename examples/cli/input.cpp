@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "kinecal/io/assemble.hpp"
+#include "kinecal/io/cameras/choose_images.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/io/doubts/find_doubts.hpp"
@@ -36,6 +37,7 @@ void assemble_input(Input& input, Recorded recorded) {
   if (recorded == Recorded::before) {
     add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
   }
+  choose_images(input.config, input.robot, input.samples, input.diagnostics);
   input.calibration = assemble(input.config, input.robot, input.samples, input.diagnostics);
   find_doubts({input.config, input.robot, input.urdf_text, input.urdf, input.samples,
                input.calibration, recorded},
@@ -116,6 +118,9 @@ Input read_input(const std::string& urdf, const std::string& config,
 }
 
 void print(const Diagnostics& diagnostics) {
+  for (const std::string& note : diagnostics.notes) {
+    fmt::print(stderr, "note: {}\n", printable(note));
+  }
   for (const std::string& warning : diagnostics.warnings) {
     fmt::print(stderr, "warning: {}\n", printable(warning));
   }
