@@ -11,9 +11,12 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/doubts/check_offsets.hpp"
 #include "kinecal/io/doubts/likely_causes.hpp"
+#include "kinecal/trust/capture_causes.hpp"
 
 namespace kinecal::cli {
 namespace {
+
+constexpr const char* kExcluded = "--exclude";  ///< why a user left a sample out
 
 /// The samples that are used, by number from 0, and those that are not.
 class Selection {
@@ -125,6 +128,32 @@ bool leave_out_ruined(const Fit& fitted, Selection& selection) {
   return true;
 }
 
+/// Adds likely causes to the samples that were left out by the rule, and to those that are still bad.
+void add_capture_causes(const Input& input, Fit& fitted) {
+  Findings& findings = fitted.findings;
+  if (!findings.result.converged || findings.assessments.empty()) return;
+  const Assessment& last = findings.assessments.back();
+  const Eigen::VectorXd values = findings.result.table.values();
+  const auto make = [&] {
+    return empty_problem(input.config, input.config.steps.back(), input.robot,
+                         findings.result.table, fitted.samples);
+  };
+  const auto cause = [&](const Sample& sample) {
+    return capture_cause(make, {values.data(), static_cast<std::size_t>(values.size())}, last.noise,
+                         sample);
+  };
+  for (LeftOutSample& sample : findings.left_out) {
+    if (sample.why == kExcluded) continue;
+    const std::string why = cause(input.samples[static_cast<std::size_t>(sample.number - 1)]);
+    if (!why.empty()) sample.why += "; likely cause: " + why;
+  }
+  for (const CaptureError& error : last.captures) {
+    if (!error.bad) continue;
+    const std::string why = cause(fitted.samples[static_cast<std::size_t>(error.sample)]);
+    if (!why.empty()) findings.causes[error.sample] = why;
+  }
+}
+
 }  // namespace
 
 Fit fit(const Input& input, const CalibrateOptions& options, const Progress& progress,
@@ -135,13 +164,14 @@ Fit fit(const Input& input, const CalibrateOptions& options, const Progress& pro
       throw InputError(fmt::format("--exclude: no sample {}; there are samples 1 to {}", number,
                                    input.samples.size()));
     }
-    selection.leave_out(number - 1, "--exclude");
+    selection.leave_out(number - 1, kExcluded);
   }
   constexpr int kRounds = 5;
   for (int round = 0;; ++round) {
     Fit fitted = fit_with_estimates(input, selection, options, progress, solving);
     if (options.keep_outliers || round == kRounds || !fitted.findings.result.converged ||
         !leave_out_ruined(fitted, selection)) {
+      add_capture_causes(input, fitted);
       return fitted;
     }
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/trust/assess.hpp"
+#include "kinecal/trust/capture_causes.hpp"
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/judge.hpp"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,6 +30,7 @@ struct Findings {
   std::vector<LeftOutSample> left_out;  ///< by the rule of trust/captures.hpp, or by the user
   std::vector<std::string> sources;     ///< source location of each sample of the problems
   std::vector<int> numbers;             ///< from 1, in the order of the files, of each of them
+  std::map<int, std::string> causes;    ///< likely ones of bad samples, by number in the problem
 };
 
 /// What is wrong with a sample: "error block 'hand_eye': feature 2 is 48 mm off, all others below 3 mm".

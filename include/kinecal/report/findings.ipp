@@ -110,9 +110,11 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
   for (std::size_t i = 0; i < worst.size() && (worst[i].bad || i < kWorst); ++i) {
     if (!(worst[i].times > 0.0)) break;
     const auto sample = static_cast<std::size_t>(worst[i].sample);
-    text +=
-        fmt::format("  {} (sample {}): {}{}\n", findings.sources[sample], findings.numbers[sample],
-                    capture_text(worst[i], step), worst[i].bad ? "; does not fit the others" : "");
+    const auto cause = findings.causes.find(worst[i].sample);
+    text += fmt::format("  {} (sample {}): {}{}{}\n", findings.sources[sample],
+                        findings.numbers[sample], capture_text(worst[i], step),
+                        worst[i].bad ? "; does not fit the others" : "",
+                        cause == findings.causes.end() ? "" : "; likely cause: " + cause->second);
   }
   return text.empty() ? text : "Worst samples\n" + text;
 }
