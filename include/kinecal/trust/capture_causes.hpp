@@ -7,7 +7,7 @@
 //   order of features     two exchanged; one that shows another; reversed or turned by a quarter: a
 //                         board.  Nothing is fitted, so two features are enough.
 //   one joint's reading   Gauss-Newton over its position: three features, or one with orientation
-//   motion                all joints a little, (q / 0.2 rad)^2 added: six residuals more than it fits.
+//   motion                all joints a little, (q / 0.2 rad)^2 added: five residuals more than it fits.
 //                         That the target slipped looks the same, so both are named.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

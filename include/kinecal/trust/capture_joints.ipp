@@ -130,7 +130,7 @@ struct JointCause {
 [[nodiscard]] inline std::optional<Eigen::VectorXd> small_change(
     const CaptureTrials& trials, const Sample& sample, const TrialRows& now,
     const std::vector<Eigen::Index>& moving) {
-  constexpr double kTypical = 0.2, kTested = 6.0;
+  constexpr double kTypical = 0.2, kTested = 5.0;
   constexpr int kIterations = 6;
   const Eigen::Index n = std::ssize(moving), count = std::ssize(sample.joint_positions);
   Eigen::VectorXd change = Eigen::VectorXd::Zero(count);
@@ -151,8 +151,11 @@ struct JointCause {
     }
     const Eigen::MatrixXd squares = slopes.transpose() * slopes;
     const Eigen::LDLT<Eigen::MatrixXd> solver(squares + prior);
-    const double fitted = solver.solve(squares).trace();
-    if (static_cast<double>(now.rows.size()) - fitted < kTested - 1e-6) return std::nullopt;
+    if (iteration + 1 ==
+        kIterations) {  // before, what is off turns with the joints: more is fitted
+      const double fitted = solver.solve(squares).trace();
+      if (static_cast<double>(now.rows.size()) - fitted < kTested) return std::nullopt;
+    }
     const Eigen::VectorXd so_far = change(moving);
     change(moving) -= solver.solve(slopes.transpose() * found[0].rows + prior * so_far);
   }
