@@ -59,6 +59,9 @@ template <class T>
 }
 /// Standard deviation of a parameter in the last step that frees it.
 [[nodiscard]] std::optional<double> deviation_of(const Findings& findings, int parameter);
+/// "; likely cause: ...", or nothing.
+/// @param sample  by number in the problem
+[[nodiscard]] std::string cause_text(const Findings& findings, int sample);
 /// "not determined", "not significant" or nothing.
 [[nodiscard]] std::string note_on(const Parameter& parameter, double deviation);
 

@@ -110,7 +110,8 @@ KINECAL_INLINE std::string json_number(double value) {
 [[nodiscard]] inline std::string json_capture(const Findings& findings, const Assessment& step,
                                               const CaptureError& error) {
   const auto sample = static_cast<std::size_t>(error.sample);
-  return json({findings.numbers[sample], findings.sources[sample], capture_text(error, step)});
+  return json({findings.numbers[sample], findings.sources[sample],
+               capture_text(error, step) + cause_text(findings, error.sample)});
 }
 
 /// "[\n    a,\n    b\n  ]"

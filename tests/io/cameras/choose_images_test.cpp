@@ -6,40 +6,17 @@
 
 #include "kinecal/io/cameras/read_camera_file.hpp"
 #include "kinecal/io/results/result_files.hpp"
-#include "support/unknown_poses.hpp"
+#include "support/images.hpp"
 
 namespace kinecal {
 namespace {
 
+using test::board;
+using test::lens;
 using test::Scenario;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-/// A lens with distortion, and a rectified image of another size.
-CameraInfo lens() {
-  CameraInfo info = test::board_camera();
-  info.d = {-0.2, 0.05, 1e-3, -1e-3, 0.0};
-  info.p = {520, 0, 325, 0, 0, 515, 236, 0, 0, 0, 1, 0};
-  return info;
-}
-
-/// The board of unknown_poses.hpp, whose pixels are of a raw or a rectified image of this camera.
-Scenario board(const CameraInfo& info, ImageKind truth, int count = 15) {
-  Scenario scenario = test::board_scenario(true, 5, count);
-  const PinholeCamera camera{truth};
-  for (Sample& sample : scenario.samples) {
-    Observation& eye = sample.observations[1];
-    eye.camera = info;
-    const auto settings = camera.settings(eye);
-    for (Feature& feature : eye.features) {
-      const Vector3<double> ray((feature.point.x() - 320) / (550 * 1.01),
-                                (feature.point.y() - 240) / (545 * 1.01), 1.0);
-      feature.point.head<2>() = camera.predict(ray, settings, std::array<double, 4>{});
-    }
-  }
-  return scenario;
-}
 
 Diagnostics choose(Scenario& scenario) {
   Diagnostics diagnostics;
@@ -160,26 +137,10 @@ TEST(ChooseImages, ARawImageOfATurnedCameraIsWarnedOf) {
   EXPECT_THAT(choose(rectified).warnings, IsEmpty());
 }
 
-/// The gantry of unknown_poses.hpp as a file.
-std::string gantry_urdf() {
-  std::string text = "<robot name=\"gantry\"><link name=\"base_link\"/>";
-  const Robot robot = test::gantry("hand");
-  for (const Joint& joint : robot.joints()) {
-    const bool slides = joint.type == JointType::prismatic;
-    text += "<link name=\"" + joint.child + "\"/><joint name=\"" + joint.name + "\" type=\"" +
-            (joint.type == JointType::fixed ? "fixed"
-             : slides                       ? "prismatic"
-                                            : "continuous") +
-            "\"><parent link=\"" + joint.parent + "\"/><child link=\"" + joint.child +
-            "\"/><limit lower=\"-9\" upper=\"9\"/></joint>";
-  }
-  return text + "</robot>";
-}
-
 /// The camera of the written files.
 CameraInfo written_camera(const Scenario& scenario, const Calibration& calibration,
                           const CalibrationResult& result) {
-  for (const OutputFile& file : result_files(scenario.robot, gantry_urdf(), "gantry.urdf",
+  for (const OutputFile& file : result_files(scenario.robot, test::gantry_urdf(), "gantry.urdf",
                                              calibration, result, scenario.samples, {})) {
     if (file.name != "rgb_eye.yaml") continue;
     const test::TemporaryFolder folder;

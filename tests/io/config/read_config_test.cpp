@@ -400,10 +400,9 @@ TEST(ReadConfig, TheImageOfACamera2dIsRawOrRectified) {
   EXPECT_EQ(image(with(kRos1, "frame: lens", "frame: lens, image: raw")), ImageKind::raw);
   EXPECT_EQ(image(with(kRos2, "frame: lens", "frame: lens, image: rectified")),
             ImageKind::rectified);
-  EXPECT_THAT(
-      errors(with(kRos1, "frame: lens", "frame: lens, image: rectfied")),
-      ElementsAre("calibrate.yaml:5: image 'rectfied' is neither raw nor rectified; did you "
-                  "mean 'rectified'?"));
+  EXPECT_THAT(errors(with(kRos1, "frame: lens", "frame: lens, image: rectfied")),
+              ElementsAre("calibrate.yaml:5: model 'eye': image 'rectfied' is neither raw nor "
+                          "rectified; did you mean 'rectified'?"));
   EXPECT_THAT(errors(with(kRos1, "frame: optical", "frame: optical, image: raw")),
               ElementsAre("calibrate.yaml:4: model 'camera': image is a key of camera2d, but the "
                           "type is 'camera3d'"));
