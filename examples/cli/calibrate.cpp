@@ -8,6 +8,7 @@
 #include <ctime>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "commands.hpp"
 #include "fit.hpp"
@@ -15,6 +16,7 @@
 #include "kinecal/report.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
+#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -46,6 +48,25 @@ ResultFileOptions file_options(const CalibrateOptions& options) {
   return files;
 }
 
+bool same_file(const std::filesystem::path& one, const std::filesystem::path& other) {
+  std::error_code missing;
+  return std::filesystem::equivalent(one, other, missing);
+}
+
+/// Copies of the URDF and of the configuration; an input that has the name of its copy, in the same
+/// folder, is that copy.
+std::vector<OutputFile> copies(const CalibrateOptions& options, const Input& input) {
+  const std::filesystem::path folder(options.output);
+  std::vector<OutputFile> files;
+  if (!same_file(folder / kOriginalUrdf, options.urdf)) {
+    files.push_back({kOriginalUrdf, input.urdf_text});
+  }
+  if (!same_file(folder / kConfigCopy, options.config)) {
+    files.push_back({kConfigCopy, input.config_text});
+  }
+  return files;
+}
+
 /// Results must not replace their own input, and other files only on demand.
 void check_targets(const CalibrateOptions& options, const std::filesystem::path& folder,
                    const std::vector<OutputFile>& files) {
@@ -57,8 +78,7 @@ void check_targets(const CalibrateOptions& options, const std::filesystem::path&
   }
   for (const OutputFile& file : files) {
     for (const std::string& input : inputs) {
-      std::error_code missing;
-      if (!std::filesystem::equivalent(folder / file.name, input, missing)) continue;
+      if (!same_file(folder / file.name, input)) continue;
       throw OutputError((folder / file.name).string() +
                         ": would replace an input; choose another --output");
     }
@@ -73,7 +93,8 @@ void check_targets(const CalibrateOptions& options, const std::filesystem::path&
 
 /// What can be known of the results before the work.
 void check_first_targets(const CalibrateOptions& options) {
-  std::vector<OutputFile> files = {{"report.json", ""}};
+  std::vector<OutputFile> files = copies(options, {});
+  files.push_back({"report.json", ""});
   if (!options.upstream_names)
     files.insert(files.end(), {{"calibrated.urdf", ""}, {"calibration.yaml", ""}});
   check_targets(options, options.output, files);
@@ -95,8 +116,7 @@ int calibrate(const CalibrateOptions& options) {
   }
   if (!options.dry_run) check_first_targets(options);
   const Clock::time_point start = Clock::now();
-  const Input input =
-      read_input(options.urdf, options.config, options.samples, options.cameras, options.recorded);
+  const Input input = read_input(options);
   print(input.diagnostics);
   if (!input.diagnostics.errors.empty()) return kBadInput;
 
@@ -124,13 +144,14 @@ int calibrate(const CalibrateOptions& options) {
     return kNotUsable;
   }
   if (folder) {
-    const std::vector<OutputFile> files =
+    std::vector<OutputFile> files =
         output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration, findings,
                      fitted.samples, file_options(options));
+    for (OutputFile& copy : copies(options, input)) files.push_back(std::move(copy));
     check_targets(options, folder->path(), files);
     write(*folder, files);
   }
-  fmt::print("{} samples, {:.3f} s: reading {:.3f} s, {}\n", input.samples.size(),
+  fmt::print("{}, {:.3f} s: reading {:.3f} s, {}\n", counted(input.samples.size(), "sample"),
              seconds_since(start), reading, solving_text(result));
   return kDone;
 }

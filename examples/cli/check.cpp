@@ -1,16 +1,44 @@
-// kinecal check: lists every error in the input, without solving.
+// kinecal check: lists every error in the input, and what the samples cannot determine.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <span>
+#include <string>
+
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/report/text.hpp"
+#include "kinecal/trust/observability.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
+namespace {
 
-int check(const CheckOptions& options) {
-  const Input input =
-      read_input(options.urdf, options.config, options.samples, options.cameras, options.recorded);
+/// What the samples of each step cannot determine, near the initial values, or near the result if
+/// the pose of a frame is not known; empty if they determine all.
+std::string not_determined(const Calibration& calibration) {
+  const bool searches =
+      std::any_of(calibration.steps.begin(), calibration.steps.end(),
+                  [](const CalibrationStep& step) { return !step.unknown_frames.empty(); });
+  const ParameterTable table = searches ? kinecal::calibrate(calibration).table : calibration.table;
+  Eigen::VectorXd values = table.values();
+  std::string text;
+  for (const CalibrationStep& step : calibration.steps) {
+    if (step.problem->num_samples() == 0) continue;
+    if (!searches) {
+      for (const auto& [parameter, value] : step.assignments) values(parameter) = value;
+    }
+    const std::span<const double> numbers(values.data(), static_cast<std::size_t>(values.size()));
+    text += observability_text(step.name, observability(*step.problem, step.free, numbers), table);
+  }
+  return text;
+}
+
+}  // namespace
+
+int check(const InputOptions& options) {
+  const Input input = read_input(options);
   print(input.diagnostics);
   const std::size_t errors = input.diagnostics.errors.size();
   if (errors > 0) {
@@ -26,12 +54,9 @@ int check(const CheckOptions& options) {
                  counted(static_cast<std::size_t>(step.free.size()), "free parameter"));
     }
   }
+  fmt::print("{}", not_determined(input.calibration));
   const std::size_t doubts = input.diagnostics.doubts.size();
-  if (doubts == 0) {
-    fmt::print("no errors found\n");
-  } else {
-    fmt::print("no errors found, but {} doubt{}\n", doubts, doubts == 1 ? "" : "s");
-  }
+  fmt::print("no errors found{}\n", doubts == 0 ? "" : ", but " + counted(doubts, "doubt"));
   return kDone;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,22 @@
 
 namespace kinecal::cli {
 
-/// 0: done; 1: bad input; 2: the verdict is "do not use", or the solver did not converge.
+/// 0: done; 1: bad input; 2: the verdict is "do not use", the solver did not converge, or a result does
+/// not hold any more.
 enum ExitCode { kDone = 0, kBadInput = 1, kNotUsable = 2 };
 
-struct CalibrateOptions {
-  std::string urdf, config, output;
-  std::vector<std::string> samples;
-  std::vector<std::string> cameras;     ///< NAME=FILE
+/// What is calibrated, from which samples.
+struct InputOptions {
+  std::string urdf;                     ///< empty: the /robot_description of the samples' bag
+  std::string config;                   ///< file
+  std::vector<std::string> samples;     ///< files
+  std::vector<std::string> cameras;     ///< NAME=FILE, for samples without camera_info
+  std::vector<std::string> hold;        ///< parameters that are not calibrated
   Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
+};
+
+struct CalibrateOptions : InputOptions {
+  std::string output;
   std::string offsets = "rising";
   std::string report;          ///< report.json is written there, too, whatever the verdict
   std::vector<int> exclude;    ///< samples to leave out, from 1
@@ -33,15 +42,8 @@ struct CalibrateOptions {
 /// Calibrates the robot and writes the results, all or none.
 int calibrate(const CalibrateOptions& options);
 
-struct CheckOptions {
-  std::string urdf, config;
-  std::vector<std::string> samples;
-  std::vector<std::string> cameras;     ///< NAME=FILE
-  Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
-};
-
-/// Lists every error in the input, without solving.
-int check(const CheckOptions& options);
+/// Lists every error in the input and what the samples cannot determine, without calibrating.
+int check(const InputOptions& options);
 
 /// Shows what is in recordings.
 int inspect(const std::vector<std::string>& samples);
@@ -82,6 +84,29 @@ struct CameraOptions {
 
 /// Shows a camera file, and writes it as camera_info.
 int camera(const CameraOptions& options);
+
+struct RecheckOptions {
+  std::string result;                ///< folder that calibrate wrote
+  std::vector<std::string> samples;  ///< new ones
+  std::vector<std::string> cameras;  ///< NAME=FILE
+  std::optional<Recorded> recorded;  ///< before or after the result was installed
+  std::string report;                ///< JSON is written there
+  double level = 0.01;               ///< of verify: share of false alarms
+};
+
+/// Shows how a result fits other samples; nothing is solved.
+int evaluate(const RecheckOptions& options);
+
+/// Decides whether a result still holds for a few new samples, and what has moved if not.
+int verify(const RecheckOptions& options);
+
+struct CompareOptions {
+  std::string a, b;    ///< folders that calibrate wrote
+  std::string report;  ///< JSON is written there
+};
+
+/// Lists what differs between two results by more than its uncertainty.
+int compare(const CompareOptions& options);
 
 struct InstallOptions {
   std::string result;  ///< folder that calibrate wrote

@@ -122,9 +122,10 @@ std::string man_page(const CLI::App& app) {
   }
   return text +
          ".SH EXIT STATUS\n.TP\n0\nThe command did what it should.\n.TP\n1\nThe input or the "
-         "arguments are wrong; nothing is written.\n.TP\n2\nThe robot is not calibrated; nothing "
-         "is "
-         "written.\n.SH EXAMPLE\n.nf\nkinecal init \\-\\-urdf robot.urdf\nkinecal calibrate "
+         "arguments are wrong; nothing is written.\n.TP\n2\nThe robot is not calibrated, and "
+         "nothing "
+         "is written; or, of verify, the result does not hold any more.\n.SH EXAMPLE\n.nf\nkinecal "
+         "init \\-\\-urdf robot.urdf\nkinecal calibrate "
          "\\-\\-urdf robot.urdf \\-\\-config calibrate.yaml \\e\n    \\-\\-samples samples.yaml "
          "\\-\\-output calibrated\n.fi\n";
 }

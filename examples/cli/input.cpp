@@ -12,6 +12,7 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/cameras/choose_images.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
+#include "kinecal/io/config/hold_parameters.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/io/doubts/find_doubts.hpp"
 #include "kinecal/io/printable.hpp"
@@ -69,9 +70,7 @@ Recording read_recordings(const std::vector<std::string>& files, Diagnostics& di
   return all;
 }
 
-Input read_input(const std::string& urdf, const std::string& config,
-                 const std::vector<std::string>& samples, const std::vector<std::string>& cameras,
-                 Recorded recorded) {
+Input read_input(const InputOptions& options) {
   Input input;
   Diagnostics& diagnostics = input.diagnostics;
   const auto read_robot = [&](auto&& text) {
@@ -82,31 +81,39 @@ Input read_input(const std::string& urdf, const std::string& config,
         },
         diagnostics);
   };
-  input.urdf = urdf;
+  input.urdf = options.urdf;
   std::optional<Robot> robot;
-  if (!urdf.empty()) robot = read_robot([&] { return read_urdf_text(urdf); });
+  if (!options.urdf.empty()) {
+    robot = read_robot([&] { return read_urdf_text(options.urdf); });
+  }
   const std::size_t before = diagnostics.errors.size();
-  auto configuration = attempt([&] { return read_config(config, diagnostics); }, diagnostics);
+  auto configuration = attempt(
+      [&] {
+        input.config_text = detail::read_yaml_text(options.config);
+        return parse_config(input.config_text, options.config, diagnostics);
+      },
+      diagnostics);
   const bool configuration_is_good = diagnostics.errors.size() == before;
-  Recording recording = read_recordings(samples, diagnostics);
+  if (configuration) hold_parameters(*configuration, options.hold, diagnostics);
+  Recording recording = read_recordings(options.samples, diagnostics);
   input.samples = std::move(recording.samples);
-  if (urdf.empty() && recording.urdf.empty()) {
+  if (options.urdf.empty() && recording.urdf.empty()) {
     diagnostics.error({"--urdf", 0},
-                      samples.empty()
+                      options.samples.empty()
                           ? "is required without samples"
                           : "is required, because the samples contain no /robot_description");
-  } else if (urdf.empty()) {
+  } else if (options.urdf.empty()) {
     input.urdf = "/robot_description";
     robot = read_robot([&] { return std::move(recording.urdf); });
   }
-  for (const std::string& camera : cameras) {
+  for (const std::string& camera : options.cameras) {
     attempt([&] { return set_camera(input.samples, camera, diagnostics), true; }, diagnostics);
   }
   if (!robot || !configuration) return input;
   input.robot = *robot;
   input.config = *configuration;
   if (diagnostics.errors.size() == before) {
-    assemble_input(input, recorded);
+    assemble_input(input, options.recorded);
     return input;
   }
   // Blocks of a wrong configuration are left out; the rest is still checked against the robot.

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
-#include "kinecal/io/doubts/rising.hpp"
 #include "kinecal/io/recordings/read_recording.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
@@ -17,21 +17,16 @@ namespace kinecal::cli {
 struct Input {
   Robot robot;
   Config config;
-  std::string urdf;       ///< name of the URDF in messages: its file or topic
-  std::string urdf_text;  ///< its content
+  std::string urdf;         ///< name of the URDF in messages: its file or topic
+  std::string urdf_text;    ///< its content
+  std::string config_text;  ///< content of the configuration
   std::vector<Sample> samples;
   Calibration calibration;
   Diagnostics diagnostics;
 };
 
 /// Reads and assembles everything; errors go to Input::diagnostics.
-/// @param urdf      empty: the /robot_description of the samples' bag
-/// @param cameras   NAME=FILE, for samples without camera_info
-/// @param recorded  before: <calibration rising> of the URDF is added to the positions
-[[nodiscard]] Input read_input(const std::string& urdf, const std::string& config,
-                               const std::vector<std::string>& samples,
-                               const std::vector<std::string>& cameras = {},
-                               Recorded recorded = Recorded::after);
+[[nodiscard]] Input read_input(const InputOptions& options);
 
 /// Reads samples from several files of any format, and the URDF from the first that has one.  Errors
 /// go to the diagnostics.

@@ -19,7 +19,10 @@ std::string why_unfit(const ResultFolder& result, const std::string& folder) {
   if (!result.converged) {
     return folder + ": has no report.json, so it is unknown whether the result converged";
   }
-  return *result.converged ? "" : folder + "/report.json: the result did not converge";
+  if (!*result.converged) return folder + "/report.json: the result did not converge";
+  return result.refusal.empty()
+             ? ""
+             : folder + "/report.json: the verdict is 'do not use': " + printable(result.refusal);
 }
 
 std::string in_folder(const InstallOptions& options, const std::string& name) {

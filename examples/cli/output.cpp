@@ -9,8 +9,12 @@ namespace kinecal::cli {
 
 std::vector<OutputFile> output_files(const Robot& robot, const UrdfFile& urdf,
                                      const Calibration& calibration, const Findings& findings,
-                                     std::span<const Sample> samples,
-                                     const ResultFileOptions& options) {
+                                     std::span<const Sample> samples, ResultFileOptions options) {
+  for (const int i : findings.result.calibrated) {
+    if (const auto deviation = detail::deviation_of(findings, i)) {
+      options.deviations[i] = *deviation;
+    }
+  }
   std::vector<OutputFile> files =
       result_files(robot, urdf.text, urdf.name, calibration, findings.result, samples, options);
   files.push_back({"report.json", json_report(findings)});

@@ -12,6 +12,9 @@
 
 namespace kinecal::cli {
 
+/// Copies of what a result was calibrated with, so that its folder says all.
+inline constexpr const char *kOriginalUrdf = "original.urdf", *kConfigCopy = "config.yaml";
+
 /// A URDF as it was read.
 struct UrdfFile {
   std::string name, text;
@@ -22,7 +25,7 @@ struct UrdfFile {
                                                    const Calibration& calibration,
                                                    const Findings& findings,
                                                    std::span<const Sample> samples,
-                                                   const ResultFileOptions& options = {});
+                                                   ResultFileOptions options = {});
 
 /// Writes all files or none, and prints their names.
 void write(OutputFolder& folder, const std::vector<OutputFile>& files);

@@ -20,16 +20,6 @@ namespace {
 
 using namespace kinecal::cli;
 
-void add_input(CLI::App& command, std::string& urdf, std::string& config) {
-  command.add_option("--urdf", urdf, "the robot's URDF; default: /robot_description of the bag")
-      ->type_name("FILE");
-  command
-      .add_option("--config", config,
-                  "what to calibrate: a configuration of robot_calibration, ROS 1 or ROS 2")
-      ->required()
-      ->type_name("FILE");
-}
-
 void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
   command
       .add_option(
@@ -40,28 +30,45 @@ void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
       ->allow_extra_args(false);
 }
 
-void add_recorded(CLI::App& command, kinecal::Recorded& recorded) {
+/// The options that say what is calibrated, from which samples.
+/// @returns  --samples
+CLI::Option* add_input(CLI::App& command, InputOptions& options) {
+  command
+      .add_option("--urdf", options.urdf,
+                  "the robot's URDF; default: /robot_description of the bag")
+      ->type_name("FILE");
+  command
+      .add_option("--config", options.config,
+                  "what to calibrate: a configuration of robot_calibration, ROS 1 or ROS 2")
+      ->required()
+      ->type_name("FILE");
+  CLI::Option* samples =
+      command
+          .add_option("--samples", options.samples,
+                      "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
+          ->type_name("FILE");
+  add_cameras(command, options.cameras);
+  command
+      .add_option("--hold", options.hold,
+                  "parameters that keep their initial values, though the configuration frees them")
+      ->delimiter(',')
+      ->type_name("NAME");
   command
       .add_option_function<std::string>(
           "--samples-recorded",
-          [&recorded](const std::string& when) {
-            recorded = when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
+          [&options](const std::string& when) {
+            options.recorded =
+                when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
           },
           "before or after <calibration rising> of the URDF was written: after, the recorded "
           "positions contain it; before, it is added to them")
       ->check(CLI::IsMember({"after", "before"}))
       ->default_str("after");
+  return samples;
 }
 
 void add_calibrate(CLI::App& command, CalibrateOptions& options) {
-  add_input(command, options.urdf, options.config);
-  command
-      .add_option("--samples", options.samples,
-                  "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
-      ->required()
-      ->type_name("FILE");
-  add_cameras(command, options.cameras);
-  add_recorded(command, options.recorded);
+  add_input(command, options)->required();
   command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
   command
       .add_option(
@@ -218,9 +225,9 @@ void add_install(CLI::App& command, InstallOptions& installing) {
           "KEY= leaves the key out")
       ->type_name("KEY=NAME")
       ->allow_extra_args(false);
-  command.add_flag(
-      "--force", installing.force,
-      "install a result that did not converge; restore a version whose files are gone");
+  command.add_flag("--force", installing.force,
+                   "install a result that did not converge or should not be used; restore a "
+                   "version whose files are gone");
   CLI::Option* restore =
       command.add_flag("--restore", installing.restore, "put the previous version back")
           ->excludes(result);
@@ -229,15 +236,54 @@ void add_install(CLI::App& command, InstallOptions& installing) {
       ->excludes(restore);
 }
 
-void add_check(CLI::App& command, CheckOptions& options) {
-  add_input(command, options.urdf, options.config);
-  command.add_option("--samples", options.samples, "recorded samples")->type_name("FILE");
-  add_cameras(command, options.cameras);
-  add_recorded(command, options.recorded);
+void add_check(CLI::App& command, InputOptions& options) {
+  add_input(command, options);
 }
 
 void add_inspect(CLI::App& command, std::vector<std::string>& samples) {
   command.add_option("samples", samples, "recorded samples")->required()->type_name("FILE");
+}
+
+/// Result, samples, cameras and report of evaluate and verify.
+void add_recheck(CLI::App& command, RecheckOptions& options) {
+  command.add_option("result", options.result, "folder that calibrate wrote")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("samples", options.samples, "samples of the same robot, in any format")
+      ->required()
+      ->type_name("FILE");
+  add_cameras(command, options.cameras);
+  command
+      .add_option_function<std::string>(
+          "--samples-recorded",
+          [&options](const std::string& when) {
+            options.recorded =
+                when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
+          },
+          "before or after calibrated.urdf and the calibrated cameras were installed; default: "
+          "what "
+          "fits better")
+      ->check(CLI::IsMember({"after", "before"}));
+  command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
+}
+
+void add_verify(CLI::App& command, RecheckOptions& options) {
+  add_recheck(command, options);
+  command
+      .add_option("--level", options.level,
+                  "share of false alarms: how often a result that holds may be refused")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+}
+
+void add_compare(CLI::App& command, CompareOptions& options) {
+  command.add_option("a", options.a, "folder that calibrate wrote, the earlier one")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("b", options.b, "another one, of the same robot")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
 }
 
 void add_rpy(CLI::App& command, RpyOptions& options) {
@@ -333,11 +379,21 @@ void add_commands(Commands& commands) {
   commands.add<InitOptions>(
       "init", "write a first configuration from a URDF; asks for what the options leave open",
       add_init, init);
-  commands.add<CheckOptions>("check", "list every error in the input at once, without calibrating",
-                             add_check, check);
+  commands.add<InputOptions>(
+      "check",
+      "list every error in the input and what the samples cannot determine, without calibrating",
+      add_check, check);
   commands.add<CalibrateOptions>(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files",
       add_calibrate, calibrate);
+  commands.add<RecheckOptions>("evaluate", "show how a result fits other samples, without solving",
+                               add_recheck, evaluate);
+  commands.add<RecheckOptions>(
+      "verify", "decide by a few new samples whether a result still holds, and what has moved",
+      add_verify, verify);
+  commands.add<CompareOptions>("compare",
+                               "list what differs between two results by more than its uncertainty",
+                               add_compare, compare);
   commands.add<InstallOptions>(
       "install", "copy a result to the robot and set it in the launch file; or go back",
       add_install, install);

@@ -18,6 +18,7 @@
 #include "kinecal/io/cameras/read_camera_file.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/config/config.hpp"
+#include "kinecal/io/config/hold_parameters.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/io/csv/csv_mapping.hpp"
 #include "kinecal/io/csv/csv_table.hpp"

@@ -63,6 +63,13 @@ TEST_F(InstallProgram, TheLaunchFileAndItsNamesMayBeOthers) {
   EXPECT_EQ(run("--date --to robot" + names).out, "2026-01-02 03:04:05\n");
 }
 
+TEST_F(InstallProgram, RefusesWhatShouldNotBeUsed) {
+  write("out/report.json",
+        R"({"verdict": "do not use", "reasons": ["sigma 1 mm given"], "converged": true})");
+  expect_refused("out --to robot", HasSubstr("'do not use': sigma 1 mm given; nothing installed"),
+                 2);
+}
+
 TEST_F(InstallProgram, RefusesWhatDidNotConvergeUnlessForced) {
   write("out/report.json", "{\"converged\": false}");
   expect_refused("out --to robot", HasSubstr("did not converge; nothing installed"), 2);

@@ -95,7 +95,9 @@ TEST_F(RobotProgram, FetchsCrateSolvesWhatItsConfigurationSays) {
     ASSERT_TRUE(found.contains(name)) << name;
     EXPECT_NEAR(found.at(name), value, tolerance(value)) << name;
   }
-  EXPECT_EQ(files("crate"), files("configured"));
+  auto of_crate = files("crate");
+  of_crate.insert({"original.urdf", "config.yaml"});  // a crate has no configuration to copy
+  EXPECT_EQ(of_crate, files("configured"));
   for (const char* file : {"calibrated.urdf", "depth_camera.yaml", "rgb_camera.yaml"}) {
     SCOPED_TRACE(file);
     expect_same_text(read("crate/" + std::string(file)), read("configured/" + std::string(file)));
@@ -106,7 +108,7 @@ TEST_F(RobotProgram, ReportsWhatItFoundOnSamplesHeldOut) {
   const test::Outcome result = run(KINECAL_CALIBRATE_FETCH " --pairs 40 --planes 10 --seed 3");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("On samples held out"));
-  EXPECT_THAT(result.out, HasSubstr("24 of 26 parameter combinations are observable"));
+  EXPECT_THAT(result.out, HasSubstr("2 of 26 parameters cannot be determined"));
 }
 
 TEST_F(RobotProgram, ExitsWith2WhereHeldOutSamplesShowMoreThanNoise) {

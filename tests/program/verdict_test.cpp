@@ -56,7 +56,7 @@ TEST_F(VerdictProgram, IsGoodAndTheFirstLine) {
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out, StartsWith("verdict: good\n"));
   EXPECT_THAT(result.out,
-              AllOf(HasSubstr("held out"), HasSubstr("Position of 'tool' in 'tracker_frame'"),
+              AllOf(HasSubstr("held out"), HasSubstr("Pose of 'tool' in 'tracker_frame'"),
                     HasSubstr("Worst samples"), HasSubstr("Next: ")));
   EXPECT_EQ(report()["verdict"].as<std::string>(), "good");
   EXPECT_EQ(report()["reasons"].size(), 0u);

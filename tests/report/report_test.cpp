@@ -54,10 +54,12 @@ Findings findings() {
                     .times = 43.0,
                     .limit = 6.0,
                     .bad = true}};
-  step.pose = PoseUncertainty{.frame = "hand", .in = "camera", .position = 0.0005};
+  step.pose =
+      PoseUncertainty{.frame = "hand", .in = "camera", .link = "gripper", .position = 0.0005};
   all.sources = {"samples.yaml:1", "samples.yaml:40"};
   all.numbers = {1, 3};
   all.left_out = {{2, "samples.yaml:20", "--exclude"}};
+  all.poses = {{"elbow", "wrist"}, {{0.1, -0.25}, {1.0 / 3.0, 2.0}}};
   all.judgement.add(Grade::use_with_care, "few \"samples\"");
   return all;
 }
@@ -88,6 +90,29 @@ TEST(JsonReport, IsReadBackAsItWasWritten) {
   EXPECT_EQ(json["left_out"][0]["source"].as<std::string>(), "samples.yaml:20");
 }
 
+TEST(JsonReport, HasTheCovarianceAndThePoses) {
+  Findings two = findings();  // an earlier step freed the elbow and the ankle
+  two.result.table.add({.name = "ankle"});
+  Assessment earlier = two.assessments[0];
+  earlier.parameters = {0, 3};
+  earlier.uncertainty.covariance = Eigen::Matrix2d{{9.0, 8.0}, {8.0, 4.0}};
+  two.assessments[0].uncertainty.determined = 2;
+  two.assessments.insert(two.assessments.begin(), earlier);
+  const YAML::Node json = YAML::Load(json_report(two)), covariance = json["covariance"];
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(covariance["parameters"].as<Names>(),
+            (Names{"elbow", "camera_z_offset", "wrist", "ankle"}));
+  using Numbers = std::vector<double>;
+  EXPECT_EQ(covariance["lower"][1].as<Numbers>(), (Numbers{0.0, 1.0}));
+  EXPECT_EQ(covariance["lower"][3].as<Numbers>(), (Numbers{0.0, 0.0, 0.0, 4.0}));
+  EXPECT_EQ(covariance["undetermined"][0]["camera_z_offset"].as<double>(), -0.5);
+  EXPECT_EQ(json["noise"][0]["freedom"].as<double>(), 27.0);
+  EXPECT_EQ(json["noise"][0]["components"].as<int>(), 3);
+  EXPECT_EQ(json["pose"]["link"].as<std::string>(), "gripper");
+  EXPECT_EQ(json["poses"]["joints"].as<Names>(), (Names{"elbow", "wrist"}));
+  EXPECT_EQ(json["poses"]["positions"][1].as<Numbers>(), (Numbers{0.333333, 2.0}));
+}
+
 TEST(JsonReport, IsWrittenOfARunThatDidNotEnd) {
   Findings failed;
   failed.judgement.add(Grade::do_not_use, "failed");
@@ -112,8 +137,8 @@ TEST(Summary, BeginsWithTheVerdictAndShowsDistancesAndDeviations) {
   EXPECT_THAT(text, HasSubstr("elbow                 5.730  0.573   deg"));
   EXPECT_THAT(text, HasSubstr("not determined"));
   EXPECT_THAT(text, HasSubstr("not significant"));
-  EXPECT_THAT(text, HasSubstr("Position of 'hand' in 'camera': +- 0.5 mm"));
-  EXPECT_THAT(text, HasSubstr("hold camera_z_offset"));
+  EXPECT_THAT(text, HasSubstr("Pose of 'hand' in 'camera': +- 0.5 mm"));
+  EXPECT_THAT(text, HasSubstr("--hold camera_z_offset"));
   EXPECT_THAT(text, HasSubstr("samples.yaml:40 (sample 3): error block 'hand_eye': feature 2 is "
                               "48 mm off, all others at most 3 mm, 43.0 times the noise; does not "
                               "fit the others"));
@@ -138,9 +163,9 @@ TEST(TextReport, NamesUnobservableCombinationsAndWhatToHold) {
   const auto table = findings().result.table;
   EXPECT_EQ(observability_text("one", {2, 1.0, {}, {}}, table), "");
   const std::string text = observability_text("one", {1, 2.5, {{{0, 1.0}, {1, -0.5}}}, {1}}, table);
-  EXPECT_THAT(text, HasSubstr("1 of 2 parameter combinations are observable"));
+  EXPECT_THAT(text, HasSubstr("1 of 2 parameters cannot be determined from these samples"));
   EXPECT_THAT(text, HasSubstr("+1 elbow -0.5 camera_z_offset"));
-  EXPECT_THAT(text, HasSubstr("hold camera_z_offset"));
+  EXPECT_THAT(text, HasSubstr("--hold camera_z_offset"));
 }
 
 TEST(Statistics, AreThoseOfTheDefinition) {

@@ -113,8 +113,10 @@ TEST(Judge, CountsSamplesThatDoNotFitTheOthers) {
 
 TEST(Judge, DoubtsJointsThatAreFarOff) {
   constexpr double kDegree = 0.017453292519943295;
-  for (const auto& [degrees, verdict] :
-       {std::pair(29.0, Grade::good), {-31.0, Grade::use_with_care}, {91.0, Grade::do_not_use}}) {
+  for (const auto& [degrees, verdict] : {std::pair(14.0, Grade::good),
+                                         {-16.0, Grade::use_with_care},
+                                         {44.0, Grade::use_with_care},
+                                         {46.0, Grade::do_not_use}}) {
     Judged judged;
     judged.set("elbow", degrees * kDegree);
     expect(judged.judgement(), verdict, "'elbow' changed by");
@@ -123,10 +125,17 @@ TEST(Judge, DoubtsJointsThatAreFarOff) {
 
 TEST(Judge, DoubtsIntrinsicsAndDepthThatAreFarOff) {
   for (const auto& [name, value] :
-       {std::pair("camera_fx", 0.21), {"camera_z_offset", -0.11}, {"head_pan_x", 0.21}}) {
+       {std::pair("camera_fx", 0.1), {"camera_z_offset", -0.11}, {"head_pan_x", 0.06}}) {
     Judged judged;
+    judged.set(name, 0.8 * value);
+    expect(judged.judgement(), Grade::good, "");
     judged.set(name, value);
     expect(judged.judgement(), Grade::use_with_care, name);
+  }
+  for (const auto& [name, value] : {std::pair("camera_fx", -0.31), {"head_pan_x", 0.31}}) {
+    Judged judged;
+    judged.set(name, value);
+    expect(judged.judgement(), Grade::do_not_use, name);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/judge.hpp"
@@ -31,6 +32,7 @@ struct Findings {
   std::vector<std::string> sources;     ///< source location of each sample of the problems
   std::vector<int> numbers;             ///< from 1, in the order of the files, of each of them
   std::map<int, std::string> causes;    ///< likely ones of bad samples, by number in the problem
+  RecordedPoses poses = {};             ///< of the samples that were used
 };
 
 /// What is wrong with a sample: "error block 'hand_eye': feature 2 is 48 mm off, all others below 3 mm".
@@ -62,7 +64,7 @@ template <class T>
 /// "; likely cause: ...", or nothing.
 /// @param sample  by number in the problem
 [[nodiscard]] std::string cause_text(const Findings& findings, int sample);
-/// "not determined", "not significant" or nothing.
+/// "not determined", "hardly determined", "not significant" or nothing.
 [[nodiscard]] std::string note_on(const Parameter& parameter, double deviation);
 
 }  // namespace detail

@@ -49,6 +49,7 @@ KINECAL_INLINE std::string cause_text(const Findings& findings, int sample) {
 
 KINECAL_INLINE std::string note_on(const Parameter& parameter, double deviation) {
   if (!std::isfinite(deviation)) return "not determined";
+  if (deviation > useful_deviation(parameter)) return "hardly determined";
   if (std::abs(parameter.value - parameter.initial) < 2.0 * deviation) return "not significant";
   return "";
 }
@@ -76,9 +77,10 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
   for (const Assessment& step : findings.assessments) {
     if (!step.pose || &step != &findings.assessments.back()) continue;
     const PoseUncertainty& pose = *step.pose;
-    text += fmt::format(
-        "\nPosition of '{}' in '{}': +- {}, {} at the worst pose of these samples\n", pose.frame,
-        pose.in, reading(pose.position, "m"), reading(pose.worst_position, "m"));
+    text +=
+        fmt::format("\nPose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
+                    pose.frame, pose.in, reading(pose.position, "m"), reading(pose.rotation, "rad"),
+                    reading(pose.worst_position, "m"), reading(pose.worst_rotation, "rad"));
   }
   return text;
 }
@@ -147,6 +149,7 @@ KINECAL_INLINE Findings find(const Robot& robot, const Calibration& calibration,
                              const AssessOptions& options, const std::vector<std::string>& doubts) {
   Findings findings;
   findings.robot = robot.name();
+  findings.poses = recorded_poses(calibration, samples);
   findings.result = std::move(result);
   for (const Sample& sample : samples) findings.sources.push_back(sample.source);
   findings.numbers.resize(samples.size());

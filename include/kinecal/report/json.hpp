@@ -22,13 +22,9 @@ namespace detail {
 
 /// The whole report.  Costs are 1/2 sum of squares; rms is per residual component; mean, median and
 /// max are of the features' norms.  Units are metres, radians and pixels; `sigma` of a parameter is one
-/// standard deviation, null if it is not determined.
+/// standard deviation, null if it is not determined.  `covariance` is of all parameters, row by row of
+/// the lower triangle, zero along the combinations of `undetermined`; `poses` are joint positions.
 [[nodiscard]] std::string json_report(const Findings& findings);
-
-/// A row for each feature of the last step: error block, sample, its source location, feature, unit,
-/// residuals and their distance.
-/// @param calibration  the one that was solved, with its samples
-[[nodiscard]] std::string residuals_csv(const Calibration& calibration, const Findings& findings);
 
 }  // namespace kinecal
 

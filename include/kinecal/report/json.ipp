@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/report/json.hpp"
+#include "kinecal/report/json_state.ipp"
 
 namespace kinecal {
 
@@ -37,13 +37,30 @@ KINECAL_INLINE std::string json_number(double value) {
                      json_number(s.mean), json_number(s.median), json_number(s.max));
 }
 
+[[nodiscard]] inline std::string json(const StartSummary& starts) {
+  if (!starts.searched()) return "null";
+  std::string frames, minima;
+  for (const std::string& frame : starts.frames) {
+    frames += (frames.empty() ? "" : ", ") + json_string(frame);
+  }
+  for (const FoundMinimum& minimum : starts.minima) {
+    minima += fmt::format(R"({}{{"cost": {}, "solves": {}}})", minima.empty() ? "" : ", ",
+                          json_number(minimum.cost), minimum.solves);
+  }
+  return fmt::format(
+      R"({{"frames": [{}], "starts": {}, "random_starts": {}, "failed": {}, "minima": [{}], )"
+      R"("taken": {}}})",
+      frames, starts.starts, starts.random_starts, starts.failed, minima,
+      starts.taken < 0 ? "null" : std::to_string(starts.taken));
+}
+
 [[nodiscard]] inline std::string json(const StepResult& step) {
   return fmt::format(
       R"({{"name": {}, "iterations": {}, "initial_cost": {}, "final_cost": {}, "seconds": {}, )"
-      R"("num_residuals": {}, "num_parameters": {}, "form": {}}})",
+      R"("num_residuals": {}, "num_parameters": {}, "form": {}, "starts": {}}})",
       json_string(step.name), step.iterations, json_number(step.initial_cost),
       json_number(step.final_cost), json_number(step.seconds), step.num_residuals,
-      step.num_parameters, json_string(to_string(step.form)));
+      step.num_parameters, json_string(to_string(step.form)), json(step.starts));
 }
 
 [[nodiscard]] inline std::string json(const BlockStatistics& block) {
@@ -55,29 +72,21 @@ KINECAL_INLINE std::string json_number(double value) {
 
 [[nodiscard]] inline std::string json(const Observability& observability,
                                       const ParameterTable& table) {
-  std::string combinations;
-  for (const Combination& combination : observability.unobservable) {
-    std::string factors;
-    for (const auto& [parameter, factor] : combination) {
-      factors += fmt::format("{}{}: {}", factors.empty() ? "" : ", ",
-                             json_string(table[parameter].name), json_number(factor));
-    }
-    combinations += fmt::format("{}{{{}}}", combinations.empty() ? "" : ", ", factors);
-  }
-  std::string hold;
-  for (const int p : observability.hold) {
-    hold += (hold.empty() ? "" : ", ") + json_string(table[p].name);
-  }
-  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": [{}], "hold": [{}]}})",
-                     observability.rank, json_number(observability.condition), combinations, hold);
+  const auto combination = [&](const Combination& of) { return json(of, table); };
+  const auto name = [&](int parameter) { return json_string(table[parameter].name); };
+  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": {}, "hold": {}}})",
+                     observability.rank, json_number(observability.condition),
+                     json_row(observability.unobservable, combination),
+                     json_row(observability.hold, name));
 }
 
 [[nodiscard]] inline std::string json(const BlockNoise& noise, const HeldOutError* error) {
   return fmt::format(
       R"({{"name": {}, "unit": {}, "sigma": {}, "robust_sigma": {}, "sigma_given": {}, )"
-      R"("fitted": {}, "held_out": {}}})",
+      R"("features": {}, "components": {}, "freedom": {}, "fitted": {}, "held_out": {}}})",
       json_string(noise.block), json_string(noise.unit), json_number(noise.sigma),
       json_number(noise.robust), noise.given > 0.0 ? json_number(noise.given) : "null",
+      noise.features, noise.components, json_number(noise.freedom),
       error == nullptr ? "null" : json_number(error->fitted),
       error == nullptr ? "null" : json_number(error->held_out));
 }
@@ -89,11 +98,11 @@ KINECAL_INLINE std::string json_number(double value) {
 
 [[nodiscard]] inline std::string json(const PoseUncertainty& pose) {
   return fmt::format(
-      R"({{"frame": {}, "in": {}, "position": {}, "rotation": {}, "worst_position": {}, )"
+      R"({{"frame": {}, "link": {}, "in": {}, "in_link": {}, "position": {}, "rotation": {}, "worst_position": {}, )"
       R"("worst_rotation": {}, "determined": {}}})",
-      json_string(pose.frame), json_string(pose.in), json_number(pose.position),
-      json_number(pose.rotation), json_number(pose.worst_position),
-      json_number(pose.worst_rotation), pose.determined);
+      json_string(pose.frame), json_string(pose.link), json_string(pose.in),
+      json_string(pose.in_link), json_number(pose.position), json_number(pose.rotation),
+      json_number(pose.worst_position), json_number(pose.worst_rotation), pose.determined);
 }
 
 [[nodiscard]] inline std::string json_parameter(const Findings& findings, int i) {
@@ -112,14 +121,6 @@ KINECAL_INLINE std::string json_number(double value) {
   const auto sample = static_cast<std::size_t>(error.sample);
   return json({findings.numbers[sample], findings.sources[sample],
                capture_text(error, step) + cause_text(findings, error.sample)});
-}
-
-/// "[\n    a,\n    b\n  ]"
-template <class Items, class Write>
-[[nodiscard]] std::string json_list(const Items& items, Write&& write) {
-  std::string list;
-  for (const auto& item : items) list += (list.empty() ? "\n    " : ",\n    ") + write(item);
-  return list.empty() ? "[]" : "[" + list + "\n  ]";
 }
 
 }  // namespace detail
@@ -143,7 +144,7 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
       "{{\n  \"verdict\": {},\n  \"reasons\": {},\n  \"converged\": {},\n  \"termination\": {},\n"
       "  \"steps\": {},\n  \"error_blocks\": {},\n  \"noise\": {},\n  \"parameters\": {},\n"
       "  \"pose\": {},\n  \"observability\": {},\n  \"bad_samples\": {},\n"
-      "  \"left_out\": {}\n}}\n",
+      "  \"left_out\": {},\n  \"covariance\": {},\n  \"poses\": {}\n}}\n",
       detail::json_string(to_string(findings.judgement.verdict)),
       detail::json_list(findings.judgement.reasons, detail::json_string), result.converged,
       detail::json_string(result.termination), detail::json_list(result.steps, write),
@@ -155,35 +156,8 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
       detail::json_list(
           bad,
           [&](const CaptureError& error) { return detail::json_capture(findings, last, error); }),
-      detail::json_list(findings.left_out, write));
-}
-
-KINECAL_INLINE std::string residuals_csv(const Calibration& calibration, const Findings& findings) {
-  std::string text = "error_block,sample,source,feature,unit,distance,residual\n";
-  if (findings.result.steps.empty()) return text;
-  const AnyProblem& problem = *calibration.steps[findings.result.steps.size() - 1].problem;
-  const Eigen::VectorXd values = findings.result.table.values();
-  const auto quoted = [](const std::string& name) {
-    if (name.find_first_of(",\"\n") == std::string::npos) return name;
-    std::string all = "\"";
-    for (const char c : name) all += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return all + "\"";
-  };
-  (void)evaluate(problem, {values.data(), static_cast<std::size_t>(values.size())}, nullptr,
-                 [&](int t, int sample, const TermResiduals& rows) {
-                   const AnyTerm& term = problem.term(t);
-                   const int size = term.feature_size();
-                   for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
-                     const auto r = rows.residual.segment(row, size);
-                     text += fmt::format("{},{},{},{},{},{}", quoted(term.name()),
-                                         findings.numbers[static_cast<std::size_t>(sample)],
-                                         quoted(problem.source(sample)), row / size + 1,
-                                         term.options().unit, r.norm());
-                     for (Eigen::Index i = 0; i < size; ++i) text += fmt::format(",{}", r(i));
-                     text += "\n";
-                   }
-                 });
-  return text;
+      detail::json_list(findings.left_out, write), detail::json_covariance(findings),
+      detail::json(findings.poses));
 }
 
 }  // namespace kinecal

@@ -85,12 +85,15 @@ KINECAL_INLINE std::string observability_text(const std::string& step,
                                               const ParameterTable& table) {
   if (observability.unobservable.empty()) return {};
   const std::size_t unknown = observability.unobservable.size();
-  std::string text = fmt::format(
-      "step '{}': {} of {} parameter combinations are observable from these samples; along the "
-      "other{} "
-      "no residual changes, and priors or initial values decide\n",
-      step, observability.rank, static_cast<std::size_t>(observability.rank) + unknown,
-      unknown == 1 ? "" : "s");
+  std::string text =
+      fmt::format("step '{}': {} of {} parameters cannot be determined from these samples\n", step,
+                  unknown, static_cast<std::size_t>(observability.rank) + unknown);
+  if (!observability.hold.empty()) {
+    text += "  to determine the others, hold: --hold";
+    for (const int parameter : observability.hold) text += " " + table[parameter].name;
+    text += "\n";
+  }
+  text += "  no residual changes along:\n";
   constexpr std::size_t kCombinations = 4, kParameters = 3;
   for (std::size_t c = 0; c < std::min(kCombinations, unknown); ++c) {
     const Combination& combination = observability.unobservable[c];
@@ -102,10 +105,7 @@ KINECAL_INLINE std::string observability_text(const std::string& step,
     text += combination.size() > kParameters ? " ...\n" : "\n";
   }
   if (unknown > kCombinations) text += fmt::format("    and {} more\n", unknown - kCombinations);
-  if (observability.hold.empty()) return text;
-  text += "  to have all others determined, hold";
-  for (const int parameter : observability.hold) text += " " + table[parameter].name;
-  return text + "\n";
+  return text;
 }
 
 }  // namespace kinecal

@@ -13,6 +13,8 @@
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/recording_change.hpp"
+#include "kinecal/trust/weak_parameters.hpp"
 
 namespace kinecal {
 
@@ -26,17 +28,19 @@ struct IdleGroup {
 
 /// How good a step is.
 struct Assessment {
-  std::string step;                     ///< its name
-  Observability observability;          ///< of all free parameters
-  std::vector<BlockNoise> noise;        ///< of each error block
-  std::vector<int> parameters;          ///< table indices: columns of the uncertainty
-  std::vector<int> at_bound;            ///< table indices of free parameters that ended at a bound
-  Uncertainty uncertainty;              ///< of `parameters`
-  std::vector<HeldOutError> held_out;   ///< of each error block; empty if there are too few samples
-  std::vector<CaptureError> captures;   ///< of each sample
-  std::vector<IdleGroup> idle;          ///< whose parameters buy nothing
-  std::optional<PoseUncertainty> pose;  ///< of what the first error block compares
-  int rows = 0;                         ///< residuals, without priors
+  std::string step;                    ///< its name
+  Observability observability;         ///< of all free parameters
+  std::vector<BlockNoise> noise;       ///< of each error block
+  std::vector<int> parameters;         ///< table indices: columns of the uncertainty
+  std::vector<int> at_bound;           ///< table indices of free parameters that ended at a bound
+  Uncertainty uncertainty;             ///< of `parameters`
+  WeakParameters weak;                 ///< hardly determined ones of `parameters`
+  std::vector<HeldOutError> held_out;  ///< of each error block; empty if there are too few samples
+  std::vector<CaptureError> captures;  ///< of each sample
+  std::optional<RecordingChange> change;  ///< during the recording
+  std::vector<IdleGroup> idle;            ///< whose parameters buy nothing
+  std::optional<PoseUncertainty> pose;    ///< of what the first error block compares
+  int rows = 0;                           ///< residuals, without priors
 
   /// Standard deviation of a parameter of the table; nullopt if the step does not free it.
   [[nodiscard]] std::optional<double> deviation(int parameter) const;

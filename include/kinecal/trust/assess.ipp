@@ -116,7 +116,9 @@ KINECAL_INLINE Assessment assess(const AnyProblem& problem, const FreeSet& free,
   const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
   found.uncertainty = uncertainty(problem, fit, found.noise);
+  found.weak = weak_parameters(problem, inside, found.uncertainty);
   found.captures = capture_errors(problem, fit);
+  found.change = recording_change(problem, inside, fit);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
   const int folds = std::min(options.folds, static_cast<int>(samples.size()));
   if (folds >= 2) {

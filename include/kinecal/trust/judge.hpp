@@ -7,9 +7,15 @@
 //   freedom less than half of the parameters            less than the parameters
 //   held-out error 3 x the fitted one                   1.5 x
 //   a quarter of the samples does not fit               a tenth
-//   a joint's offset of 90 degrees                      30 degrees; other changes that are too large
+//   something changed during the recording: with two    half
+//   values the noise falls to a third
+//   a joint's offset of 45 degrees                      15 degrees
+//   an intrinsic changed by 30 %                        9 %
+//   the frame of a joint that moves: 0.3 m, 60 degrees  5 cm, 15 degrees; of a fixed one 0.2 m, 30 degrees
 //   the pose in question is known to 20 mm only         to 5 mm; a direction of it not at all
 //                                                       a parameter ended at a bound
+//                                                       a parameter known to 5 degrees, 20 mm, 5 %
+//                                                       or 20 px only
 //                                                       doubts about the input
 //
 // Freedom is the number of residuals minus that of determined parameters.  Combinations of parameters
@@ -22,6 +28,7 @@
 #include <vector>
 
 #include "kinecal/trust/assess.hpp"
+#include "kinecal/trust/reading.hpp"
 
 namespace kinecal {
 
@@ -57,9 +64,6 @@ struct Judgement {
 /// True if the noise of an error block is a reason not to call a step good: something is wrong with
 /// the model or the samples.
 [[nodiscard]] bool fits_badly(const Assessment& step);
-
-/// A number in the unit that people read: "3.4 mm", "0.21 deg", "1.2 px", "0.4 %" of "1".
-[[nodiscard]] std::string reading(double value, std::string_view unit);
 
 }  // namespace kinecal
 

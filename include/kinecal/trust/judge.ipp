@@ -4,24 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
 
 #include "kinecal/trust/judge.hpp"
+#include "kinecal/trust/plausible_change.ipp"
 
 namespace kinecal {
 
 namespace detail {
-
-/// Two limits of a figure: from the first on, use with care; from the second on, do not use.
-struct Limits {
-  double care, refuse;
-
-  [[nodiscard]] bool exceeded(double figure) const { return !(figure < care); }
-  [[nodiscard]] Grade grade(double figure) const {
-    return !(figure < refuse) ? Grade::do_not_use : Grade::use_with_care;
-  }
-};
 
 inline void judge_noise(const Assessment& step, Judgement& judgement) {
   constexpr Limits kTimes{3.0, 10.0}, kMetres{0.008, 0.02}, kPixels{4.0, 12.0};
@@ -85,33 +74,30 @@ inline void judge_captures(const Assessment& step, const AnyProblem& problem,
                     std::to_string(problem.num_samples()) + " samples do not fit the others");
 }
 
-/// The largest change of a parameter that a calibration should make.
-[[nodiscard]] inline Limits plausible_change(const AnyProblem& problem, int parameter) {
-  constexpr double kNever = 1e300, kDegree = std::numbers::pi / 180.0;
-  const Parameter& p = problem.table()[parameter];
-  const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
-  if (p.name == owner && problem.robot().has_joint(owner)) {
-    if (p.unit == "m") return {0.1, 0.5};
-    return {30.0 * kDegree, 90.0 * kDegree};
-  }
-  if (problem.robot().has_joint(owner))
-    return p.unit == "m" ? Limits{0.2, 1.0} : Limits{0.5, kNever};
-  if (problem.frames().contains(owner)) return {kNever, kNever};  // a virtual frame may be anywhere
-  if (p.unit == "m") return {0.1, kNever};
-  return p.unit == "1" ? Limits{0.2, kNever} : Limits{kNever, kNever};
+inline void judge_change(const Assessment& step, const AnyProblem& problem, Judgement& judgement) {
+  if (!step.change) return;
+  constexpr double kThird = 1.0 / 3.0;
+  judgement.add(step.change->noise_left < kThird ? Grade::do_not_use : Grade::use_with_care,
+                "'" + step.change->owner + "' seems to have changed during the recording, before " +
+                    problem.source(step.change->sample) +
+                    ": with one value before and another after, "
+                    "the noise falls to " +
+                    reading(1e2 * step.change->noise_left, "1") +
+                    " %; calibrate with the samples of one part");
 }
 
 inline void judge_values(const CalibrationStep& step, const CalibrationResult& result,
                          const Assessment& assessment, Judgement& judgement) {
-  const AnyProblem& problem = *step.problem;
   for (const int p : step.free.parameters()) {
     const Parameter& parameter = result.table[p];
     const double change = std::abs(parameter.value - parameter.initial);
-    const Limits limits = plausible_change(problem, p);
+    const Limits limits = plausible_change(step, p);
     if (limits.exceeded(change)) {
+      const double by = parameter.value - parameter.initial;
       judgement.add(limits.grade(change),
                     "'" + parameter.name + "' changed by " +
-                        reading(parameter.value - parameter.initial, parameter.unit) +
+                        (parameter.unit == "1" ? reading(1e2 * by, "1") + " %"
+                                               : reading(by, parameter.unit)) +
                         "; is the URDF or its initial value wrong, or do these samples not "
                         "determine it?");
     }
@@ -120,6 +106,19 @@ inline void judge_values(const CalibrationStep& step, const CalibrationResult& r
     judgement.add(Grade::use_with_care, "'" + result.table[p].name + "' ended at its bound " +
                                             reading(result.table[p].value, result.table[p].unit));
   }
+}
+
+inline void judge_weak(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
+  if (step.weak.parameters.empty()) return;
+  std::string hold;
+  for (const int p : step.weak.hold) hold += " " + table[p].name;
+  const Parameter& first = table[step.weak.hold.front()];
+  const std::size_t others = step.weak.parameters.size() - 1;
+  judgement.add(Grade::use_with_care,
+                "these samples hardly determine '" + first.name + "' (+- " +
+                    reading(step.deviation(step.weak.hold.front()).value_or(0.0), first.unit) +
+                    ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
+                    "; record poses that differ more, or hold:" + hold);
 }
 
 inline void judge_pose(const Assessment& step, Judgement& judgement) {
@@ -140,23 +139,6 @@ inline void judge_pose(const Assessment& step, Judgement& judgement) {
 
 }  // namespace detail
 
-KINECAL_INLINE std::string reading(double value, std::string_view unit) {
-  double shown = value;
-  const char* of = "";
-  if (unit == "m") {
-    shown = 1e3 * value;
-    of = " mm";
-  } else if (unit == "rad") {
-    shown = value * 180.0 / std::numbers::pi;
-    of = " deg";
-  } else if (unit == "px") {
-    of = " px";
-  }
-  char text[48];
-  (void)std::snprintf(text, sizeof text, "%.3g%s", shown, of);
-  return text;
-}
-
 KINECAL_INLINE bool fits_badly(const Assessment& step) {
   Judgement of_noise;
   detail::judge_noise(step, of_noise);
@@ -175,7 +157,9 @@ KINECAL_INLINE Judgement judge(const Calibration& calibration, const Calibration
     detail::judge_freedom(assessments[s], judgement);
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
+    if (last) detail::judge_change(assessments[s], *step.problem, judgement);
     detail::judge_values(step, result, assessments[s], judgement);
+    if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_pose(assessments[s], judgement);
   }
   for (const std::string& doubt : doubts) judgement.add(Grade::use_with_care, doubt);

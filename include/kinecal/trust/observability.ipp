@@ -8,6 +8,7 @@
 
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/observability.hpp"
+#include "kinecal/trust/reluctance.hpp"
 
 namespace kinecal {
 
@@ -56,16 +57,6 @@ inline void reduce(Eigen::MatrixXd& basis) {
                         scaled(i) / scale(i) / unit);
   }
   return result;
-}
-
-/// How readily a parameter is held: parameters of frames first, then those of sensors and blocks,
-/// joints last.
-[[nodiscard]] inline int reluctance(const AnyProblem& problem, int parameter) {
-  const std::string& name = problem.table()[parameter].name;
-  const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
-  if (name == owner) return 2;
-  const auto is_axis = [&](std::string_view axis) { return name == parameter_name(owner, axis); };
-  return std::any_of(kFrameAxes.begin(), kFrameAxes.end(), is_axis) ? 0 : 1;
 }
 
 /// Parameters to hold, so that nothing of a null space is left.

@@ -31,6 +31,8 @@ struct FrameOnRobot {
 struct PoseUncertainty {
   std::string frame;            ///< the link or virtual frame
   std::string in;               ///< the one in which its pose is given
+  std::string link = {};        ///< the link of `frame`
+  std::string in_link = {};     ///< the link of `in`
   double position = 0.0;        ///< root of the mean variance of its origin, metres: sqrt(trace)
   double rotation = 0.0;        ///< the same of its orientation, radians
   double worst_position = 0.0;  ///< at the worst pose of the samples, metres

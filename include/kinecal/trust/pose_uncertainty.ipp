@@ -75,7 +75,8 @@ KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const
                                                 const LinearFit& fit, const Uncertainty& known,
                                                 std::span<const Sample> samples,
                                                 const FrameOnRobot& frame, const FrameOnRobot& in) {
-  PoseUncertainty result{.frame = frame.name(), .in = in.name()};
+  PoseUncertainty result{
+      .frame = frame.name(), .in = in.name(), .link = frame.link, .in_link = in.link};
   const auto chain_to = [&](const FrameOnRobot& to) {
     RuntimeChain chain = make_chain(problem.robot(), problem.base(), to.link, problem.frames());
     if (!to.frame.empty()) chain = with_virtual_frame(std::move(chain), to.frame);

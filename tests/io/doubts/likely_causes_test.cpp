@@ -55,6 +55,18 @@ TEST_F(LikelyCauses, UnitsAreNamed) {
   EXPECT_THAT(first(), HasSubstr("with the points of 'tracker' taken as millimetres"));
 }
 
+TEST_F(LikelyCauses, TheScaleOfPointsIsFound) {
+  const auto good = samples;
+  for (const double factor : {1.2, 0.7}) {
+    samples = good;
+    for (Sample& sample : samples) {
+      for (Feature& feature : sample.observations[1].features) feature.point *= factor;
+    }
+    EXPECT_THAT(first(), HasSubstr("with the points of 'tracker' multiplied by " +
+                                   std::string(factor > 1.0 ? "0.833" : "1.429")));
+  }
+}
+
 TEST_F(LikelyCauses, LengthsThatAreFreeDoNotShrinkWithThePoints) {
   replace(
       config_text, "free_frames:\n",

@@ -105,6 +105,12 @@ error_blocks:
     }
   }
   EXPECT_THAT(found().errors, IsEmpty());
+  EXPECT_THAT(found().doubts, IsEmpty());
+  for (Sample& sample : samples) sample.observations[1].camera->k[2] = 641;
+  EXPECT_THAT(found().doubts,
+              ElementsAre(AllOf(HasSubstr("principal point of sensor 'camera' is (641, 240) by K"),
+                                HasSubstr("image of 640x480 pixels"))));
+  for (Sample& sample : samples) sample.observations[1].camera->k[2] = 320;
   auto changing = samples;
   for (Sample& sample : samples) sample.observations[1] = samples[0].observations[1];
   EXPECT_THAT(found().errors, ElementsAre(HasSubstr("sensor 'camera' records the same features")));

@@ -313,6 +313,9 @@ TEST_F(Install, ReadsWhetherTheResultConverged) {
   EXPECT_EQ(read_result_folder(folder_ / "out").converged, true);
   write("out/report.json", "{\"converged\": false}");
   EXPECT_EQ(read_result_folder(folder_ / "out").converged, false);
+  write("out/report.json",
+        R"({"verdict": "do not use", "reasons": ["sigma 1 mm given"], "converged": true})");
+  EXPECT_EQ(read_result_folder(folder_ / "out").refusal, "sigma 1 mm given");
   fs::remove(folder_ / "out/report.json");
   EXPECT_EQ(read_result_folder(folder_ / "out").converged, std::nullopt);
   write("out/report.json", "{}");

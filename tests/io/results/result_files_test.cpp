@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <map>
+
 #include "kinecal/io/results/result_text.ipp"
 #include "support/scene.hpp"
 
@@ -44,7 +47,11 @@ TEST(ResultFiles, ValuesAreThoseOfWhatWasCalibratedOrHeldAwayFromZero) {
   result.table.add({.name = "untouched", .value = 0.0});
   result.table.add({.name = "a: b", .value = 1.0});
   result.calibrated = {0, 1};
-  EXPECT_EQ(detail::values_yaml(result), "elbow: 0.1\nwrist: 0.0\nheld: 0.25\n\"a: b\": 1.0\n");
+  EXPECT_EQ(detail::values_yaml(result, {}), "elbow: 0.1\nwrist: 0.0\nheld: 0.25\n\"a: b\": 1.0\n");
+  const std::map<int, double> deviations = {{0, 0.00234},
+                                            {1, std::numeric_limits<double>::infinity()}};
+  EXPECT_EQ(detail::values_yaml(result, deviations),
+            "elbow: 0.1  # +- 0.0023\nwrist: 0.0  # not determined\nheld: 0.25\n\"a: b\": 1.0\n");
 }
 
 }  // namespace

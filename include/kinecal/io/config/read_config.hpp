@@ -21,6 +21,11 @@ namespace detail {
 /// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
 [[nodiscard]] YamlNode load_config(const std::string& path, Diagnostics& diagnostics);
 
+/// The same for the text of a file.
+/// @param path  of the file, for messages
+[[nodiscard]] YamlNode parse_config_text(const std::string& text, const std::string& path,
+                                         Diagnostics& diagnostics);
+
 }  // namespace detail
 
 /// Reads a configuration.  It collects all errors; with errors, the configuration is incomplete.
@@ -28,6 +33,12 @@ namespace detail {
 /// @param diagnostics  receives errors and warnings, each with "file:line: "
 /// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
 [[nodiscard]] Config read_config(const std::string& path, Diagnostics& diagnostics);
+
+/// Reads a configuration from its text.
+/// @param path  of the file that the text is from, for messages
+/// @throws InputError  "path:line: ..." if it is not YAML
+[[nodiscard]] Config parse_config(const std::string& text, const std::string& path,
+                                  Diagnostics& diagnostics);
 
 }  // namespace kinecal
 

@@ -22,8 +22,13 @@ inline void add_once(std::vector<std::string>& messages, const std::vector<std::
 }
 
 KINECAL_INLINE YamlNode load_config(const std::string& path, Diagnostics& diagnostics) {
+  return parse_config_text(read_yaml_text(path), path, diagnostics);
+}
+
+KINECAL_INLINE YamlNode parse_config_text(const std::string& text, const std::string& path,
+                                          Diagnostics& diagnostics) {
   YamlNode content;
-  for (YamlNode& document : parse_yaml(read_yaml_text(path), path)) {
+  for (YamlNode& document : parse_yaml(text, path)) {
     if (document.is_null()) continue;
     if (content.is_null()) {
       content = std::move(document);
@@ -38,10 +43,15 @@ KINECAL_INLINE YamlNode load_config(const std::string& path, Diagnostics& diagno
 }  // namespace detail
 
 KINECAL_INLINE Config read_config(const std::string& path, Diagnostics& diagnostics) {
+  return parse_config(detail::read_yaml_text(path), path, diagnostics);
+}
+
+KINECAL_INLINE Config parse_config(const std::string& text, const std::string& path,
+                                   Diagnostics& diagnostics) {
   detail::ConfigProgress progress;
   progress.config.place = {path, 0};
   Diagnostics found;
-  const detail::YamlNode content = detail::load_config(path, found);
+  const detail::YamlNode content = detail::parse_config_text(text, path, found);
   if (content.is_map()) {
     detail::ConfigMap file(content, {path, 0}, "", found);
     detail::read_dialect(file, progress);

@@ -1,4 +1,5 @@
-// What only cameras get wrong: pixels that are none, a driver that has stopped.
+// What only cameras get wrong: pixels that are none, intrinsics of another image, a driver that has
+// stopped.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -6,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <span>
+#include <string>
 
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/doubts/occurrences.hpp"
@@ -44,6 +47,34 @@ inline void check_pixels(const RecordedPoints& recorded, std::span<const Sample>
         fmt::format("a feature of sensor '{}' is outside its image of {}x{} pixels{}; "
                     "is it the camera_info of another camera or size?",
                     recorded.model.name, width, height, outside.others()));
+  }
+}
+
+/// Doubt: a principal point far from the middle of the image, as of another resolution.
+inline void check_principal_points(std::span<const Sample> samples, Diagnostics& diagnostics) {
+  std::set<std::string> checked;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    for (const Observation& seen : samples[s].observations) {
+      if (!seen.camera || !checked.insert(seen.sensor).second) continue;
+      const CameraInfo& camera = *seen.camera;
+      const auto is_far = [](double point, int size) {
+        constexpr double kFar = 0.3;  // of the size of the image
+        return size > 0 && std::abs(point / size - 0.5) > kFar;
+      };
+      const auto doubt = [&](const char* matrix, double cx, double cy) {
+        if (!is_far(cx, camera.width) && !is_far(cy, camera.height)) return false;
+        diagnostics.doubt(
+            place_of(samples, s),
+            fmt::format(
+                "the principal point of sensor '{}' is ({:.4g}, {:.4g}) by {}, far from the "
+                "middle of its image of {}x{} pixels; is it the camera_info of another "
+                "resolution?",
+                seen.sensor, cx, cy, matrix, camera.width, camera.height));
+        return true;
+      };
+      if (camera.k[0] > 0.0 && doubt("K", camera.k[2], camera.k[5])) continue;
+      if (camera.p[0] > 0.0) doubt("P", camera.p[2], camera.p[6]);
+    }
   }
 }
 

@@ -2,7 +2,7 @@
 //
 // A mistake that explains the residuals makes them fall by much when it is undone.  It costs one
 // solve for each: two joints' names exchanged, one joint's sign, degrees, units of each sensor, models
-// exchanged, features in reverse order.
+// exchanged, features in reverse order; some more for the scale of each sensor's points.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -25,6 +25,9 @@ struct SolvedSamples {
   std::vector<BlockStatistics> blocks;
 };
 
+/// A mistake explains a bad fit if the cost is this part of it without.
+inline constexpr double kExplains = 0.1;
+
 /// Assembles and solves; nullopt if the samples cannot be used so, or if the fit is not finite.
 [[nodiscard]] inline std::optional<SolvedSamples> solve_samples(const Config& config,
                                                                 const Robot& robot,
@@ -66,6 +69,50 @@ struct Cause {
   std::string sentence;
 };
 
+/// The factor of a model's points with which the samples fit best: a board whose squares are larger than
+/// was said.  Parabolas through three costs, over the logarithm of the factor.
+[[nodiscard]] inline std::optional<Cause> scale_cause(const Config& config, const Robot& robot,
+                                                      const std::vector<Sample>& samples,
+                                                      const std::string& model,
+                                                      const SolvedSamples& now,
+                                                      const Calibrator& solve) {
+  const auto fit = [&](double x) {
+    std::vector<Sample> scaled = samples;
+    for (Sample& sample : scaled) {
+      for (Observation& seen : sample.observations) {
+        if (seen.sensor != model) continue;
+        for (Feature& feature : seen.features) feature.point *= std::exp(x);
+      }
+    }
+    return solve_samples(config, robot, scaled, solve);
+  };
+  constexpr double kFirst = 0.1, kFurthest = 1.1, kEnough = 1e-3;
+  constexpr int kSteps = 8;
+  double best = 0.0, step = kFirst;
+  SolvedSamples at_best = now;
+  for (int i = 0; i < kSteps && step > kEnough; ++i) {
+    const auto below = fit(best - step), above = fit(best + step);
+    if (!below || !above) return std::nullopt;
+    const double curvature = below->cost - 2.0 * at_best.cost + above->cost;
+    const double slope = 0.5 * (above->cost - below->cost);
+    const double most = 4.0 * step;
+    const double move = curvature > 0.0 ? std::clamp(-slope / curvature * step, -most, most)
+                                        : (slope > 0.0 ? -most : most);
+    const auto next = fit(best + move);
+    if (!next || std::abs(best + move) > kFurthest) return std::nullopt;
+    if (next->cost < at_best.cost) {
+      best += move;
+      at_best = *next;
+    }
+    step = std::min(step, std::max(0.1 * step, std::abs(move)));
+  }
+  if (at_best.cost * std::max(1.0, std::exp(-2.0 * best)) >= kExplains * now.cost) {
+    return std::nullopt;
+  }
+  return Cause{at_best.cost, fmt::format("with the points of '{}' multiplied by {:.4g}, {}", model,
+                                         std::exp(best), fall_of(now, at_best))};
+}
+
 /// The sentences, the lowest costs first; alike costs in the order of the hypotheses.  What only
 /// explains a part beside a better one is left out, and so is what does the same to the samples.
 [[nodiscard]] inline std::vector<std::string> sentences(std::vector<Cause> found) {
@@ -88,7 +135,6 @@ struct Cause {
 KINECAL_INLINE std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
                                                       std::span<const Sample> samples,
                                                       const Calibrator& solve) {
-  constexpr double kExplains = 0.1;  // of the cost
   const Calibrator solver =
       solve ? solve : [](const Calibration& calibration) { return calibrate(calibration); };
   const std::vector<Sample> some = detail::some_of(samples);
@@ -103,9 +149,15 @@ KINECAL_INLINE std::vector<std::string> likely_causes(const Config& config, cons
     const auto then = detail::solve_samples(changed_config, robot, changed, solver);
     if (!then) continue;
     const double cost = then->cost / (hypothesis.shrinks * hypothesis.shrinks);
-    if (now && cost >= kExplains * now->cost) continue;
+    if (now && cost >= detail::kExplains * now->cost) continue;
     found.push_back({cost, hypothesis.undone + ", " +
                                (now ? detail::fall_of(*now, *then) : "the samples can be solved")});
+  }
+  const std::set<std::string> pixels = detail::pixel_models(config);
+  for (const ModelConfig& model : detail::models_of(config)) {
+    if (!now || pixels.contains(model.name)) continue;
+    auto scaled = detail::scale_cause(config, robot, some, model.name, *now, solver);
+    if (scaled) found.push_back(*std::move(scaled));
   }
   return detail::sentences(std::move(found));
 }

@@ -14,7 +14,7 @@
 #include "kinecal/io/doubts/rising.hpp"
 #include "kinecal/io/doubts/used_joints.hpp"
 #include "kinecal/io/urdf/urdf_text.ipp"
-#include "kinecal/solve/solve.hpp"
+#include "kinecal/solve/calibrate.hpp"
 #include "kinecal/solve/statistics.hpp"
 
 namespace kinecal {
@@ -57,27 +57,29 @@ struct FitOfSamples {
     const Config& config, const Robot& robot, std::span<const Sample> samples,
     const std::map<std::string, double>& held) {
   Diagnostics quiet;
-  const Calibration calibration = assemble(config, robot, samples, quiet);
+  Calibration calibration = assemble(config, robot, samples, quiet);
   if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;
-  const CalibrationStep& step = calibration.steps.front();
+  calibration.steps.erase(calibration.steps.begin() + 1, calibration.steps.end());
+  CalibrationStep& step = calibration.steps.front();
   std::vector<int> free = step.free.parameters();
   std::erase_if(free, [&](int p) { return held.contains(calibration.table[p].name); });
-  Eigen::VectorXd values = calibration.table.values();
-  for (const auto& [parameter, value] : step.assignments) values(parameter) = value;
-  FitOfSamples fit;
   if (free.empty()) {
-    fit.cost = normal_equations(*step.problem,
-                                {values.data(), static_cast<std::size_t>(values.size())}, nullptr)
-                   .cost;
-  } else {
-    SolveOptions options;
-    options.max_num_iterations = 200;
-    fit.cost =
-        solve(*step.problem, FreeSet(free, calibration.table.size()), values, options).final_cost;
+    const Eigen::VectorXd values = calibration.table.values();
+    const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
+    const auto blocks = block_statistics(*step.problem, all, all);
+    if (blocks.empty()) return std::nullopt;
+    return FitOfSamples{normal_equations(*step.problem, all, nullptr).cost,
+                        blocks.front().after.mean, blocks.front().unit};
   }
-  const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-  const auto blocks = block_statistics(*step.problem, all, all);
-  if (!blocks.empty()) fit.mean = blocks.front().after.mean, fit.unit = blocks.front().unit;
+  step.free = FreeSet(std::move(free), calibration.table.size());
+  step.max_num_iterations = 200;
+  const CalibrationResult result = calibrate(calibration);
+  FitOfSamples fit;
+  fit.cost = result.steps.front().final_cost;
+  if (!result.blocks.empty()) {
+    fit.mean = result.blocks.front().after.mean;
+    fit.unit = result.blocks.front().unit;
+  }
   return std::isfinite(fit.cost) ? std::optional(fit) : std::nullopt;
 }
 

@@ -44,7 +44,7 @@ struct RecordedPoints {
 [[nodiscard]] double reach_of(const Robot& robot, const RuntimeChain& chain);
 
 /// Error: numbers that cannot be meant, points in millimetres or kilometres, pixels that are not
-/// pixels, a camera that always records the same.  Doubt: points far away.
+/// pixels, a camera that always records the same.  Doubt: points far away, intrinsics of another image.
 void check_sensor_points(const Config& config, const Robot& robot, std::span<const Sample> samples,
                          Diagnostics& diagnostics);
 

@@ -139,6 +139,7 @@ inline void check_distances(const RecordedPoints& recorded, double reach,
 
 KINECAL_INLINE void check_sensor_points(const Config& config, const Robot& robot,
                                         std::span<const Sample> samples, Diagnostics& diagnostics) {
+  check_principal_points(samples, diagnostics);
   const std::vector<RecordedPoints> all = recorded_points(config, robot, samples);
   double reach = 0.0;
   for (const RecordedPoints& recorded : all) {

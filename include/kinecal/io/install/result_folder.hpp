@@ -2,7 +2,7 @@
 //
 //   calibration[_<date>].yaml   values by name, and the names of the other files: urdf, depth_info,
 //                               rgb_info; for further cameras left_depth_info and so on
-//   report.json                 whether the calibration converged
+//   report.json                 whether the calibration converged, and the verdict
 //
 // The date is the one in the name of calibration_<date>.yaml, or else the time at which
 // calibration.yaml was written.
@@ -37,6 +37,7 @@ struct ResultFolder {
   std::vector<ResultCamera> cameras;         ///< the calibrated cameras
   std::map<std::string, double> parameters;  ///< name and value: radians, metres or relative
   std::optional<bool> converged;             ///< nothing if there is no report
+  std::string refusal;                       ///< why not to use it, if the report says so
 };
 
 /// Reads a result.  The URDF and the camera files are read as a robot would read them, so that no

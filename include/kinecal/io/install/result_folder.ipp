@@ -87,14 +87,20 @@ namespace detail {
   return name != nullptr ? name->text : std::string();
 }
 
-/// Whether the calibration converged; nothing if there is no report.
-[[nodiscard]] inline std::optional<bool> read_converged(const std::filesystem::path& report) {
-  if (!std::filesystem::exists(report)) return std::nullopt;
+/// Reads whether the calibration converged, and the first reason not to use it.
+inline void read_report(const std::filesystem::path& report, ResultFolder& result) {
+  if (!std::filesystem::exists(report)) return;
   const YamlNode file = yaml_map(read_text_file(report), report.string());
   const YamlNode* converged = file.find("converged");
-  const auto flag = converged != nullptr ? config_flag(*converged) : std::nullopt;
-  if (!flag) throw InputError(report.string() + ": does not say whether the result converged");
-  return flag;
+  result.converged = converged != nullptr ? config_flag(*converged) : std::nullopt;
+  if (!result.converged) {
+    throw InputError(report.string() + ": does not say whether the result converged");
+  }
+  const YamlNode* verdict = file.find("verdict");
+  if (verdict == nullptr || verdict->text != "do not use") return;
+  const YamlNode* reasons = file.find("reasons");
+  const bool has_reason = reasons != nullptr && reasons->is_list() && !reasons->items.empty();
+  result.refusal = has_reason ? reasons->items.front().text : "do not use";
 }
 
 }  // namespace detail
@@ -125,7 +131,7 @@ KINECAL_INLINE ResultFolder read_result_folder(const std::filesystem::path& fold
   if (result.urdf.name.empty())
     throw InputError(path.string() + ": does not name a URDF; it needs a line 'urdf: FILE'");
   (void)parse_urdf(result.urdf.content, urdf_path.string());
-  result.converged = detail::read_converged(folder / "report.json");
+  detail::read_report(folder / "report.json", result);
   return result;
 }
 

@@ -11,6 +11,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ class ParameterTable;
 struct ResultFileOptions {
   OffsetStyle offsets = OffsetStyle::rising;  ///< where the URDF holds joint offsets
   std::string date = {};  ///< Y_m_d_H_M_S for upstream's names; empty: kinecal's names
+  /// Standard deviations by table index, units of the parameters; infinite: not determined.
+  std::map<int, double> deviations = {};
 };
 
 /// The calibration of each joint of the robot, from the values of the parameters.  Virtual frames

@@ -130,7 +130,7 @@ KINECAL_INLINE std::vector<OutputFile> result_files(
     files.push_back({detail::camera_file("rgb", name, options.date), content});
     refer("rgb_info", name, files.back().name);
   }
-  std::string values = detail::values_yaml(result);
+  std::string values = detail::values_yaml(result, options.deviations);
   if (!references.empty()) values += references.substr(1) + "\n";
   values += fmt::format("urdf: {}\n", urdf);
   files.push_back({detail::dated("calibration", ".yaml", options.date), values});

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <string>
 
 #include "kinecal/io/yaml/yaml_text.hpp"
@@ -29,15 +31,24 @@ namespace kinecal::detail {
 }
 
 /// Lines `name: value` for the parameters that some step freed, and for those held at another value
-/// than zero.
-[[nodiscard]] inline std::string values_yaml(const CalibrationResult& result) {
+/// than zero.  Standard deviations are comments.
+[[nodiscard]] inline std::string values_yaml(const CalibrationResult& result,
+                                             const std::map<int, double>& deviations) {
   std::string text;
   for (int i = 0; i < result.table.size(); ++i) {
     const auto& freed = result.calibrated;
     const bool calibrated = std::find(freed.begin(), freed.end(), i) != freed.end();
     if (!calibrated && result.table[i].value == 0.0) continue;
-    text += fmt::format("{}: {}\n", name_to_yaml(result.table[i].name),
+    text += fmt::format("{}: {}", name_to_yaml(result.table[i].name),
                         number_to_yaml(result.table[i].value));
+    const auto deviation = deviations.find(i);
+    if (deviation == deviations.end()) {
+      text += "\n";
+    } else if (std::isfinite(deviation->second)) {
+      text += fmt::format("  # +- {:.2g}\n", deviation->second);
+    } else {
+      text += "  # not determined\n";
+    }
   }
   return text;
 }

@@ -1,0 +1,236 @@
+// kinecal compare: what differs between two results.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "commands.hpp"
+#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/doubts/rising.hpp"
+#include "kinecal/io/printable.hpp"
+#include "kinecal/report/json.hpp"
+#include "kinecal/report/text.hpp"
+#include "kinecal/trust/pose_change.hpp"
+#include "output_file.hpp"
+#include "result.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+constexpr double kMoved = 3.0;  // standard deviations of the difference
+
+/// A parameter of both results.
+struct Difference {
+  std::string name, unit;
+  double a = 0.0, b = 0.0;
+  double deviation = 0.0;  ///< of the difference
+
+  [[nodiscard]] double times() const { return std::abs(b - a) / deviation; }
+};
+
+/// A parameter that cannot be compared.
+struct NotCompared {
+  std::string name, why;
+};
+
+struct Comparison {
+  std::vector<Difference> moved, equal;
+  std::vector<NotCompared> others;
+  std::optional<PoseInQuestion> pose;  ///< that of the first result
+  double position_b = 0.0;             ///< standard deviation in the second one
+  PoseChange change;
+};
+
+/// A result with its problem, without samples.
+struct Assembled {
+  Result result;
+  Calibration calibration;
+  std::vector<double> values;
+  std::map<std::string, double> rising;
+
+  explicit Assembled(const std::string& folder) : result(read_result(folder)) {
+    Diagnostics diagnostics;
+    calibration = assemble(result.config, result.robot, {}, diagnostics);
+    diagnostics.throw_if_errors();
+    (void)result.state(problem().table());  // the configuration has all parameters
+    values = result.values_of(problem().table());
+    rising = rising_of(result.urdf_text, result.urdf);
+  }
+  [[nodiscard]] const AnyProblem& problem() const { return *calibration.steps.back().problem; }
+  /// The joint, frame or sensor of a parameter.
+  [[nodiscard]] const std::string& owner(const std::string& parameter) const {
+    return problem().owners()[static_cast<std::size_t>(problem().table().index(parameter))];
+  }
+  [[nodiscard]] double rising_of_joint(const std::string& joint) const {
+    const auto found = rising.find(joint);
+    return found == rising.end() ? 0.0 : found->second;
+  }
+};
+
+void check_same_robot(const Assembled& a, const Assembled& b) {
+  const auto names = [](const Robot& robot) {
+    std::vector<std::string> all;
+    for (const Joint& joint : robot.joints()) all.push_back(joint.name);
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  if (names(a.result.robot) == names(b.result.robot)) return;
+  throw InputError(
+      fmt::format("{} is of robot '{}' and {} of robot '{}', whose joints differ; compare "
+                  "two results of one robot",
+                  a.result.folder, a.result.robot.name(), b.result.folder, b.result.robot.name()));
+}
+
+/// Why the numbers of a parameter do not mean the same in both; empty if they do.
+std::string why_not(const Assembled& a, const Assembled& b, const std::string& name) {
+  for (const Assembled* one : {&a, &b}) {
+    const auto deviation = one->result.deviations.find(name);
+    if (deviation == one->result.deviations.end())
+      return "is not calibrated in " + one->result.folder;
+    if (!std::isfinite(deviation->second)) {
+      return "is not determined in " + one->result.folder + ", or at its bound";
+    }
+  }
+  if (a.result.urdf_text == b.result.urdf_text) return "";
+  const std::string& owner = a.owner(name);
+  if (a.result.robot.has_joint(owner)) {
+    const Pose<double>&of_a = a.result.robot.joint(owner).origin,
+          &of_b = b.result.robot.joint(owner).origin;
+    constexpr double kSame = 1e-12;
+    const bool same = (of_a.translation - of_b.translation).norm() < kSame &&
+                      (of_a.rotation - of_b.rotation).norm() < kSame;
+    return same ? "" : "begins at another origin of joint '" + owner + "': the URDFs differ";
+  }
+  const bool is_frame = a.problem().frames().contains(owner);
+  return is_frame ? "" : "may begin at other settings: the URDFs differ";
+}
+
+Comparison compared(const Assembled& a, const Assembled& b) {
+  Comparison all;
+  std::vector<std::string> names;
+  for (const Assembled* one : {&a, &b}) {
+    for (const auto& [name, deviation] : one->result.deviations) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  for (const std::string& name : names) {
+    if (const std::string why = why_not(a, b, name); !why.empty()) {
+      all.others.push_back({name, why});
+      continue;
+    }
+    const bool is_offset = a.owner(name) == name;
+    const auto value = [&](const Assembled& of) {
+      return of.result.values.at(name) + (is_offset ? of.rising_of_joint(name) : 0.0);
+    };
+    const Difference difference{
+        name, a.result.units.at(name), value(a), value(b),
+        std::hypot(a.result.deviations.at(name), b.result.deviations.at(name))};
+    (difference.times() > kMoved ? all.moved : all.equal).push_back(difference);
+  }
+  std::stable_sort(all.moved.begin(), all.moved.end(),
+                   [](const auto& x, const auto& y) { return x.times() > y.times(); });
+  return all;
+}
+
+/// The pose in question of the first result, at its poses.  Encoders read the same in both.
+void compare_poses(const Assembled& a, const Assembled& b, Comparison& all) {
+  all.pose = a.result.pose;
+  if (!all.pose) return;
+  if (b.result.pose) all.position_b = b.result.pose->position;
+  const auto known = [](const Assembled& one, const FrameOnRobot& frame) {
+    return one.result.robot.has_link(frame.link) &&
+           (frame.frame.empty() || one.problem().frames().contains(frame.frame));
+  };
+  if (!known(b, all.pose->frame) || !known(b, all.pose->in)) return all.pose.reset();
+  std::map<std::string, double> to_b = b.rising;
+  for (const auto& [joint, rising] : a.rising) to_b[joint] -= rising;
+  // Both at the readings of a; in b they are larger by the difference of <calibration rising>.
+  std::vector<double> values = b.values;
+  const ParameterTable& table = b.problem().table();
+  std::vector<Sample> samples = a.result.pose_samples();
+  for (const auto& [joint, rising] : to_b) {
+    if (const int index = table.find(joint); index >= 0) {
+      values[static_cast<std::size_t>(index)] += rising;
+    } else if (rising != 0.0) {
+      return all.pose.reset();  // without a parameter for it, the joint cannot be moved
+    }
+  }
+  all.change = pose_change({a.problem(), a.values}, {b.problem(), values}, samples, all.pose->frame,
+                           all.pose->in);
+}
+
+std::string text_of(const Assembled& a, const Assembled& b, const Comparison& all) {
+  std::string text = fmt::format(
+      "{} of {} moved by more than {} standard deviations of the difference\n", all.moved.size(),
+      counted(all.moved.size() + all.equal.size(), "parameter"), kMoved);
+  if (!all.moved.empty()) {
+    TextTable table(
+        {"parameter", a.result.folder, b.result.folder, "difference", "+-", "unit", "times"});
+    for (const Difference& of : all.moved) {
+      const auto shown = [&](double value) { return detail::for_people(value, of.unit).first; };
+      table.add({of.name, shown(of.a), shown(of.b), shown(of.b - of.a), shown(of.deviation),
+                 detail::for_people(0.0, of.unit).second, fmt::format("{:.1f}", of.times())});
+    }
+    text += table.str();
+  }
+  if (!all.others.empty()) text += "\nNot compared\n";
+  for (const NotCompared& of : all.others) text += fmt::format("  {} {}\n", of.name, of.why);
+  if (all.pose && all.change.poses > 0) {
+    text += fmt::format(
+        "\n'{}' in '{}' moved by {} and {}, {} at the worst of {} of {}; it is known to {} and "
+        "{}\n",
+        all.pose->frame.name(), all.pose->in.name(), reading(all.change.position, "m"),
+        reading(all.change.rotation, "rad"), reading(all.change.worst_position, "m"),
+        counted(static_cast<std::size_t>(all.change.poses), "pose"), a.result.folder,
+        reading(all.pose->position, "m"), reading(all.position_b, "m"));
+  }
+  return text;
+}
+
+std::string json_of(const Assembled& a, const Assembled& b, const Comparison& all) {
+  std::string parameters, others, pose = "null";
+  for (const auto* list : {&all.moved, &all.equal}) {
+    for (const Difference& of : *list) {
+      parameters += fmt::format(
+          R"({}{{"name": {}, "unit": {}, "a": {}, "b": {}, "sigma": {}, "moved": {}}})",
+          parameters.empty() ? "\n    " : ",\n    ", detail::json_string(of.name),
+          detail::json_string(of.unit), detail::json_number(of.a), detail::json_number(of.b),
+          detail::json_number(of.deviation), list == &all.moved);
+    }
+  }
+  for (const NotCompared& of : all.others) {
+    others += fmt::format(R"({}{{"name": {}, "why": {}}})", others.empty() ? "\n    " : ",\n    ",
+                          detail::json_string(of.name), detail::json_string(of.why));
+  }
+  if (all.pose && all.change.poses > 0) {
+    pose = fmt::format(
+        R"({{"frame": {}, "in": {}, "poses": {}, "position": {}, "rotation": {}, )"
+        R"("worst_position": {}, "worst_rotation": {}}})",
+        detail::json_string(all.pose->frame.name()), detail::json_string(all.pose->in.name()),
+        all.change.poses, detail::json_number(all.change.position),
+        detail::json_number(all.change.rotation), detail::json_number(all.change.worst_position),
+        detail::json_number(all.change.worst_rotation));
+  }
+  return fmt::format(
+      "{{\n  \"a\": {},\n  \"b\": {},\n  \"limit\": {},\n  \"parameters\": [{}],\n"
+      "  \"not_compared\": [{}],\n  \"pose\": {}\n}}\n",
+      detail::json_string(a.result.folder), detail::json_string(b.result.folder), kMoved,
+      parameters, others, pose);
+}
+
+}  // namespace
+
+int compare(const CompareOptions& options) {
+  const Assembled a(options.a), b(options.b);
+  check_same_robot(a, b);
+  Comparison all = compared(a, b);
+  compare_poses(a, b, all);
+  fmt::print("{}", printable(text_of(a, b, all)));
+  if (!options.report.empty()) write_file(options.report, json_of(a, b, all));
+  return kDone;
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,44 @@
+// kinecal evaluate: how a result fits other samples.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/io/printable.hpp"
+#include "kinecal/report/json.hpp"
+#include "new_samples.hpp"
+#include "output_file.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+std::string json(const Result& result, const NewSamples& fresh) {
+  return fmt::format(
+      "{{\n  \"result\": {},\n  \"verdict\": {},\n  \"samples\": {},\n  \"assumed\": {},\n"
+      "  \"error_blocks\": {}\n}}\n",
+      detail::json_string(result.folder), detail::json_string(result.verdict), fresh.samples.size(),
+      detail::json_string(fresh.assumed), fit_json(result, fresh));
+}
+
+}  // namespace
+
+int evaluate(const RecheckOptions& options) {
+  const Result result = read_result(options.result);
+  if (!options.report.empty()) check_output(options.report, options.samples, true);
+  const NewSamples fresh =
+      read_new_samples(result, {options.samples, options.cameras, options.recorded});
+  print(fresh.diagnostics);
+  if (!fresh.diagnostics.errors.empty()) return kBadInput;
+  std::string text = fmt::format("Result {} ({}) on {}; nothing is solved\n", result.folder,
+                                 result.verdict, counted(fresh.samples.size(), "sample"));
+  if (!fresh.assumed.empty()) text += fresh.assumed + "\n";
+  text += "\n" + fit_text(result, fresh) + "\n" + worst_text(result, fresh);
+  fmt::print("{}", printable(text));
+  if (!options.report.empty()) write_file(options.report, json(result, fresh));
+  return kDone;
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "new_samples.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "input.hpp"
+#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/cameras/set_camera.hpp"
+#include "kinecal/io/doubts/joint_positions.hpp"
+#include "kinecal/io/doubts/repeated_samples.hpp"
+#include "kinecal/io/doubts/sensor_points.hpp"
+#include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/report/json.hpp"
+#include "kinecal/report/text.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// The configuration with the offset of each joint in its last step: each may have moved.
+Config with_all_joints(const Result& result, const std::vector<detail::UsedJoint>& joints) {
+  Config config = result.config;
+  StepConfig& step = config.steps.back();
+  for (const detail::UsedJoint& used : joints) {
+    const auto free = free_parameters(step);
+    const auto same = [&](const FreeParamConfig& param) { return param.name == used.joint.name; };
+    if (std::any_of(free.begin(), free.end(), same)) continue;
+    step.free_params.push_back({used.joint.name, step.place});
+  }
+  return config;
+}
+
+void doubt(const Result& result, std::span<const Sample> samples,
+           const std::vector<detail::UsedJoint>& joints, Diagnostics& diagnostics) {
+  detail::check_joint_positions(joints, samples, diagnostics);
+  (void)detail::check_repeated_samples(result.config, joints, samples, diagnostics);
+  detail::check_sensor_points(result.config, result.robot, samples, diagnostics);
+}
+
+void assemble_new(const Result& result, NewSamples& fresh) {
+  const auto joints = detail::used_joints(result.config, result.robot, fresh.samples);
+  Diagnostics quiet;  // what a configuration leaves free is not of interest here
+  fresh.calibration = assemble(with_all_joints(result, joints), result.robot, fresh.samples, quiet);
+  fresh.diagnostics.errors.insert(fresh.diagnostics.errors.end(), quiet.errors.begin(),
+                                  quiet.errors.end());
+  if (!fresh.diagnostics.errors.empty()) return;
+  fresh.values = result.values_of(fresh.problem().table());
+  const Assessment noise = assess_new(result, fresh);
+  double sum = 0.0, rows = 0.0;
+  const auto undefined =
+      evaluate(fresh.problem(), fresh.values, nullptr, [&](int t, int, const TermResiduals& r) {
+        const double sigma = noise.noise[static_cast<std::size_t>(t)].sigma;
+        sum += r.residual.squaredNorm() / (sigma * sigma);
+        rows += static_cast<double>(r.residual.size());
+      });
+  fresh.misfit = undefined ? std::numeric_limits<double>::infinity() : sum / std::max(1.0, rows);
+}
+
+/// Takes the result off what was recorded with it in force: offsets in <calibration rising>, and cameras.
+/// @returns  false if it changes nothing
+bool take_off(const Result& result, const AnyProblem& problem, std::vector<Sample>& samples) {
+  bool changes = !result.added_rising.empty();
+  add_rising(result.added_rising, samples, -1.0);
+  for (const MountedSensor& sensor : problem.sensors()) {
+    const Mount& mount = sensor.mount();
+    const auto inverse = [&](const char* part) {
+      const auto value = result.values.find(parameter_name(mount.parameter_prefix(), part));
+      return value == result.values.end() ? 0.0 : 1.0 / (1.0 + value->second) - 1.0;
+    };
+    const double fx = inverse("fx"), fy = inverse("fy"), cx = inverse("cx"), cy = inverse("cy");
+    if (fx == 0.0 && fy == 0.0 && cx == 0.0 && cy == 0.0) continue;
+    for (Sample& sample : samples) {
+      for (Observation& seen : sample.observations) {
+        if (seen.sensor != mount.name || !seen.camera) continue;
+        seen.camera = calibrated_camera_info(*seen.camera, fx, fy, cx, cy);
+        changes = true;
+      }
+    }
+  }
+  return changes;
+}
+
+/// Decides whether the result was in force when the samples were recorded.
+void choose_recorded(const Result& result, const NewSampleOptions& options, NewSamples& fresh) {
+  NewSamples with;
+  with.samples = fresh.samples;
+  if (!take_off(result, fresh.problem(), with.samples)) return;
+  assemble_new(result, with);
+  if (!with.diagnostics.errors.empty()) return;
+  constexpr double kClearly = 0.8;  // of the residuals; else nothing was installed
+  const double ratio = std::sqrt(with.misfit / fresh.misfit);
+  const bool takes_with =
+      options.recorded ? *options.recorded == Recorded::after : ratio < kClearly;
+  fresh.assumed = fmt::format("taken as recorded {} the result was installed (--samples-recorded)",
+                              takes_with ? "after" : "before");
+  const double other = takes_with ? 1.0 / ratio : ratio;
+  constexpr double kSame = 1.05;
+  if (!options.recorded && other < kSame) {
+    fresh.assumed.clear();  // it does not matter
+  } else if (std::isfinite(other)) {
+    fresh.assumed += fmt::format(": {} it, residuals would be {:.1f} times as large",
+                                 takes_with ? "before" : "after", other);
+  }
+  if (!takes_with) return;
+  fresh.samples = std::move(with.samples);
+  fresh.calibration = std::move(with.calibration);
+  fresh.values = std::move(with.values);
+  fresh.misfit = with.misfit;
+}
+
+[[nodiscard]] double root_mean_square(const std::vector<double>& distances) {
+  double sum = 0.0;
+  for (const double d : distances) sum += d * d;
+  return distances.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(distances.size()));
+}
+
+const FittedBlock& fitted_block(const Result& result, const std::string& name) {
+  static const FittedBlock none;
+  const auto found = result.fitted.find(name);
+  return found == result.fitted.end() ? none : found->second;
+}
+
+}  // namespace
+
+NewSamples read_new_samples(const Result& result, const NewSampleOptions& options) {
+  NewSamples fresh;
+  fresh.samples = read_recordings(options.samples, fresh.diagnostics).samples;
+  for (const std::string& camera : options.cameras) {
+    try {
+      set_camera(fresh.samples, camera, fresh.diagnostics);
+    } catch (const InputError& e) {
+      fresh.diagnostics.errors.emplace_back(e.what());
+    }
+  }
+  if (!fresh.diagnostics.errors.empty()) return fresh;
+  if (fresh.samples.empty()) {
+    fresh.diagnostics.error({options.samples.front(), 0}, "has no samples");
+    return fresh;
+  }
+  doubt(result, fresh.samples, detail::used_joints(result.config, result.robot, fresh.samples),
+        fresh.diagnostics);
+  if (!fresh.diagnostics.errors.empty()) return fresh;
+  assemble_new(result, fresh);
+  if (!fresh.diagnostics.errors.empty()) {
+    fresh.diagnostics.errors.push_back(
+        fmt::format("these samples do not fit robot '{}' and the configuration of {}; are they of "
+                    "another robot?",
+                    result.robot.name(), result.folder));
+    return fresh;
+  }
+  choose_recorded(result, options, fresh);
+  return fresh;
+}
+
+Assessment assess_new(const Result& result, const NewSamples& fresh) {
+  const AnyProblem& problem = fresh.problem();
+  Assessment found;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const std::string& name = problem.term(t).name();
+    const auto noise =
+        std::find_if(result.noise.begin(), result.noise.end(),
+                     [&](const BlockNoise& of) { return of.block == name && of.sigma > 0.0; });
+    if (noise == result.noise.end() && problem.samples_of(t) == 0) {
+      found.noise.push_back({.block = name, .unit = problem.term(t).options().unit, .sigma = 1.0});
+      continue;
+    }
+    if (noise == result.noise.end()) {
+      throw InputError(
+          fmt::format("{}: the noise of error block '{}' is not known: the calibration "
+                      "used all residuals for parameters; record more samples and "
+                      "calibrate again",
+                      result.report, name));
+    }
+    found.noise.push_back(*noise);
+  }
+  found.captures.resize(static_cast<std::size_t>(problem.num_samples()));
+  (void)evaluate(problem, fresh.values, nullptr, [&](int t, int sample, const TermResiduals& rows) {
+    const int size = problem.term(t).feature_size();
+    const BlockNoise& noise = found.noise[static_cast<std::size_t>(t)];
+    CaptureError& worst = found.captures[static_cast<std::size_t>(sample)];
+    worst.sample = sample;
+    for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
+      const double distance = rows.residual.segment(row, size).norm();
+      if (distance <= worst.times * noise.sigma) {
+        if (worst.term == t) worst.others = std::max(worst.others, distance);
+        continue;
+      }
+      worst.others = worst.term == t ? worst.distance : 0.0;
+      worst.term = t;
+      worst.feature = static_cast<int>(row) / size;
+      worst.distance = distance;
+      worst.times = distance / noise.sigma;
+    }
+  });
+  return found;
+}
+
+std::string fit_text(const Result& result, const NewSamples& fresh) {
+  const AnyProblem& problem = fresh.problem();
+  const auto norms = feature_norms(problem, {fresh.values.data(), fresh.values.size()});
+  TextTable table({"error block", "features", "unit", "now", "calibration", "held out", "worst now",
+                   "noise now", "noise then"});
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const auto& distances = norms[static_cast<std::size_t>(t)];
+    if (distances.empty()) continue;
+    const AnyTerm& term = problem.term(t);
+    const std::string& unit = term.options().unit;
+    const auto text = [&](double value) { return in_reading_unit(value, unit); };
+    const FittedBlock& then = fitted_block(result, term.name());
+    const double now = root_mean_square(distances);
+    double sigma = 0.0;
+    for (const BlockNoise& noise : result.noise) {
+      if (noise.block == term.name()) sigma = noise.sigma;
+    }
+    table.add({term.name(), fmt::format("{}", distances.size()), reading_unit(unit), text(now),
+               text(then.distance), then.held_out ? text(*then.held_out) : "-",
+               text(*std::max_element(distances.begin(), distances.end())),
+               text(now / std::sqrt(static_cast<double>(term.feature_size()))), text(sigma)});
+  }
+  return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
+         table.str();
+}
+
+std::string fit_json(const Result& result, const NewSamples& fresh) {
+  const AnyProblem& problem = fresh.problem();
+  const auto norms = feature_norms(problem, {fresh.values.data(), fresh.values.size()});
+  std::string list;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const auto& distances = norms[static_cast<std::size_t>(t)];
+    if (distances.empty()) continue;
+    const AnyTerm& term = problem.term(t);
+    const FittedBlock& then = fitted_block(result, term.name());
+    list +=
+        fmt::format(R"({}{{"name": {}, "unit": {}, "features": {}, "distance": {}, "worst": {}, )"
+                    R"("calibration": {}, "held_out": {}}})",
+                    list.empty() ? "\n    " : ",\n    ", detail::json_string(term.name()),
+                    detail::json_string(term.options().unit), distances.size(),
+                    detail::json_number(root_mean_square(distances)),
+                    detail::json_number(*std::max_element(distances.begin(), distances.end())),
+                    detail::json_number(then.distance),
+                    then.held_out ? detail::json_number(*then.held_out) : "null");
+  }
+  return "[" + list + "\n  ]";
+}
+
+std::string worst_text(const Result& result, const NewSamples& fresh) {
+  const Assessment found = assess_new(result, fresh);
+  std::vector<CaptureError> worst = found.captures;
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const auto& a, const auto& b) { return a.times > b.times; });
+  constexpr std::size_t kWorst = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kWorst, worst.size()); ++i) {
+    const int sample = worst[i].sample;
+    text += fmt::format("  {} (sample {}): {}\n",
+                        fresh.samples[static_cast<std::size_t>(sample)].source, sample + 1,
+                        capture_text(worst[i], found));
+  }
+  return "Worst samples\n" + text;
+}
+
+}  // namespace kinecal::cli

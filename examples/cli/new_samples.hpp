@@ -1,0 +1,50 @@
+// New samples of a robot that has been calibrated, held against the result.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/io/doubts/rising.hpp"
+#include "kinecal/report/findings.hpp"
+#include "result.hpp"
+
+namespace kinecal::cli {
+
+/// New samples and how they fit a result.
+struct NewSamples {
+  std::vector<Sample> samples;
+  Calibration calibration;     ///< of the result's configuration, with the offset of each joint
+  std::vector<double> values;  ///< of the result
+  double misfit = 0.0;      ///< mean square of all residuals, in standard deviations of the noise
+  std::string assumed;      ///< which URDF was in force, if that matters; a sentence
+  Diagnostics diagnostics;  ///< errors: nothing else is filled in
+
+  /// The last step: the one that a result is held against.
+  [[nodiscard]] const AnyProblem& problem() const { return *calibration.steps.back().problem; }
+};
+
+/// Where new samples come from.
+struct NewSampleOptions {
+  std::vector<std::string> samples, cameras;  ///< files; NAME=FILE
+  /// before, after: without or with calibrated.urdf and the calibrated cameras in force; nullopt: what
+  /// fits better.
+  std::optional<Recorded> recorded = {};
+};
+
+/// Reads new samples of any format, and doubts them.
+[[nodiscard]] NewSamples read_new_samples(const Result& result, const NewSampleOptions& options);
+
+/// Noise of the calibration and the worst feature of each new sample, by error block of the problem.
+[[nodiscard]] Assessment assess_new(const Result& result, const NewSamples& fresh);
+
+/// A line for each error block: distances now, and in the calibration.
+[[nodiscard]] std::string fit_text(const Result& result, const NewSamples& fresh);
+/// The same as a JSON list.
+[[nodiscard]] std::string fit_json(const Result& result, const NewSamples& fresh);
+
+/// The worst samples, by file and line.
+[[nodiscard]] std::string worst_text(const Result& result, const NewSamples& fresh);
+
+}  // namespace kinecal::cli

@@ -1,0 +1,263 @@
+// kinecal verify: does a result still hold, and what has moved?
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/io/printable.hpp"
+#include "kinecal/report/json.hpp"
+#include "kinecal/trust/pose_change.hpp"
+#include "new_samples.hpp"
+#include "output_file.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// What is written about a check.
+struct Check {
+  const Result& result;
+  const NewSamples& fresh;
+  Drift drift;
+  double level;
+
+  [[nodiscard]] const ParameterTable& table() const { return fresh.problem().table(); }
+};
+
+/// "joint 'elbow'", "frame 'tracker'" or "camera 'head_camera'".
+std::string name_of(const Check& check, const Mover& mover) {
+  const AnyProblem& problem = check.fresh.problem();
+  if (mover.is_frame) return "frame '" + mover.owner + "'";
+  const auto& sensors = problem.sensors();
+  const bool is_sensor = std::any_of(sensors.begin(), sensors.end(), [&](const MountedSensor& of) {
+    return of.mount().parameter_prefix() == mover.owner;
+  });
+  const bool is_joint = problem.robot().has_joint(mover.owner);
+  return (is_joint ? "joint '" : is_sensor ? "sensor '" : "error block '") + mover.owner + "'";
+}
+
+/// The length of some changes, and its standard deviation.
+std::string length_text(const std::vector<std::pair<double, double>>& changes, const char* unit) {
+  double length = 0.0, variance = 0.0;
+  for (const auto& [change, deviation] : changes) length += change * change;
+  length = std::sqrt(length);
+  for (const auto& [change, deviation] : changes) {
+    const double share = length > 0.0 ? change / length : 1.0;
+    variance += share * share * deviation * deviation;
+  }
+  return reading(length, unit) + " +- " + reading(std::sqrt(variance), unit);
+}
+
+/// "0.57 deg +- 0.01 deg"
+std::string change_text(const Check& check, const Mover& mover) {
+  std::vector<std::pair<double, double>> lengths, angles;
+  std::string text;
+  for (std::size_t i = 0; i < mover.parameters.size(); ++i) {
+    const Parameter& parameter = check.table()[mover.parameters[i]];
+    const double change = mover.change[i], deviation = mover.deviation[i];
+    if (mover.is_frame) {
+      (parameter.unit == "m" ? lengths : angles).emplace_back(change, deviation);
+      continue;
+    }
+    text += fmt::format("{}{}{} +- {}", text.empty() ? "" : ", ",
+                        parameter.name == mover.owner ? "" : parameter.name + " ",
+                        reading(change, parameter.unit), reading(deviation, parameter.unit));
+  }
+  if (!lengths.empty()) text += length_text(lengths, "m");
+  if (!angles.empty()) text += (text.empty() ? "" : ", ") + length_text(angles, "rad");
+  return text;
+}
+
+/// By how much the pose in question is off if this has moved; poses of 0: it is not known.
+PoseChange change_of_pose(const Check& check, const Mover& mover) {
+  if (!check.result.pose) return {};
+  std::vector<double> moved = check.fresh.values;
+  for (std::size_t i = 0; i < mover.parameters.size(); ++i) {
+    moved[static_cast<std::size_t>(mover.parameters[i])] += mover.change[i];
+  }
+  const AnyProblem& problem = check.fresh.problem();
+  return pose_change({problem, check.fresh.values}, {problem, moved}, check.fresh.samples,
+                     check.result.pose->frame, check.result.pose->in);
+}
+
+std::string pose_text(const Check& check, const Mover& mover) {
+  const PoseChange change = change_of_pose(check, mover);
+  if (change.poses == 0) return "";
+  return fmt::format("So '{}' in '{}' is off by {} and {}, {} at the worst of these poses\n",
+                     check.result.pose->frame.name(), check.result.pose->in.name(),
+                     reading(change.position, "m"), reading(change.rotation, "rad"),
+                     reading(change.worst_position, "m"));
+}
+
+std::string source_of(const Check& check, int sample) {
+  return fmt::format("{} (sample {})", check.fresh.samples[static_cast<std::size_t>(sample)].source,
+                     sample + 1);
+}
+
+std::string missed_text(const Check& check, const std::vector<MissedSample>& missed) {
+  std::string text;
+  for (const MissedSample& sample : missed) {
+    text +=
+        fmt::format("  - {} does not fit the others ({:.1f} times the noise): capture it again\n",
+                    source_of(check, sample.sample), sample.times);
+  }
+  return text;
+}
+
+/// "7 %", "0.03 %"
+std::string percent(double share) {
+  return fmt::format("{:.{}g} %", 100.0 * share, share > 0.995 ? 3 : 2);
+}
+
+std::string confidence_text(double probability) {
+  constexpr double kLeast = 1e-6;
+  if (probability < kLeast) return "confidence above 99.9999 %";
+  const int digits = 2 + static_cast<int>(std::ceil(-std::log10(probability)));
+  return fmt::format("confidence {:.{}g} %", 100.0 * (1.0 - probability), digits);
+}
+
+std::string verdict_text(const Check& check) {
+  const Drift& drift = check.drift;
+  std::string text = drift.holds ? "verdict: holds\n" : "verdict: does not hold\n";
+  const std::string size =
+      fmt::format("residuals are {:.2f} times what noise and the uncertainty of the result make",
+                  std::sqrt(drift.statistic / std::max(1.0, drift.freedom)));
+  if (drift.holds) {
+    text += fmt::format("  - {} of {} fit: {}; chance does so in {} of cases\n",
+                        check.fresh.samples.size() - drift.missed.size(),
+                        counted(check.fresh.samples.size(), "sample"), size,
+                        percent(drift.probability));
+  } else {
+    text += fmt::format("  - {}: {}\n", confidence_text(drift.probability), size);
+  }
+  text += missed_text(check, drift.missed);
+  constexpr std::size_t kEnough = 5;
+  if (check.fresh.samples.size() < kEnough) {
+    text += fmt::format("  - only {}; {} or more in different poses show more\n",
+                        counted(check.fresh.samples.size(), "sample"), kEnough);
+  }
+  return text;
+}
+
+/// What has moved, the most likely first.
+std::string movers_text(const Check& check) {
+  const Drift& drift = check.drift;
+  if (drift.movers.empty()) return "";
+  const Mover& first = drift.movers.front();
+  if (!first.explains) {
+    const double rest = std::sqrt(first.statistic / std::max(1.0, first.freedom));
+    constexpr double kMostly = 0.05;
+    if (first.statistic < kMostly * drift.statistic) {
+      return fmt::format(
+          "Most of it is {}: {}\n"
+          "  but not it alone: residuals stay {:.2f} times too large, so something else has "
+          "changed, or "
+          "the result is less exact at these poses\n",
+          name_of(check, first), change_text(check, first), rest);
+    }
+    return fmt::format(
+        "No single joint, frame or sensor explains it: several have moved, or something that is no "
+        "parameter (a bent link, another load, many bad captures)\n"
+        "  nearest: {}, {}; residuals stay {:.2f} times too large\n",
+        name_of(check, first), change_text(check, first), rest);
+  }
+  std::string text = "Most likely moved\n";
+  constexpr int kListed = 4;
+  for (int i = 0; i < std::min(drift.alike, kListed); ++i) {
+    const Mover& mover = drift.movers[static_cast<std::size_t>(i)];
+    text += fmt::format("  {}{}: {}\n", i == 0 ? "" : "or ", name_of(check, mover),
+                        change_text(check, mover));
+  }
+  if (drift.alike > kListed) text += fmt::format("  or {} others\n", drift.alike - kListed);
+  if (drift.alike > 1) {
+    text += "  these samples cannot tell them apart; record poses in which they move differently\n";
+  }
+  return text + missed_text(check, first.missed) + pose_text(check, first);
+}
+
+std::string next_text(const Check& check) {
+  const Drift& drift = check.drift;
+  if (drift.holds) return "Next: nothing to do\n";
+  if (drift.movers.empty() || !drift.movers.front().explains) return "Next: calibrate again\n";
+  return fmt::format("Next: see whether {} is loose, then calibrate again\n",
+                     name_of(check, drift.movers.front()));
+}
+
+std::string json(const Check& check, const Mover& mover, bool alike) {
+  std::string parameters;
+  for (std::size_t i = 0; i < mover.parameters.size(); ++i) {
+    parameters +=
+        fmt::format(R"({}{{"name": {}, "change": {}, "sigma": {}}})", i == 0 ? "" : ", ",
+                    detail::json_string(check.table()[mover.parameters[i]].name),
+                    detail::json_number(mover.change[i]), detail::json_number(mover.deviation[i]));
+  }
+  const PoseChange pose = change_of_pose(check, mover);
+  return fmt::format(
+      R"({{"owner": {}, "is_frame": {}, "explains": {}, "alike": {}, "statistic": {}, )"
+      R"("freedom": {}, "pose_position": {}, "pose_rotation": {}, "parameters": [{}]}})",
+      detail::json_string(mover.owner), mover.is_frame, mover.explains, alike,
+      detail::json_number(mover.statistic), mover.freedom,
+      pose.poses > 0 ? detail::json_number(pose.position) : "null",
+      pose.poses > 0 ? detail::json_number(pose.rotation) : "null", parameters);
+}
+
+std::string json(const Check& check) {
+  const Drift& drift = check.drift;
+  std::string movers, missed;
+  for (std::size_t i = 0; i < drift.movers.size(); ++i) {
+    movers += (i == 0 ? "\n    " : ",\n    ") +
+              json(check, drift.movers[i], static_cast<int>(i) < drift.alike);
+  }
+  for (const MissedSample& sample : drift.missed) {
+    missed += fmt::format(
+        R"({}{{"sample": {}, "source": {}, "times": {}}})", missed.empty() ? "" : ", ",
+        sample.sample + 1,
+        detail::json_string(check.fresh.samples[static_cast<std::size_t>(sample.sample)].source),
+        detail::json_number(sample.times));
+  }
+  return fmt::format(
+      "{{\n  \"result\": {},\n  \"holds\": {},\n  \"probability\": {},\n  \"level\": {},\n"
+      "  \"statistic\": {},\n  \"freedom\": {},\n  \"samples\": {},\n  \"assumed\": {},\n"
+      "  \"bad_samples\": [{}],\n  \"moved\": [{}],\n  \"error_blocks\": {}\n}}\n",
+      detail::json_string(check.result.folder), drift.holds, detail::json_number(drift.probability),
+      check.level, detail::json_number(drift.statistic), drift.freedom, check.fresh.samples.size(),
+      detail::json_string(check.fresh.assumed), missed, movers,
+      fit_json(check.result, check.fresh));
+}
+
+}  // namespace
+
+int verify(const RecheckOptions& options) {
+  const Result result = read_result(options.result);
+  if (!options.report.empty()) check_output(options.report, options.samples, true);
+  const NewSamples fresh =
+      read_new_samples(result, {options.samples, options.cameras, options.recorded});
+  print(fresh.diagnostics);
+  if (!fresh.diagnostics.errors.empty()) return kBadInput;
+  if (!std::isfinite(fresh.misfit)) {
+    fmt::print(
+        "verdict: does not hold\n  - with this result, a recorded point is behind a camera\n");
+    return kNotUsable;
+  }
+  const Check check{
+      result, fresh,
+      check_drift(fresh.problem(), result.state(fresh.problem().table()), {options.level}),
+      options.level};
+  std::string text = verdict_text(check);
+  if (result.verdict != "good") {
+    text += fmt::format("  - the result itself was judged '{}'\n", result.verdict);
+  }
+  if (!fresh.assumed.empty()) text += "  - " + fresh.assumed + "\n";
+  text += "\n";
+  if (const std::string moved = movers_text(check); !moved.empty()) text += moved + "\n";
+  text += fit_text(result, fresh) + "\n" + worst_text(result, fresh) + "\n" + next_text(check);
+  fmt::print("{}", printable(text));
+  if (!options.report.empty()) write_file(options.report, json(check));
+  return check.drift.holds ? kDone : kNotUsable;
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,28 @@
+// The joint positions at which a calibration was recorded: compact enough for its report.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/solve/calibrate.hpp"
+
+namespace kinecal {
+
+/// Joint positions of samples, for comparing calibrations at poses that were used.
+struct RecordedPoses {
+  std::vector<std::string> joints;             ///< those of the chains of all sensors
+  std::vector<std::vector<double>> positions;  ///< radians or metres, of each joint
+};
+
+/// The poses of samples that have all joints; evenly chosen if there are more than 100.
+[[nodiscard]] RecordedPoses recorded_poses(const Calibration& calibration,
+                                           std::span<const Sample> samples);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/recorded_poses.ipp"
+#endif

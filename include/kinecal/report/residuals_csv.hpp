@@ -1,0 +1,21 @@
+// The residuals of a result as a table for other programs.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/report/findings.hpp"
+
+namespace kinecal {
+
+/// A row for each feature of the last step: error block, sample, its source location, feature, unit,
+/// residuals and their distance.
+/// @param calibration  the one that was solved, with its samples
+[[nodiscard]] std::string residuals_csv(const Calibration& calibration, const Findings& findings);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/residuals_csv.ipp"
+#endif

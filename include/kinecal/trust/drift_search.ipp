@@ -1,0 +1,146 @@
+// Testing what may have moved, and leaving out bad captures.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "kinecal/trust/drift_fit.ipp"
+#include "kinecal/trust/f_distribution.hpp"
+
+namespace kinecal::detail {
+
+/// A minimum of X, without the samples that keep it from being one that chance makes.
+struct CleanFit {
+  DriftMinimum at;
+  std::vector<MissedSample> missed;
+  double freedom = 0.0;      ///< of X
+  double probability = 0.0;  ///< that chance makes X larger
+
+  /// X + 2 rank; a sample that is left out has the X that chance makes of one in a thousand.
+  [[nodiscard]] double score() const {
+    constexpr double kMissed = 14.0;
+    double sum = at.statistic + 2.0 * static_cast<double>(at.rank);
+    for (const MissedSample& sample : missed) sum += kMissed + sample.rows;
+    return sum;
+  }
+};
+
+/// What may have moved, each a joint's offset, a frame, or a sensor: its parameters.
+[[nodiscard]] inline std::vector<Mover> hypotheses(const AnyProblem& problem) {
+  std::map<std::pair<std::string, bool>, std::vector<int>> groups;
+  for (const int p : problem.touched_parameters()) {
+    const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
+    const std::string& name = problem.table()[p].name;
+    bool is_frame = false;
+    for (const std::string_view axis : kFrameAxes) {
+      is_frame =
+          is_frame || (problem.frames().contains(owner) && name == parameter_name(owner, axis));
+    }
+    if (!owner.empty()) groups[{owner, is_frame}].push_back(p);
+  }
+  std::vector<Mover> all;
+  for (const auto& [key, parameters] : groups) {
+    all.push_back({.owner = key.first, .is_frame = key.second, .parameters = parameters});
+  }
+  return all;
+}
+
+/// Tries what may have moved.
+class DriftSearch {
+ public:
+  DriftSearch(const AnyProblem& problem, const CalibratedState& state, double level)
+      : problem_(problem), fit_(problem, state), movers_(hypotheses(problem)), level_(level) {}
+
+  [[nodiscard]] double noise_freedom() const { return fit_.noise_freedom(); }
+  [[nodiscard]] const std::vector<Mover>& movers() const { return movers_; }
+
+  /// The minimum if these parameters have moved; if nothing has, that is tested against each mover.
+  [[nodiscard]] CleanFit clean_fit(const std::vector<int>& moved) const {
+    const Eigen::MatrixXd directions = fit_.directions(moved);
+    std::vector<bool> used(static_cast<std::size_t>(problem_.num_samples()), true);
+    const auto fit = [&] {
+      CleanFit found = fit_directions(directions, used);
+      if (moved.empty()) found.probability = against_movers(found, used);
+      return found;
+    };
+    const CleanFit all = fit();
+    CleanFit now = all;
+    constexpr int kShare = 5;  // one sample of five
+    for (int n = 0; n < problem_.num_samples() / kShare && now.probability < level_; ++n) {
+      const auto worst = worst_sample(now, directions, used);
+      if (!worst) return all;
+      used[static_cast<std::size_t>(worst->sample)] = false;
+      std::vector<MissedSample> missed = now.missed;
+      missed.push_back(*worst);
+      now = fit();
+      now.missed = std::move(missed);
+    }
+    return now.probability < level_ ? all : now;
+  }
+
+ private:
+  [[nodiscard]] CleanFit fit_directions(const Eigen::MatrixXd& directions,
+                                        const std::vector<bool>& used) const {
+    CleanFit found{fit_.minimize(directions, used), {}};
+    found.freedom = fit_.size(used) - static_cast<double>(found.at.rank);
+    if (found.freedom < 1.0) return found;
+    found.probability =
+        f_tail(found.at.statistic / found.freedom, found.freedom, fit_.noise_freedom());
+    return found;
+  }
+  /// Probability of what is seen if nothing has moved: half the level is for X itself, half for the
+  /// fall of X if one of the hypotheses is true (Bonferroni).
+  [[nodiscard]] double against_movers(const CleanFit& still, const std::vector<bool>& used) const {
+    double least = 1.0;
+    const DriftSums sums = fit_.sums(still.at.rows, used);
+    for (const Mover& mover : movers_) {
+      const DriftFall moved = fit_.fall(sums, mover.parameters, still.at);
+      const auto rank = static_cast<double>(moved.rank);
+      if (moved.rank < 1) continue;
+      least = std::min(least, f_tail(moved.fall / rank, rank, fit_.noise_freedom()));
+    }
+    const double hypotheses = std::max(1.0, static_cast<double>(movers_.size()));
+    return std::min(1.0, 2.0 * std::min(still.probability, hypotheses * least));
+  }
+  /// The sample without which X falls most, if it is further off than one in a thousand.
+  [[nodiscard]] std::optional<MissedSample> worst_sample(const CleanFit& now,
+                                                         const Eigen::MatrixXd& directions,
+                                                         const std::vector<bool>& used) const {
+    const LinearFit& rows = now.at.rows.fit;
+    std::optional<MissedSample> worst;
+    constexpr double kFalse = 1e-3;
+    double least = kFalse / problem_.num_samples();
+    for (std::size_t b = 0; b < rows.blocks.size();) {
+      std::size_t end = b;
+      Eigen::Index size = 0;
+      const int sample = rows.blocks[b].sample;
+      for (; end < rows.blocks.size() && rows.blocks[end].sample == sample; ++end) {
+        size += rows.blocks[end].size;
+      }
+      const Eigen::Index first = rows.blocks[b].first;
+      b = end;
+      if (!used[static_cast<std::size_t>(sample)]) continue;
+      const Eigen::MatrixXd j = rows.jacobian.middleRows(first, size) * directions;
+      const Eigen::VectorXd r = rows.residual.segment(first, size);
+      const Eigen::MatrixXd variance =
+          Eigen::MatrixXd::Identity(size, size) - j * now.at.inverse * j.transpose();
+      const double off = r.dot(variance.ldlt().solve(r));
+      const double mean = off / static_cast<double>(size);
+      const double chance = f_tail(mean, static_cast<double>(size), fit_.noise_freedom());
+      if (!(chance < least || (worst && chance == least && std::sqrt(mean) > worst->times))) {
+        continue;
+      }
+      least = chance;
+      worst = MissedSample{sample, static_cast<int>(size), std::sqrt(mean)};
+    }
+    return worst;
+  }
+
+  const AnyProblem& problem_;
+  DriftFit fit_;
+  std::vector<Mover> movers_;
+  double level_;
+};
+
+}  // namespace kinecal::detail

@@ -1,0 +1,29 @@
+// Writing numbers for people.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <numbers>
+
+#include "kinecal/trust/reading.hpp"
+
+namespace kinecal {
+
+KINECAL_INLINE std::string reading(double value, std::string_view unit) {
+  double shown = value;
+  const char* of = "";
+  if (unit == "m") {
+    shown = 1e3 * value;
+    of = " mm";
+  } else if (unit == "rad") {
+    shown = value * 180.0 / std::numbers::pi;
+    of = " deg";
+  } else if (unit == "px") {
+    of = " px";
+  }
+  char text[48];
+  (void)std::snprintf(text, sizeof text, "%.3g%s", shown, of);
+  return text;
+}
+
+}  // namespace kinecal

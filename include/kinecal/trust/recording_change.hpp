@@ -1,0 +1,36 @@
+// Something that moved while samples were recorded: a tracker that was touched, a joint that slipped.
+//
+// With a joint, frame or sensor that is free to be another one from sample k on, the sum of squares falls
+// by the share x.  Without a change x has the beta distribution (q / 2, (freedom - q) / 2), q the
+// number of its parameters.  It counts if it is no chance among all owners and k, and if the noise
+// falls by half: deflection and the like vary over the workspace, too.
+// Source: Chow, Tests of Equality Between Sets of Coefficients in Two Linear Regressions, 1960.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "kinecal/solve/linear_fit.hpp"
+
+namespace kinecal {
+
+/// A change during the recording.
+struct RecordingChange {
+  std::string owner;        ///< joint, frame, sensor or error block that changed
+  int sample = 0;           ///< first one after it, by number in the problem
+  double noise_left = 1.0;  ///< noise with the change over that without
+};
+
+/// The change that explains the residuals best; nullopt if none does.  Samples are in the order in
+/// which they were recorded.
+/// @param free  the parameters of `fit`, at its solution
+[[nodiscard]] std::optional<RecordingChange> recording_change(const AnyProblem& problem,
+                                                              const FreeSet& free,
+                                                              const LinearFit& fit);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/recording_change.ipp"
+#endif

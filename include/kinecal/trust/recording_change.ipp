@@ -1,0 +1,110 @@
+// Finding a change during the recording.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "kinecal/solve/spectrum.hpp"
+#include "kinecal/trust/recording_change.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// J^T W J and J^T W r of the samples from the first of a part on.
+struct TailSums {
+  int sample = 0;  ///< the first one
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+};
+
+/// The sums from some samples on, in at most 64 places; without the first and the last samples, whose
+/// change cannot be told from a bad capture.
+[[nodiscard]] inline std::vector<TailSums> tail_sums(const LinearFit& fit, int samples) {
+  constexpr int kParts = 64, kFew = 3;
+  const Eigen::Index n = fit.size();
+  const int parts = std::min(kParts, samples);
+  std::vector<TailSums> sums(static_cast<std::size_t>(parts),
+                             {0, Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
+  for (int p = 0; p < parts; ++p) {
+    sums[static_cast<std::size_t>(p)].sample =
+        static_cast<int>((static_cast<long>(p) * samples + parts - 1) / parts);
+  }
+  for (const RowBlock& block : fit.blocks) {
+    const auto part = static_cast<std::size_t>(static_cast<long>(block.sample) * parts / samples);
+    const auto rows = fit.jacobian.middleRows(block.first, block.size);
+    const auto weights = fit.loss.segment(block.first, block.size);
+    sums[part].information += rows.transpose() * weights.asDiagonal() * rows;
+    sums[part].gradient +=
+        rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size));
+  }
+  for (std::size_t p = sums.size(); p-- > 1;) {
+    sums[p - 1].information += sums[p].information;
+    sums[p - 1].gradient += sums[p].gradient;
+  }
+  std::erase_if(sums, [&](const TailSums& tail) {
+    return tail.sample < kFew || tail.sample > samples - kFew;
+  });
+  return sums;
+}
+
+/// The share by which the sum of squares falls with parameters that change, times that sum.
+/// @param by  (coordinates x parameters) of the owner
+[[nodiscard]] inline double fall_of(const TailSums& tail, const Eigen::MatrixXd& inverse,
+                                    const Eigen::MatrixXd& by) {
+  const Eigen::MatrixXd cross = by.transpose() * tail.information;
+  const Spectrum own(cross * by - cross * inverse * cross.transpose());
+  const Eigen::VectorXd gradient = by.transpose() * tail.gradient;
+  return gradient.dot(own.pseudo_inverse() * gradient);
+}
+
+/// Probability that a share is above x by chance; q rounded up to an even number.
+[[nodiscard]] inline double chance_of_share(double x, int q, double freedom) {
+  const double b = 0.5 * (freedom - q);
+  double term = 1.0, sum = 0.0;
+  for (int j = 0; j < (q + 1) / 2; ++j) {
+    sum += term;
+    term *= x * (b + j) / (j + 1);
+  }
+  return std::pow(1.0 - x, b) * sum;
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::optional<RecordingChange> recording_change(const AnyProblem& problem,
+                                                               const FreeSet& free,
+                                                               const LinearFit& fit) {
+  const double squares = fit.loss.dot(fit.residual.cwiseAbs2());
+  const double freedom = static_cast<double>(fit.residual.size() - fit.size());
+  constexpr double kRounding = 1e-9, kLeft = 0.5, kChance = 1e-6;
+  if (!(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()))) return {};
+  std::map<std::string, std::vector<int>> columns;
+  for (int c = 0; c < free.size(); ++c) {
+    const int p = free.parameters()[static_cast<std::size_t>(c)];
+    columns[problem.owners()[static_cast<std::size_t>(p)]].push_back(c);
+  }
+  const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const Eigen::MatrixXd to_coordinates =
+      fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
+  const std::vector<detail::TailSums> tails = detail::tail_sums(fit, problem.num_samples());
+  const double tests = static_cast<double>(tails.size() * columns.size());
+  std::optional<RecordingChange> best;
+  for (const auto& [owner, of_owner] : columns) {
+    const int q = static_cast<int>(of_owner.size());
+    if (freedom - q < 2.0 * q) continue;
+    const Eigen::MatrixXd by = to_coordinates(Eigen::all, of_owner);
+    for (const detail::TailSums& tail : tails) {
+      const double x = std::clamp(detail::fall_of(tail, inverse, by) / squares, 0.0, 1.0);
+      const double left = std::sqrt((1.0 - x) * freedom / (freedom - q));
+      if (left > kLeft || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
+      if (!best || left < best->noise_left) best = RecordingChange{owner, tail.sample, left};
+    }
+  }
+  return best;
+}
+
+}  // namespace kinecal

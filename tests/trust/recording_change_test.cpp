@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/recording_change.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/noisy_scene.hpp"
+
+namespace kinecal {
+namespace {
+
+std::optional<RecordingChange> change_in(test::NoisyScene& scene) {
+  scene.solve();
+  const FreeSet free = scene.free();
+  const auto evaluator = scene.solved().evaluator(free);
+  const LinearFit fit = scene.linear(*evaluator);
+  return recording_change(scene.solved(), free, fit);
+}
+
+/// Moves a joint of all samples from one on: it slipped.
+void slip(test::NoisyScene& scene, const char* joint, std::size_t from, double by) {
+  for (std::size_t s = from; s < scene.samples.size(); ++s) {
+    Sample& sample = scene.samples[s];
+    const auto at = std::find(sample.joint_names.begin(), sample.joint_names.end(), joint);
+    ASSERT_NE(at, sample.joint_names.end());
+    sample.joint_positions[static_cast<std::size_t>(at - sample.joint_names.begin())] += by;
+  }
+}
+
+TEST(RecordingChange, IsNoneInSamplesAsTheyShouldBe) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    test::NoisyScene scene(20, seed);
+    EXPECT_FALSE(change_in(scene)) << seed;
+  }
+}
+
+TEST(RecordingChange, OfAJointIsFoundWithItsPlace) {
+  test::NoisyScene scene(40);
+  slip(scene, "elbow", 25, 0.03);
+  const auto found = change_in(scene);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->owner, "elbow");
+  EXPECT_EQ(found->sample, 25);
+  EXPECT_LT(found->noise_left, 0.3);
+}
+
+TEST(RecordingChange, OfTheLastSamplesIsABadCapture) {
+  test::NoisyScene scene(40);
+  slip(scene, "elbow", 39, 0.03);
+  EXPECT_FALSE(change_in(scene));
+}
+
+/// A wrong model is no change: a third of the samples, here and there, has another elbow.
+TEST(RecordingChange, IsNoneIfSamplesAreBadHereAndThere) {
+  test::NoisyScene scene(40);
+  for (std::size_t s = 0; s < 40; s += 3) {
+    slip(scene, "elbow", s, 0.03);
+    if (s + 1 < 40) slip(scene, "elbow", s + 1, -0.03);
+  }
+  EXPECT_FALSE(change_in(scene));
+}
+
+}  // namespace
+}  // namespace kinecal
