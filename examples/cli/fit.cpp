@@ -11,10 +11,14 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/doubts/check_offsets.hpp"
 #include "kinecal/io/doubts/likely_causes.hpp"
+#include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/trust/capture_causes.hpp"
 #include "kinecal/trust/ruined.hpp"
 
 namespace kinecal::cli {
 namespace {
+
+constexpr const char* kExcluded = "--exclude";  ///< why a user left a sample out
 
 /// The samples that are used, by number from 0, and those that are not.
 class Selection {
@@ -59,6 +63,10 @@ Fit fit_samples(const Input& input, const Config& config, const Selection& selec
                          kinecal::calibrate(fitted.calibration, progress, solving), fitted.samples,
                          assessing, input.diagnostics.doubts);
   fitted.findings.numbers = std::move(numbers);
+  for (const ModelConfig& model : detail::models_of(config)) {
+    if (model.image == ImageKind::automatic) continue;
+    fitted.findings.images[model.name] = model.image == ImageKind::raw ? "raw" : "rectified";
+  }
   fitted.findings.left_out = selection.left_out();
   return fitted;
 }
@@ -104,6 +112,32 @@ Fit fit_with_estimates(const Input& input, const Selection& selection,
   return fitted;
 }
 
+/// Adds likely causes to the samples that were left out by the rule, and to those that are still bad.
+void add_capture_causes(const Input& input, Fit& fitted) {
+  Findings& findings = fitted.findings;
+  if (!findings.result.converged || findings.assessments.empty()) return;
+  const Assessment& last = findings.assessments.back();
+  const Eigen::VectorXd values = findings.result.table.values();
+  const auto make = [&] {
+    return empty_problem(input.config, input.config.steps.back(), input.robot,
+                         findings.result.table, fitted.samples);
+  };
+  const auto cause = [&](const Sample& sample) {
+    return capture_cause(make, {values.data(), static_cast<std::size_t>(values.size())}, last.noise,
+                         sample);
+  };
+  for (LeftOutSample& sample : findings.left_out) {
+    if (sample.why == kExcluded) continue;
+    const std::string why = cause(input.samples[static_cast<std::size_t>(sample.number - 1)]);
+    if (!why.empty()) sample.why += "; likely cause: " + why;
+  }
+  for (const CaptureError& error : last.captures) {
+    if (!error.bad) continue;
+    const std::string why = cause(fitted.samples[static_cast<std::size_t>(error.sample)]);
+    if (!why.empty()) findings.causes[error.sample] = why;
+  }
+}
+
 }  // namespace
 
 Fit fit(const Input& input, const CalibrateOptions& options, const Progress& progress,
@@ -114,27 +148,26 @@ Fit fit(const Input& input, const CalibrateOptions& options, const Progress& pro
       throw InputError(fmt::format("--exclude: no sample {}; there are samples 1 to {}", number,
                                    input.samples.size()));
     }
-    selection.leave_out(number - 1, "--exclude");
+    selection.leave_out(number - 1, kExcluded);
   }
   const auto again = [&] {
     return fit_with_estimates(input, selection, options, progress, solving);
   };
-  if (options.keep_outliers) return again();
+  const auto last_of = [&](const Fit& fitted) -> const Assessment* {
+    const Findings& found = fitted.findings;
+    const bool usable =
+        !options.keep_outliers && found.result.converged && !found.assessments.empty();
+    return usable ? &found.assessments.back() : nullptr;
+  };
   const int excluded = static_cast<int>(selection.left_out().size());
-  Fit fitted = fit_without_ruined(
-      again,
-      [](const Fit& last) -> const Assessment* {
-        const Findings& found = last.findings;
-        return found.result.converged && !found.assessments.empty() ? &found.assessments.back()
-                                                                    : nullptr;
-      },
-      [&](const Fit& last, const CaptureError& ruined) {
-        const Findings& found = last.findings;
-        selection.leave_out(found.numbers[static_cast<std::size_t>(ruined.sample)] - 1,
-                            capture_text(ruined, found.assessments.back()));
-      });
+  Fit fitted = fit_without_ruined(again, last_of, [&](const Fit& last, const CaptureError& ruined) {
+    const Findings& found = last.findings;
+    selection.leave_out(found.numbers[static_cast<std::size_t>(ruined.sample)] - 1,
+                        capture_text(ruined, found.assessments.back()));
+  });
   judge_left_out(static_cast<int>(selection.left_out().size()) - excluded,
                  static_cast<int>(input.samples.size()) - excluded, fitted.findings.judgement);
+  add_capture_causes(input, fitted);
   return fitted;
 }
 

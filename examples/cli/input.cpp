@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "kinecal/io/assemble.hpp"
+#include "kinecal/io/cameras/choose_images.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/config/hold_parameters.hpp"
 #include "kinecal/io/config/read_config.hpp"
@@ -37,6 +38,7 @@ void assemble_input(Input& input, Recorded recorded) {
   if (recorded == Recorded::before) {
     add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
   }
+  choose_images(input.config, input.robot, input.samples, input.diagnostics);
   input.calibration = assemble(input.config, input.robot, input.samples, input.diagnostics);
   find_doubts({input.config, input.robot, input.urdf_text, input.urdf, input.samples,
                input.calibration, recorded},
@@ -123,6 +125,9 @@ Input read_input(const InputOptions& options) {
 }
 
 void print(const Diagnostics& diagnostics) {
+  for (const std::string& note : diagnostics.notes) {
+    fmt::print(stderr, "note: {}\n", printable(note));
+  }
   for (const std::string& warning : diagnostics.warnings) {
     fmt::print(stderr, "warning: {}\n", printable(warning));
   }

@@ -163,6 +163,18 @@ void read_parameters(const Report& report, const std::string& values_file, Resul
   }
 }
 
+/// Reads what the images of cameras were taken for.
+void read_images(const Report& report, Config& config) {
+  const YamlNode& images = report.at(report.root(), "images");
+  for (StepConfig& step : config.steps) {
+    for (ModelConfig& model : step.models) {
+      if (const YamlNode* image = images.find(model.name)) {
+        model.image = image->text == "raw" ? ImageKind::raw : ImageKind::rectified;
+      }
+    }
+  }
+}
+
 /// A file of the result.
 /// @throws InputError  if an older version did not write it, or it was removed
 std::string needed_file(const std::string& folder, const char* name) {
@@ -202,6 +214,7 @@ Result read_result(const std::string& folder) {
   Diagnostics diagnostics;
   result.config = read_config(config, diagnostics);
   diagnostics.throw_if_errors();
+  read_images(report, result.config);
   result.added_rising = rising_of(files.urdf.content, files.urdf.name);
   for (const auto& [joint, rising] : rising_of(result.urdf_text, result.urdf)) {
     result.added_rising[joint] -= rising;

@@ -193,7 +193,7 @@ Observation Simulation::observe(const ExampleSensor& eye,
                                 {measuring.pixel, measuring.depth}, random_);
     } else if (eye.type == PinholeCamera::kType) {
       const Eigen::Vector2d pixel =
-          PinholeCamera{}.predict(point, PinholeCamera::settings(seen),
+          PinholeCamera{}.predict(point, PinholeCamera{}.settings(seen),
                                   std::array{errors[0], errors[1], errors[2], errors[3]});
       reported = {pixel.x() + measuring.pixel * random_.normal(),
                   pixel.y() + measuring.pixel * random_.normal(), 0.0};

@@ -14,6 +14,7 @@
 #include "kinecal/io/bags/rosbag2/read_bag.hpp"
 #include "kinecal/io/bags/rosbag2/read_db3.hpp"
 #include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/cameras/choose_images.hpp"
 #include "kinecal/io/cameras/read_camera_file.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/config/config.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/trust/assess.hpp"
+#include "kinecal/trust/capture_causes.hpp"
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/drift.hpp"
 #include "kinecal/trust/f_distribution.hpp"

@@ -42,6 +42,26 @@ TEST(CameraInfo, ChangedFocalLengthsKeepTheBaseline) {
   EXPECT_DOUBLE_EQ(c.p[7] / c.p[5], camera.p[7] / camera.p[5]);
 }
 
+/// The rectified pixel of a ray and the raw one keep their relation: P K^-1 stays.
+TEST(CameraInfo, TheMatrixThatWasNotUsedFollowsTheOther) {
+  const CameraInfo camera = right_camera_of_a_stereo_pair();
+  const auto rectified_of_raw = [](const CameraInfo& c, double u) {
+    return c.p[0] * (u - c.k[2]) / c.k[0] + c.p[2];
+  };
+  for (const ImageKind image : {ImageKind::raw, ImageKind::rectified}) {
+    const CameraInfo c = calibrated_camera_info(camera, 0.01, -0.02, 0.03, -0.04, image);
+    EXPECT_NEAR(rectified_of_raw(c, 100.0), rectified_of_raw(camera, 100.0), 1e-9);
+    EXPECT_DOUBLE_EQ(c.k[0], camera.k[0] * 1.01);
+    EXPECT_DOUBLE_EQ(c.p[5], camera.p[5] * 0.98);
+    const bool raw = image == ImageKind::raw;
+    EXPECT_EQ(c.k[2] == camera.k[2] * 1.03, raw);
+    EXPECT_EQ(c.p[2] == camera.p[2] * 1.03, !raw);
+  }
+  CameraInfo no_k = camera;
+  no_k.k = {};
+  EXPECT_EQ(calibrated_camera_info(no_k, 0.01, 0, 0.03, 0, ImageKind::rectified).k, no_k.k);
+}
+
 TEST(CameraInfo, NoChangeLeavesEveryNumberAsItWas) {
   const CameraInfo camera = right_camera_of_a_stereo_pair();
   const CameraInfo c = calibrated_camera_info(camera, 0.0, 0.0, 0.0, 0.0);

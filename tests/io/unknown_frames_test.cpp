@@ -130,7 +130,7 @@ TEST(UnknownFrames, RectifiedPixelsLieOnTheSameLineOfSight) {
   const auto ray = [](const Observation& eye) {
     Measurement<PinholeCamera, double> pixel;
     pixel.point = eye.features[0].point;
-    pixel.settings = PinholeCamera::settings(eye);
+    pixel.settings = PinholeCamera{}.settings(eye);
     return PinholeCamera{}.place(pixel, std::array<double, 4>{}).direction;
   };
   Observation rectified = seen;

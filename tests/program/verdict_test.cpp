@@ -63,6 +63,19 @@ TEST_F(VerdictProgram, IsGoodAndTheFirstLine) {
   EXPECT_NEAR(report()["noise"][0]["sigma"].as<double>(), 5e-5, 5e-6);
 }
 
+TEST_F(VerdictProgram, NamesTheLikelyCauseOfASampleThatItLeavesOut) {
+  std::swap(samples_[7].observations[1].features[0].point,
+            samples_[7].observations[1].features[1].point);
+  ruin(41);
+  const test::Outcome result = calibrate();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("; likely cause: features 1 and 2 are exchanged; left out\n"));
+  ASSERT_EQ(report()["left_out"].size(), 2u);
+  EXPECT_THAT(report()["left_out"][0]["why"].as<std::string>(),
+              testing::EndsWith("; likely cause: features 1 and 2 are exchanged"));
+  EXPECT_THAT(report()["left_out"][1]["why"].as<std::string>(), Not(HasSubstr("cause")));
+}
+
 TEST_F(VerdictProgram, LeavesRuinedSamplesOutAndNamesThem) {
   ASSERT_EQ(calibrate().code, 0);
   const auto clean = values();

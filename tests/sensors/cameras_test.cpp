@@ -72,13 +72,53 @@ TEST(PinholeCamera, ARectifiedImageIsDescribedByPAndADistortedOneByK) {
   info.k = {500, 0, 320, 0, 501, 240, 0, 0, 1};
   info.p = {480, 0, 310, 0, 0, 481, 230, 0, 0, 0, 1, 0};
   const std::array<double, 9> rectified{480, 481, 310, 230};
-  const auto settings = [&] { return PinholeCamera::settings({"eye", {}, info}); };
+  const auto settings = [&] { return PinholeCamera{}.settings({"eye", {}, info}); };
   info.d = {0, 0, 0, 0, 0};
   EXPECT_EQ(settings(), rectified);
   info.d = {0.1, 0, 0, 0, 0};
   EXPECT_EQ(settings(), (std::array<double, 9>{500, 501, 320, 240, 0.1}));
   info.d = {};
   EXPECT_EQ(settings(), rectified);
+}
+
+TEST(PinholeCamera, ANamedImageIsDescribedByItsMatrix) {
+  CameraInfo info;
+  info.k = {500, 0, 320, 0, 501, 240, 0, 0, 1};
+  info.p = {480, 0, 310, 0, 0, 481, 230, 0, 0, 0, 1, 0};
+  info.d = {0.1, 0, 0, 0, 0};
+  const auto settings = [&](ImageKind image) {
+    return PinholeCamera{image}.settings({"eye", {}, info});
+  };
+  const std::array<double, 9> by_k{500, 501, 320, 240, 0.1}, by_p{480, 481, 310, 230};
+  EXPECT_EQ(settings(ImageKind::raw), by_k);
+  EXPECT_EQ(settings(ImageKind::rectified), by_p);
+  info.distortion_model = "equidistant";
+  EXPECT_THROW((void)settings(ImageKind::raw), SettingsError);
+  EXPECT_THROW((void)settings(ImageKind::automatic), SettingsError);
+  EXPECT_EQ(settings(ImageKind::rectified), by_p);
+}
+
+TEST(PinholeCamera, AMatrixOfZerosIsReplacedByTheOtherUnlessItIsNamed) {
+  CameraInfo info;
+  info.k = {500, 0, 320, 0, 501, 240, 0, 0, 1};
+  info.p = {480, 0, 310, 0, 0, 481, 230, 0, 0, 0, 1, 0};
+  CameraInfo no_k = info, no_p = info;
+  no_k.k = {};
+  no_p.p = {};
+  const auto settings = [](const CameraInfo& camera, ImageKind image) {
+    return PinholeCamera{image}.settings({"eye", {}, camera});
+  };
+  using enum ImageKind;
+  EXPECT_EQ(settings(no_k, automatic), (std::array<double, 9>{480, 481, 310, 230}));
+  EXPECT_EQ(settings(no_p, automatic), (std::array<double, 9>{500, 501, 320, 240}));
+  no_k.d = {0.1};
+  EXPECT_EQ(settings(no_k, automatic), (std::array<double, 9>{480, 481, 310, 230}));
+  EXPECT_THROW((void)settings(no_k, raw), SettingsError);
+  EXPECT_THROW((void)settings(no_p, rectified), SettingsError);
+  no_k.p = {};
+  EXPECT_THROW((void)settings(no_k, automatic), SettingsError);
+  EXPECT_EQ(DepthCamera::settings({"camera", {}, no_p}),
+            (std::array<double, 6>{500, 501, 320, 240, 0, 1}));
 }
 
 }  // namespace

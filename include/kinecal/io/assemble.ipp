@@ -160,7 +160,11 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step, std::span<co
   const std::size_t before = diagnostics.errors.size();
   for (const ModelConfig& model : step.models) {
     try {
-      sensor_entry(model).add(problem, mount_from(model));
+      if (model.type == PinholeCamera::kType) {
+        problem.add_built_in(PinholeCamera{model.image}, mount_from(model));
+      } else {
+        sensor_entry(model).add(problem, mount_from(model));
+      }
     } catch (const std::exception& e) {
       diagnostics.error(model.place, fmt::format("model '{}': {}", model.name, e.what()));
     }
@@ -201,15 +205,27 @@ inline void prepare_search(CalibrationStep& step, const Config& config, const St
     few->add_built_in(block.name, PointToRay{}, block.models,
                       {.exclusive = block.exclusive.value_or(false), .beside = block.ground});
   }
-  std::set<std::string> eyes;
+  std::map<std::string, PinholeCamera> eyes;
   for (const ModelConfig& model : of_step.models) {
-    if (model.type == PinholeCamera::kType) eyes.insert(model.name);
+    if (model.type == PinholeCamera::kType) eyes[model.name] = {model.image};
   }
   add_samples(*few, few_samples(samples, eyes), ignored);
   if (few->num_residuals() > 0) step.excerpt = std::move(few);
 }
 
 }  // namespace detail
+
+KINECAL_INLINE std::unique_ptr<AnyProblem> empty_problem(const Config& config,
+                                                         const StepConfig& step, const Robot& robot,
+                                                         const ParameterTable& table,
+                                                         std::span<const Sample> samples) {
+  Diagnostics diagnostics;
+  auto problem = make_problem(robot, config.base_link, table, detail::frames_of(config));
+  detail::add_models(*problem, step, samples, diagnostics);
+  diagnostics.throw_if_errors();
+  return problem;
+}
+
 KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
                                     std::span<const Sample> samples, Diagnostics& diagnostics) {
   Calibration calibration;

@@ -31,6 +31,7 @@ struct Diagnostics {
   std::vector<std::string> warnings;  ///< what was left out or assumed; the result is not affected
   std::vector<std::string> doubts;    ///< what looks wrong but could be right: reasons to check the
                                       ///< result before it is used
+  std::vector<std::string> notes;     ///< what was found out, and taken so; nothing to do
 
   /// Adds an error.
   void error(const SourceLocation& place, const std::string& message) {
@@ -44,6 +45,11 @@ struct Diagnostics {
   /// Adds a doubt.
   void doubt(const SourceLocation& place, const std::string& message) {
     doubts.push_back(place.str() + ": " + message);
+  }
+
+  /// Adds a note.
+  void note(const SourceLocation& place, const std::string& message) {
+    notes.push_back(place.str() + ": " + message);
   }
 
   /// @throws InputError  with all errors, one a line, if there are any

@@ -136,11 +136,11 @@ namespace kinecal::detail {
 }
 
 /// Rectifies pixels: without distortion, a line of sight takes a tenth of the time.
-inline void rectify(Observation& seen) {
+inline void rectify(Observation& seen, const PinholeCamera& camera = {}) {
   if (!seen.camera) return;
   std::array<double, 9> s{};
   try {
-    s = PinholeCamera::settings(seen);
+    s = camera.settings(seen);
   } catch (const SettingsError&) {  // the sample is refused
     return;
   }
@@ -158,9 +158,9 @@ inline void rectify(Observation& seen) {
 }
 
 /// A few samples of each kind: those with observations of the same sensors.
-/// @param pixels  names of the sensors that observe pixels
-[[nodiscard]] inline std::vector<Sample> few_samples(std::span<const Sample> samples,
-                                                     const std::set<std::string>& pixels) {
+/// @param cameras  the sensors that observe pixels, by name
+[[nodiscard]] inline std::vector<Sample> few_samples(
+    std::span<const Sample> samples, const std::map<std::string, PinholeCamera>& cameras) {
   constexpr std::size_t kOfEachKind = 12;
   std::map<std::set<std::string>, std::vector<std::size_t>> kinds;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -173,7 +173,8 @@ inline void rectify(Observation& seen) {
     for (const std::size_t i : spread(indices.size(), kOfEachKind)) {
       few.push_back(with_few_features(samples[indices[i]]));
       for (Observation& seen : few.back().observations) {
-        if (pixels.contains(seen.sensor)) rectify(seen);
+        const auto camera = cameras.find(seen.sensor);
+        if (camera != cameras.end()) rectify(seen, camera->second);
       }
     }
   }

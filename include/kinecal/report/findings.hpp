@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,7 +31,10 @@ struct Findings {
   std::vector<LeftOutSample> left_out;  ///< by the rule of trust/captures.hpp, or by the user
   std::vector<std::string> sources;     ///< source location of each sample of the problems
   std::vector<int> numbers;             ///< from 1, in the order of the files, of each of them
-  RecordedPoses poses = {};             ///< of the samples that were used
+  std::map<int, std::string> causes;    ///< likely ones of bad samples, by number in the problem
+  std::map<std::string, std::string>
+      images;                ///< "raw" or "rectified", of cameras where it was chosen
+  RecordedPoses poses = {};  ///< of the samples that were used
 };
 
 /// What is wrong with a sample: "error block 'hand_eye': feature 2 is 48 mm off, all others below 3 mm".
@@ -59,6 +63,9 @@ template <class T>
 }
 /// Standard deviation of a parameter in the last step that frees it.
 [[nodiscard]] std::optional<double> deviation_of(const Findings& findings, int parameter);
+/// "; likely cause: ...", or nothing.
+/// @param sample  by number in the problem
+[[nodiscard]] std::string cause_text(const Findings& findings, int sample);
 /// "not determined", "hardly determined", "not significant" or nothing.
 [[nodiscard]] std::string note_on(const Parameter& parameter, double deviation);
 

@@ -42,6 +42,11 @@ namespace detail {
          table.str();
 }
 
+KINECAL_INLINE std::string cause_text(const Findings& findings, int sample) {
+  const auto cause = findings.causes.find(sample);
+  return cause == findings.causes.end() ? "" : "; likely cause: " + cause->second;
+}
+
 KINECAL_INLINE std::string note_on(const Parameter& parameter, double deviation) {
   if (!std::isfinite(deviation)) return "not determined";
   if (deviation > useful_deviation(parameter)) return "hardly determined";
@@ -112,9 +117,10 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
   for (std::size_t i = 0; i < worst.size() && (worst[i].bad || i < kWorst); ++i) {
     if (!(worst[i].times > 0.0)) break;
     const auto sample = static_cast<std::size_t>(worst[i].sample);
-    text +=
-        fmt::format("  {} (sample {}): {}{}\n", findings.sources[sample], findings.numbers[sample],
-                    capture_text(worst[i], step), worst[i].bad ? "; does not fit the others" : "");
+    text += fmt::format("  {} (sample {}): {}{}{}\n", findings.sources[sample],
+                        findings.numbers[sample], capture_text(worst[i], step),
+                        worst[i].bad ? "; does not fit the others" : "",
+                        cause_text(findings, worst[i].sample));
   }
   return text.empty() ? text : "Worst samples\n" + text;
 }

@@ -119,7 +119,8 @@ KINECAL_INLINE std::string json_number(double value) {
 [[nodiscard]] inline std::string json_capture(const Findings& findings, const Assessment& step,
                                               const CaptureError& error) {
   const auto sample = static_cast<std::size_t>(error.sample);
-  return json({findings.numbers[sample], findings.sources[sample], capture_text(error, step)});
+  return json({findings.numbers[sample], findings.sources[sample],
+               capture_text(error, step) + cause_text(findings, error.sample)});
 }
 
 }  // namespace detail
@@ -139,11 +140,16 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
   const auto observability = [&](const Assessment& step) {
     return detail::json(step.observability, result.table);
   };
+  std::string images;
+  for (const auto& [sensor, image] : findings.images) {
+    images += (images.empty() ? "" : ", ") + detail::json_string(sensor) + ": " +
+              detail::json_string(image);
+  }
   return fmt::format(
       "{{\n  \"verdict\": {},\n  \"reasons\": {},\n  \"converged\": {},\n  \"termination\": {},\n"
       "  \"steps\": {},\n  \"error_blocks\": {},\n  \"noise\": {},\n  \"parameters\": {},\n"
       "  \"pose\": {},\n  \"observability\": {},\n  \"bad_samples\": {},\n"
-      "  \"left_out\": {},\n  \"covariance\": {},\n  \"poses\": {}\n}}\n",
+      "  \"left_out\": {},\n  \"images\": {{{}}},\n  \"covariance\": {},\n  \"poses\": {}\n}}\n",
       detail::json_string(to_string(findings.judgement.verdict)),
       detail::json_list(findings.judgement.reasons, detail::json_string), result.converged,
       detail::json_string(result.termination), detail::json_list(result.steps, write),
@@ -155,7 +161,7 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
       detail::json_list(
           bad,
           [&](const CaptureError& error) { return detail::json_capture(findings, last, error); }),
-      detail::json_list(findings.left_out, write), detail::json_covariance(findings),
+      detail::json_list(findings.left_out, write), images, detail::json_covariance(findings),
       detail::json(findings.poses));
 }
 

@@ -60,12 +60,15 @@ struct DepthCamera {
   template <class Q>
   using Corrected = CorrectedDepthCamera<Q>;
 
-  /// The recorded settings: the camera of a rectified image, from P.
+  /// The recorded settings: the camera of a rectified image, from P; from K where P is zero.
   /// @throws SettingsError  if there are none or they are impossible
   [[nodiscard]] static std::array<double, 6> settings(const Observation& seen) {
     const CameraInfo& info = camera_info_of(seen);
-    const std::array<double, 6> s = {info.p[0], info.p[5],     info.p[2],
-                                     info.p[6], info.z_offset, info.z_scaling};
+    std::array<double, 6> s = {info.p[0], info.p[5],     info.p[2],
+                               info.p[6], info.z_offset, info.z_scaling};
+    if (s[0] == 0.0 && s[1] == 0.0) {
+      s = {info.k[0], info.k[4], info.k[2], info.k[5], info.z_offset, info.z_scaling};
+    }
     check_camera_settings(s);
     if (!(s[5] > 0.0)) throw SettingsError("z_scaling is not positive");
     return s;

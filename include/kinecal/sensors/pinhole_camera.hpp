@@ -7,45 +7,53 @@
 //
 // Parameters, in this order: fx fy cx cy (relative).  The distortion (plumb_bob: k1 k2 p1 p2 k3) is
 // not calibrated.  Defined for Z > 0.
+//
+// K and D describe pixels of a raw image, P alone those of a rectified one.  The point is in the frame
+// of that image: for P that of the rectified camera, which R turns against the raw one.
 // Source: sensor_msgs/CameraInfo; Brown, Decentering Distortion of Lenses, 1966.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <tuple>
 
 #include "kinecal/sensors/depth_camera.hpp"
 
 namespace kinecal {
 
+/// What the pixels of a camera are of.
+enum class ImageKind {
+  automatic,  ///< raw if camera_info has a distortion, else rectified; where K or P is zero, by the
+              ///< other one
+  raw,        ///< as the lens shows it: K and D
+  rectified   ///< without distortion: P
+};
+
 /// A pinhole camera.
 struct PinholeCamera {
+  ImageKind image = ImageKind::automatic;  ///< what its pixels are of
+
   static constexpr std::string_view kType = "camera2d";  ///< name in configurations
   static constexpr std::array kParameters = {ParameterInfo{"fx"}, ParameterInfo{"fy"},
                                              ParameterInfo{"cx"}, ParameterInfo{"cy"}};
   static constexpr std::size_t kSettings = 9;  ///< fx fy cx cy k1 k2 p1 p2 k3, as recorded
   static constexpr bool kOwnFrame = true;      ///< features are in the optical frame
 
-  /// The recorded settings: from K and D if the image is distorted, else from P.
-  /// @throws SettingsError  if there are none or they are impossible
-  [[nodiscard]] static std::array<double, 9> settings(const Observation& seen) {
+  /// The recorded settings: of a raw image from K and D, of a rectified one from P.
+  /// @throws SettingsError  if there are none, they are impossible, or a raw image has a distortion
+  ///                        other than plumb_bob
+  [[nodiscard]] std::array<double, 9> settings(const Observation& seen) const {
     const CameraInfo& info = camera_info_of(seen);
+    const bool raw = image == ImageKind::automatic ? is_raw(info) : image == ImageKind::raw;
     std::array<double, 9> s = {info.p[0], info.p[5], info.p[2], info.p[6]};
-    bool distorted = false;
-    for (std::size_t i = 0; i < info.d.size(); ++i) {
-      if (info.d[i] == 0.0) continue;
-      if (!info.distortion_model.empty() && info.distortion_model != "plumb_bob") {
-        throw SettingsError("distortion model '" + info.distortion_model +
-                            "' is not supported; rectify the images or use plumb_bob");
-      }
-      if (i >= 5 || !std::isfinite(info.d[i])) {
-        throw SettingsError("plumb_bob has five distortion coefficients, each a number");
-      }
-      distorted = true;
-      s[4 + i] = info.d[i];
+    if (raw) {
+      s = {info.k[0], info.k[4], info.k[2], info.k[5]};
+      add_distortion(info, s);
     }
-    if (distorted)
-      std::tie(s[0], s[1], s[2], s[3]) = std::tie(info.k[0], info.k[4], info.k[2], info.k[5]);
+    if (image != ImageKind::automatic && s[0] == 0.0 && s[1] == 0.0) {
+      throw SettingsError(raw ? "K of camera_info is zero, but the image is raw"
+                              : "P of camera_info is zero, but the image is rectified");
+    }
     check_camera_settings(s);
     return s;
   }
@@ -86,6 +94,30 @@ struct PinholeCamera {
 
  private:
   static constexpr int kUndistortions = 30;  ///< of a fixed-point iteration
+
+  [[nodiscard]] static bool is_raw(const CameraInfo& info) {
+    const bool has_k = info.k[0] != 0.0 || info.k[4] != 0.0;
+    const bool has_p = info.p[0] != 0.0 || info.p[5] != 0.0;
+    const bool bends = std::any_of(info.d.begin(), info.d.end(), [](double d) { return d != 0.0; });
+    return has_k && (bends || !has_p);
+  }
+
+  /// Fills in k1 k2 p1 p2 k3.
+  static void add_distortion(const CameraInfo& info, std::array<double, 9>& s) {
+    const std::string& model = info.distortion_model;
+    for (std::size_t i = 0; i < info.d.size(); ++i) {
+      if (info.d[i] == 0.0) continue;
+      if (!model.empty() && model != "plumb_bob") {
+        throw SettingsError("distortion model '" + model +
+                            "' is not supported in raw images; rectify them and write 'image: "
+                            "rectified' in the model, or use plumb_bob");
+      }
+      if (i >= 5 || !std::isfinite(info.d[i])) {
+        throw SettingsError("plumb_bob has five distortion coefficients, each a number");
+      }
+      s[4 + i] = info.d[i];
+    }
+  }
 
   /// True if some lane has a coefficient that is not zero.
   template <class Q>

@@ -165,7 +165,7 @@ TEST_F(CameraFile, ReadsOneCameraOfACamchain) {
   EXPECT_EQ(camera.k, kMatrix);
   EXPECT_EQ(camera.r, kIdentity);
   EXPECT_EQ(camera.p, kProjection);
-  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("without distortion")));
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("rectified to it")));
   EXPECT_EQ(read(kKalibr, "cam1").k[4], 501.0);
   EXPECT_THAT(diagnostics_.warnings, IsEmpty());
 }
@@ -233,6 +233,23 @@ TEST_F(CameraFile, WithoutASizeIsReadWithAWarning) {
   EXPECT_EQ(camera.width, 0);
   EXPECT_THAT(diagnostics_.errors, testing::IsEmpty());
   EXPECT_THAT(diagnostics_.warnings, testing::ElementsAre(HasSubstr("c.yaml: the size of the")));
+}
+
+TEST_F(CameraFile, OneMatrixOfZerosIsReadWithAWarning) {
+  CameraInfo camera;
+  camera.width = camera.height = 480;
+  camera.p = kProjection;
+  (void)read(to_camera_info_yaml(camera, "head"));
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("c.yaml: K is zero; P is used")));
+  camera.k = kMatrix;
+  camera.p = {};
+  diagnostics_ = {};
+  (void)read(to_camera_info_yaml(camera, "head"));
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("c.yaml: P is zero; K is used")));
+  camera.k = {};
+  EXPECT_THAT(refusal(to_camera_info_yaml(camera, "head")), HasSubstr("focal lengths 0 and 0"));
 }
 
 TEST_F(CameraFile, ReportsErrorsWithTheirLine) {

@@ -392,6 +392,22 @@ TEST(ReadConfig, UnknownKeyIsAWarningAndAMisspeltOneAnError) {
               ElementsAre("calibrate.yaml:3: unknown key 'base_lnk'; did you mean 'base_link'?"));
 }
 
+TEST(ReadConfig, TheImageOfACamera2dIsRawOrRectified) {
+  const auto image = [](const std::string& text) {
+    return read(text).config.steps[0].models[2].image;
+  };
+  EXPECT_EQ(image(kRos1), ImageKind::automatic);
+  EXPECT_EQ(image(with(kRos1, "frame: lens", "frame: lens, image: raw")), ImageKind::raw);
+  EXPECT_EQ(image(with(kRos2, "frame: lens", "frame: lens, image: rectified")),
+            ImageKind::rectified);
+  EXPECT_THAT(errors(with(kRos1, "frame: lens", "frame: lens, image: rectfied")),
+              ElementsAre("calibrate.yaml:5: model 'eye': image 'rectfied' is neither raw nor "
+                          "rectified; did you mean 'rectified'?"));
+  EXPECT_THAT(errors(with(kRos1, "frame: optical", "frame: optical, image: raw")),
+              ElementsAre("calibrate.yaml:4: model 'camera': image is a key of camera2d, but the "
+                          "type is 'camera3d'"));
+}
+
 TEST(ReadConfig, KeysOfTheCaptureAreIgnoredInSilence) {
   const Reading reading =
       read(with(kRos1, "frame: optical", "frame: optical, topic: /p, camera_info_topic: /i") +

@@ -104,26 +104,32 @@ inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const So
   if (!bends) return;
   diagnostics.warning(
       place,
-      "there is no projection_matrix; camera_matrix is used instead, so pixels must "
-      "be of images without distortion");
+      "there is no projection_matrix; camera_matrix is used instead, so rectified pixels must "
+      "be of images that were rectified to it");
 }
 
-/// Reports values that a pinhole camera cannot have.
+/// Reports values that a pinhole camera cannot have.  One of K and P may be all zero.
 inline void check_camera(const CameraInfo& camera, const SourceLocation& place,
                          Diagnostics& diagnostics) {
   const auto& k = camera.k;
-  if (!(k[0] > 0.0) || !(k[4] > 0.0)) {
+  const auto& p = camera.p;
+  const bool has_k = k[0] != 0.0 || k[4] != 0.0, has_p = p[0] != 0.0 || p[5] != 0.0;
+  if (!has_k && has_p) {
+    diagnostics.warning(place, "K is zero; P is used, so pixels must be of rectified images");
+  } else if (!(k[0] > 0.0) || !(k[4] > 0.0)) {
     diagnostics.error(place,
                       fmt::format("focal lengths {} and {} are not greater than zero", k[0], k[4]));
   } else if (k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
     diagnostics.error(place, fmt::format("the last row of the camera matrix is {} {} {}, not 0 0 1",
                                          k[6], k[7], k[8]));
   }
-  if (!(camera.p[0] > 0.0) || !(camera.p[5] > 0.0)) {
+  if (!has_p && has_k) {
+    diagnostics.warning(place, "P is zero; K is used");
+  } else if (!(p[0] > 0.0) || !(p[5] > 0.0)) {
     diagnostics.error(place,
                       fmt::format("focal lengths {} and {} of the projection are not greater "
                                   "than zero",
-                                  camera.p[0], camera.p[5]));
+                                  p[0], p[5]));
   }
   if (camera.width == 0 || camera.height == 0) {
     diagnostics.warning(place, "the size of the image is missing; ROS drivers need it");

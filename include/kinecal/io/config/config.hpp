@@ -15,6 +15,7 @@
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/parameters/parameter.hpp"
+#include "kinecal/sensors/pinhole_camera.hpp"
 
 namespace kinecal {
 
@@ -25,6 +26,7 @@ struct ModelConfig {
   std::string frame;       ///< link of the URDF
   std::string param_name;  ///< prefix of the camera's parameters; the model's name by default
   SourceLocation place;    ///< where the file defines it
+  ImageKind image = ImageKind::automatic;  ///< (kinecal only) of a camera2d: what its pixels are of
 };
 
 /// `free_params:`  a joint offset or a camera parameter.

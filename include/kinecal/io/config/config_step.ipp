@@ -37,9 +37,24 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   return map.count("max_num_iterations", fallback);
 }
 
+/// `image: raw | rectified` of a camera2d.
+[[nodiscard]] inline ImageKind read_image(ConfigMap& map, const ModelConfig& model) {
+  const auto image = map.text("image");
+  if (!image) return ImageKind::automatic;
+  const SourceLocation place = map.find("image")->place;
+  if (!model.type.empty() && model.type != PinholeCamera::kType) {
+    map.error(place, "image is a key of camera2d, but the type is '" + model.type + "'");
+  }
+  if (*image == "raw") return ImageKind::raw;
+  if (*image == "rectified") return ImageKind::rectified;
+  map.error(place, "image '" + *image + "' is neither raw nor rectified" +
+                       did_you_mean(*image, std::vector<std::string>{"raw", "rectified"}));
+  return ImageKind::automatic;
+}
+
 /// @return  the model; its type is empty if it is unknown
 [[nodiscard]] inline ModelConfig read_model(ConfigItem& item) {
-  ModelConfig model{item.name, "", "", item.name, item.place};
+  ModelConfig model{item.name, "", "", item.name, item.place, ImageKind::automatic};
   if (!item.map) return model;
   ConfigMap& map = *item.map;
   std::vector<std::string> types;
@@ -54,6 +69,7 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   }
   model.frame = map.required_text("frame").value_or("");
   model.param_name = map.text("param_name").value_or(item.name);
+  model.image = read_image(map, model);
   map.ignore({"topic", "camera_info_topic"});  // used while samples are recorded
   map.report_unknown();
   return model;

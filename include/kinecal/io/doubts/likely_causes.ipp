@@ -13,6 +13,7 @@
 #include "kinecal/io/doubts/hypotheses.ipp"
 #include "kinecal/io/doubts/likely_causes.hpp"
 #include "kinecal/io/doubts/occurrences.hpp"
+#include "kinecal/io/doubts/some_samples.ipp"
 
 namespace kinecal {
 
@@ -42,17 +43,6 @@ inline constexpr double kExplains = 0.1;
   const CalibrationResult result = solve(calibration);
   if (result.steps.empty() || !std::isfinite(result.steps.back().final_cost)) return std::nullopt;
   return SolvedSamples{result.steps.back().final_cost, result.blocks};
-}
-
-/// At most 100 samples: enough to see what fits.
-[[nodiscard]] inline std::vector<Sample> some_of(std::span<const Sample> samples) {
-  constexpr std::size_t kMost = 100;
-  const std::size_t step = (samples.size() + kMost - 1) / kMost;
-  std::vector<Sample> some;
-  for (std::size_t i = 0; i < samples.size(); i += std::max<std::size_t>(step, 1)) {
-    some.push_back(samples[i]);
-  }
-  return some;
 }
 
 /// "the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm", of the block that falls most; of a

@@ -21,12 +21,21 @@ namespace kinecal {
 
 namespace detail {
 
-/// The cameras of a calibration with their parameters applied to what was recorded.
+/// A camera of a calibration with its parameters applied to what was recorded.
 struct CalibratedCamera {
   Mount mount;
   CameraInfo info;
   bool measures_depth = false;
 };
+
+/// Which of its matrices a camera2d used in an observation.
+[[nodiscard]] inline ImageKind used_image(const AnySensor& sensor, const Observation& seen) {
+  if (sensor.type() != PinholeCamera::kType) return ImageKind::automatic;
+  const std::vector<double> s = sensor.settings(seen);
+  const auto& k = seen.camera->k;
+  const bool by_k = s[0] == k[0] && s[1] == k[4] && s[2] == k[2] && s[3] == k[5];
+  return by_k ? ImageKind::raw : ImageKind::rectified;
+}
 
 [[nodiscard]] inline std::vector<CalibratedCamera> calibrated_cameras(
     const Calibration& calibration, const ParameterTable& table, std::span<const Sample> samples) {
@@ -44,10 +53,11 @@ struct CalibratedCamera {
       for (const Sample& sample : samples) {
         const Observation* seen = sample.observation(mount.name);
         if (seen == nullptr || !seen->camera) continue;
-        cameras.push_back({mount,
-                           calibrated_camera_info(*seen->camera, value("fx"), value("fy"),
-                                                  value("cx"), value("cy")),
-                           find("z_scaling") >= 0});
+        cameras.push_back(
+            {mount,
+             calibrated_camera_info(*seen->camera, value("fx"), value("fy"), value("cx"),
+                                    value("cy"), used_image(mounted.sensor(), *seen)),
+             find("z_scaling") >= 0});
         break;
       }
     }

@@ -1,0 +1,44 @@
+// Why a sample does not fit the others, where the cause can be recognised.
+//
+// Each cause is undone in the sample, which is then evaluated at the values of the others.  A cause is
+// named if every feature then fits within the noise, and if what remains to be tested is enough: no
+// cause is named for a single feature that is off by chance.
+//
+//   order of features     two exchanged; one that shows another; reversed or turned by a quarter: a
+//                         board.  Nothing is fitted, so two features are enough.
+//   one joint's reading   Gauss-Newton over its position: three features, or one with orientation
+//   motion                all joints a little, (q / 0.2 rad)^2 added: five residuals more than it fits.
+//                         That the target slipped looks the same, so both are named.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/trust/noise.hpp"
+
+namespace kinecal {
+
+/// Makes a problem with sensors and error blocks, without samples.
+using ProblemMaker = std::function<std::unique_ptr<AnyProblem>()>;
+
+/// The likely cause of a bad capture: "features 1 and 2 are exchanged", "'elbow' reads 4.9 deg less
+/// than the others say".  Empty if none is recognised.
+/// @param make    the problem of the fit
+/// @param values  of all parameters of its table, fitted to the other samples
+/// @param noise   of each error block, in their order
+/// @param sample  the bad one
+[[nodiscard]] std::string capture_cause(const ProblemMaker& make, std::span<const double> values,
+                                        const std::vector<BlockNoise>& noise, const Sample& sample);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/capture_causes.ipp"
+#endif

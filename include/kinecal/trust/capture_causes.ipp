@@ -1,0 +1,128 @@
+// Definitions of capture_causes.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "kinecal/trust/capture_causes.hpp"
+#include "kinecal/trust/capture_joints.ipp"
+#include "kinecal/trust/capture_trials.ipp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// A sample with its features in another order, and in words what that undoes.
+struct FeatureOrder {
+  std::string cause;
+  Sample sample;
+};
+
+/// Features in another order: those of place i come from place order[i].
+[[nodiscard]] inline Sample with_order(const Sample& sample, std::size_t observation,
+                                       const std::vector<std::size_t>& order) {
+  Sample changed = sample;
+  std::vector<Feature>& features = changed.observations[observation].features;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    features[i] = sample.observations[observation].features[order[i]];
+  }
+  return changed;
+}
+
+/// The feature with the number `worst` exchanged with another one, or showing another one.
+/// @param of  " of 'camera'", where that is of interest
+inline void add_exchanges(const Sample& sample, std::size_t observation, std::size_t worst, int bad,
+                          const std::string& of, std::vector<FeatureOrder>& all) {
+  std::vector<std::size_t> order(sample.observations[observation].features.size());
+  std::iota(order.begin(), order.end(), 0u);
+  for (std::size_t other = 0; other < order.size(); ++other) {
+    if (other == worst) continue;
+    const auto [less, more] = std::minmax(worst, other);
+    std::vector<std::size_t> changed = order;
+    std::swap(changed[worst], changed[other]);
+    all.push_back({"features " + std::to_string(less + 1) + " and " + std::to_string(more + 1) +
+                       of + " are exchanged",
+                   with_order(sample, observation, changed)});
+    if (bad > 1) continue;
+    changed = order;
+    changed[worst] = other;
+    all.push_back(
+        {"feature " + std::to_string(worst + 1) + " shows feature " + std::to_string(other + 1),
+         with_order(sample, observation, changed)});
+  }
+}
+
+/// A board that was read from another corner.
+inline void add_turns(const Sample& sample, std::size_t observation,
+                      std::vector<FeatureOrder>& all) {
+  const std::size_t size = sample.observations[observation].features.size();
+  const auto add = [&](const std::string& cause, auto&& place) {
+    std::vector<std::size_t> order(size);
+    for (std::size_t i = 0; i < size; ++i) order[i] = place(i);
+    all.push_back({cause, with_order(sample, observation, order)});
+  };
+  add("the features are in reverse order: a board turned by 180 degrees?",
+      [&](std::size_t i) { return size - 1 - i; });
+  const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(size))));
+  if (side * side != size) return;
+  const std::string quarter = "the features are turned by a quarter: a board turned by 90 degrees?";
+  add(quarter, [&](std::size_t i) { return (i % side) * side + side - 1 - i / side; });
+  add(quarter, [&](std::size_t i) { return (side - 1 - i % side) * side + i / side; });
+}
+
+/// The order of features that explains a sample; empty if none does.
+/// @param problem  with the sensors whose observations are used
+[[nodiscard]] inline std::string wrong_order(const CaptureTrials& trials, const AnyProblem& problem,
+                                             const Sample& sample, const TrialRows& now) {
+  const int bad = now.bad(), worst = now.worst().number;
+  if (worst < 0) return {};
+  std::vector<std::size_t> used;
+  for (std::size_t o = 0; o < sample.observations.size(); ++o) {
+    const auto is_sensor = [&](const MountedSensor& sensor) {
+      return sensor.mount().name == sample.observations[o].sensor;
+    };
+    const auto& sensors = problem.sensors();
+    if (std::any_of(sensors.begin(), sensors.end(), is_sensor)) used.push_back(o);
+  }
+  std::vector<FeatureOrder> orders;
+  for (const std::size_t o : used) {
+    const Observation& seen = sample.observations[o];
+    const std::size_t size = seen.features.size();
+    if (size < 2 || static_cast<std::size_t>(worst) >= size) continue;
+    const std::string of = used.size() > 2 ? " of '" + seen.sensor + "'" : "";
+    if (bad <= 2) add_exchanges(sample, o, static_cast<std::size_t>(worst), bad, of, orders);
+    if (bad > 2) add_turns(sample, o, orders);
+  }
+  std::vector<Sample> variants;
+  for (const FeatureOrder& order : orders) variants.push_back(order.sample);
+  if (variants.empty()) return {};
+  const std::vector<TrialRows> found = trials(variants);
+  std::size_t best = variants.size();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool better =
+        best == variants.size() || found[i].rows.squaredNorm() < found[best].rows.squaredNorm();
+    if (found[i].rows.size() == now.rows.size() && found[i].fits() && better) best = i;
+  }
+  return best < variants.size() ? orders[best].cause : "";
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::string capture_cause(const ProblemMaker& make, std::span<const double> values,
+                                         const std::vector<BlockNoise>& noise,
+                                         const Sample& sample) {
+  const detail::CaptureTrials trials(make, values, noise);
+  const detail::TrialRows now = trials({sample}).front();
+  if (!now.defined || now.fits()) return {};
+  const std::unique_ptr<AnyProblem> problem = make();
+  std::string cause = detail::wrong_order(trials, *problem, sample, now);
+  if (!cause.empty()) return cause;
+  constexpr double kBetter = 25.0;  // by five parameters more: once in 10000 by chance
+  detail::JointCause one = detail::wrong_reading(trials, problem->robot(), sample, now);
+  detail::JointCause all = detail::motion(trials, problem->robot(), sample, now);
+  const bool is_one = all.text.empty() || one.chi2 < all.chi2 + kBetter;
+  return !one.text.empty() && is_one ? one.text : all.text;
+}
+
+}  // namespace kinecal
