@@ -52,6 +52,15 @@ TEST_F(ImagesProgram, WhatFitsIsTakenAndSaidInOneLine) {
   EXPECT_THAT(rectified.err, HasSubstr(": taken as rectified\n"));
 }
 
+TEST_F(ImagesProgram, TheResultSaysWhatWasTakenForNewSamples) {
+  ASSERT_EQ(calibrate(ImageKind::rectified).code, 0);
+  const test::Outcome same = run(KINECAL_PROGRAM " evaluate out s.yaml --report e.json");
+  EXPECT_EQ(same.code, 0) << same.err;
+  EXPECT_EQ(YAML::Load(read("out/report.json"))["images"]["eye"].as<std::string>(), "rectified");
+  const YAML::Node block = YAML::Load(read("e.json"))["error_blocks"][0];
+  EXPECT_NEAR(block["distance"].as<double>(), block["calibration"].as<double>(), 1e-6);
+}
+
 TEST_F(ImagesProgram, AKeyIsObeyedEvenIfItIsWrong) {
   const auto noise = [&](const std::string& key) {
     const test::Outcome result = calibrate(ImageKind::raw, key);
