@@ -16,6 +16,7 @@
 #include "kinecal/report.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
+#include "progress.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -124,7 +125,11 @@ int calibrate(const CalibrateOptions& options) {
   std::optional<OutputFolder> folder;
   if (!options.dry_run) folder.emplace(options.output);
   const double reading = seconds_since(start);
-  Fit fitted = fit(input, options, progress_line(), solve_options(options));
+  std::optional<ProgressLine> line(std::in_place);
+  SolveOptions solving = solve_options(options);
+  solving.meter = line->meter();
+  Fit fitted = fit(input, options, progress_line(), solving);
+  line.reset();
   end_progress_line();
   Findings& findings = fitted.findings;
   const CalibrationResult& result = findings.result;

@@ -58,6 +58,7 @@ Fit fit_samples(const Input& input, const Config& config, const Selection& selec
   fitted.calibration = assemble(config, input.robot, fitted.samples, diagnostics);
   diagnostics.throw_if_errors();
   AssessOptions assessing;
+  assessing.meter = solving.meter;
   assessing.folds = options.folds > 0 ? options.folds : static_cast<int>(fitted.samples.size());
   fitted.findings = find(input.robot, fitted.calibration,
                          kinecal::calibrate(fitted.calibration, progress, solving), fitted.samples,

@@ -136,6 +136,18 @@ TEST(Starts, AtRandomEndAtTheSameMinimum) {
   EXPECT_TRUE(ended.values == plain(board_problem(kNear, 20)).values);
 }
 
+TEST(Starts, SayHowManyAreDone) {
+  const Problem problem = board_problem(kNear, 20);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+  std::vector<double> done;
+  SolveOptions options;
+  options.threads = 2;
+  options.random_starts = 4;
+  options.meter = [&](double fraction, const std::string&) { done.push_back(fraction); };
+  (void)solve_from_starts(problem, all_free(problem.table()), values, options, {});
+  EXPECT_EQ(done, (std::vector<double>{0.25, 0.5, 0.75, 1.0}));
+}
+
 TEST(Starts, ThatFailLeaveTheValuesAlone) {
   const Problem problem = board_problem(kNear, 1);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());

@@ -50,5 +50,14 @@ TEST(HeldOut, IsFarAboveTheFittedErrorWhereParametersFitTheNoise) {
   EXPECT_GT(found.held_out[0].held_out, 1.5 * found.held_out[0].fitted);
 }
 
+TEST(HeldOut, SaysHowManyFoldsAreDone) {
+  test::NoisyScene scene(20);
+  std::vector<double> done;
+  AssessOptions options;
+  options.meter = [&](double fraction, const std::string&) { done.push_back(fraction); };
+  (void)scene.solve_and_assess(options);
+  EXPECT_EQ(done, (std::vector<double>{0.2, 0.4, 0.6, 0.8, 1.0}));
+}
+
 }  // namespace
 }  // namespace kinecal

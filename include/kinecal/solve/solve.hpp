@@ -9,6 +9,7 @@
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/solve/start_summary.hpp"
 
 namespace kinecal {
@@ -32,6 +33,7 @@ struct SolveOptions {
   int random_starts = 0;                 ///< of calibrate(), beside the one given; solve() has one
   /// Called after each iteration with its number and cost.
   std::function<void(int iteration, double cost)> progress = {};
+  ProgressMeter meter = {};  ///< called after each of several starts
 };
 
 /// How a step ended.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
@@ -144,10 +145,15 @@ class Starts {
     SolveOptions options = options_;
     options.threads = 1;
     options.progress = {};
+    std::mutex one_at_a_time;
+    int done = 0;
     for_each_piece(n, number_of_threads(options_.threads), [&](int i, int) {
       Attempt& attempt = attempts[static_cast<std::size_t>(i)];
       attempt.start = attempt.values = starts[static_cast<std::size_t>(i)];
       attempt.result = solve(problem_, free_, attempt.values, options);
+      if (!options_.meter) return;
+      const std::lock_guard lock(one_at_a_time);
+      options_.meter(static_cast<double>(++done) / n, "solving from several starts");
     });
     for (Attempt& attempt : attempts) {
       count(attempt);

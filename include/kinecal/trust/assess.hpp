@@ -49,6 +49,7 @@ struct Assessment {
 /// What to compute.
 struct AssessOptions {
   int folds = 5;  ///< for held-out errors; as many as samples: leave-one-out; below 2: none
+  ProgressMeter meter = {};  ///< called after each fold
 };
 
 /// Assesses each step of a calibration that has run, at its result.

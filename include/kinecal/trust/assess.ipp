@@ -123,7 +123,8 @@ KINECAL_INLINE Assessment assess(const AnyProblem& problem, const FreeSet& free,
   const int folds = std::min(options.folds, static_cast<int>(samples.size()));
   if (folds >= 2) {
     try {
-      found.held_out = held_out_errors(*evaluator, values, fit, folds_of(samples, folds));
+      found.held_out =
+          held_out_errors(*evaluator, values, fit, folds_of(samples, folds), options.meter);
     } catch (const std::domain_error&) {  // without a fold, a point ends behind a camera
       for (int t = 0; t < problem.num_terms(); ++t) {
         const AnyTerm& term = problem.term(t);

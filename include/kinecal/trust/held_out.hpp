@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 
@@ -31,10 +32,12 @@ struct HeldOutError {
 /// Fitted and held-out error of each error block.
 /// @param values  the solution: where `fit` was linearized
 /// @param fold    of each sample of the problem, by number
+/// @param meter   called after each fold
 [[nodiscard]] std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator,
                                                         std::span<const double> values,
                                                         const LinearFit& fit,
-                                                        const std::vector<int>& fold);
+                                                        const std::vector<int>& fold,
+                                                        const ProgressMeter& meter = {});
 
 }  // namespace kinecal
 

@@ -57,7 +57,8 @@ KINECAL_INLINE std::vector<int> folds_of(std::span<const Sample> samples, int fo
 KINECAL_INLINE std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator,
                                                          std::span<const double> values,
                                                          const LinearFit& fit,
-                                                         const std::vector<int>& fold) {
+                                                         const std::vector<int>& fold,
+                                                         const ProgressMeter& meter) {
   const AnyProblem& problem = evaluator.problem();
   const int folds = fold.empty() ? 0 : 1 + *std::max_element(fold.begin(), fold.end());
   const auto in = [&](const RowBlock& block, int k) {
@@ -76,6 +77,7 @@ KINECAL_INLINE std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator
     for (const RowBlock& block : fit.blocks) {
       if (in(block, k)) held_out.add(problem, without.residual, block);
     }
+    if (meter) meter((k + 1.0) / folds, "fitting without each fold");
   }
   std::vector<HeldOutError> errors;
   for (std::size_t t = 0; t < fitted.sum.size(); ++t) {
