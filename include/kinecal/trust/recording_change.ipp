@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -52,14 +53,25 @@ struct TailSums {
   return sums;
 }
 
-/// The share by which the sum of squares falls with parameters that change, times that sum.
+/// The share by which the sum of squares falls with parameters that change, times that sum.  Changes
+/// that other parameters could as well explain are left out: where the samples before and after have
+/// nothing in common, there are many.
 /// @param by  (coordinates x parameters) of the owner
 [[nodiscard]] inline double fall_of(const TailSums& tail, const Eigen::MatrixXd& inverse,
                                     const Eigen::MatrixXd& by) {
+  constexpr double kOwn = 1e-3;  // of what a change does, so much is not what others do
   const Eigen::MatrixXd cross = by.transpose() * tail.information;
-  const Spectrum own(cross * by - cross * inverse * cross.transpose());
-  const Eigen::VectorXd gradient = by.transpose() * tail.gradient;
-  return gradient.dot(own.pseudo_inverse() * gradient);
+  const Eigen::MatrixXd all = cross * by;
+  const Eigen::VectorXd scale = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(
+      scale.asDiagonal() * (all - cross * inverse * cross.transpose()) * scale.asDiagonal());
+  const Eigen::VectorXd gradient =
+      own.eigenvectors().transpose() * scale.cwiseProduct(by.transpose() * tail.gradient);
+  double fall = 0.0;
+  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+    if (own.eigenvalues()(i) > kOwn) fall += gradient(i) * gradient(i) / own.eigenvalues()(i);
+  }
+  return fall;
 }
 
 /// Probability that a share is above x by chance; q rounded up to an even number.
