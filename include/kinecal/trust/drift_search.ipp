@@ -64,7 +64,7 @@ class DriftSearch {
       if (moved.empty()) found.probability = against_movers(found, used);
       return found;
     };
-    const CleanFit all = fit();
+    CleanFit all = fit();
     CleanFit now = all;
     constexpr int kShare = 5;  // one sample of five
     for (int n = 0; n < problem_.num_samples() / kShare && now.probability < level_; ++n) {
