@@ -306,7 +306,7 @@ void add_describe(CLI::App& command, DescribeOptions& options) {
 /// An argument that begins like an option and is none of the command; empty if there is none.
 std::string unknown_option(const CLI::App& command, const std::vector<std::string>& arguments) {
   for (auto argument = arguments.rbegin(); argument != arguments.rend(); ++argument) {
-    const std::string option = argument->substr(0, argument->find('='));
+    std::string option = argument->substr(0, argument->find('='));
     if (!option.starts_with("--") || option == "--") continue;
     if (command.get_option_no_throw(option) == nullptr) return option;
   }
@@ -360,7 +360,8 @@ class Commands {
  private:
   static std::string refusal_of(const CLI::App& command, const std::vector<std::string>& arguments,
                                 const CLI::Error& error) {
-    const std::string unknown = unknown_option(command, arguments), name = command.get_name();
+    const std::string unknown = unknown_option(command, arguments);
+    const std::string& name = command.get_name();
     std::string what = error.what();
     if (!unknown.empty()) {
       what = "'" + unknown + "' is not an option of '" + name + "'" +
