@@ -57,7 +57,10 @@ TEST_F(Configurations, OfTheUr5AreGoodWhereSamplesAreEnough) {
   const int all = static_cast<int>(configs.size());
   for (int c = 0; c < test::repetitions(all, 3); ++c) {
     const std::string config = folder + configs[static_cast<std::size_t>(c)] + ".yaml";
-    EXPECT_EQ(calibrate(folder + "ur5.urdf", config, folder + "grid.yaml"), "good") << config;
+    // Of the last two, some parameters are known to tens of degrees and millimetres only.
+    EXPECT_EQ(calibrate(folder + "ur5.urdf", config, folder + "grid.yaml"),
+              c < 3 ? "good" : "use with care")
+        << config;
   }
   for (const char* config : {"base_tool.yaml", "offsets.yaml"}) {
     EXPECT_EQ(calibrate(folder + "ur5.urdf", folder + config, folder + "random.yaml"), "good");

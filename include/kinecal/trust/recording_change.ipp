@@ -16,6 +16,17 @@ namespace kinecal {
 
 namespace detail {
 
+/// True if residuals are rounding, in their own units: simulated samples without noise.
+[[nodiscard]] inline bool is_exact(const AnyProblem& problem, const LinearFit& fit) {
+  constexpr double kRounding = 1e-7;
+  double squares = 0.0;
+  for (const RowBlock& block : fit.blocks) {
+    const double weight = problem.term(block.term).options().weight;
+    squares += fit.residual.segment(block.first, block.size).squaredNorm() / (weight * weight);
+  }
+  return !(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()));
+}
+
 /// J^T W J and J^T W r of the samples from the first of a part on.
 struct TailSums {
   int sample = 0;  ///< the first one
@@ -92,8 +103,8 @@ KINECAL_INLINE std::optional<RecordingChange> recording_change(const AnyProblem&
                                                                const LinearFit& fit) {
   const double squares = fit.loss.dot(fit.residual.cwiseAbs2());
   const double freedom = static_cast<double>(fit.residual.size() - fit.size());
-  constexpr double kRounding = 1e-9, kLeft = 0.5, kChance = 1e-6;
-  if (!(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()))) return {};
+  constexpr double kLeft = 0.5, kChance = 1e-6;
+  if (detail::is_exact(problem, fit)) return {};
   std::map<std::string, std::vector<int>> columns;
   for (int c = 0; c < free.size(); ++c) {
     const int p = free.parameters()[static_cast<std::size_t>(c)];
