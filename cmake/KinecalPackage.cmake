@@ -19,7 +19,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS  # what the headers include and kinecalConfig.cmake looks for
   "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), liburdfdom-dev, libyaml-dev, \
 libpugixml-dev, libfmt-dev, zlib1g-dev, pkg-config")
-foreach(package IN LISTS KINECAL_BAG_PACKAGES)
+foreach(package IN LISTS KINECAL_OPTIONAL_PACKAGES)
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", ${package}")
 endforeach()
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "cmake (>= 3.25), g++ (>= 4:12)")

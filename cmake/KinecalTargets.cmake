@@ -1,8 +1,9 @@
 # The libraries, one for each set of dependencies:
 #   kinecal::core     geometry ... crate           Eigen, threads
 #   kinecal::solve    solve, trust                 + Ceres
+#   kinecal::capture  capture, study               optional: apriltag, OpenCV
 #   kinecal::io       io, report                   + urdfdom, libyaml, pugixml, fmt, zlib; optional
-#                                                    libraries for bags: KinecalBags.cmake
+#                                                    libraries: KinecalOptional.cmake
 #   kinecal::kinecal  all of them
 #   kinecal::headers  no library: every source compiles what it includes
 include(GNUInstallDirs)
@@ -121,11 +122,14 @@ kinecal_add_library(core
 kinecal_add_library(solve
   FOLDERS solve trust
   LINK kinecal_core Ceres::ceres)
+kinecal_add_library(capture
+  FOLDERS capture study
+  LINK kinecal_solve)
 kinecal_add_library(io
   FOLDERS io report
-  LINK kinecal_solve
+  LINK kinecal_capture
   PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB)
-include(KinecalBags)
+include(KinecalOptional)
 if(NOT KINECAL_HEADER_ONLY)
   # What links the libraries is compiled and linked as they are.
   target_compile_options(kinecal_core PUBLIC $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)

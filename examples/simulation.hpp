@@ -5,60 +5,20 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/study/seeded_random.hpp"
 
 namespace kinecal::examples {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Random numbers that are the same everywhere for the same seed.  (The standard defines
-/// mt19937_64, but leaves distributions to each library.)
-class SeededRandom {
- public:
-  explicit SeededRandom(std::uint64_t seed) : engine_(seed) {}
-
-  [[nodiscard]] double uniform(double lower, double upper) {
-    const double unit = static_cast<double>(engine_() >> 11) * 0x1p-53;
-    return lower + unit * (upper - lower);
-  }
-
-  /// From `first` to `last`, both included.
-  [[nodiscard]] int integer(int first, int last) {
-    return first + static_cast<int>(uniform(0.0, last - first + 1.0));
-  }
-
-  /// A number of random sign whose size is between the two.
-  [[nodiscard]] double either_sign(double least, double most) {
-    const double size = uniform(least, most);
-    return uniform(0.0, 1.0) < 0.5 ? -size : size;
-  }
-
-  /// Mean 0, standard deviation 1.  Source: Box, Muller, 1958.
-  [[nodiscard]] double normal() {
-    const double radius = std::sqrt(-2.0 * std::log1p(-uniform(0.0, 1.0)));
-    return radius * std::cos(2.0 * std::numbers::pi * uniform(0.0, 1.0));
-  }
-
-  /// Three of them, independent.
-  [[nodiscard]] Vector3<double> normal_vector() {
-    const double x = normal(), y = normal(), z = normal();
-    return {x, y, z};
-  }
-
-  /// A unit vector in a uniformly random direction.
-  [[nodiscard]] Vector3<double> direction() { return normal_vector().normalized(); }
-
- private:
-  std::mt19937_64 engine_;
-};
+using kinecal::SeededRandom;
 
 /// A sample without observations: each joint at a random position within its limits.
 [[nodiscard]] inline Sample random_pose(const Robot& robot, SeededRandom& random) {

@@ -18,8 +18,8 @@ const fs::path kHeaders = fs::path(KINECAL_SOURCE_DIR) / "include/kinecal";
 
 /// A folder may include those before it.
 const std::vector<std::string> kFolders = {
-    "geometry",   "kinematics", "parameters", "samples", "sensors", "errors", "problem",
-    "evaluation", "crate",      "testing",    "solve",   "trust",   "io",     "report"};
+    "geometry", "kinematics", "parameters", "samples", "sensors", "errors", "problem", "evaluation",
+    "crate",    "testing",    "solve",      "trust",   "capture", "study",  "io",      "report"};
 /// For tests: no umbrella header of the whole tree includes it.
 const std::string kForTests = "testing";
 

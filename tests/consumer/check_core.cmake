@@ -13,7 +13,7 @@ endfunction()
 expect_not_found("" "component 'kinecal' needs what was not found: \
 Ceres 2.1, urdfdom, pugixml, fmt, ZLIB, libyaml")
 expect_not_found("core;solve" "component 'solve' needs what was not found: Ceres 2.1 ")
-expect_not_found(cor "there is no component 'cor', only core, solve, io, kinecal and headers")
+expect_not_found(cor "there is no component 'cor', only core, solve, capture, io, kinecal and headers")
 
 execute_process(COMMAND ${configure_core} -DCOMPONENTS=core COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core COMMAND_ERROR_IS_FATAL ANY)

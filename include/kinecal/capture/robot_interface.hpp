@@ -1,0 +1,74 @@
+// What a robot must offer to be captured: concepts of an arm, a camera, a lamp and a finder.
+//
+// A robot is these few functions, over any middleware.  Each waits for what it returns, on the
+// robot's own clock, and throws where that does not come.
+//
+//   struct MyArm {
+//     void move(const JointTarget& target);      // starts to move, does not wait
+//     MeasuredJoints next_joints(Stamp after);   // the first that were measured after this time
+//   };
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <concepts>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/view.hpp"
+
+namespace kinecal {
+
+/// Something that a robot did not do in one pose, which is then skipped: "elbow did not arrive".
+struct CaptureError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The robot cannot be reached any more; the session ends.
+struct ConnectionError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Where joints are to move.
+struct JointTarget {
+  std::vector<std::string> names;  ///< of joints; others stay
+  std::vector<double> positions;   ///< radians or metres, in the order of the names
+  double velocity_factor = 1.0;    ///< of the robot's usual speed, (0, 1]
+};
+
+/// A robot whose joints move and are measured.
+///   arm.move(target)        starts to move; throws CaptureError if the robot refuses
+///   arm.next_joints(after)  waits for positions stamped after this time; throws CaptureError if
+///                           none come within the adapter's time limit
+/// Both throw ConnectionError if the robot cannot be reached.
+template <class A>
+concept Arm = requires(A& arm, const JointTarget& target, Stamp after) {
+  { arm.move(target) } -> std::same_as<void>;
+  { arm.next_joints(after) } -> std::same_as<MeasuredJoints>;
+};
+
+/// A camera.
+///   camera.next_view(after)  waits for a view stamped after this time; throws as an Arm does.  Its
+///                            joints may be empty: whoever captures fills them in.
+template <class C>
+concept Camera = requires(C& camera, Stamp after) {
+  { camera.next_view(after) } -> std::same_as<View>;
+};
+
+/// LEDs that can be switched.
+///   lamp.light(code)  lights the LEDs of this code and no others, 0: none; returns when that was done;
+///                     throws as an Arm does
+template <class L>
+concept Lamp = requires(L& lamp, int code) {
+  { lamp.light(code) } -> std::same_as<Stamp>;
+};
+
+/// Finds features of a target in a view.  It does not throw for what it does not find.
+///   finder.find(view)  observations of two or more sensors, or why there are none
+template <class F>
+concept Finder = requires(const F& finder, const View& view) {
+  { finder.find(view) } -> std::same_as<Found>;
+};
+
+}  // namespace kinecal

@@ -1,0 +1,69 @@
+// What a camera saw at one moment, and what a finder found in it.
+//
+// All stamps are of one clock, that of the robot.  Nothing here reads the clock of the computer, so
+// a simulated robot, a recording and a real robot are captured alike.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/image.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// A time of the robot's clock, since its epoch.
+using Stamp = std::chrono::nanoseconds;
+
+/// Joint positions at one moment.
+struct MeasuredJoints {
+  Stamp stamp{};                   ///< when they were measured
+  std::vector<std::string> names;  ///< of joints
+  std::vector<double> positions;   ///< radians or metres, in the order of the names
+
+  /// Position of a joint, radians or metres; nullopt if it was not measured.
+  [[nodiscard]] std::optional<double> position(const std::string& joint) const {
+    for (std::size_t i = 0; i < names.size() && i < positions.size(); ++i) {
+      if (names[i] == joint) return positions[i];
+    }
+    return std::nullopt;
+  }
+};
+
+/// What a camera saw at one moment: an image, a cloud, or both of the same size.
+struct View {
+  Stamp stamp{};                     ///< of the exposure
+  std::string frame;                 ///< the camera's optical frame: z forward, x right, y down
+  std::optional<CameraInfo> camera;  ///< nullopt if the driver did not send it
+  GrayImage image;                   ///< empty if there is none
+  PointCloud points;                 ///< empty if there is none
+  MeasuredJoints joints;             ///< of the robot at that moment
+};
+
+/// A place in the image, for pictures of what was found.
+struct Mark {
+  double u = 0.0;          ///< column, pixels
+  double v = 0.0;          ///< row, pixels
+  std::string label = {};  ///< such as the feature's id
+};
+
+/// What a finder found: observations of two or more sensors with the same features, such as a camera
+/// and the chain that holds the board; or why it found nothing.
+struct Found {
+  std::vector<Observation> observations;  ///< empty if nothing was found
+  std::string refusal;      ///< why not: "squares of 3.1 pixels; at least 8 are needed"
+  std::vector<Mark> marks;  ///< where its features are in the image; also of what was refused
+
+  /// True if features were found.
+  [[nodiscard]] explicit operator bool() const { return !observations.empty(); }
+};
+
+/// Nothing was found, for this reason.
+[[nodiscard]] inline Found refused(std::string why, std::vector<Mark> marks = {}) {
+  return {{}, std::move(why), std::move(marks)};
+}
+
+}  // namespace kinecal
