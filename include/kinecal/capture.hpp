@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/capture/capture_pose.hpp"
 #include "kinecal/capture/image.hpp"
 #include "kinecal/capture/robot_interface.hpp"
+#include "kinecal/capture/session.hpp"
+#include "kinecal/capture/settling.hpp"
 #include "kinecal/capture/view.hpp"
