@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/capture/any_robot.hpp"
 #include "kinecal/capture/capture_pose.hpp"
 #include "kinecal/capture/image.hpp"
 #include "kinecal/capture/robot_interface.hpp"
