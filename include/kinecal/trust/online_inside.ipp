@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kinecal/solve/spectrum.hpp"
+#include "kinecal/solve/determined_spectrum.ipp"
 #include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/online.hpp"
 #include "kinecal/trust/tip_derivative.ipp"
@@ -94,8 +94,10 @@ inline void OnlineCalibration::Inside::step_to_minimum(AnyEvaluator& evaluator) 
 inline void OnlineCalibration::Inside::estimate_noise(double cost) {
   const detail::Spectrum spectrum(hessian);
   const auto rank = static_cast<int>(spectrum.singular.size() - spectrum.null);
-  freedom = problem->num_residuals() - rank;
-  noise2 = freedom > 0 ? 2.0 * cost / freedom : 0.0;
+  const int of_priors = static_cast<int>(problem->priors().size()) * Prior::kRows;
+  freedom = problem->num_residuals() - of_priors - rank;
+  const double of_features = cost - detail::prior_equations(*problem, free, values).cost;
+  noise2 = freedom > 0 ? std::max(0.0, 2.0 * of_features / freedom) : 0.0;
 }
 
 /// X of the last sample; zero if it has no residuals.
