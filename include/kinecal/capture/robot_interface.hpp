@@ -21,7 +21,7 @@
 namespace kinecal {
 
 /// Something that a robot did not do in one pose, which is then skipped: "elbow did not arrive".
-struct CaptureError : std::runtime_error {
+struct PoseError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -38,8 +38,8 @@ struct JointTarget {
 };
 
 /// A robot whose joints move and are measured.
-///   arm.move(target)        starts to move; throws CaptureError if the robot refuses
-///   arm.next_joints(after)  waits for positions stamped after this time; throws CaptureError if
+///   arm.move(target)        starts to move; throws PoseError if the robot refuses
+///   arm.next_joints(after)  waits for positions stamped after this time; throws PoseError if
 ///                           none come within the adapter's time limit
 /// Both throw ConnectionError if the robot cannot be reached.
 template <class A>
