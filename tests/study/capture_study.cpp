@@ -142,6 +142,7 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
   const TrueRobot calibrated(setup.robot, fitted.findings.result.table, setup.frames);
   outcome.before = difference(drawn, truth, input.samples);
   outcome.error = difference(calibrated, truth, input.samples);
+  outcome.reasons = fitted.findings.judgement.reasons;
   outcome.usable = fitted.findings.judgement.verdict != Grade::do_not_use;
   return outcome;
 }
@@ -154,6 +155,7 @@ int run(int robots, std::uint64_t first) {
   double worst = 0.0;
   for (int i = 0; i < robots; ++i) {
     const Outcome one = capture(first + static_cast<std::uint64_t>(i), poses);
+    for (const std::string& r : one.reasons) std::printf("   %s\n", r.c_str());
     const bool failed = !one.usable || one.error > kPaper;
     failures += failed ? 1 : 0;
     worst = std::max(worst, one.error);
