@@ -33,14 +33,15 @@ constexpr double kMinute = 60e9;    // nanoseconds
 
 /// What became of one robot.
 struct Outcome {
-  int visible = 0, found = 0;  ///< LEDs that could be seen, and of these, found
-  int false_finds = 0;         ///< further than 3 pixels from the LED
-  double squares = 0.0;        ///< of the errors in the image, pixels
-  int poses = 0;               ///< until the accuracy was reached; all if it never was
-  double minutes = 0.0;        ///< of the robot's clock until then
-  double error = 0.0;          ///< re-projection of all poses by the result, metres, RMS
-  double before = 0.0;         ///< the same by the URDF
-  bool usable = false;         ///< the verdict
+  int visible = 0, found = 0;             ///< LEDs that could be seen, and of these, found
+  int false_finds = 0;                    ///< further than 3 pixels from the LED
+  double squares = 0.0;                   ///< of the errors in the image, pixels
+  int poses = 0;                          ///< until the accuracy was reached; all if it never was
+  double minutes = 0.0;                   ///< of the robot's clock until then
+  double error = 0.0;                     ///< re-projection of all poses by the result, metres, RMS
+  double before = 0.0;                    ///< the same by the URDF
+  bool usable = false;                    ///< the verdict
+  std::vector<std::string> reasons = {};  ///< of the verdict
 };
 
 /// Compares what was found with where LEDs truly are.
@@ -92,6 +93,14 @@ double difference(const TrueRobot& a, const TrueRobot& b, const std::vector<Samp
   return std::sqrt(squares / std::max(1, points));
 }
 
+/// What the program says of the samples so far.
+bool is_good(const cli::Input& input) {
+  const Findings findings = cli::fit(input, {}, {}, {}).findings;
+  if (findings.judgement.verdict == Grade::do_not_use) return false;
+  const std::optional<PoseUncertainty>& pose = findings.assessments.back().pose;
+  return pose && pose->position <= kUntil;
+}
+
 /// Captures until the accuracy is reached, then calibrates.
 Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
   SimulatedSetup setup = simulated_fetch(seed);
@@ -132,7 +141,7 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
     for (const Sample& sample : captured.samples) {
       input.samples.push_back(sample);
       const FollowedState state = follower.add(sample);
-      enough = enough || (state.online.known && state.online.position <= kUntil);
+      enough = state.online.known && state.online.position <= kUntil && is_good(input);
     }
   });
   outcome.minutes = static_cast<double>((robot.now() - start).count()) / kMinute;
@@ -155,7 +164,6 @@ int run(int robots, std::uint64_t first) {
   double worst = 0.0;
   for (int i = 0; i < robots; ++i) {
     const Outcome one = capture(first + static_cast<std::uint64_t>(i), poses);
-    for (const std::string& r : one.reasons) std::printf("   %s\n", r.c_str());
     const bool failed = !one.usable || one.error > kPaper;
     failures += failed ? 1 : 0;
     worst = std::max(worst, one.error);
@@ -165,6 +173,7 @@ int run(int robots, std::uint64_t first) {
         i + 1, one.poses, one.minutes, one.found, one.visible,
         std::sqrt(one.squares / std::max(1, one.found)), one.false_finds, 1e3 * one.before,
         1e3 * one.error, failed ? "  FAILED" : "");
+    for (const std::string& reason : one.reasons) std::printf("    %s\n", reason.c_str());
     std::fflush(stdout);
     sum.poses += one.poses;
     sum.minutes += one.minutes;
