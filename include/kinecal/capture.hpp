@@ -3,5 +3,7 @@
 #pragma once
 
 #include "kinecal/capture/image.hpp"
+#include "kinecal/capture/pose_generation.hpp"
+#include "kinecal/capture/robot_body.hpp"
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/capture/view.hpp"
