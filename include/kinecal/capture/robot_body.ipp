@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "kinecal/capture/joint_range.ipp"
 #include "kinecal/capture/robot_body.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/kinematics/chain.hpp"
@@ -28,17 +28,6 @@ namespace detail {
   if (bb > kPoint) t = std::clamp((ab * s + br) / bb, 0.0, 1.0);
   if (aa > kPoint) s = std::clamp((ab * t - ar) / aa, 0.0, 1.0);
   return (r + s * a - t * b).norm();
-}
-
-/// A position within limits, or half a turn or half a metre to both sides.
-/// @param share  [0, 1]
-[[nodiscard]] inline double position_in_range(const Joint& joint, double share) {
-  const double most = turns(joint.type) ? std::numbers::pi : 0.5;
-  const bool limited = joint.type != JointType::continuous && joint.limits &&
-                       joint.limits->upper > joint.limits->lower;
-  const double lower = limited ? joint.limits->lower : -most;
-  const double upper = limited ? joint.limits->upper : most;
-  return lower + share * (upper - lower);
 }
 
 }  // namespace detail
@@ -107,10 +96,10 @@ KINECAL_INLINE void RobotBody::find_neighbours(const Robot& robot,
   std::vector<double> q(joints_.size());
   for (int n = 0; n < kPoses; ++n) {
     for (std::size_t i = 0; i < q.size(); ++i) {
-      const double share = static_cast<double>(random() >> 11) * 0x1p-53;
       const auto fixed = held.find(joints_[i]);
-      q[i] = fixed != held.end() ? fixed->second
-                                 : detail::position_in_range(robot.joint(joints_[i]), share);
+      q[i] = fixed != held.end()
+                 ? fixed->second
+                 : detail::position_in_range(robot.joint(joints_[i]), detail::random_share(random));
     }
     for (const auto& pair : touching(poses(q))) ++counts[pair];
   }

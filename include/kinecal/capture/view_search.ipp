@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/capture/joint_range.ipp"
 #include "kinecal/capture/pose_generation.hpp"
 #include "kinecal/capture/robot_body.hpp"
 #include "kinecal/capture/view_fault.ipp"
@@ -42,7 +43,7 @@ class ViewSearch {
   /// Positions of all joints of the body, those that move at random.
   [[nodiscard]] std::vector<double> anywhere(std::mt19937_64& random) const {
     std::vector<double> q = middle_;
-    for (const std::size_t i : chosen_) q[i] = position_in_range(joints_[i], unit(random));
+    for (const std::size_t i : chosen_) q[i] = position_in_range(joints_[i], random_share(random));
     return q;
   }
 
@@ -50,8 +51,8 @@ class ViewSearch {
   void change(std::vector<double>& q, std::mt19937_64& random) const {
     constexpr double kFar = 0.3, kNear = 0.2;  // share of changes; of the way
     const std::size_t i = chosen_[random() % chosen_.size()];
-    const double way = unit(random) < kFar ? 1.0 : kNear * unit(random);
-    q[i] += way * (position_in_range(joints_[i], unit(random)) - q[i]);
+    const double way = random_share(random) < kFar ? 1.0 : kNear * random_share(random);
+    q[i] += way * (position_in_range(joints_[i], random_share(random)) - q[i]);
   }
 
   [[nodiscard]] ViewFault fault(const std::vector<double>& q) const {
@@ -111,10 +112,6 @@ class ViewSearch {
   }
 
  private:
-  static double unit(std::mt19937_64& random) {
-    return static_cast<double>(random() >> 11) * 0x1p-53;
-  }
-
   /// The joints of the goal, or those between its camera and its target.
   [[nodiscard]] static std::set<std::string> moving_joints(const Robot& robot,
                                                            const ViewGoal& goal) {
