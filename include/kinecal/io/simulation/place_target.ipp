@@ -78,10 +78,11 @@ inline void set_goal(SimulationPlan& plan) {
   goal.points = points_of(target);
   goal.front = -middle_of(target).rotation.col(2);
   constexpr double kNear = 0.2, kFar = 2.0, kFarFloor = 3.0, kGap = 0.05;  // metres
+  constexpr double kBoard = 0.35, kLeds = 0.03;                            // of the image's width
   goal.nearest = camera.has_depth ? camera.nearest + kGap : kNear;
   goal.farthest = target.type == "ground" ? kFarFloor : kFar;
   if (camera.has_depth) goal.farthest = std::min(goal.farthest, camera.farthest);
-  goal.least_size = is_board(target) ? 0.25 : 0.03;
+  goal.least_size = is_board(target) ? kBoard : kLeds;
   if (target.type == "ground") goal.most_angle = 70.0 * std::numbers::pi / 180.0;
   goal.margin = 0.12;  // the true robot looks elsewhere than its URDF
   goal.ground = -0.01;
@@ -152,7 +153,7 @@ inline void furnish(SimulationPlan& plan) {
   scene.patches.push_back({.pose = facing({kWall, 0.0, 0.0}, {-1.0, 0.0, 0.0}),
                            .width = kInfinite,
                            .height = kInfinite,
-                           .albedo = 0.5});
+                           .albedo = 0.6});
   if (target.type == "ground") return;
   double width = 0.0, height = 0.0;
   const Pose<double> middle_T_link = middle_of(target).inverse();
