@@ -56,3 +56,11 @@ kinecal_add_optional(io PNG TARGETS PNG::PNG DEBIAN libpng-dev
   FLAGS -lpng DEFINE KINECAL_HAVE_PNG FOR "PNG images")
 kinecal_add_optional(io JPEG TARGETS JPEG::JPEG DEBIAN libjpeg-dev
   FLAGS -ljpeg DEFINE KINECAL_HAVE_JPEG FOR "JPEG images")
+
+# Live robots: header-only libraries, of which nothing is linked.
+find_package(Boost 1.74 QUIET)
+find_package(nlohmann_json QUIET)
+kinecal_add_optional(io Boost TARGETS Boost::headers DEBIAN libboost-dev
+  FLAGS "" DEFINE KINECAL_HAVE_BOOST FOR "robots behind a Foxglove bridge")
+kinecal_add_optional(io nlohmann_json TARGETS nlohmann_json::nlohmann_json DEBIAN nlohmann-json3-dev
+  FLAGS "" DEFINE KINECAL_HAVE_JSON FOR "live robots")

@@ -79,6 +79,36 @@ struct Work {
   }
 };
 
+/// Milliseconds of the update after each sample but the first ten: the median and the last ones.
+struct Updates {
+  double median = 0.0, last_ten = 0.0, next_move = 0.0;
+};
+
+Updates follow(const Work& work) {
+  const CalibrationStep& step = work.calibration.steps.back();
+  const auto frames = compared_frames(*step.problem, work.samples).value();
+  const Eigen::VectorXd values = work.calibration.table.values();
+  const auto make = [&] {
+    return empty_problem(work.config, work.config.steps.back(), work.robot, work.calibration.table,
+                         work.samples);
+  };
+  OnlineCalibration online(make, step.free,
+                           {values.data(), static_cast<std::size_t>(values.size())}, frames.first,
+                           frames.second);
+  std::vector<double> times;
+  for (const Sample& sample : work.samples) {
+    times.push_back(fastest(1, [&] { (void)online.add(sample); }));
+  }
+  Updates updates;
+  updates.next_move = fastest(3, [&] { (void)online.next_move(); });
+  std::nth_element(times.end() - 10, times.end() - 5, times.end());
+  updates.last_ten = *(times.end() - 5);
+  times.erase(times.begin(), times.begin() + 10);
+  std::nth_element(times.begin(), times.begin() + 45, times.end());
+  updates.median = times[45];
+  return updates;
+}
+
 /// What is timed gives what it should.
 bool is_right(const Work& work) {
   constexpr double kCost = 8.019441481e-4;  // of an independent implementation
@@ -121,6 +151,10 @@ int run(int repetitions) {
   print("  by default (5 folds, no random starts)", five);
   print("control: the calibration itself", solving);
   print("control: 5 folds assembled and solved anew", control);
+  const Updates updates = follow(work);
+  print("update after each sample of a session, median", updates.median);
+  print("  with 90 to 100 samples, median", updates.last_ten);
+  print("  which joint to move next", updates.next_move);
   return 0;
 }
 

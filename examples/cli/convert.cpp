@@ -14,6 +14,7 @@
 #include "kinecal/io/csv/read_csv_samples.hpp"
 #include "kinecal/io/recordings/bag_topics.hpp"
 #include "kinecal/io/recordings/pose_messages.hpp"
+#include "kinecal/io/recordings/write_recording.hpp"
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
 #include "output_file.hpp"
@@ -28,16 +29,6 @@ struct Content {
   std::vector<Sample> samples;
   std::vector<CapturePose> poses;
 };
-
-/// The encoding of the bag to write; nothing for YAML.
-/// @throws InputError  if the name does not end like that of a known format
-std::optional<Encoding> output_encoding(const std::string& output) {
-  const std::string extension = std::filesystem::path(output).extension().string();
-  if (extension == ".bag") return Encoding::ros1;
-  if (extension == ".mcap") return Encoding::cdr;
-  if (extension == ".yaml" || extension == ".yml") return std::nullopt;
-  throw InputError(output + ": unknown format; the name must end in .yaml, .bag or .mcap");
-}
 
 /// Samples or poses in YAML.
 Content read_yaml(const std::string& input, Diagnostics& diagnostics) {

@@ -10,19 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/capture/capture_pose.hpp"
 #include "kinecal/io/diagnostics.hpp"
 
 namespace kinecal {
-
-/// One pose, and the finders that look for features there.
-struct CapturePose {
-  std::vector<std::string> joint_names;  ///< the joints that move there
-  std::vector<double> positions;         ///< radians or metres, in the order of the names
-  std::vector<std::string> features;     ///< names of the finders
-
-  /// Equal names, positions and features.
-  friend bool operator==(const CapturePose&, const CapturePose&) = default;
-};
 
 /// True if a YAML file holds poses: it is a list, while samples begin with a key.
 [[nodiscard]] bool is_poses_yaml(const std::string& path);

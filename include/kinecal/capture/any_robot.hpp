@@ -1,0 +1,72 @@
+// A robot whose parts are chosen at run time: simulated, over a network, or a program of the user's.
+//
+// AnyArm, AnyCamera and AnyLamp are models of the concepts and hold any other model.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "kinecal/capture/robot_interface.hpp"
+
+namespace kinecal {
+
+/// Any arm.
+struct AnyArm {
+  std::function<void(const JointTarget&)> mover;      ///< see Arm
+  std::function<MeasuredJoints(Stamp after)> reader;  ///< see Arm
+
+  void move(const JointTarget& target) { mover(target); }            ///< see Arm
+  MeasuredJoints next_joints(Stamp after) { return reader(after); }  ///< see Arm
+};
+
+/// Any camera.
+struct AnyCamera {
+  std::function<View(Stamp after)> viewer;  ///< see Camera
+
+  View next_view(Stamp after) { return viewer(after); }  ///< see Camera
+};
+
+/// Any lamp.
+struct AnyLamp {
+  std::function<Stamp(int code)> lighter;  ///< see Lamp
+
+  Stamp light(int code) { return lighter(code); }  ///< see Lamp
+};
+
+static_assert(Arm<AnyArm> && Camera<AnyCamera> && Lamp<AnyLamp>);
+
+/// A robot to be captured, and what it holds alive.
+struct AnyRobot {
+  AnyArm arm;
+  std::map<std::string, AnyCamera> cameras;  ///< by the name of the finder that looks through it
+  std::map<std::string, AnyLamp> lamps;      ///< by the name of the finder that switches it
+  std::shared_ptr<void> owner = {};          ///< of all of them
+};
+
+/// An arm of any type.
+/// @param arm  must outlive the result
+template <Arm A>
+[[nodiscard]] AnyArm any_arm(A& arm) {
+  return {[&arm](const JointTarget& target) { arm.move(target); },
+          [&arm](Stamp after) { return arm.next_joints(after); }};
+}
+
+/// A camera of any type.
+/// @param camera  must outlive the result
+template <Camera C>
+[[nodiscard]] AnyCamera any_camera(C& camera) {
+  return {[&camera](Stamp after) { return camera.next_view(after); }};
+}
+
+/// A lamp of any type.
+/// @param lamp  must outlive the result
+template <Lamp L>
+[[nodiscard]] AnyLamp any_lamp(L& lamp) {
+  return {[&lamp](int code) { return lamp.light(code); }};
+}
+
+}  // namespace kinecal

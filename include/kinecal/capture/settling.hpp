@@ -1,0 +1,116 @@
+// Waiting until a robot stands still: measured from its joints and its images, not slept.
+//
+// Joints are still when the means of both halves of a window of time agree, so that the noise of
+// encoders does not matter and slow creeping does.  An image is still when hardly a pixel differs from
+// the image before by more than its noise.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/robot_interface.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// When a robot counts as still, and how long to wait for it, on its own clock.
+struct SettleOptions {
+  Stamp window = std::chrono::milliseconds(300);  ///< of time, in which joints must be still
+  double still = 0.001;   ///< change of the mean between its halves, radians or metres
+  double arrival = 0.03;  ///< of a joint that has arrived: distance from its target, the same
+  Stamp patience = std::chrono::seconds(3);          ///< for a joint that stands still elsewhere
+  Stamp time_limit = std::chrono::seconds(30);       ///< for joints
+  Stamp image_time_limit = std::chrono::seconds(5);  ///< for the image
+  int gray_levels = 25;                         ///< change of a pixel that noise does not cause
+  double still_pixels = 0.002;                  ///< share of the pixels that may change by more
+  Stamp clock_limit = std::chrono::seconds(5);  ///< by which stamps of camera and joints may differ
+};
+
+/// Readings of joints, one after the other, and whether they have come to rest.
+class JointRest {
+ public:
+  explicit JointRest(const SettleOptions& options) : options_(options) {}
+
+  /// Takes the next reading.
+  /// @throws PoseError  if its stamp is not later than the last one, it has other joints than the
+  ///                    last one, or a position is not finite
+  void add(MeasuredJoints reading);
+
+  /// True if all joints were still during the window.
+  [[nodiscard]] bool still() const;
+
+  /// Mean positions during the window, stamped with the last reading.
+  [[nodiscard]] MeasuredJoints mean() const;
+
+  /// The joint that is farthest from a target, in words; empty if all have arrived.
+  /// @throws PoseError  if a joint of the target is not measured
+  [[nodiscard]] std::string not_arrived(const JointTarget& target) const;
+
+ private:
+  [[nodiscard]] std::vector<double> mean_of(std::size_t first, std::size_t last) const;
+  SettleOptions options_;
+  std::deque<MeasuredJoints> readings_;
+};
+
+/// Waits until joints stand still, at a target if there is one.
+/// @param target  joints that must arrive there; without names: wherever they are
+/// @param after   readings count from this time on
+/// @returns  mean positions while they stood still
+/// @throws PoseError        naming the joint that does not arrive or does not stop
+/// @throws ConnectionError  from the arm
+template <Arm A>
+[[nodiscard]] MeasuredJoints settle_joints(A& arm, const JointTarget& target, Stamp after,
+                                           const SettleOptions& options = {});
+
+/// Share of the pixels that differ by more than noise; 1 if the sizes differ.
+[[nodiscard]] double changed_pixels(const GrayImage& a, const GrayImage& b, int gray_levels);
+
+/// Waits for a view in which the image stands still.  A view without image is returned as it comes.
+/// @param next_view  the first view stamped after a time: see Camera
+/// @throws PoseError        if the image does not come to rest, its size changes, or it has another
+///                          clock than the joints
+/// @throws ConnectionError  from the camera
+[[nodiscard]] View settle_image(const std::function<View(Stamp after)>& next_view, Stamp after,
+                                const SettleOptions& options = {});
+
+namespace detail {
+
+/// "12.345 s" of a duration.
+[[nodiscard]] std::string seconds_text(Stamp duration);
+
+}  // namespace detail
+
+template <Arm A>
+MeasuredJoints settle_joints(A& arm, const JointTarget& target, Stamp after,
+                             const SettleOptions& options) {
+  JointRest rest(options);
+  std::optional<Stamp> start, elsewhere;  // first reading; since when they are still, not there
+  std::string missing = "joints do not stop";
+  while (true) {
+    MeasuredJoints reading = arm.next_joints(after);
+    after = reading.stamp;
+    if (!start) start = after;
+    rest.add(std::move(reading));
+    if (rest.still()) {
+      missing = rest.not_arrived(target);
+      if (missing.empty()) return rest.mean();
+      if (!elsewhere) elsewhere = after;
+      if (after - *elsewhere > options.patience) throw PoseError(missing);
+    } else {
+      elsewhere.reset();
+    }
+    if (after - *start > options.time_limit) {
+      throw PoseError(missing + "; waited " + detail::seconds_text(after - *start));
+    }
+  }
+}
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/settling.ipp"
+#endif

@@ -1,0 +1,167 @@
+// What a calibration that follows a session knows, and its updates.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kinecal/solve/determined_spectrum.ipp"
+#include "kinecal/trust/online.hpp"
+#include "kinecal/trust/tip_derivative.ipp"
+
+namespace kinecal {
+
+struct OnlineCalibration::Inside {
+  MakeProblem make;
+  FreeSet free;
+  std::vector<double> values;
+  FrameOnRobot frame, in;
+  std::unique_ptr<AnyProblem> problem = make();  ///< with the samples
+  std::vector<Sample> samples = {};              ///< of the problem
+  std::vector<int> numbers = {};                 ///< of each of them: of the call of add(), from 1
+  int added = 0;                                 ///< calls of add()
+  Eigen::MatrixXd hessian = {};                  ///< (free x free) at the values
+  double noise2 = 0.0;                           ///< s^2
+  int freedom = 0;                               ///< residuals that are left for the noise
+
+  void step_to_minimum(AnyEvaluator& evaluator);
+  void estimate_noise(double cost);
+  [[nodiscard]] double innovation(AnyEvaluator& evaluator, int& rows) const;
+  [[nodiscard]] std::vector<const Sample*> spread() const;
+  [[nodiscard]] detail::TipDerivative derivative(const FrameOnRobot& of) const;
+  void set_pose(OnlineState& state) const { set_pose(state, hessian); }
+  void set_pose(OnlineState& state, const Eigen::MatrixXd& information) const;
+  [[nodiscard]] bool add_if_it_fits(const Sample& sample, OnlineState& state);
+  [[nodiscard]] std::optional<std::size_t> misfit(AnyEvaluator& evaluator) const;
+  void leave_out(std::size_t sample);
+  [[nodiscard]] std::vector<std::pair<NextMove, Sample>> candidates(double step) const;
+};
+
+namespace detail {
+
+inline constexpr double kOnceIn = 1e-6;  ///< how often chance may make a sample look bad
+
+/// Rows and derivatives of one sample, weighted.
+struct SampleRows {
+  Eigen::VectorXd residual = {};
+  Eigen::MatrixXd jacobian = {};
+
+  void append(const TermResiduals& rows, double weight) {
+    const Eigen::Index before = residual.size(), added = rows.residual.size();
+    residual.conservativeResize(before + added);
+    jacobian.conservativeResize(before + added, rows.jacobian.cols());
+    residual.tail(added) = weight * rows.residual;
+    jacobian.bottomRows(added) = weight * rows.jacobian;
+  }
+};
+
+}  // namespace detail
+
+/// Gauss-Newton steps, halved until the cost falls.
+inline void OnlineCalibration::Inside::step_to_minimum(AnyEvaluator& evaluator) {
+  constexpr int kSteps = 8, kHalves = 6;
+  constexpr double kSettled = 1e-6;    // of the cost
+  constexpr double kUncertain = 1e-4;  // of the largest singular value: no steps along these
+  NormalEquations at = evaluator.normal_equations(values);
+  for (int i = 0; i < kSteps && std::isfinite(at.cost); ++i) {
+    const detail::Spectrum spectrum(at.hessian);
+    const Eigen::VectorXd units = spectrum.scale.cwiseInverse();
+    const Eigen::VectorXd slope = spectrum.vectors.transpose() * units.cwiseProduct(at.gradient);
+    const double least = kUncertain * spectrum.singular.maxCoeff();
+    const Eigen::VectorXd along = slope.binaryExpr(
+        spectrum.singular, [&](double g, double s) { return s > least ? -g / (s * s) : 0.0; });
+    const Eigen::VectorXd step = units.cwiseProduct(spectrum.vectors * along);
+    const double before = at.cost;
+    double factor = 1.0;
+    for (int h = 0; h < kHalves; ++h, factor *= 0.5) {
+      std::vector<double> trial = values;
+      for (int c = 0; c < free.size(); ++c) {
+        const Parameter& parameter =
+            problem->table()[free.parameters()[static_cast<std::size_t>(c)]];
+        double& value =
+            trial[static_cast<std::size_t>(free.parameters()[static_cast<std::size_t>(c)])];
+        value = std::clamp(value + factor * step(c), parameter.lower, parameter.upper);
+      }
+      NormalEquations there = evaluator.normal_equations(trial);
+      if (!(there.cost <= before)) continue;
+      values = std::move(trial);
+      at = std::move(there);
+      break;
+    }
+    if (before - at.cost <= kSettled * before) break;
+  }
+  hessian = at.hessian;
+  estimate_noise(at.cost);
+}
+
+inline void OnlineCalibration::Inside::estimate_noise(double cost) {
+  const detail::Spectrum spectrum(hessian);
+  const auto rank = static_cast<int>(spectrum.singular.size() - spectrum.null);
+  const int of_priors = static_cast<int>(problem->priors().size()) * Prior::kRows;
+  freedom = problem->num_residuals() - of_priors - rank;
+  const double of_features = cost - detail::prior_equations(*problem, free, values).cost;
+  noise2 = freedom > 0 ? std::max(0.0, 2.0 * of_features / freedom) : 0.0;
+}
+
+/// X of the last sample; zero if it has no residuals.
+inline double OnlineCalibration::Inside::innovation(AnyEvaluator& evaluator, int& rows) const {
+  detail::SampleRows last;
+  const int number = problem->num_samples() - 1;
+  (void)evaluator.evaluate(values, true, [&](int term, int sample, const TermResiduals& of_term) {
+    if (sample == number) last.append(of_term, problem->term(term).options().weight);
+  });
+  rows = static_cast<int>(last.residual.size());
+  if (rows == 0) return 0.0;
+  const Eigen::MatrixXd covariance = noise2 * detail::Spectrum(hessian).pseudo_inverse();
+  Eigen::MatrixXd expected = last.jacobian * covariance * last.jacobian.transpose();
+  expected.diagonal().array() += noise2;
+  return last.residual.dot(expected.ldlt().solve(last.residual)) / rows;
+}
+
+/// A few samples, evenly over the session.
+inline std::vector<const Sample*> OnlineCalibration::Inside::spread() const {
+  constexpr std::size_t kPoses = 16;
+  std::vector<const Sample*> some;
+  const std::size_t count = std::min(kPoses, samples.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    some.push_back(&samples[(2 * i + 1) * samples.size() / (2 * count)]);
+  }
+  return some;
+}
+
+inline detail::TipDerivative OnlineCalibration::Inside::derivative(const FrameOnRobot& of) const {
+  RuntimeChain chain = make_chain(problem->robot(), problem->base(), of.link, problem->frames());
+  if (!of.frame.empty()) chain = with_virtual_frame(std::move(chain), of.frame);
+  return {*problem, free, values, std::move(chain)};
+}
+
+inline void OnlineCalibration::Inside::set_pose(OnlineState& state,
+                                                const Eigen::MatrixXd& information) const {
+  const detail::Spectrum spectrum(information);
+  const Eigen::MatrixXd covariance = noise2 * spectrum.pseudo_inverse();
+  const Eigen::MatrixXd null =
+      spectrum.scale.cwiseInverse().asDiagonal() * spectrum.vectors.leftCols(spectrum.null);
+  detail::TipDerivative of_frame = derivative(frame), of_in = derivative(in);
+  // With less to spare, neither the noise nor the poses say much.
+  constexpr double kToSpare = 2.0;  // residuals for each direction that they determine
+  const auto rank = static_cast<double>(spectrum.singular.size() - spectrum.null);
+  state.known = freedom >= kToSpare * rank;
+  double positions = 0.0, rotations = 0.0;
+  const std::vector<const Sample*> poses = spread();
+  for (const Sample* sample : poses) {
+    if (!of_frame.has_joints(*sample) || !of_in.has_joints(*sample)) continue;
+    const Vector3<double> p_base = of_frame.tip(*sample);
+    const Eigen::MatrixXd jacobian = of_frame.at(*sample, p_base) - of_in.at(*sample, p_base);
+    const Eigen::MatrixXd across = jacobian * covariance;
+    positions += across.topRows<3>().cwiseProduct(jacobian.topRows<3>()).sum();
+    rotations += across.bottomRows<3>().cwiseProduct(jacobian.bottomRows<3>()).sum();
+    if (detail::moves_origin(jacobian, null, 0.0)) state.known = false;
+  }
+  const double count = std::max(1.0, static_cast<double>(poses.size()));
+  state.position = std::sqrt(std::max(0.0, positions / count));
+  state.rotation = std::sqrt(std::max(0.0, rotations / count));
+}
+
+}  // namespace kinecal

@@ -1,0 +1,145 @@
+#include "kinecal/capture/session.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "support/toy_robot.hpp"
+
+namespace kinecal {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+using testing::ToyArm;
+using testing::ToyCamera;
+using testing::ToyFinder;
+
+std::vector<CapturePose> five_poses() {
+  std::vector<CapturePose> poses;
+  for (int i = 0; i < 5; ++i) poses.push_back({{"pan", "tilt"}, {0.1 * i, -0.2 * i}, {}});
+  return poses;
+}
+
+/// A session of the toy robot.
+struct ToySession {
+  ToyArm arm;
+  ToyCamera camera{arm};
+  std::vector<SessionFinder> finders = {session_finder("square", ToyFinder{}, camera)};
+  std::vector<CapturedPose> captured = {};
+  std::vector<Sample> samples = {};
+
+  void run(const std::vector<CapturePose>& poses) {
+    run_session(arm, poses_of(poses), finders, [&](const CapturedPose& pose) {
+      captured.push_back(pose);
+      samples.insert(samples.end(), pose.samples.begin(), pose.samples.end());
+    });
+  }
+};
+
+TEST(Session, RecordsASampleInEachPose) {
+  ToySession session;
+  session.run(five_poses());
+  ASSERT_EQ(session.samples.size(), 5u);
+  for (int i = 0; i < 5; ++i) {
+    const Sample& sample = session.samples[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(sample.position("pan").value(), 0.1 * i, 1e-3);
+    EXPECT_NEAR(sample.position("tilt").value(), -0.2 * i, 1e-3);
+    EXPECT_EQ(sample.observation("camera")->features.front().point.x(), 20 + 2 * i);
+    EXPECT_NE(sample.observation("arm"), nullptr);
+  }
+  EXPECT_GT(session.captured[1].duration, milliseconds(600));
+}
+
+TEST(Session, SkipsAPoseThatFailsAndSaysWhy) {
+  ToySession session;
+  std::vector<CapturePose> poses = five_poses();
+  poses[2].joint_names = {"pan", "tlit"};
+  session.run(poses);
+  EXPECT_EQ(session.samples.size(), 4u);
+  EXPECT_THAT(session.captured[2].failure, HasSubstr("no joint 'tlit'"));
+  EXPECT_TRUE(session.captured[3].failure.empty());
+}
+
+TEST(Session, KeepsWhatAFinderSaysWhereItFindsNothing) {
+  ToySession session;
+  session.run({{{"pan"}, {3.0}, {}}});  // the square is out of the image
+  EXPECT_TRUE(session.samples.empty());
+  EXPECT_TRUE(session.captured[0].failure.empty());
+  EXPECT_THAT(session.captured[0].outcomes.front().found.refusal, HasSubstr("no square"));
+}
+
+TEST(Session, EndsWithTheRobotAndResumesWithTheRest) {
+  ToySession session;
+  session.arm.moves_left = 3;
+  EXPECT_THROW(session.run(five_poses()), ConnectionError);
+  EXPECT_EQ(session.samples.size(), 3u);
+  const std::vector<CapturePose> left = poses_left(five_poses(), session.samples);
+  ASSERT_EQ(left.size(), 2u);
+  EXPECT_EQ(left.front(), five_poses()[3]);
+  ToySession rest;
+  rest.run(left);
+  EXPECT_EQ(rest.samples.size(), 2u);
+}
+
+TEST(Session, APoseThatIsThereTwiceIsCapturedTwice) {
+  std::vector<CapturePose> poses = five_poses();
+  poses.push_back(poses.front());
+  ToySession session;
+  session.run(five_poses());
+  EXPECT_EQ(poses_left(poses, session.samples).size(), 1u);
+}
+
+TEST(Session, RunsTheFindersThatAPoseAsksFor) {
+  ToySession session;
+  session.finders.push_back(session_finder("other", ToyFinder{"other_camera"}, session.camera));
+  session.run({{{"pan"}, {0.1}, {"other"}}, {{"pan"}, {0.2}, {}}});
+  ASSERT_EQ(session.captured[0].outcomes.size(), 1u);
+  EXPECT_EQ(session.captured[0].outcomes[0].finder, "other");
+  // Both observe with the sensor "arm", so they give two samples of one pose.
+  ASSERT_EQ(session.captured[1].samples.size(), 2u);
+  EXPECT_EQ(session.captured[1].samples[0].joint_positions,
+            session.captured[1].samples[1].joint_positions);
+  EXPECT_TRUE(
+      poses_left(std::vector{session.captured[1].pose}, session.captured[1].samples).empty());
+  EXPECT_THROW(session.run({{{"pan"}, {0.1}, {"othr"}}}), std::invalid_argument);
+}
+
+TEST(Session, APersonMayMoveTheRobot) {
+  ToySession session;
+  int left = 3;
+  const NextPose next = [&]() -> std::optional<CapturePose> {
+    if (left-- == 0) return std::nullopt;
+    session.arm.move({{"pan"}, {0.1 * left}});
+    return CapturePose{};
+  };
+  run_session(session.arm, next, session.finders, [&](const CapturedPose& pose) {
+    session.samples.insert(session.samples.end(), pose.samples.begin(), pose.samples.end());
+  });
+  ASSERT_EQ(session.samples.size(), 3u);
+  EXPECT_NEAR(session.samples[0].position("pan").value(), 0.2, 2e-3);
+}
+
+TEST(Session, DropsASampleIfAJointMovesWhileFindersLook) {
+  ToySession session;
+  session.finders.front().find = [&](const View& view) {
+    session.arm.move({{"tilt"}, {1.0}});
+    return ToyFinder{}.find(view);
+  };
+  session.run({{{"pan"}, {0.1}, {}}});
+  EXPECT_TRUE(session.samples.empty());
+  EXPECT_THAT(session.captured[0].failure, HasSubstr("joint 'tilt' moved while finders looked"));
+}
+
+TEST(Session, AStreamThatStopsSkipsItsPose) {
+  ToySession session;
+  session.arm.readings_left = 200;
+  session.run(five_poses());
+  EXPECT_LT(session.samples.size(), 5u);
+  EXPECT_GT(session.samples.size(), 0u);
+  EXPECT_THAT(session.captured.back().failure, HasSubstr("no joint states"));
+}
+
+}  // namespace
+}  // namespace kinecal

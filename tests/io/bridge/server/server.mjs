@@ -1,0 +1,201 @@
+// A Foxglove bridge with a simulated robot behind it, for tests; by the protocol's reference server.
+//   node server.mjs '{"encoding": "ros1" | "cdr", "protocol": "foxglove.sdk.v1", "joint_type": ...}'
+// It prints {"port": ...} and then takes faults from its standard input, one a line: see `faults`.
+// SPDX-License-Identifier: Apache-2.0
+import { createInterface } from "node:readline";
+import protocol from "@foxglove/ws-protocol";
+import { WebSocketServer } from "ws";
+import { definition, reader, writer } from "./messages.mjs";
+import { Robot } from "./robot.mjs";
+
+const { FoxgloveServer, ServerCapability } = protocol;
+const options = { encoding: "ros1", ...JSON.parse(process.argv[2] ?? "{}") };
+const ros2 = options.encoding === "cdr";
+const robot = new Robot();
+const server = new FoxgloveServer({
+  name: "test", supportedEncodings: [options.encoding],
+  capabilities: options.capabilities ?? [ServerCapability.clientPublish, ServerCapability.services],
+});
+const sockets = new Set();
+const state = { silent: new Set(), imageLead: 0, refuse: false, abort: false, half: new Set() };
+
+const seconds = () => Date.now() / 1000;
+const fullType = (type, kind) => (ros2 ? type.replace("/", `/${kind}/`) : type);
+function stamp(now) {
+  const sec = Math.floor(now), ns = Math.floor((now - sec) * 1e9);
+  return ros2 ? { sec, nanosec: ns } : { sec, nsec: ns };
+}
+const header = (now, frame = "") => ({ seq: 0, stamp: stamp(now), frame_id: frame });
+
+// Topics: a function that sends a message on each.
+function topic(name, type, advertised = type) {
+  const write = writer(type, ros2);
+  const add = () => server.addChannel({
+    topic: name, encoding: options.topic_encoding ?? options.encoding,
+    schemaName: fullType(advertised, "msg"), schema: definition(advertised, ros2),
+    schemaEncoding: ros2 ? "ros2msg" : "ros1msg",
+  });
+  let channel = add();
+  const send = (message) => {
+    if (state.silent.has(name)) return;
+    const bytes = write.writeMessage(message);
+    const sent = state.half.has(name) ? bytes.subarray(0, bytes.length >> 1) : bytes;
+    server.sendMessage(channel, BigInt(Date.now()) * 1000000n, sent);
+  };
+  send.again = () => {
+    server.removeChannel(channel);
+    channel = add();
+  };
+  return send;
+}
+
+const joints = topic("/joint_states", "sensor_msgs/JointState", options.joint_type);
+const image = topic("/camera/image", "sensor_msgs/Image");
+const cloud = topic("/camera/points", "sensor_msgs/PointCloud2");
+const info = topic("/camera/camera_info", "sensor_msgs/CameraInfo");
+
+function stream() {
+  const now = seconds();
+  joints({ header: header(now), ...robot.joints(["shoulder", "elbow"], now) });
+  joints({ header: header(now), ...robot.joints(["head"], now) });  // another node
+}
+function look() {
+  const now = seconds();
+  const at = header(now + state.imageLead, "camera_optical_frame");
+  image({ header: at, ...robot.image(now) });
+  cloud({ header: at, ...robot.cloud(now) });
+  info({ header: at, ...robot.camera(ros2) });
+}
+setInterval(stream, 10);
+setInterval(look, 40);
+
+// Actions: what they do with a goal, and after how many seconds they have done it.
+const actions = new Map();
+function trajectory(goal) {
+  const { joint_names: names, points } = goal.trajectory;
+  const t = points[0].time_from_start;
+  const time = t.sec + (t.nsec ?? t.nanosec) * 1e-9;
+  robot.move(names, points[0].positions, seconds(), time);
+  return time;
+}
+function leds(goal) {
+  robot.ledCode = goal.led_code;
+  return 0;
+}
+const failed = { error_code: -4, error_string: "path tolerance violated" };
+const followed = () => (state.abort ? failed : { error_code: 0, error_string: "" });
+
+function ros1Action(name, type, run, result) {
+  const goals = new Map();
+  const sendStatus = topic(`${name}/status`, "actionlib_msgs/GoalStatusArray");
+  const sendResult = topic(`${name}/result`, `${type}ActionResult`);
+  const publish = () =>
+    sendStatus({ header: header(seconds()), status_list: [...goals.values()] });
+  const finish = (status) => {
+    status.status = state.abort ? 4 : 3;
+    sendResult({ header: header(seconds()), status, result: result() });
+  };
+  setInterval(publish, 100);
+  const read = reader(`${type}ActionGoal`, false);
+  actions.set(`${name}/goal`, (data) => {
+    const message = read.readMessage(data);
+    if (goals.has(message.goal_id.id)) return;
+    const status = { goal_id: message.goal_id, status: state.refuse ? 5 : 1, text: "" };
+    if (state.refuse) status.text = "joint limits";
+    goals.set(message.goal_id.id, status);
+    publish();
+    if (state.refuse) return;
+    setTimeout(() => finish(status), (state.abort ? 0.1 : run(message.goal)) * 1000);
+  });
+}
+
+function ros2Action(name, type, run, result) {
+  const goals = new Map();
+  const service = (suffix, part, answer) => {
+    const request = reader(`${type}_${part}_Request`, true);
+    const response = writer(`${type}_${part}_Response`, true);
+    const schema = (kind) => ({
+      encoding: "cdr", schemaName: fullType(`${type}_${part}_${kind}`, "action"),
+      schemaEncoding: "ros2msg", schema: definition(`${type}_${part}_${kind}`, true),
+    });
+    const full = { name: `${name}/_action/${suffix}`, type: fullType(`${type}_${part}`, "action") };
+    const text = { requestSchema: "", responseSchema: "" };
+    const parts = { request: schema("Request"), response: schema("Response") };
+    const id = server.addService({ ...full, ...(options.old_services ? text : parts) });
+    actions.set(id, async (data) => response.writeMessage(await answer(request.readMessage(data))));
+  };
+  service("send_goal", "SendGoal", (goal) => {
+    const accepted = !state.refuse;
+    const time = !accepted || state.abort ? 0.1 : run(goal);
+    const done = new Promise((end) => setTimeout(end, time * 1000));
+    goals.set(goal.goal_id.uuid.join(), done);
+    return { accepted, stamp: stamp(seconds()) };
+  });
+  service("get_result", "GetResult", async ({ goal_id: id }) => {
+    await goals.get(id.uuid.join());
+    return { status: state.abort ? 6 : 4, ...result() };
+  });
+}
+
+const action = ros2 ? ros2Action : ros1Action;
+if (!options.hidden) {
+  const type = "control_msgs/FollowJointTrajectory";
+  action("/arm_controller/follow_joint_trajectory", type, trajectory, followed);
+  action("/head_controller/follow_joint_trajectory", type, trajectory, followed);
+  action("/gripper_controller/led_action", "robot_calibration_msgs/GripperLedCommand", leds, () => ({}));
+}
+
+// ROS loses what is published before subscribers have heard of the publisher.
+const advertised = new Map();
+server.on("advertise", (channel) => advertised.set(channel.topic, Date.now()));
+server.on("message", ({ channel, data }) => {
+  if (Date.now() - advertised.get(channel.topic) > 100) actions.get(channel.topic)?.(data);
+});
+server.on("serviceCallRequest", async ({ serviceId, callId, encoding, data }, connection) => {
+  try {
+    const bytes = await actions.get(serviceId)(data);
+    server.sendServiceCallResponse({ serviceId, callId, encoding, data: bytes }, connection);
+  } catch (error) {
+    const failure = { op: "serviceCallFailure", serviceId, callId, message: String(error) };
+    server.sendServiceCallFailure(failure, connection);
+  }
+});
+server.on("error", () => {});
+
+const faults = {
+  text: ({ text }) => sockets.forEach((s) => s.send(text)),
+  binary: ({ bytes }) => sockets.forEach((s) => s.send(Buffer.from(bytes))),
+  // The header of a frame of 2 GB, without the frame.
+  big: () => sockets.forEach((s) => s._socket.write(Buffer.from([0x82, 127, 0, 0, 0, 0, 128, 0, 0, 0]))),
+  raw: ({ bytes }) => sockets.forEach((s) => s._socket.write(Buffer.from(bytes))),
+  close: () => sockets.forEach((s) => s.close()),
+  cut: () => sockets.forEach((s) => s._socket.destroy()),
+  die: () => process.exit(1),
+  again: () => joints.again(),
+  status: ({ message }) => server.sendStatus({ level: 2, message }),
+  set: ({ values }) => Object.assign(state, values),
+  silent: ({ topics }) => (state.silent = new Set(topics)),
+  half: ({ topics }) => (state.half = new Set(topics)),
+};
+createInterface({ input: process.stdin })
+  .on("line", (line) => {
+    const fault = JSON.parse(line);
+    faults[fault.fault](fault);
+    console.log("{}");
+  })
+  .on("close", () => process.exit(0));
+
+const sockets_server = new WebSocketServer({
+  host: "127.0.0.1", port: 0,
+  handleProtocols: (offered) =>
+    options.protocol === undefined ? server.handleProtocols(offered)
+      : offered.has(options.protocol) ? options.protocol : false,
+});
+sockets_server.on("connection", (socket) => {
+  sockets.add(socket);
+  socket.on("close", () => sockets.delete(socket));
+  socket.on("error", () => {});
+  if (options.mute) return;
+  server.handleConnection(socket, "client");
+});
+sockets_server.on("listening", () => console.log(JSON.stringify(sockets_server.address())));

@@ -1,0 +1,87 @@
+// A Foxglove bridge on loopback with a simulated robot behind it: the reference server of the protocol,
+// from npm (tests/io/bridge/server).  It is started and ended with this object.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "kinecal/io/bridge/child_process.hpp"
+#include "support/data.hpp"
+
+namespace kinecal::test {
+
+/// Empty if the server can be started; else why not.  The first call installs its packages.
+inline std::string why_no_bridge_server() {
+  static const std::string why = [] {
+    const std::string sources = std::string(KINECAL_SOURCE_DIR) + "/tests/io/bridge/server";
+    const std::string folder = KINECAL_BRIDGE_FOLDER;
+    if (std::system("command -v npm node flock > /dev/null") != 0) {
+      return std::string("node and npm are not installed");
+    }
+    const std::string install = "mkdir -p " + folder + " && cd " + folder + " && cp " + sources +
+                                "/package*.json . && (test -d node_modules/ws && "
+                                "cmp -s package-lock.json installed.json || npm ci --no-audit "
+                                "--no-fund && cp package-lock.json installed.json) && cp -u " +
+                                sources + "/*.mjs .";
+    const std::string call = "mkdir -p " + folder + " && flock " + folder + ".lock sh -c '" +
+                             install + "' > " + folder + ".log 2>&1";
+    return std::system(call.c_str()) == 0
+               ? std::string()
+               : "npm cannot install the server's packages: see " + folder + ".log";
+  }();
+  return why;
+}
+
+class BridgeServer {
+ public:
+  /// @param options  JSON for server.mjs, such as {"encoding": "cdr"}
+  explicit BridgeServer(const std::string& options = "{}")
+      : process_("cd " + std::string(KINECAL_BRIDGE_FOLDER) + " && exec node server.mjs '" +
+                 options + "'") {
+    const std::string line = process_.read_line(kStart).value_or("nothing");
+    const std::size_t port = line.find("\"port\":");
+    if (port == std::string::npos) throw std::runtime_error("the server printed: " + line);
+    url_ = "ws://127.0.0.1:" + std::to_string(std::stoi(line.substr(port + 7)));
+  }
+
+  [[nodiscard]] const std::string& url() const { return url_; }
+
+  /// Makes a fault of server.mjs, such as {"fault": "close"}; returns when it was made.
+  void make(const std::string& fault) {
+    process_.write_line(fault, kStart);
+    if (!process_.read_line(kStart)) throw std::runtime_error("no answer to " + fault);
+  }
+
+  /// Ends the server without a goodbye.
+  void kill() {
+    process_.write_line(R"({"fault": "die"})", kStart);
+    try {
+      (void)process_.read_line(kStart);
+    } catch (const std::runtime_error&) {
+      return;  // it has ended
+    }
+  }
+
+ private:
+  static constexpr std::chrono::seconds kStart{20};
+
+  detail::ChildProcess process_;
+  std::string url_;
+};
+
+}  // namespace kinecal::test
+
+/// Skips the test and says why if the server cannot be started; fails with KINECAL_REQUIRE_DATA=1.
+#define KINECAL_NEEDS_BRIDGE_SERVER()                      \
+  if (!kinecal::test::why_no_bridge_server().empty()) {    \
+    if (kinecal::test::data_required()) {                  \
+      FAIL() << kinecal::test::why_no_bridge_server();     \
+    }                                                      \
+    GTEST_SKIP() << kinecal::test::why_no_bridge_server(); \
+  }
