@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "kinecal/io/urdf/read_urdf.hpp"
@@ -58,6 +59,29 @@ TEST(SimulationPlan, ACameraOnTheHandLooksAtABoardThatStands) {
   EXPECT_EQ(plan.setup.truth["checkerboard_z"].value, plan.target.pose.translation.z());
   EXPECT_TRUE(plan.setup.frames.contains("camera_color_joint"));
   EXPECT_EQ(plan.target_frame, "checkerboard");
+}
+
+TEST(SimulationPlan, EachLedOfFetchLightsWhereItIs) {
+  SimulationPlan plan = plan_of(shipped("robots/fetch/fetch.urdf"), "leds");
+  plan.poses = 3;
+  SimulatedRobot robot(plan.setup);
+  int seen = 0;
+  for (const JointTarget& pose : poses_of(plan)) {
+    robot.move(pose);
+    robot.wait_for_rest();
+    const GrayImage dark = robot.next_view(robot.light(0)).image;
+    for (std::size_t i = 0; i < plan.target.leds.size(); ++i) {
+      const GrayImage lit = robot.next_view(robot.light(static_cast<int>(i) + 1)).image;
+      const Eigen::Vector2d pixel =
+          robot.lens().project(robot.in_camera(plan.target.link) * plan.target.leds[i]);
+      const int u = static_cast<int>(std::lround(pixel.x()));
+      const int v = static_cast<int>(std::lround(pixel.y()));
+      if (!lit.contains(u, v)) continue;  // the true robot looks elsewhere than its URDF
+      EXPECT_GT(lit(u, v) - dark(u, v), 80) << "LED " << i + 1;
+      ++seen;
+    }
+  }
+  EXPECT_GE(seen, 9);
 }
 
 TEST(SimulationPlan, AScenesWordsAreTaken) {
