@@ -8,4 +8,5 @@
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/study/simulated_camera.hpp"
 #include "kinecal/study/simulated_robot.hpp"
+#include "kinecal/study/tag_grid.hpp"
 #include "kinecal/study/true_robot.hpp"

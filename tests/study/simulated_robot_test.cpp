@@ -39,9 +39,8 @@ SimulatedSetup turntable_setup() {
 /// Moves and waits for the end.
 MeasuredJoints moved(SimulatedRobot& robot, const JointTarget& target) {
   robot.move(target);
-  MeasuredJoints joints;
-  for (int i = 0; i < 100; ++i) joints = robot.next_joints(robot.now() + milliseconds(50));
-  return joints;
+  robot.wait_for_rest();
+  return robot.next_joints(robot.now());
 }
 
 TEST(SimulatedRobot, JointsArriveWithinTheirSpeed) {

@@ -11,7 +11,7 @@
 namespace kinecal {
 namespace detail {
 
-inline std::string pixels_text(int width, int height) {
+inline std::string checked_size_text(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
 
@@ -24,7 +24,7 @@ std::string pixels_problem(const Image<P>& image, const char* name) {
                                                 static_cast<std::size_t>(image.height);
   if (whole) return "";
   return std::string("the ") + name + " has " + std::to_string(image.pixels.size()) +
-         " values, which are not " + pixels_text(image.width, image.height);
+         " values, which are not " + checked_size_text(image.width, image.height);
 }
 
 /// How far points of a cloud are from their pixels where camera_info sees them; some points only.
@@ -67,22 +67,22 @@ KINECAL_INLINE std::string camera_problem(const View& view) {
     return camera.width > 0 && camera.height > 0 && width > 0 && height > 1 &&
            (width != camera.width || height != camera.height);
   };
-  const std::string of = "camera_info is of " + detail::pixels_text(camera.width, camera.height);
+  const std::string of = "camera_info is of " + detail::checked_size_text(camera.width, camera.height);
   if (differs(view.image.width, view.image.height)) {
     return of + " pixels, the image has " +
-           detail::pixels_text(view.image.width, view.image.height);
+           detail::checked_size_text(view.image.width, view.image.height);
   }
   if (differs(view.points.width, view.points.height)) {
     return of + " pixels, the cloud has " +
-           detail::pixels_text(view.points.width, view.points.height) + " points";
+           detail::checked_size_text(view.points.width, view.points.height) + " points";
   }
   return "";
 }
 
 KINECAL_INLINE std::string registration_problem(const View& view) {
   if (view.points.width != view.image.width || view.points.height != view.image.height) {
-    return "the cloud has " + detail::pixels_text(view.points.width, view.points.height) +
-           " points, the image " + detail::pixels_text(view.image.width, view.image.height) +
+    return "the cloud has " + detail::checked_size_text(view.points.width, view.points.height) +
+           " points, the image " + detail::checked_size_text(view.image.width, view.image.height) +
            " pixels; use a cloud that is registered to the image";
   }
   std::vector<double> errors = detail::projection_errors(view);

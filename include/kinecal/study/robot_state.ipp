@@ -101,6 +101,13 @@ class Joints {
     return positions;
   }
 
+  /// When nothing moves any more, seconds.
+  [[nodiscard]] double rest() const {
+    double latest = 0.0;
+    for (const auto& [name, motion] : motions_) latest = std::max(latest, motion.rest());
+    return start_ + latest;
+  }
+
   /// When the last motion began, seconds.
   [[nodiscard]] double start() const { return start_; }
 

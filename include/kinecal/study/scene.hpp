@@ -31,7 +31,7 @@ struct Patch {
 /// Light from everywhere, and from one lamp.
 struct Light {
   double ambient = 0.4;                     ///< on every surface
-  double lamp = 0.6;                        ///< on a surface that faces the lamp at `reach`
+  double lamp = 1.2;                        ///< on a surface that faces the lamp, near to it
   Vector3<double> position{0.5, 0.8, 2.5};  ///< of the lamp in the base, metres
   double reach = 2.0;                       ///< where its light has half of its strength, metres
 };

@@ -94,6 +94,9 @@ class SimulatedRobot {
   /// Lights the LEDs of a code.
   Stamp light(int code);
 
+  /// Lets time pass until nothing moves any more.
+  void wait_for_rest();
+
   /// The robot's time.
   [[nodiscard]] Stamp now() const;
 

@@ -1,5 +1,6 @@
 // Definitions of simulated_robot.hpp.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -130,6 +131,10 @@ KINECAL_INLINE Stamp SimulatedRobot::light(int code) {
   s.now += s.setup.timing.lamp_latency;
   s.lamp.emplace_back(s.now, code == s.setup.faults.dark_led ? 0 : code);
   return detail::stamp_of(s.now - s.setup.timing.lamp_answers_early);
+}
+
+KINECAL_INLINE void SimulatedRobot::wait_for_rest() {
+  state_->now = std::max(state_->now, state_->joints.rest());
 }
 
 KINECAL_INLINE Stamp SimulatedRobot::now() const {
