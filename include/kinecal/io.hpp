@@ -17,6 +17,7 @@
 #include "kinecal/io/bridge/bridge_frames.hpp"
 #include "kinecal/io/bridge/child_process.hpp"
 #include "kinecal/io/bridge/json_value.hpp"
+#include "kinecal/io/bridge/pipe_robot.hpp"
 #include "kinecal/io/bridge/ros_action.hpp"
 #include "kinecal/io/bridge/ros_robot.hpp"
 #include "kinecal/io/bridge/socket/web_socket.hpp"
