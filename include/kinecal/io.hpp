@@ -44,6 +44,7 @@
 #include "kinecal/io/doubts/sensor_points.hpp"
 #include "kinecal/io/doubts/urdf_units.hpp"
 #include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/io/images/read_image.hpp"
 #include "kinecal/io/init/init_answers.hpp"
 #include "kinecal/io/init/initial_config.hpp"
 #include "kinecal/io/init/robot_parts.hpp"
