@@ -1,77 +1,22 @@
-// The true robot and the true camera of a simulation, which differ from URDF and driver.
+// The true robot (study/true_robot.hpp) and the true camera of a simulation, which differ from URDF
+// and driver.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
-#include <map>
-#include <set>
-#include <span>
 #include <string>
 #include <utility>
 
-#include "kinecal/kinematics/forward_kinematics.hpp"
-#include "kinecal/parameters/chain_parameters.hpp"
+#include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/study/true_robot.hpp"
 #include "simulation.hpp"
 
 namespace kinecal::examples {
 
-/// Measured joint positions by name: radians or metres.
-using Positions = std::map<std::string, double>;
-
-class TrueRobot {
- public:
-  /// @param truth   errors of the URDF, by parameter name
-  /// @param frames  names of corrected frames; those that are not joints are virtual frames
-  TrueRobot(const Robot& robot, const ParameterTable& truth, std::set<std::string> frames)
-      : robot_(robot), truth_(truth), frames_(std::move(frames)) {}
-
-  [[nodiscard]] const Robot& robot() const { return robot_; }
-  [[nodiscard]] const ParameterTable& truth() const { return truth_; }
-
-  /// True pose of a link when the joints report these positions.
-  /// @param beyond  a virtual frame beyond the link: gives its pose instead
-  [[nodiscard]] Pose<double> pose(const std::string& base, const std::string& tip,
-                                  const Positions& positions,
-                                  const std::string& beyond = "") const {
-    auto [known, is_new] = ways_.try_emplace({base, tip + "/" + beyond});
-    if (is_new) known->second = way(base, tip, beyond);
-    const auto& [chain, corrections] = known->second;
-    const auto position_of = [&](const std::string& joint) { return positions.at(joint); };
-    return forward_kinematics(chain, position_of, corrections);
-  }
-
- private:
-  using Way = std::pair<RuntimeChain, Corrections<double>>;
-
-  [[nodiscard]] Way way(const std::string& base, const std::string& tip,
-                        const std::string& beyond) const {
-    RuntimeChain chain = make_chain(robot_, base, tip, frames_);
-    if (!beyond.empty()) chain = with_virtual_frame(chain, beyond);
-    const Eigen::VectorXd values = truth_.values();
-    const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-    Corrections<double> corrections = corrections_for(chain_parameters(chain, truth_), all);
-    return {std::move(chain), std::move(corrections)};
-  }
-
-  const Robot& robot_;
-  const ParameterTable& truth_;
-  std::set<std::string> frames_;
-  mutable std::map<std::pair<std::string, std::string>, Way> ways_;  ///< cache
-};
-
-/// True pose of a link when the joints report the positions of the sample.
-/// @param truth  errors of the robot's drawing: offsets or frames of any joints
-[[nodiscard]] inline Pose<double> true_pose(const Robot& robot, const ParameterTable& truth,
-                                            const std::string& base, const std::string& tip,
-                                            const Sample& sample) {
-  std::set<std::string> joints;
-  for (const Joint& joint : robot.joints()) joints.insert(joint.name);
-  Positions positions;
-  for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
-    positions[sample.joint_names[i]] = sample.joint_positions[i];
-  }
-  return TrueRobot(robot, truth, joints).pose(base, tip, positions);
-}
+using kinecal::Positions;
+using kinecal::sample_at;
+using kinecal::true_pose;
+using kinecal::TrueRobot;
 
 /// A depth camera whose driver uses example_camera_info().
 class TrueCamera {
@@ -98,15 +43,5 @@ class TrueCamera {
   std::string frame_;
   std::array<double, 6> errors_{};
 };
-
-/// A sample of these positions, without observations.
-[[nodiscard]] inline Sample sample_at(const Positions& positions) {
-  Sample sample;
-  for (const auto& [joint, position] : positions) {
-    sample.joint_names.push_back(joint);
-    sample.joint_positions.push_back(position);
-  }
-  return sample;
-}
 
 }  // namespace kinecal::examples

@@ -108,6 +108,18 @@ struct CompareOptions {
 /// Lists what differs between two results by more than its uncertainty.
 int compare(const CompareOptions& options);
 
+struct SimulateOptions {
+  std::string urdf, output;
+  std::string scene;   ///< file; empty: defaults
+  std::string target;  ///< empty: the scene's
+  int poses = 0;       ///< zero: the scene's
+  int seed = 0;        ///< zero: the scene's
+  bool force = false;  ///< replace what is in the folder
+};
+
+/// Photographs a simulated robot that differs from its URDF by known errors.
+int simulate(const SimulateOptions& options);
+
 struct InstallOptions {
   std::string result;  ///< folder that calibrate wrote
   std::string folder;  ///< with the launch file

@@ -155,6 +155,27 @@ void add_init(CLI::App& command, InitOptions& options) {
   command.add_flag("--force", options.force, "replace the file that is there");
 }
 
+void add_simulate(CLI::App& command, SimulateOptions& options) {
+  command.add_option("urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+  command.add_option("-o,--output", options.output, "folder for images and tables")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option(
+          "--scene", options.scene,
+          "camera, target, errors, motion and faults in YAML; default: what the URDF allows")
+      ->type_name("FILE");
+  command.add_option("--target", options.target, "checkerboard (default), apriltag or ground")
+      ->check(CLI::IsMember({"checkerboard", "apriltag", "ground"}));
+  command.add_option("--poses", options.poses, "number of images, default: 30")
+      ->check(CLI::Range(1, 9999))
+      ->type_name("N");
+  command.add_option("--seed", options.seed, "another number: another robot, default: 1")
+      ->check(CLI::Range(1, 1000000000))
+      ->type_name("N");
+  command.add_flag("--force", options.force, "replace the images that are in the folder");
+}
+
 void add_convert(CLI::App& command, ConvertOptions& options) {
   command
       .add_option("input", options.input,
@@ -401,6 +422,9 @@ void add_commands(Commands& commands) {
   commands.add<std::vector<std::string>>(
       "inspect", "show what is in recordings: topics, sensors, features, joints, gaps", add_inspect,
       inspect);
+  commands.add<SimulateOptions>(
+      "simulate", "photograph a simulated robot that differs from its URDF by known errors",
+      add_simulate, simulate);
   commands.add<ConvertOptions>("convert", "write samples or poses in another format", add_convert,
                                convert);
   commands.add<CameraOptions>("camera", "show a camera file, and write it as camera_info",

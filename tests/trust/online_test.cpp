@@ -79,6 +79,26 @@ TEST(Online, LeavesOutASampleThatDoesNotFitAndGoesOn) {
   EXPECT_EQ(online.values(), clean.values());
 }
 
+TEST(Online, ForgetsABadSampleAmongTheFirstOnes) {
+  NoisyScene scene(30);
+  Sample ruined = scene.samples[2];
+  for (Feature& feature : ruined.observations[0].features) feature.point.x() += 0.02;
+  OnlineCalibration online = follow(scene), clean = follow(scene);
+  std::vector<int> dropped;
+  OnlineState state;
+  for (std::size_t i = 0; i < 30; ++i) {
+    state = online.add(i == 2 ? ruined : scene.samples[i]);
+    dropped.insert(dropped.end(), state.dropped.begin(), state.dropped.end());
+    EXPECT_TRUE(state.fits) << i;
+    if (i != 2) (void)clean.add(scene.samples[i]);
+  }
+  EXPECT_EQ(dropped, std::vector{3});
+  EXPECT_EQ(state.samples, 29);
+  for (std::size_t p = 0; p < clean.values().size(); ++p) {
+    EXPECT_NEAR(online.values()[p], clean.values()[p], 1e-5);
+  }
+}
+
 TEST(Online, SaysWhatIsWrongWithASampleAndForgetsIt) {
   NoisyScene scene(10);
   OnlineCalibration online = follow(scene);

@@ -89,6 +89,7 @@ KINECAL_INLINE std::vector<Sample> samples_of(const MeasuredJoints& joints,
       Sample sample;
       sample.joint_names = joints.names;
       sample.joint_positions = joints.positions;
+      sample.stamp = joints.stamp;
       to = samples.insert(samples.end(), std::move(sample));
     }
     to->observations.insert(to->observations.end(), observations.begin(), observations.end());

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <map>
 #include <optional>
 #include <string>
@@ -58,6 +59,8 @@ struct Sample {
   /// Numbers that come with the sample, by name: temperature, load.  Error blocks name those that
   /// they take and their units: see errors/error_block.hpp.
   std::map<std::string, double> conditions = {};
+  /// When the joints were measured, since the epoch of the robot's clock; nullopt if nobody recorded it.
+  std::optional<std::chrono::nanoseconds> stamp = {};
 
   /// Measured position of a joint, radians or metres; nullopt if it was not measured.
   [[nodiscard]] std::optional<double> position(const std::string& joint) const {

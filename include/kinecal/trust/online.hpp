@@ -10,7 +10,8 @@
 //   X = r^T (s^2 I + A C A^T)^-1 r / rows      is F with rows and n - rank degrees of freedom,
 //
 // C the covariance and s the noise so far.  A sample that chance makes as bad once in a million
-// times is left out.
+// times is left out.  So are earlier samples that turn out not to fit, by the noise that the median
+// sample shows: a bad one among the first few cannot be told from the others.
 // Source: Bar-Shalom et al., Estimation with Applications to Tracking and Navigation, 5.4 (innovations).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -30,8 +31,10 @@ namespace kinecal {
 
 /// What is known after a sample.
 struct OnlineState {
-  int samples = 0;        ///< in the solution
-  bool fits = true;       ///< false: the last sample does not fit the others and was left out
+  int samples = 0;   ///< in the solution
+  bool fits = true;  ///< false: the last sample does not fit the others and was left out
+  std::vector<int> dropped =
+      {};                 ///< earlier ones that do not fit any more, by number of add(), from 1
   double times = 0.0;     ///< root of X of the last sample: 1 is usual; 0 if it was not tested
   bool known = false;     ///< the samples determine the pose, with some to spare
   double position = 0.0;  ///< standard deviation of the pose, metres: see PoseUncertainty

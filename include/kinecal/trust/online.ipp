@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "kinecal/trust/online.hpp"
+#include "kinecal/trust/online_misfits.ipp"
 #include "kinecal/trust/online_moves.ipp"
 
 namespace kinecal {
@@ -26,11 +27,7 @@ KINECAL_INLINE OnlineCalibration& OnlineCalibration::operator=(OnlineCalibration
 
 KINECAL_INLINE OnlineState OnlineCalibration::add(const Sample& sample) {
   OnlineState state;
-  state.fits = inside_->add_without_bad(sample, state);
-  if (!state.fits) {  // a problem cannot forget a sample
-    inside_->problem = inside_->make();
-    for (const Sample& kept : inside_->samples) inside_->problem->add_sample(kept);
-  }
+  state.fits = inside_->add_if_it_fits(sample, state);
   state.samples = static_cast<int>(inside_->samples.size());
   state.noise = std::sqrt(inside_->noise2);
   if (inside_->hessian.size() > 0) inside_->set_pose(state);

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kinecal/solve/spectrum.hpp"
-#include "kinecal/trust/f_distribution.hpp"
+#include "kinecal/solve/determined_spectrum.ipp"
 #include "kinecal/trust/online.hpp"
 #include "kinecal/trust/tip_derivative.ipp"
 
@@ -20,10 +19,12 @@ struct OnlineCalibration::Inside {
   std::vector<double> values;
   FrameOnRobot frame, in;
   std::unique_ptr<AnyProblem> problem = make();  ///< with the samples
-  std::vector<Sample> samples = {};
-  Eigen::MatrixXd hessian = {};  ///< (free x free) at the values
-  double noise2 = 0.0;           ///< s^2
-  int freedom = 0;               ///< residuals that are left for the noise
+  std::vector<Sample> samples = {};              ///< of the problem
+  std::vector<int> numbers = {};                 ///< of each of them: of the call of add(), from 1
+  int added = 0;                                 ///< calls of add()
+  Eigen::MatrixXd hessian = {};                  ///< (free x free) at the values
+  double noise2 = 0.0;                           ///< s^2
+  int freedom = 0;                               ///< residuals that are left for the noise
 
   void step_to_minimum(AnyEvaluator& evaluator);
   void estimate_noise(double cost);
@@ -32,11 +33,15 @@ struct OnlineCalibration::Inside {
   [[nodiscard]] detail::TipDerivative derivative(const FrameOnRobot& of) const;
   void set_pose(OnlineState& state) const { set_pose(state, hessian); }
   void set_pose(OnlineState& state, const Eigen::MatrixXd& information) const;
-  [[nodiscard]] bool add_without_bad(const Sample& sample, OnlineState& state);
+  [[nodiscard]] bool add_if_it_fits(const Sample& sample, OnlineState& state);
+  [[nodiscard]] std::optional<std::size_t> misfit(AnyEvaluator& evaluator) const;
+  void leave_out(std::size_t sample);
   [[nodiscard]] std::vector<std::pair<NextMove, Sample>> candidates(double step) const;
 };
 
 namespace detail {
+
+inline constexpr double kOnceIn = 1e-6;  ///< how often chance may make a sample look bad
 
 /// Rows and derivatives of one sample, weighted.
 struct SampleRows {
@@ -94,8 +99,10 @@ inline void OnlineCalibration::Inside::step_to_minimum(AnyEvaluator& evaluator) 
 inline void OnlineCalibration::Inside::estimate_noise(double cost) {
   const detail::Spectrum spectrum(hessian);
   const auto rank = static_cast<int>(spectrum.singular.size() - spectrum.null);
-  freedom = problem->num_residuals() - rank;
-  noise2 = freedom > 0 ? 2.0 * cost / freedom : 0.0;
+  const int of_priors = static_cast<int>(problem->priors().size()) * Prior::kRows;
+  freedom = problem->num_residuals() - of_priors - rank;
+  const double of_features = cost - detail::prior_equations(*problem, free, values).cost;
+  noise2 = freedom > 0 ? std::max(0.0, 2.0 * of_features / freedom) : 0.0;
 }
 
 /// X of the last sample; zero if it has no residuals.
@@ -132,13 +139,15 @@ inline detail::TipDerivative OnlineCalibration::Inside::derivative(const FrameOn
 
 inline void OnlineCalibration::Inside::set_pose(OnlineState& state,
                                                 const Eigen::MatrixXd& information) const {
-  constexpr int kToSpare = 10;  // residuals beyond the rank, for an estimate of the noise
   const detail::Spectrum spectrum(information);
   const Eigen::MatrixXd covariance = noise2 * spectrum.pseudo_inverse();
   const Eigen::MatrixXd null =
       spectrum.scale.cwiseInverse().asDiagonal() * spectrum.vectors.leftCols(spectrum.null);
   detail::TipDerivative of_frame = derivative(frame), of_in = derivative(in);
-  state.known = freedom >= kToSpare;
+  // With less to spare, neither the noise nor the poses say much.
+  constexpr double kToSpare = 2.0;  // residuals for each direction that they determine
+  const auto rank = static_cast<double>(spectrum.singular.size() - spectrum.null);
+  state.known = freedom >= kToSpare * rank;
   double positions = 0.0, rotations = 0.0;
   const std::vector<const Sample*> poses = spread();
   for (const Sample* sample : poses) {
@@ -153,22 +162,6 @@ inline void OnlineCalibration::Inside::set_pose(OnlineState& state,
   const double count = std::max(1.0, static_cast<double>(poses.size()));
   state.position = std::sqrt(std::max(0.0, positions / count));
   state.rotation = std::sqrt(std::max(0.0, rotations / count));
-}
-
-inline bool OnlineCalibration::Inside::add_without_bad(const Sample& sample, OnlineState& state) {
-  problem->add_sample(sample);
-  const auto evaluator = problem->evaluator(free);
-  constexpr int kEnough = 20;  // residuals for the noise: then samples are tested
-  constexpr double kOnceIn = 1e-6;
-  if (freedom >= kEnough && noise2 > 0.0) {
-    int rows = 0;
-    const double x = innovation(*evaluator, rows);
-    state.times = std::sqrt(std::max(0.0, x));
-    if (!(rows == 0 || f_tail(std::max(0.0, x), rows, freedom) > kOnceIn)) return false;
-  }
-  samples.push_back(sample);
-  step_to_minimum(*evaluator);
-  return true;
 }
 
 }  // namespace kinecal

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 
 #include "kinecal/io/diagnostics.hpp"
@@ -19,6 +20,7 @@ std::vector<Sample> two_samples() {
   sample.observations = {{"camera", {{"optical", {0.1, 0.2, 0.3}}}}, {"arm", {{"led", {1, 2, 3}}}}};
   std::vector<Sample> samples(2, sample);
   samples[1].joint_positions[0] = 0.1;
+  samples[1].stamp = std::chrono::nanoseconds(1'700'000'000'123'456'789);
   return samples;
 }
 
@@ -33,6 +35,8 @@ TEST(WriteRecording, WritesWhatIsReadAgainInEachFormat) {
     EXPECT_THAT(diagnostics.errors, ::testing::IsEmpty()) << name;
     ASSERT_EQ(read.samples.size(), 2u) << name;
     EXPECT_EQ(read.samples[1].joint_positions, two_samples()[1].joint_positions);
+    EXPECT_EQ(read.samples[0].stamp, std::nullopt);
+    EXPECT_EQ(read.samples[1].stamp, two_samples()[1].stamp);
     EXPECT_EQ(read.samples[0].observation("camera")->features[0].point,
               Vector3<double>(0.1, 0.2, 0.3));
     EXPECT_EQ(read.urdf, output_encoding(path) ? "<robot name='r'/>" : "");

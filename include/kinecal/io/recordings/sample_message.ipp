@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,12 +52,17 @@ namespace kinecal::detail {
   if (!sample.conditions.empty()) {
     throw OutputError("a message of samples cannot hold conditions; write YAML");
   }
-  return fields(
-      "joint_states",
-      fields("name", texts(sample.joint_names), "position", numbers(sample.joint_positions)),
-      "observations", list_of(sample.observations, [](const Observation& seen) {
-        return observation_message(seen);
-      }));
+  MessageFields joints =
+      fields("name", texts(sample.joint_names), "position", numbers(sample.joint_positions));
+  if (sample.stamp && sample.stamp->count() >= 0) {
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    joints.fields.emplace_back(
+        "header", fields("stamp", fields("secs", sample.stamp->count() / kSecond, "nsecs",
+                                         sample.stamp->count() % kSecond)));
+  }
+  return fields("joint_states", std::move(joints), "observations",
+                list_of(sample.observations,
+                        [](const Observation& seen) { return observation_message(seen); }));
 }
 
 }  // namespace kinecal::detail

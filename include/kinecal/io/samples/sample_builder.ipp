@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -87,6 +88,8 @@ class SampleBuilder {
       feature().point.z() = value;
     } else if (node >= SampleNode::qx && node <= SampleNode::qw) {
       quaternion_(static_cast<int>(node) - static_cast<int>(SampleNode::qx)) = value;
+    } else if (node == SampleNode::seconds || node == SampleNode::nanoseconds) {
+      add_to_stamp(node == SampleNode::seconds ? 1e9 : 1.0, value);
     } else if (node == SampleNode::condition) {
       sample_.conditions[condition_] = value;
     } else if (node == SampleNode::sigma) {
@@ -110,6 +113,15 @@ class SampleBuilder {
     } else {
       camera_.word(node, line, text);
     }
+  }
+
+  /// Zero is what is sent where nobody knows the time.
+  void add_to_stamp(double unit, double value) {
+    constexpr double kMost = 9e18;  // nanoseconds
+    const double nanoseconds = unit * value;
+    if (nanoseconds == 0.0 || !(std::abs(nanoseconds) < kMost)) return;
+    sample_.stamp = sample_.stamp.value_or(std::chrono::nanoseconds(0)) +
+                    std::chrono::nanoseconds(std::llround(value) * std::llround(unit));
   }
 
   void check_joints(int line) {

@@ -1,6 +1,7 @@
 // The keys of a recorded sample as a tree: which key stands where, and what may be under it.
 //
-//   joint_states: {name: [...], position: [...]}
+//   joint_states: {header: {stamp: {secs: ..., nsecs: ...}},                (if it is known)
+//                  name: [...], position: [...]}
 //   conditions: {temperature: ..., ...}                                   (if there are any)
 //   observations:
 //   - sensor_name: camera
@@ -27,6 +28,10 @@ enum class SampleNode : std::uint8_t {
   document,
   sample,
   joint_states,
+  joint_header,
+  joint_stamp,
+  seconds,
+  nanoseconds,
   joint_names,
   joint_name,
   joint_positions,
@@ -88,6 +93,10 @@ struct SampleNodeRule {
       {document, unknown, list, "document"},
       {sample, document, map, ""},
       {joint_states, sample, map, "joint_states", "", true},
+      {joint_header, joint_states, map, "header"},
+      {joint_stamp, joint_header, map, "stamp"},
+      {seconds, joint_stamp, number, "secs", "sec"},
+      {nanoseconds, joint_stamp, number, "nsecs", "nanosec"},
       {joint_names, joint_states, list, "name", "", true},
       {joint_name, joint_names, word, ""},
       {joint_positions, joint_states, list, "position", "", true},

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -24,7 +25,13 @@ namespace detail {
     if (!names.empty()) names += ", ";
     names += name_to_yaml(name);
   }
-  return fmt::format("joint_states: {{name: [{}], position: {}}}\n", names,
+  std::string header;
+  if (sample.stamp) {
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    header = fmt::format("header: {{stamp: {{secs: {}, nsecs: {}}}}}, ",
+                         sample.stamp->count() / kSecond, sample.stamp->count() % kSecond);
+  }
+  return fmt::format("joint_states: {{{}name: [{}], position: {}}}\n", header, names,
                      numbers_to_yaml(sample.joint_positions));
 }
 

@@ -1,0 +1,79 @@
+// kinecal simulate: photographs of a simulated robot, a table of its joint positions, and the truth.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/io/results/file_set.hpp"
+#include "kinecal/io/simulation/photographs.hpp"
+#include "kinecal/io/text_file.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "progress.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// @throws OutputError  if results are in the folder and may not be replaced
+void check_folder(const std::filesystem::path& folder, bool force) {
+  if (force || !std::filesystem::exists(folder / "truth.yaml")) return;
+  throw OutputError(folder.string() +
+                    ": has a simulation already; use --force to replace it, or choose another "
+                    "folder");
+}
+
+/// Removes images of a simulation that was there before.
+void remove_images(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) return;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    const std::string name = file.path().filename().string();
+    const bool is_ours =
+        name.size() == 8 && name.ends_with(".png") && name.find_first_not_of("0123456789") == 4;
+    if (is_ours) std::filesystem::remove(file.path());
+  }
+}
+
+void write(const std::filesystem::path& path, PhotographFiles files) {
+  OutputFolder folder(path);
+  for (const auto& [name, images] :
+       {std::pair("images", &files.images), std::pair("depth", &files.depth)}) {
+    remove_images(path / name);
+    if (images->empty()) continue;
+    OutputFolder(path / name).write(*images);
+  }
+  folder.write(files.others);
+}
+
+}  // namespace
+
+int simulate(const SimulateOptions& options) {
+  const std::filesystem::path folder = options.output;
+  check_folder(folder, options.force);
+  const Robot robot = read_urdf(options.urdf);
+  Diagnostics diagnostics;
+  SimulationPlan plan = read_simulation(robot, options.scene, options.target,
+                                        static_cast<std::uint64_t>(options.seed), diagnostics);
+  print(diagnostics);
+  if (!diagnostics.errors.empty()) return kBadInput;
+  if (options.poses > 0) plan.poses = options.poses;
+  const std::vector<JointTarget> poses = poses_of(plan);
+  PhotographFiles files;
+  {
+    ProgressLine line;
+    const ProgressMeter meter = line.meter();
+    files = take_photographs(plan, poses, [&](std::size_t n) {
+      if (meter) meter(static_cast<double>(n) / static_cast<double>(poses.size()), "rendering");
+    });
+  }
+  for (const std::string& skipped : files.skipped) fmt::print(stderr, "warning: {}\n", skipped);
+  files.others.push_back({"robot.urdf", detail::read_text_file(options.urdf)});
+  const std::size_t images = files.images.size();
+  write(folder, std::move(files));
+  fmt::print("{}: {} images of '{}' on '{}' by '{}'; truth.yaml has {} errors of the URDF\n",
+             folder.string(), images, plan.target.type, plan.target.link, plan.setup.camera.frame,
+             plan.setup.truth.size());
+  return kDone;
+}
+
+}  // namespace kinecal::cli

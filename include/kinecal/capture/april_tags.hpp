@@ -1,0 +1,48 @@
+// What kinecal takes from libapriltag: tags in an image, with their corners between the pixels.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/image.hpp"
+
+namespace kinecal::detail {
+
+/// A tag in an image: corners counter-clockwise from its bottom left.
+struct SeenTag {
+  int id = 0;
+  std::array<Eigen::Vector2d, 4> corners = {};  ///< pixels
+};
+
+/// Why this build cannot find tags; empty if it can.
+[[nodiscard]] std::string april_tag_fault();
+
+/// A detector for one family of tags.
+class TagReader {
+ public:
+  /// @param border      bits of the black border
+  /// @param wrong_bits  of a code that are corrected
+  /// @param decimate    by how much smaller the searched image is
+  /// @throws std::invalid_argument  if the family is unknown, or has a border that cannot be changed
+  TagReader(const std::string& family, int border, int wrong_bits, double decimate);
+
+  /// Tags in an image; none in one that is less than 32 pixels wide or high.
+  [[nodiscard]] std::vector<SeenTag> read(const GrayImage& image) const;
+
+  /// Cells along the side of a tag, border to border.
+  [[nodiscard]] double cells() const;
+
+ private:
+  struct Library;
+  std::unique_ptr<Library, void (*)(Library*)> library_;
+};
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/april_tags.ipp"
+#endif

@@ -1,0 +1,30 @@
+// The 3-D point at a place between the pixels of an organised cloud, holes and noise allowed.
+//
+// On a plane, x/z, y/z and 1/z of a camera's points are linear in the pixel (u, v), whatever its
+// intrinsics.  So each is fitted by a line through the points around the place and read there.
+// Points that do not lie on the plane, such as those behind the edge of a board, are left out: those
+// whose 1/z is further from the fit than four times the median.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "kinecal/capture/image.hpp"
+
+namespace kinecal {
+
+/// The point of a surface at (u, v).
+/// @param points  organised cloud: that of a pixel of the image
+/// @param pixel   (2) u, v
+/// @param reach   points are read from this far around, pixels; at least 1
+/// @returns       (3) metres, in the cloud's frame; nullopt if fewer than half of the points around
+///                are there or all are on one side
+[[nodiscard]] std::optional<Vector3<double>> point_at(const PointCloud& points,
+                                                      const Eigen::Vector2d& pixel, double reach);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/corner_depth.ipp"
+#endif

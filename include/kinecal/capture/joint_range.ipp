@@ -1,0 +1,28 @@
+// Random positions of joints, for robot_body.ipp and view_search.ipp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <numbers>
+#include <random>
+
+#include "kinecal/kinematics/joint.hpp"
+
+namespace kinecal::detail {
+
+/// From 0 to 1, the same everywhere for the same seed.
+[[nodiscard]] inline double random_share(std::mt19937_64& random) {
+  return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+/// A position within limits, or half a turn or half a metre to both sides.
+/// @param share  [0, 1]
+[[nodiscard]] inline double position_in_range(const Joint& joint, double share) {
+  const double most = turns(joint.type) ? std::numbers::pi : 0.5;
+  const bool limited = joint.type != JointType::continuous && joint.limits &&
+                       joint.limits->upper > joint.limits->lower;
+  const double lower = limited ? joint.limits->lower : -most;
+  const double upper = limited ? joint.limits->upper : most;
+  return lower + share * (upper - lower);
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,60 @@
+// The search for LEDs, apart from who switches them and who takes the views.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/led_difference.hpp"
+#include "kinecal/capture/led_finder.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// Finds LEDs in views that were taken dark and lit.  LEDs that are clear are not switched again;
+/// the others are, in turns, until the iterations are used up.
+class LedSearch {
+ public:
+  /// @param finder          is kept by reference
+  /// @param first,second    two views with all LEDs off: what differs between them moves
+  LedSearch(const LedFinder& finder, View first, const View& second);
+
+  /// The LED that is to be lit and darkened next; nullopt if the search is over.
+  [[nodiscard]] std::optional<std::size_t> next() const;
+
+  /// A view with this LED alone lit, and one with all off after it.
+  void pulse(std::size_t led, const View& lit, View dark);
+
+  /// What was found.  Its refusal names each LED that was not, and why.
+  [[nodiscard]] Found found() const;
+
+ private:
+  struct Tracked {
+    LedDifference difference;
+    std::optional<PixelCircle> where;  // in the image, by the robot's model
+    LedSpot spot;
+    std::string hopeless;  // why it cannot be seen
+  };
+
+  void expect(std::size_t led);
+  [[nodiscard]] std::string view_problem(const View& view) const;
+  [[nodiscard]] std::string motion_at(const LedSpot& spot) const;
+  [[nodiscard]] std::string place(std::size_t led, Vector3<double>& p_camera) const;
+  [[nodiscard]] std::string weak(std::size_t led) const;
+
+  const LedFinder& finder_;
+  View dark_;
+  std::vector<Tracked> leds_;
+  ImageMotion motion_;
+  std::string refusal_;  // of all
+  std::optional<Pose<double>> frame_T_camera_;
+  int switches_ = 0;
+};
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/led_search.ipp"
+#endif

@@ -1,0 +1,35 @@
+// A connected light in an image of brightness: centroid, size and shape.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/capture/image.hpp"
+#include "kinecal/capture/image_motion.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// A pixel.
+struct LightPixel {
+  int u = 0, v = 0;  ///< column and row
+};
+
+/// A connected light.  Each pixel counts by how much brighter it is than the edge.
+struct LightBlob {
+  double u = 0.0, v = 0.0;              ///< centroid, pixels
+  double uu = 0.0, uv = 0.0, vv = 0.0;  ///< covariance of its pixels, pixels^2
+  int pixels = 0;                       ///< how many
+  PixelBox box;                         ///< around them
+
+  /// Longest over shortest extent, 1 of a disc.
+  [[nodiscard]] double elongation() const;
+};
+
+/// The connected pixels around the brightest one that are brighter than 0.3 of it.
+/// @param peak  in the image, brighter than 0
+[[nodiscard]] LightBlob light_blob(const Image<float>& light, const LightPixel& peak);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/light_blob.ipp"
+#endif

@@ -1,0 +1,57 @@
+// What kinecal takes from OpenCV: corners of checkerboards and ArUco markers.
+//
+// OpenCV's core, imgproc, calib3d and aruco are linked directly: 24 shared libraries, with which the
+// program starts 4 ms later (5 ms without).  Nothing of OpenCV is in a header, so a program that
+// includes kinecal compiles without it.  `-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON` builds kinecal, and
+// its Debian package, without it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/image.hpp"
+
+namespace kinecal::detail {
+
+/// Why this build cannot find a target; empty if it can.
+[[nodiscard]] std::string opencv_fault(const std::string& target);
+
+/// How boards are searched.  Of 240 boards of 5 x 4 to 9 x 6 corners in 640 x 480 pixels, some blurred,
+/// squares found 185 and sectors 237; of 80 with 3 x 3, squares 80 and sectors 72.
+enum class BoardSearch {
+  sectors,  ///< by their corners: 60 ms whatever is in the image
+  squares   ///< by their squares: 1 ms if the board is there, 1.5 s if only another one is
+};
+
+/// The inner corners of a board, row by row, in one of its orders; empty if there is no such board.
+/// Images of more than 1600 pixels are searched at a fraction of their size.
+/// @param columns, rows  inner corners, at least 3
+[[nodiscard]] std::vector<Eigen::Vector2d> find_chessboard(const GrayImage& image, int columns,
+                                                           int rows, BoardSearch search);
+
+/// Corners between four squares, moved to where the gradients around them meet.
+/// @param reach  half the side of the window around a corner, pixels
+void refine_corners(const GrayImage& image, int reach, std::vector<Eigen::Vector2d>& corners);
+
+/// A square marker: its corners clockwise from its top left.
+struct Marker {
+  int id = 0;
+  std::array<Eigen::Vector2d, 4> corners = {};
+};
+
+/// Names of ArUco's dictionaries: "DICT_4X4_50" and so on.
+[[nodiscard]] const std::vector<std::string>& marker_dictionaries();
+
+/// The markers of an ArUco dictionary.
+/// @param dictionary  one of marker_dictionaries()
+[[nodiscard]] std::vector<Marker> find_markers(const GrayImage& image,
+                                               const std::string& dictionary);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/opencv_corners.ipp"
+#endif

@@ -1,0 +1,39 @@
+// The dominating plane of many points: random samples, then least squares.
+//
+// Planes through three random points are scored by how many points are within the tolerance.  Each
+// that is better than all before is improved by least squares on its inliers.  The best is fitted
+// to all points, whose tolerance then shrinks to three times their noise.  A second search among the
+// other points says if the plane is the only one.
+// Source: Fischler and Bolles, Random sample consensus, 1981; Chum et al., Locally optimized RANSAC,
+// 2003.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/random_planes.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// A plane and what is on it.
+struct FoundPlane {
+  Plane<double> plane;               ///< its normal points to the origin's side, or along `normal`
+  std::vector<std::size_t> inliers;  ///< indices of points on it, ascending
+  double tolerance = 0.0;            ///< metres, of the inliers
+  std::string problem;               ///< why there is none
+};
+
+/// The plane that most points are on.
+/// @param points  (3) metres, finite, in any frame; the prior is in the same
+[[nodiscard]] FoundPlane find_plane(std::span<const Vector3<double>> points,
+                                    const PlaneSearch& search);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/plane_search.ipp"
+#endif

@@ -1,0 +1,67 @@
+// The plane that most points are near, by random samples.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/geometry/rotation.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/sensors/quantity.hpp"
+
+namespace kinecal {
+
+/// How to search for a plane.
+struct PlaneSearch {
+  double tolerance = 0.02;   ///< metres from the plane at first
+  int iterations = 1000;     ///< most random planes
+  std::uint64_t seed = 1;    ///< of the random planes
+  double least_share = 0.2;  ///< of the points that must be on the plane
+  /// (3) expected direction of the normal, of any length and sign; 0: any.
+  Vector3<double> normal = Vector3<double>::Zero();
+  double normal_angle = 0.349065;  ///< radians, most between the normals: 20 degrees
+  std::optional<double> offset;    ///< expected distance from the origin along `normal`, metres
+  double offset_tolerance = 0.1;   ///< metres
+};
+
+/// A plane and how many points are on it.
+struct ScoredPlane {
+  Plane<double> plane;
+  std::size_t count = 0;
+};
+
+/// The best of random planes.
+/// @param points    (3) metres, finite; all are scored
+/// @param by_prior  only planes near the expected one
+[[nodiscard]] ScoredPlane best_plane(std::span<const Vector3<double>> points,
+                                     const PlaneSearch& search, bool by_prior);
+
+/// Least squares on the points that are within the tolerance of a plane; nullopt if they have none.
+[[nodiscard]] std::optional<Plane<double>> refitted_plane(std::span<const Vector3<double>> points,
+                                                          const Plane<double>& plane,
+                                                          double tolerance);
+
+/// In what a plane differs from the expected one, as a sentence; empty if it is that.
+/// @param slack  factor of the tolerances
+[[nodiscard]] std::string plane_off_prior(const Plane<double>& plane, const PlaneSearch& search,
+                                          double slack = 1.0);
+
+/// Signed distance of a point from a plane, metres.
+[[nodiscard]] inline double plane_distance(const Plane<double>& plane, const Vector3<double>& p) {
+  return plane.normal.dot(p - plane.centroid);
+}
+
+/// Points that are within the tolerance of a plane, or those that are not.
+[[nodiscard]] std::vector<Vector3<double>> points_near_plane(
+    std::span<const Vector3<double>> points, const Plane<double>& plane, double tolerance,
+    bool on_it = true);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/random_planes.ipp"
+#endif

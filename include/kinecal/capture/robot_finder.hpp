@@ -1,0 +1,32 @@
+// Points on the robot's own body, and on the ground that it stands on.
+//
+// The cloud is split: a plane, and what is in the robot's box, on the camera's side of the plane and
+// not on it.  Two sensors observe them; names and defaults are upstream's.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/capture/plane_finder.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// Finds points of a plane and of the robot itself.
+struct RobotFinder {
+  PlaneFinder plane;                          ///< its sensor observes the plane
+  std::string robot_sensor = "camera_robot";  ///< observes the robot (robot_sensor_name)
+  /// (3) min_robot_x to min_robot_z, metres, in the frame of the plane's region.
+  Vector3<double> least{-2.0, -2.0, 0.0};
+  Vector3<double> most{2.0, 2.0, 2.0};  ///< (3) max_robot_x to max_robot_z
+
+  /// Points of the plane, then of the robot, both in the optical frame; `plane.points_max` of each.
+  [[nodiscard]] Found find(const View& view) const;
+};
+static_assert(Finder<RobotFinder>);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/robot_finder.ipp"
+#endif

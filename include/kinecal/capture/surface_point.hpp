@@ -1,0 +1,30 @@
+// The 3-D point that a camera sees at a place of its image, where its depth has holes.
+//
+// Valid points in a window around the pixel, which grows until there are enough, are split into
+// surfaces where their depths have a gap.  The surface with the most weight, 1 / (1 + distance^2),
+// counts; one in front of it wins if it has a good part of that, because what is attached to an edge
+// is on the near side.  On a plane 1/z is linear in u and v: that line's value at the place gives z,
+// within the depths that were seen, and P of the camera gives x and y.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "kinecal/capture/view.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// The point of the surface at a place of the image.
+/// @param view    with camera_info, and a cloud of the image's size
+/// @param u,v     pixels, may be between pixels
+/// @param radius  half the size of the largest window, pixels
+/// @return        (3) metres, in the optical frame; nullopt if there is no depth near the place
+[[nodiscard]] std::optional<Vector3<double>> surface_point(const View& view, double u, double v,
+                                                           int radius = 12);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/surface_point.ipp"
+#endif

@@ -1,0 +1,21 @@
+// Corners of a square tag between the pixels, from its four edges.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "kinecal/capture/image.hpp"
+
+namespace kinecal::detail {
+
+/// Moves the corners of a tag to where lines through its four edges meet.  Each line is fitted to where
+/// the brightness is halfway between both sides.
+/// @param cell  width of the border, pixels
+void refine_tag(const GrayImage& image, double cell, std::array<Eigen::Vector2d, 4>& corners);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/tag_edges.ipp"
+#endif

@@ -1,0 +1,88 @@
+// What a simulated camera can see: flat patches on links of the robot, and the light on them.
+//
+// One kind of thing makes everything: a rectangle or ellipse with a brightness or a picture on it.
+// Six make a box, an infinite one the ground, a small round one that shines an LED.  A patch has the
+// axes of an image: seen from its front, x points right, y down and z away from the viewer.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/image.hpp"
+#include "kinecal/geometry/pose.hpp"
+
+namespace kinecal {
+
+/// A flat surface.  Its frame has the origin in its middle, and z points into it.
+struct Patch {
+  std::string link = {};                          ///< that carries it; empty: the base
+  Pose<double> pose = {};                         ///< link_T_patch, metres
+  double width = 0.1;                             ///< along x, metres; may be infinite
+  double height = 0.1;                            ///< along y, metres; may be infinite
+  bool round = false;                             ///< an ellipse
+  double albedo = 0.6;                            ///< share of the light that comes back, [0, 1]
+  std::shared_ptr<const GrayImage> texture = {};  ///< stretched over it; 255: all light comes back
+  int led = 0;                                    ///< code at which it shines; 0: it never does
+};
+
+/// Light from everywhere, and from one lamp.
+struct Light {
+  double ambient = 0.4;                     ///< on every surface
+  double lamp = 1.2;                        ///< on a surface that faces the lamp, near to it
+  Vector3<double> position{0.5, 0.8, 2.5};  ///< of the lamp in the base, metres
+  double reach = 2.0;                       ///< where its light has half of its strength, metres
+};
+
+/// Everything there is to see.
+struct Scene {
+  std::vector<Patch> patches = {};
+  Light light = {};
+  double background = 0.3;  ///< brightness where there is no patch, [0, 1]
+};
+
+/// The pose of a patch whose front faces into a direction.
+/// @param centre  (3) metres, in the link
+/// @param front   (3) where it can be seen from, in the link; any length but zero
+/// @param down    (3) where the lower edge of its picture points, in the link, about
+[[nodiscard]] Pose<double> facing(const Vector3<double>& centre, const Vector3<double>& front,
+                                  const Vector3<double>& down = {0.0, 0.0, -1.0});
+
+/// Adds the six sides of a box.
+/// @param link_T_box  pose of its middle, metres
+/// @param size        (3) along the axes of the box, metres
+void add_box(Scene& scene, const std::string& link, const Pose<double>& link_T_box,
+             const Vector3<double>& size, double albedo = 0.4);
+
+/// Adds a board with a picture, such as tags, whose outer edge is the picture's.
+/// @param link_T_corner  frame in the upper left corner of the picture: x right, y down, z into it
+/// @param width          of the picture, metres
+void add_picture(Scene& scene, const std::string& link, const Pose<double>& link_T_corner,
+                 std::shared_ptr<const GrayImage> picture, double width);
+
+/// Adds a checkerboard with a white margin of one square.
+/// @param link_T_board   frame in its first inner corner: x along columns, y along rows, z into it
+/// @param columns, rows  inner corners
+/// @param square         size of a square, metres
+/// @throws std::invalid_argument  if there are no inner corners or a square has no size
+void add_checkerboard(Scene& scene, const std::string& link, const Pose<double>& link_T_board,
+                      int columns, int rows, double square);
+
+/// Adds LEDs of the codes 1, 2, ... in the order of the points.
+/// @param points  metres, in the link
+/// @param front   (3) where they shine to, in the link
+/// @param radius  metres
+void add_leds(Scene& scene, const std::string& link, const std::vector<Vector3<double>>& points,
+              const Vector3<double>& front, double radius = 0.003);
+
+/// Adds an infinite floor.
+/// @param height  in the base, metres
+void add_ground(Scene& scene, double height = 0.0, double albedo = 0.35);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/study/scene.ipp"
+#endif

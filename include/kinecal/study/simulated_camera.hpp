@@ -1,0 +1,80 @@
+// A simulated camera: its lens, which differs from its camera_info, and what it does to a picture.
+//
+//   depth, as the driver reports it: z / (1 + z_scaling) - z_offset + noise z^2, in steps of disparity
+//
+// The parameters are those of DepthCamera and PinholeCamera, which correct for them.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "kinecal/capture/view.hpp"
+#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/study/seeded_random.hpp"
+
+namespace kinecal {
+
+/// 640 x 480 pixels, 554 pixels of focal length, no distortion.
+[[nodiscard]] CameraInfo typical_camera_info();
+
+/// A camera.
+struct SimulatedCamera {
+  std::string frame = "camera_optical_frame";  ///< its optical frame, a link
+  CameraInfo info = typical_camera_info();     ///< as its driver reports it
+  ImageKind image = ImageKind::automatic;      ///< what its images are
+  std::array<double, 6> errors{};              ///< fx fy cx cy z_offset z_scaling of the lens
+  double blur = 0.6;                           ///< standard deviation of the point spread, pixels
+  double exposure = 1.0;                       ///< factor of all brightness
+  double noise = 1.5;           ///< standard deviation of a pixel's brightness, of 255
+  bool has_depth = true;        ///< gives clouds
+  double nearest = 0.3;         ///< depth that is measured, metres
+  double farthest = 5.0;        ///< the same
+  double depth_noise = 0.001;   ///< standard deviation at 1 m, metres; grows with the square
+  double disparity_step = 0.0;  ///< of structured light, pixels; 0: depth is not quantised
+  double baseline = 0.075;      ///< of structured light, metres
+  double grazing = 0.17;        ///< least cosine to a surface at which it is measured
+  bool has_holes = true;        ///< no depth at edges, at bright lights and at grazing angles
+};
+
+/// How a camera's lens projects, truly.
+class Lens {
+ public:
+  /// @throws SettingsError  if the camera_info cannot be of a camera
+  explicit Lens(const SimulatedCamera& camera);
+
+  /// The pixel at which a point appears.
+  /// @param p_camera  (3) metres, in the optical frame; z > 0
+  [[nodiscard]] Eigen::Vector2d project(const Vector3<double>& p_camera) const;
+
+  /// What a pixel shows.
+  /// @returns  (3) direction (x, y, 1) in the optical frame
+  [[nodiscard]] Vector3<double> ray(double u, double v) const;
+
+  /// What a pixel shows according to the driver, which does not know the errors.
+  /// @returns  (3) direction (x, y, 1)
+  [[nodiscard]] Vector3<double> reported_ray(double u, double v) const;
+
+ private:
+  ImageKind image_;
+  std::array<double, 9> settings_{};
+  std::array<double, 4> errors_{};
+};
+
+/// A picture without noise: what a perfect sensor measures behind this lens.
+struct Picture {
+  Image<float> brightness;     ///< 255 is the brightest that a camera reports
+  DepthImage depth;            ///< true distance along the optical axis, metres; NaN: nothing there
+  Image<std::uint8_t> answer;  ///< 0 where depth is not measurable: grazing, a bright light
+};
+
+/// What a camera makes of a picture: image and cloud of a view; without stamp and joints.
+/// @param random  of the noise
+[[nodiscard]] View photograph(const SimulatedCamera& camera, const Lens& lens,
+                              const Picture& picture, SeededRandom& random);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/study/simulated_camera.ipp"
+#endif

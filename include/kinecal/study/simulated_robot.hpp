@@ -1,0 +1,125 @@
+// A robot that can be captured without hardware: it moves, looks, and switches its LEDs on a clock of
+// its own.  Nothing sleeps: who waits moves the clock, so a session of ten minutes takes seconds.
+//
+// A joint is where its encoder says, plus what no encoder sees: backlash by the direction from which it
+// came, and an error that is new at every stop.  On top of that, the true robot differs from its URDF by
+// the parameters in `truth`: joint zeros and frames (study/true_robot.hpp), the camera's <name>_fx ...
+// <name>_z_scaling.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "kinecal/capture/robot_interface.hpp"
+#include "kinecal/study/joint_motion.hpp"
+#include "kinecal/study/scene.hpp"
+#include "kinecal/study/simulated_camera.hpp"
+#include "kinecal/study/true_robot.hpp"
+
+namespace kinecal {
+
+/// When things come and how exact joints are.
+struct SimulatedTiming {
+  double joint_rate = 100.0;        ///< Hz
+  double image_rate = 15.0;         ///< Hz
+  double image_latency = 0.06;      ///< from the exposure to whoever waits, seconds
+  double late_stamps = 0.0;         ///< an image's stamp less its exposure, seconds
+  double lamp_latency = 0.04;       ///< from the command to light, seconds
+  double lamp_answers_early = 0.0;  ///< the lamp says that it has switched so long before, seconds
+  double encoder_noise = 2e-5;      ///< standard deviation, radians or metres
+  double repeatability = 5e-5;      ///< standard deviation at each stop, radians or metres
+  double backlash = 1e-4;           ///< between both directions, radians or metres
+};
+
+/// What goes wrong, for tests.
+struct Faults {
+  static constexpr double kNever = std::numeric_limits<double>::infinity();  ///< seconds
+
+  std::string stuck_joint = {};     ///< stops at half of its way
+  double joints_end = kNever;       ///< no joint positions come after this time, seconds
+  double views_end = kNever;        ///< no images come after this time, seconds
+  double connection_ends = kNever;  ///< nothing answers after this time, seconds
+  double other_clock = 0.0;         ///< added to stamps of images, seconds
+  int dark_led = 0;                 ///< code of an LED that does not light; 0: all do
+  bool no_camera_info = false;      ///< the driver does not send it
+  double passer_by = 0.0;           ///< chance that something hides part of an image
+  double outliers = 0.0;            ///< chance that joints are elsewhere than they say, at a stop
+  double outlier_size = 0.05;       ///< of one joint, radians or metres
+};
+
+/// A simulated robot and its surroundings.
+struct SimulatedSetup {
+  Robot robot;                                ///< as its URDF has it
+  std::string base;                           ///< link that stands still; the world of the scene
+  ParameterTable truth = {};                  ///< errors of the URDF and of the camera
+  std::set<std::string> frames = {};          ///< joints whose frames `truth` corrects
+  SimulatedCamera camera = {};                ///< its errors are taken from `truth`
+  std::string camera_name = "camera";         ///< prefix of its parameters in `truth`
+  Scene scene = {};                           ///< what there is to see
+  std::map<std::string, double> speeds = {};  ///< of joints, radians or metres per second
+  JointDrive drive = {};                      ///< of joints that turn; others have a tenth
+  SimulatedTiming timing = {};                ///< of messages, and how exact joints are
+  Faults faults = {};                         ///< what goes wrong
+  Positions start = {};                       ///< of joints; others start within limits near zero
+  std::uint64_t seed = 1;                     ///< the same one: the same robot, noise and faults
+};
+
+/// A robot, its camera and its lamp: models Arm, Camera and Lamp.
+class SimulatedRobot {
+ public:
+  /// @throws std::invalid_argument  if setup names links or joints that the robot does not have, or a
+  ///                                joint of `start` that does not move
+  explicit SimulatedRobot(SimulatedSetup setup);
+  ~SimulatedRobot();
+  SimulatedRobot(SimulatedRobot&&) noexcept;             ///< The other one must not be used again.
+  SimulatedRobot& operator=(SimulatedRobot&&) noexcept;  ///< The same.
+
+  /// Starts to move.  Positions beyond limits are refused.
+  /// @throws PoseError        if a joint does not exist or cannot reach its position
+  /// @throws ConnectionError  after Faults::connection_ends; so do all of the following
+  void move(const JointTarget& target);
+
+  /// Positions of all driven joints.
+  /// @throws PoseError  if none come any more
+  [[nodiscard]] MeasuredJoints next_joints(Stamp after);
+
+  /// Image and cloud; without joints.
+  /// @throws PoseError  if none come any more
+  [[nodiscard]] View next_view(Stamp after);
+
+  /// Lights the LEDs of a code.
+  Stamp light(int code);
+
+  /// Lets time pass until nothing moves any more.
+  void wait_for_rest();
+
+  /// The robot's time.
+  [[nodiscard]] Stamp now() const;
+
+  /// True positions of the joints, before the offsets in `truth`: radians or metres.
+  [[nodiscard]] Positions true_positions() const;
+
+  /// True pose of a link in the camera at this moment: camera_T_link, metres.
+  [[nodiscard]] Pose<double> in_camera(const std::string& link) const;
+
+  /// The true projection of the camera.
+  [[nodiscard]] const Lens& lens() const;
+
+  /// What it was made of.
+  [[nodiscard]] const SimulatedSetup& setup() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+static_assert(Arm<SimulatedRobot> && Camera<SimulatedRobot> && Lamp<SimulatedRobot>);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/study/simulated_robot.ipp"
+#endif

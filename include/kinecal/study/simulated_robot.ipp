@@ -1,0 +1,160 @@
+// Definitions of simulated_robot.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/study/robot_state.ipp"
+#include "kinecal/study/simulated_robot.hpp"
+
+namespace kinecal {
+
+struct SimulatedRobot::State {
+  explicit State(SimulatedSetup given)
+      : setup(detail::with_camera_errors(std::move(given))),
+        robot(setup.robot, setup.truth, setup.frames),
+        renderer(setup.camera),
+        random(setup.seed),
+        joints(setup) {}
+
+  SimulatedSetup setup;
+  TrueRobot robot;
+  Renderer renderer;
+  SeededRandom random;
+  detail::Joints joints;
+  double now = 0.0;                               ///< seconds
+  std::vector<std::pair<double, int>> lamp = {};  ///< when which code was lit
+  Positions pictured = {};                        ///< where `pictures` are valid
+  std::map<int, Picture> pictures = {};           ///< by code: the robot mostly rests
+
+  /// The first time at which something of a rate happens after another time, seconds.
+  static double tick(double after, double rate) {
+    constexpr double kRounding = 1e-6;  // of a period; stamps are whole nanoseconds
+    return (std::floor(after * rate + kRounding) + 1.0) / rate;
+  }
+
+  /// Waits for the next message.
+  /// @param shift  of its stamp against the true time, seconds
+  /// @returns      its true time, seconds
+  double wait(const char* what, Stamp after, double rate, double shift, double ends) {
+    check_connection();
+    constexpr double kPatience = 5.0;  // seconds
+    const double earliest = detail::seconds_of(after) - shift;
+    const double time = tick(std::max(earliest, joints.start()), rate);
+    if (time <= ends && time <= now + kPatience) return time;
+    now += kPatience;
+    throw PoseError(std::string("no ") + what + " for 5 s, stamped after " +
+                    std::to_string(detail::seconds_of(after)) + " s");
+  }
+
+  void check_connection() const {
+    if (now >= setup.faults.connection_ends) throw ConnectionError("the simulated robot is gone");
+  }
+
+  Pose<double> in_camera(const std::string& link, const Positions& positions) const {
+    const Pose<double> base_T_camera = robot.pose(setup.base, setup.camera.frame, positions);
+    const Pose<double> camera_T_base = base_T_camera.inverse();
+    return link.empty() ? camera_T_base : camera_T_base * robot.pose(setup.base, link, positions);
+  }
+
+  const Picture& picture(double time) {
+    const Positions positions = joints.truth(time);
+    if (positions != pictured) pictures.clear();
+    pictured = positions;
+    int code = 0;
+    for (const auto& [when, lit] : lamp) {
+      if (when <= time) code = lit;
+    }
+    const auto found = pictures.find(code);
+    if (found != pictures.end()) return found->second;
+    const auto pose_of = [&](const std::string& link) { return in_camera(link, positions); };
+    return pictures[code] = renderer.render(setup.scene, pose_of, code);
+  }
+};
+
+KINECAL_INLINE SimulatedRobot::SimulatedRobot(SimulatedSetup setup) {
+  for (const auto& [name, position] : setup.start) {
+    if (!moves(setup.robot.joint(name).type)) {
+      throw std::invalid_argument("joint '" + name +
+                                  "' of a simulated robot's start does not move");
+    }
+  }
+  state_ = std::make_unique<State>(std::move(setup));
+  for (const Patch& patch : state_->setup.scene.patches) static_cast<void>(in_camera(patch.link));
+}
+KINECAL_INLINE SimulatedRobot::~SimulatedRobot() = default;
+KINECAL_INLINE SimulatedRobot::SimulatedRobot(SimulatedRobot&&) noexcept = default;
+KINECAL_INLINE SimulatedRobot& SimulatedRobot::operator=(SimulatedRobot&&) noexcept = default;
+
+KINECAL_INLINE void SimulatedRobot::move(const JointTarget& target) {
+  state_->check_connection();
+  state_->joints.check(target);
+  state_->joints.move(target, state_->now, state_->random);
+}
+
+KINECAL_INLINE MeasuredJoints SimulatedRobot::next_joints(Stamp after) {
+  State& s = *state_;
+  const double time =
+      s.wait("joint positions", after, s.setup.timing.joint_rate, 0.0, s.setup.faults.joints_end);
+  s.now = std::max(s.now, time);
+  MeasuredJoints measured;
+  measured.stamp = detail::stamp_of(time);
+  for (const auto& [name, position] : s.joints.encoders(time)) {
+    measured.names.push_back(name);
+    measured.positions.push_back(position + s.setup.timing.encoder_noise * s.random.normal());
+  }
+  return measured;
+}
+
+KINECAL_INLINE View SimulatedRobot::next_view(Stamp after) {
+  State& s = *state_;
+  const SimulatedTiming& timing = s.setup.timing;
+  const Faults& faults = s.setup.faults;
+  const double shift = timing.late_stamps + faults.other_clock;
+  const double time = s.wait("images", after, timing.image_rate, shift, faults.views_end);
+  s.now = std::max(s.now, time + timing.image_latency);
+  View view = photograph(s.setup.camera, s.renderer.lens(), s.picture(time), s.random);
+  view.stamp = detail::stamp_of(time + shift);
+  if (faults.no_camera_info) view.camera.reset();
+  if (s.random.uniform(0.0, 1.0) < faults.passer_by) detail::hide_a_part(view, s.random);
+  return view;
+}
+
+KINECAL_INLINE Stamp SimulatedRobot::light(int code) {
+  State& s = *state_;
+  s.check_connection();
+  s.now += s.setup.timing.lamp_latency;
+  s.lamp.emplace_back(s.now, code == s.setup.faults.dark_led ? 0 : code);
+  return detail::stamp_of(s.now - s.setup.timing.lamp_answers_early);
+}
+
+KINECAL_INLINE void SimulatedRobot::wait_for_rest() {
+  state_->now = std::max(state_->now, state_->joints.rest());
+}
+
+KINECAL_INLINE Stamp SimulatedRobot::now() const {
+  return detail::stamp_of(state_->now);
+}
+
+KINECAL_INLINE Positions SimulatedRobot::true_positions() const {
+  return state_->joints.truth(state_->now);
+}
+
+KINECAL_INLINE Pose<double> SimulatedRobot::in_camera(const std::string& link) const {
+  return state_->in_camera(link, true_positions());
+}
+
+KINECAL_INLINE const Lens& SimulatedRobot::lens() const {
+  return state_->renderer.lens();
+}
+
+KINECAL_INLINE const SimulatedSetup& SimulatedRobot::setup() const {
+  return state_->setup;
+}
+
+}  // namespace kinecal

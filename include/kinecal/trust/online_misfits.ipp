@@ -1,0 +1,78 @@
+// Samples that do not fit the others: the new one, and earlier ones that turn out not to.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "kinecal/trust/f_distribution.hpp"
+#include "kinecal/trust/online_inside.ipp"
+
+namespace kinecal {
+
+/// The worst sample, if it does not fit the others.
+inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator& evaluator) const {
+  constexpr std::size_t kFewest = 8;
+  if (samples.size() < kFewest || freedom <= 0) return std::nullopt;
+  std::vector<double> squares(samples.size(), 0.0), rows(samples.size(), 0.0);
+  (void)evaluator.evaluate(values, false, [&](int term, int sample, const TermResiduals& of_term) {
+    const double weight = problem->term(term).options().weight;
+    squares[static_cast<std::size_t>(sample)] += weight * weight * of_term.residual.squaredNorm();
+    rows[static_cast<std::size_t>(sample)] += static_cast<double>(of_term.residual.size());
+  });
+  std::vector<double> means;
+  std::size_t worst = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!(rows[i] > 0.0)) continue;
+    means.push_back(squares[i] / rows[i]);
+    if (squares[i] * rows[worst] > squares[worst] * rows[i]) worst = i;
+  }
+  if (means.empty()) return std::nullopt;
+  const auto middle = means.begin() + std::ssize(means) / 2;
+  std::nth_element(means.begin(), middle, means.end());
+  // The median of chi-square is about n (1 - 2 / (9 n))^3; residuals of a fit are smaller than noise.
+  const double n = rows[worst], all = problem->num_residuals();
+  const double usual = *middle / std::pow(1.0 - 2.0 / (9.0 * n), 3.0) * (all / freedom);
+  if (!(usual > 0.0)) return std::nullopt;
+  const double chance = f_tail(squares[worst] / n / usual, n, freedom);
+  if (chance > detail::kOnceIn / static_cast<double>(samples.size())) return std::nullopt;
+  return worst;
+}
+
+/// A problem cannot forget a sample, so it is made anew.
+inline void OnlineCalibration::Inside::leave_out(std::size_t sample) {
+  samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(sample));
+  numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(sample));
+  problem = make();
+  for (const Sample& kept : samples) problem->add_sample(kept);
+}
+
+inline bool OnlineCalibration::Inside::add_if_it_fits(const Sample& sample, OnlineState& state) {
+  problem->add_sample(sample);
+  samples.push_back(sample);
+  numbers.push_back(++added);
+  auto evaluator = problem->evaluator(free);
+  constexpr int kEnough = 20;  // residuals for the noise: then samples are tested
+  if (freedom >= kEnough && noise2 > 0.0) {
+    int rows = 0;
+    const double x = innovation(*evaluator, rows);
+    state.times = std::sqrt(std::max(0.0, x));
+    if (!(rows == 0 || f_tail(std::max(0.0, x), rows, freedom) > detail::kOnceIn)) {
+      leave_out(samples.size() - 1);
+      return false;
+    }
+  }
+  step_to_minimum(*evaluator);
+  while (const auto worst = misfit(*evaluator)) {
+    state.dropped.push_back(numbers[*worst]);
+    leave_out(*worst);
+    evaluator = problem->evaluator(free);
+    step_to_minimum(*evaluator);
+  }
+  std::erase(state.dropped, added);
+  return !numbers.empty() && numbers.back() == added;
+}
+
+}  // namespace kinecal

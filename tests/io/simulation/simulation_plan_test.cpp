@@ -1,0 +1,117 @@
+#include "kinecal/io/simulation/simulation_plan.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+
+Robot shipped(const std::string& path) {
+  return read_urdf(std::string(KINECAL_SOURCE_DIR) + "/examples/" + path);
+}
+
+SimulationPlan plan_of(const Robot& robot, const std::string& target) {
+  Diagnostics diagnostics;
+  SimulationPlan plan = read_simulation(robot, "", target, 1, diagnostics);
+  EXPECT_TRUE(diagnostics.errors.empty()) << diagnostics.errors.front();
+  return plan;
+}
+
+/// A plan from the text of a scene; and its errors.
+std::pair<SimulationPlan, Diagnostics> read_text(const std::string& text) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "scene.yaml").string();
+  std::ofstream(path) << text;
+  Diagnostics diagnostics;
+  SimulationPlan plan =
+      read_simulation(shipped("robots/fetch/fetch.urdf"), path, "", 0, diagnostics);
+  return {std::move(plan), std::move(diagnostics)};
+}
+
+TEST(SimulationPlan, EachShippedRobotWithACameraHasOne) {
+  for (const char* urdf :
+       {"robots/fetch/fetch.urdf", "robots/ubr1/ubr1.urdf", "robots/pr2/pr2.urdf",
+        "robots/panda/panda.urdf", "robots/tiago/tiago.urdf",
+        "mobile_manipulator/mobile_manipulator.urdf"}) {
+    const Robot robot = shipped(urdf);
+    for (const char* target : {"checkerboard", "leds", "ground"}) {
+      if (std::string(urdf).find("panda") != std::string::npos && target[0] != 'c') continue;
+      const SimulationPlan plan = plan_of(robot, target);
+      EXPECT_GT(plan.setup.truth.size(), 10) << urdf << " " << target;
+      EXPECT_FALSE(poses_of(plan).empty()) << urdf << " " << target;
+      const SimulatedRobot simulated(plan.setup);
+      EXPECT_GT(simulated.in_camera(plan.target.link).translation.norm(), 0.0);
+    }
+  }
+}
+
+TEST(SimulationPlan, ACameraOnTheHandLooksAtABoardThatStands) {
+  const SimulationPlan plan = plan_of(shipped("robots/panda/panda.urdf"), "");
+  EXPECT_EQ(plan.target.link, "panda_link0");
+  EXPECT_EQ(plan.setup.truth["checkerboard_z"].value, plan.target.pose.translation.z());
+  EXPECT_TRUE(plan.setup.frames.contains("camera_color_joint"));
+  EXPECT_EQ(plan.target_frame, "checkerboard");
+}
+
+TEST(SimulationPlan, AScenesWordsAreTaken) {
+  const auto [plan, diagnostics] = read_text(R"(
+seed: 7
+camera: {name: eye, type: camera3d, blur: 1.5, image: rectified, holes: false}
+target: {type: leds, link: gripper_link, xyz: [0, 0, 0.04], rpy: [3.14159265, 0, 0],
+         leds: [[0, 0, 0.04], [0.02, 0, 0.04]]}
+errors: {joint: 0.01, values: {elbow_flex_joint: 0.2, torso_lift_joint: 0.01, eye_fx: 0.0}}
+motion: {speed: 0.5, backlash: 0.001}
+faults: {dark_led: 2, views_end: 12.5}
+poses: 4
+)");
+  ASSERT_TRUE(diagnostics.errors.empty()) << diagnostics.errors.front();
+  EXPECT_EQ(plan.setup.seed, 7U);
+  EXPECT_EQ(plan.setup.camera.blur, 1.5);
+  EXPECT_FALSE(plan.setup.camera.has_holes);
+  EXPECT_EQ(plan.setup.truth["elbow_flex_joint"].value, 0.2);
+  EXPECT_EQ(plan.setup.truth["torso_lift_joint"].value, 0.01);
+  EXPECT_EQ(plan.setup.truth["eye_fx"].value, 0.0);
+  EXPECT_LE(std::abs(plan.setup.truth["wrist_flex_joint"].value), 0.01);
+  EXPECT_GE(std::abs(plan.setup.truth["wrist_flex_joint"].value), 0.005);
+  EXPECT_EQ(plan.setup.timing.backlash, 0.001);
+  EXPECT_EQ(plan.setup.faults.dark_led, 2);
+  EXPECT_EQ(plan.setup.faults.views_end, 12.5);
+  EXPECT_EQ(plan.target.leds.size(), 2U);
+  EXPECT_EQ(plan.poses, 4);
+  EXPECT_EQ(plan.goal.points.size(), 2U);
+}
+
+TEST(SimulationPlan, WrongWordsAreErrorsWithTheirLines) {
+  const std::string text =
+      "camera: {tpye: camera3d}\ntarget: {type: led}\nerrors: {joint: wide}\n"
+      "motion: {speed: -1}\nfaults: {dark_led: none}\nposes: 0.5\n";
+  const Diagnostics diagnostics = read_text(text).second;
+  std::string all;
+  for (const std::string& error : diagnostics.errors) all += error + "\n";
+  EXPECT_THAT(all, HasSubstr("scene.yaml:1: camera: unknown key 'tpye'; did you mean 'type'?"));
+  EXPECT_THAT(all, HasSubstr("scene.yaml:2: target: type is 'led', not one of leds,"));
+  for (int line = 3; line <= 5; ++line) {
+    EXPECT_THAT(all, HasSubstr("scene.yaml:" + std::to_string(line) + ": "));
+  }
+  EXPECT_THAT(read_text("errors: {values: {elbow_flx_joint: 1}}").second.errors.at(0),
+              HasSubstr("did you mean 'elbow_flex_joint'?"));
+}
+
+TEST(SimulationPlan, ALinkThatDoesNotExistIsNamed) {
+  for (const char* text :
+       {"camera: {frame: head_camera_rgb_optical_fram}", "target: {link: gripper_lnk}"}) {
+    EXPECT_THAT([&] { static_cast<void>(read_text(text)); },
+                testing::ThrowsMessage<InputError>(HasSubstr("did you mean")))
+        << text;
+  }
+}
+
+}  // namespace
+}  // namespace kinecal
