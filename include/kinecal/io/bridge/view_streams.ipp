@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <deque>
 #include <optional>
 #include <stdexcept>
@@ -64,10 +63,8 @@ class ViewStreams {
   using Match = std::vector<const Stamped*>;
 
   static constexpr std::size_t kKept = 4;
-  /// By which stamps of one exposure may differ: less than a frame of a slow camera.
-  static constexpr std::chrono::milliseconds kTogether{40};
-  /// By which clocks may differ.
-  static constexpr std::chrono::seconds kSameClock{1};
+  static constexpr std::chrono::milliseconds kTogether{40};  ///< stamps of one exposure
+  static constexpr std::chrono::seconds kSameClock{1};       ///< by which clocks may differ
 
   void subscribe(const std::string& topic, std::vector<std::string> types) {
     if (topic.empty()) return;
@@ -180,8 +177,9 @@ class ViewStreams {
       return why + ", and no other topic has one within " + std::to_string(kTogether.count()) +
              " ms of it";
     }
-    const auto silence = std::chrono::steady_clock::now() - last.message.arrival;
-    if (silence > kSameClock) return why + "; the stream has stopped";
+    if (std::chrono::steady_clock::now() - last.message.arrival > kSameClock) {
+      return why + "; the stream has stopped";
+    }
     const auto ahead = lead(last);
     if (ahead && *ahead < -kSameClock) {
       why += ", " + seconds_text(-*ahead) +

@@ -1,0 +1,149 @@
+// Definitions of pipe_robot.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/io/bridge/child_process.hpp"
+#include "kinecal/io/bridge/json_value.hpp"
+#include "kinecal/io/bridge/message_fields.ipp"
+#include "kinecal/io/bridge/pipe_images.ipp"
+#include "kinecal/io/bridge/pipe_robot.hpp"
+#include "kinecal/io/printable.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+class PipeRobot::Pipe {
+ public:
+  explicit Pipe(PipeOptions options) : process_(options.command), time_limit_(options.time_limit) {}
+
+  /// Sends a request and gives the answer to what reads it.
+  /// @param what  the request in messages: "view"
+  template <class Read>
+  auto ask(const std::string& what, const std::string& request, Read&& read) {
+    const std::string who = "'" + process_.command() + "': " + what + ": ";
+    // What comes before the request does not answer it; nor does what is late for the last one.
+    while (late_ > 0 && process_.read_line(std::chrono::milliseconds(0))) --late_;
+    if (late_ > 0) throw PoseError(who + "it still has not answered to the last request");
+    process_.write_line("{\"" + what + "\": " + request + "}", time_limit_);
+    const auto line = process_.read_line(time_limit_);
+    if (!line) {
+      ++late_;
+      throw PoseError(who + "no answer within " + seconds_text(time_limit_));
+    }
+    try {
+      const detail::JsonValue answer = detail::JsonValue::parse(*line);
+      const std::string error = answer.text_or("error", {});
+      if (!error.empty()) throw PoseError(who + printable(error));
+      return read(answer);
+    } catch (const PoseError&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      throw PoseError(who + "the answer cannot be read: " + error.what());
+    }
+  }
+
+ private:
+  [[nodiscard]] static std::string seconds_text(std::chrono::milliseconds time) {
+    return detail::seconds_text(std::chrono::duration_cast<Stamp>(time));
+  }
+
+  detail::ChildProcess process_;
+  std::chrono::milliseconds time_limit_;
+  int late_ = 0;  ///< answers that were given up
+};
+
+namespace detail {
+
+template <class Items, class F>
+[[nodiscard]] std::string json_list(const Items& items, F&& text) {
+  std::string list = "[";
+  for (const auto& item : items) list += (list.size() > 1 ? ", " : "") + text(item);
+  return list + "]";
+}
+
+/// Shortest text that is the same number.
+[[nodiscard]] inline std::string json_decimal(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+[[nodiscard]] inline Stamp stamp_of(const JsonValue& answer) {
+  return Stamp(answer.integer("stamp"));
+}
+
+/// @throws JsonError  if it is not after a time
+[[nodiscard]] inline Stamp stamp_after(const JsonValue& answer, Stamp after) {
+  const Stamp stamp = stamp_of(answer);
+  if (stamp > after) return stamp;
+  throw JsonError("its stamp, " + std::to_string(stamp.count()) + ", is not after " +
+                  std::to_string(after.count()) + " ns");
+}
+
+[[nodiscard]] inline std::string after_text(Stamp after) {
+  return "{\"after\": " + std::to_string(after.count()) + "}";
+}
+
+}  // namespace detail
+
+KINECAL_INLINE PipeRobot::PipeRobot(PipeOptions options)
+    : pipe_(std::make_unique<Pipe>(std::move(options))) {}
+KINECAL_INLINE PipeRobot::PipeRobot(PipeRobot&&) noexcept = default;
+KINECAL_INLINE PipeRobot& PipeRobot::operator=(PipeRobot&&) noexcept = default;
+KINECAL_INLINE PipeRobot::~PipeRobot() = default;
+
+KINECAL_INLINE void PipeRobot::move(const JointTarget& target) {
+  const std::string request =
+      "{\"names\": " + detail::json_list(target.names, detail::json_text) +
+      ", \"positions\": " + detail::json_list(target.positions, detail::json_decimal) +
+      ", \"velocity_factor\": " + detail::json_decimal(target.velocity_factor) + "}";
+  pipe_->ask("move", request, [](const detail::JsonValue&) {});
+}
+
+KINECAL_INLINE MeasuredJoints PipeRobot::next_joints(Stamp after) {
+  return pipe_->ask("joints", detail::after_text(after), [after](const detail::JsonValue& answer) {
+    MeasuredJoints joints;
+    joints.stamp = detail::stamp_after(answer, after);
+    joints.names = answer.texts("names");
+    joints.positions = answer.numbers("positions");
+    if (joints.names.size() != joints.positions.size()) {
+      throw detail::JsonError("there are " + std::to_string(joints.names.size()) + " names and " +
+                              std::to_string(joints.positions.size()) + " positions");
+    }
+    return joints;
+  });
+}
+
+KINECAL_INLINE View PipeRobot::next_view(Stamp after) {
+  return pipe_->ask("view", detail::after_text(after), [after](const detail::JsonValue& answer) {
+    View view;
+    view.stamp = detail::stamp_after(answer, after);
+    view.frame = answer.text("frame");
+    if (const auto camera = answer.find("camera")) view.camera = detail::pipe_camera(*camera);
+    if (const auto image = answer.find("image")) view.image = detail::pipe_image(*image);
+    if (const auto depth = answer.find("depth")) {
+      if (!view.camera) throw detail::JsonError("depth needs the field 'camera'");
+      view.points = points_of(detail::pipe_depth(*depth), *view.camera);
+    }
+    if (view.image.empty() && view.points.empty()) {
+      throw detail::JsonError("it has neither 'image' nor 'depth'");
+    }
+    return view;
+  });
+}
+
+KINECAL_INLINE Stamp PipeRobot::light(int code) {
+  return pipe_->ask("light", std::to_string(code),
+                    [](const detail::JsonValue& answer) { return detail::stamp_of(answer); });
+}
+
+}  // namespace kinecal
