@@ -120,6 +120,23 @@ struct SimulateOptions {
 /// Photographs a simulated robot that differs from its URDF by known errors.
 int simulate(const SimulateOptions& options);
 
+struct CaptureOptions {
+  std::string config;       ///< capture.yaml
+  std::string urdf, robot;  ///< file; address
+  std::string poses;        ///< file
+  std::string output;       ///< file of samples
+  std::string calibrate;    ///< configuration of a calibration that follows; empty: none
+  std::string until;        ///< "gripper 1 mm"; empty: all poses
+  std::string result;       ///< folder of that calibration
+  double velocity = 1.0;    ///< factor
+  bool manual = false;      ///< a person moves the robot
+  bool resume = false;      ///< go on with the samples of the output
+  bool force = false;       ///< replace results
+};
+
+/// Moves a robot through poses and records what its finders see.
+int capture(const CaptureOptions& options);
+
 struct InstallOptions {
   std::string result;  ///< folder that calibrate wrote
   std::string folder;  ///< with the launch file

@@ -160,20 +160,68 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
   command.add_option("-o,--output", options.output, "folder for images and tables")
       ->required()
       ->type_name("DIR");
+  CLI::Option* scene =
+      command
+          .add_option(
+              "--scene", options.scene,
+              "camera, target, errors, motion and faults in YAML; default: what the URDF allows")
+          ->type_name("FILE");
   command
-      .add_option(
-          "--scene", options.scene,
-          "camera, target, errors, motion and faults in YAML; default: what the URDF allows")
-      ->type_name("FILE");
-  command.add_option("--target", options.target, "checkerboard (default), apriltag or ground")
-      ->check(CLI::IsMember({"checkerboard", "apriltag", "ground"}));
+      .add_option("--target", options.target,
+                  "checkerboard (default), apriltag, ground, or leds for a session")
+      ->excludes(scene)
+      ->check(CLI::IsMember({"checkerboard", "apriltag", "ground", "leds"}));
   command.add_option("--poses", options.poses, "number of images, default: 30")
       ->check(CLI::Range(1, 9999))
       ->type_name("N");
   command.add_option("--seed", options.seed, "another number: another robot, default: 1")
+      ->excludes(scene)
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
   command.add_flag("--force", options.force, "replace the images that are in the folder");
+}
+
+void add_capture(CLI::App& command, CaptureOptions& options) {
+  command
+      .add_option("config", options.config,
+                  "chains that move and finders that look: capture.yaml of robot_calibration")
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option("--robot", options.robot,
+                  "ws://HOST:PORT of foxglove_bridge (ROS 1 or ROS 2), pipe:COMMAND, or "
+                  "simulated:SCENE")
+      ->required()
+      ->type_name("ADDRESS");
+  command.add_option("--urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+  command.add_option("--poses", options.poses, "poses in YAML or in a bag")->type_name("FILE");
+  command.add_flag("--manual", options.manual,
+                   "record wherever a person has put the robot, at each Enter");
+  command
+      .add_option("-o,--output", options.output,
+                  "the samples, written after each pose: .yaml, .bag (ROS 1) or .mcap")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--velocity", options.velocity, "factor of the usual speed")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command.add_flag("--resume", options.resume, "go on with the poses that the output lacks");
+  CLI::Option* calibrate =
+      command
+          .add_option(
+              "--calibrate", options.calibrate,
+              "configuration: calibrate after each pose, and say how well the gripper is known")
+          ->type_name("FILE");
+  command
+      .add_option("--until", options.until,
+                  "end when the pose is known as well as this, one sigma: \"gripper 1 mm\", "
+                  "\"tool0 0.1 deg\"")
+      ->needs(calibrate)
+      ->type_name("ACCURACY");
+  command.add_option("--result", options.result, "calibrate at the end, into this folder")
+      ->needs(calibrate)
+      ->type_name("DIR");
+  command.add_flag("--force", options.force, "replace files that are there");
 }
 
 void add_convert(CLI::App& command, ConvertOptions& options) {
@@ -422,6 +470,9 @@ void add_commands(Commands& commands) {
   commands.add<std::vector<std::string>>(
       "inspect", "show what is in recordings: topics, sensors, features, joints, gaps", add_inspect,
       inspect);
+  commands.add<CaptureOptions>("capture",
+                               "move a robot through poses and record what its finders see",
+                               add_capture, capture);
   commands.add<SimulateOptions>(
       "simulate", "photograph a simulated robot that differs from its URDF by known errors",
       add_simulate, simulate);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "commands.hpp"
@@ -45,6 +46,14 @@ void write(const std::filesystem::path& path, PhotographFiles files) {
   folder.write(files.others);
 }
 
+/// The scene, for sessions with `kinecal capture --robot simulated:scene.yaml`.
+std::string scene_text(const SimulateOptions& options) {
+  if (!options.scene.empty()) return detail::read_text_file(options.scene);
+  std::string text = fmt::format("seed: {}\n", std::max(1, options.seed));
+  if (!options.target.empty()) text += fmt::format("target: {{type: {}}}\n", options.target);
+  return text;
+}
+
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
@@ -59,7 +68,9 @@ int simulate(const SimulateOptions& options) {
   if (options.poses > 0) plan.poses = options.poses;
   const std::vector<JointTarget> poses = poses_of(plan);
   PhotographFiles files;
-  {
+  if (plan.target.type == "leds") {  // which have to be switched while a camera looks
+    files.others = files_of(plan, poses);
+  } else {
     ProgressLine line;
     const ProgressMeter meter = line.meter();
     files = take_photographs(plan, poses, [&](std::size_t n) {
@@ -68,6 +79,7 @@ int simulate(const SimulateOptions& options) {
   }
   for (const std::string& skipped : files.skipped) fmt::print(stderr, "warning: {}\n", skipped);
   files.others.push_back({"robot.urdf", detail::read_text_file(options.urdf)});
+  files.others.push_back({"scene.yaml", scene_text(options)});
   const std::size_t images = files.images.size();
   write(folder, std::move(files));
   fmt::print("{}: {} images of '{}' on '{}' by '{}'; truth.yaml has {} errors of the URDF\n",

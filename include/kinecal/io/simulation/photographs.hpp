@@ -36,7 +36,7 @@ struct PhotographFiles {
 
 /// Moves the robot to each pose, waits until it rests, and takes an image of it.
 /// @param progress     called before each pose with its number, from 0; may be empty
-/// @throws InputError  if the target cannot be photographed (LEDs have to be switched), or no image came
+/// @throws InputError  if no image came
 [[nodiscard]] PhotographFiles take_photographs(const SimulationPlan& plan,
                                                const std::vector<JointTarget>& poses,
                                                const std::function<void(std::size_t)>& progress);

@@ -63,11 +63,14 @@ namespace detail {
     }
     return text;
   }
-  text += fmt::format("    gripper_led_frame: {}\n    leds:\n", name_to_yaml(target.link));
+  text += fmt::format("    gripper_led_frame: {}\n    action: leds\n    poses:\n",
+                      name_to_yaml(target.link));
   int code = 0;
   for (const Vector3<double>& led : target.leds) {
-    text += fmt::format("     - {{code: {}, x: {}, y: {}, z: {}}}\n", ++code,
-                        number_to_yaml(led.x()), number_to_yaml(led.y()), number_to_yaml(led.z()));
+    text +=
+        fmt::format("     - {{code: {}, topic: led{}, x: {}, y: {}, z: {}}}\n", code + 1, code + 1,
+                    number_to_yaml(led.x()), number_to_yaml(led.y()), number_to_yaml(led.z()));
+    ++code;
   }
   return text;
 }
@@ -113,11 +116,6 @@ KINECAL_INLINE std::vector<OutputFile> files_of(const SimulationPlan& plan,
 KINECAL_INLINE PhotographFiles take_photographs(const SimulationPlan& plan,
                                                 const std::vector<JointTarget>& poses,
                                                 const std::function<void(std::size_t)>& progress) {
-  if (plan.target.type == "leds") {
-    throw InputError(
-        "LEDs have to be switched while a camera looks: photographs show a board or the "
-        "ground; capture LEDs with a session");
-  }
   SimulatedRobot robot(plan.setup);
   PhotographFiles files;
   detail::PoseTable table;

@@ -1,0 +1,318 @@
+// kinecal capture: a robot moves from pose to pose, finders look, samples are written at once.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "commands.hpp"
+#include "fit.hpp"
+#include "input.hpp"
+#include "kinecal/capture/find_leds.hpp"
+#include "kinecal/capture/session.hpp"
+#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/capture/session_follower.hpp"
+#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/io/poses/poses.hpp"
+#include "kinecal/io/printable.hpp"
+#include "kinecal/io/recordings/pose_messages.hpp"
+#include "kinecal/io/recordings/write_recording.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "output_file.hpp"
+#include "robot_link.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+extern "C" void ask_to_stop(int) {
+  stop_asked = 1;
+  std::signal(SIGINT, SIG_DFL);  // a second one ends the program
+}
+
+/// Poses of a file, with the joints that the robot's chains move.
+std::vector<CapturePose> read_poses(const std::string& path, const CaptureConfig& config) {
+  Diagnostics diagnostics;
+  std::vector<CapturePose> poses =
+      is_poses_yaml(path) ? read_poses_yaml(path, diagnostics) : read_bag_poses(path, diagnostics);
+  print(diagnostics);
+  diagnostics.throw_if_errors();
+  if (poses.empty()) throw InputError(path + ": has no poses");
+  std::set<std::string> moved;
+  for (const CaptureChain& chain : config.chains) {
+    moved.insert(chain.joints.begin(), chain.joints.end());
+  }
+  if (moved.empty()) return poses;
+  for (CapturePose& pose : poses) {
+    CapturePose kept{{}, {}, pose.features};
+    for (std::size_t i = 0; i < pose.joint_names.size(); ++i) {
+      if (!moved.contains(pose.joint_names[i])) continue;
+      kept.joint_names.push_back(pose.joint_names[i]);
+      kept.positions.push_back(pose.positions[i]);
+    }
+    if (kept.joint_names.empty()) {
+      throw InputError(path + ": a pose has none of the joints of the chains");
+    }
+    pose = std::move(kept);
+  }
+  return poses;
+}
+
+/// A finder of a session, with settings of any type.
+SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobot& hardware) {
+  AnyCamera& camera = hardware.cameras.at(finder.name);
+  const FinderSettings settings = on_robot(finder, robot);
+  if (const auto* leds = std::get_if<LedFinder>(&settings)) {
+    const auto lamp = hardware.lamps.find(finder.name);
+    if (lamp == hardware.lamps.end()) {
+      throw InputError(finder.place.str() + ": finder '" + finder.name +
+                       "': action is missing: it switches the LEDs");
+    }
+    return {finder.name, camera.viewer,
+            [leds = *leds, &camera, &lamp = lamp->second](const View& still) {
+              return find_leds(leds, camera, lamp, still.stamp, still.joints);
+            }};
+  }
+  if (const auto* board = std::get_if<CheckerboardSettings>(&settings)) {
+    return session_finder(finder.name, CheckerboardFinder(*board), camera);
+  }
+  if (const auto* tags = std::get_if<AprilTagSettings>(&settings)) {
+    auto shared = std::make_shared<AprilTagFinder>(*tags);
+    return {finder.name, camera.viewer, [shared](const View& view) { return shared->find(view); }};
+  }
+  if (const auto* plane = std::get_if<PlaneFinder>(&settings)) {
+    return session_finder(finder.name, *plane, camera);
+  }
+  if (const auto* scan = std::get_if<ScanFinder>(&settings)) {
+    return session_finder(finder.name, *scan, camera);
+  }
+  return session_finder(finder.name, std::get<RobotFinder>(settings), camera);
+}
+
+/// Follows the session and says when it is enough.
+class Follower {
+ public:
+  Follower(const CaptureOptions& options, const Robot& robot) {
+    input_.robot = robot;
+    input_.config = read_config(options.calibrate, input_.diagnostics);
+    print(input_.diagnostics);
+    input_.diagnostics.throw_if_errors();
+    if (!options.until.empty()) until_ = parse_accuracy(options.until);
+    follower_.emplace(input_.config, robot, until_ ? until_->frame : "");
+  }
+
+  /// Takes a sample; prints what it tells on one line.
+  void add(const Sample& sample) {
+    const FollowedState state = follower_->add(sample);
+    if (!state.problem.empty()) {
+      fmt::print("  warning: {}\n", printable(state.problem));
+      return;
+    }
+    input_.samples.push_back(sample);
+    for (const int number : state.online.dropped) {
+      fmt::print("  warning: sample {} does not fit the others\n", number);
+    }
+    if (!state.online.fits) {
+      fmt::print(
+          "  warning: this sample does not fit the others ({:.1f} times their noise): "
+          "is everything where it was?\n",
+          state.online.times);
+    }
+    if (state.online.known) print_state(state);
+    enough_ = until_ && until_->reached(state.online) && is_confirmed();
+  }
+
+  [[nodiscard]] bool enough() const { return enough_; }
+
+ private:
+  void print_state(const FollowedState& state) const {
+    const auto [frame, in] = follower_->frames();
+    fmt::print("  '{}' in '{}': +- {:.2f} mm, {:.3f} deg", frame, in, 1e3 * state.online.position,
+               state.online.rotation / kDegree);
+    if (state.next) {
+      const bool turns = input_.robot.joint(state.next->joint).type != JointType::prismatic;
+      fmt::print("; next, move {} by {:+.0f} {}", state.next->joint,
+                 turns ? state.next->change / kDegree : 1e3 * state.next->change,
+                 turns ? "deg" : "mm");
+    }
+    fmt::print("\n");
+  }
+
+  /// True if the whole calibration agrees: it is usable, and knows the pose as well.
+  [[nodiscard]] bool is_confirmed() const {
+    const Findings findings = fit(input_, {}, {}, {}).findings;
+    if (findings.judgement.verdict == Grade::do_not_use) return false;
+    const std::optional<PoseUncertainty>& pose = findings.assessments.back().pose;
+    if (!pose || !until_->frame.empty()) return true;
+    OnlineState whole;
+    whole.known = pose->determined;
+    whole.position = pose->position;
+    whole.rotation = pose->rotation;
+    return until_->reached(whole);
+  }
+
+  Input input_;
+  std::optional<Accuracy> until_;
+  std::optional<SessionFollower> follower_;
+  bool enough_ = false;
+};
+
+/// Prints what became of a pose: one line, or two.
+void print_pose(std::size_t number, std::size_t count, const CapturedPose& captured) {
+  std::string text;
+  for (const FinderOutcome& outcome : captured.outcomes) {
+    const Found& found = outcome.found;
+    text += text.empty() ? "" : "; ";
+    text += found ? fmt::format("{}: {}", outcome.finder,
+                                counted(found.observations.front().features.size(), "feature"))
+                  : fmt::format("{}: nothing, {}", outcome.finder, found.refusal);
+    if (found && !found.refusal.empty()) text += " (" + found.refusal + ")";
+  }
+  if (!captured.failure.empty()) text = "skipped: " + captured.failure;
+  const std::string of = count > 0 ? fmt::format(" of {}", count) : "";
+  fmt::print("pose {}{}: {}\n", number, of, printable(text));
+  std::fflush(stdout);
+}
+
+/// The poses of the session: a list, or wherever a person puts the robot.
+NextPose next_pose(const CaptureOptions& options, const std::vector<CapturePose>& poses) {
+  if (!options.manual) return poses_of(poses);
+  return []() -> std::optional<CapturePose> {
+    fmt::print("put the robot into the next pose, then press Enter; q ends the session\n");
+    std::fflush(stdout);
+    std::string line;
+    if (!std::getline(std::cin, line) || line == "q") return std::nullopt;
+    return CapturePose{};
+  };
+}
+
+/// The samples of an earlier session; none if there was none.
+std::vector<Sample> earlier_samples(const CaptureOptions& options) {
+  if (!options.resume || !std::filesystem::exists(options.output)) return {};
+  Diagnostics diagnostics;
+  std::vector<Sample> samples = read_recordings({options.output}, diagnostics).samples;
+  print(diagnostics);
+  diagnostics.throw_if_errors();
+  return samples;
+}
+
+void check(const CaptureOptions& options) {
+  (void)output_encoding(options.output);
+  if (!options.resume) check_output(options.output, {options.config, options.urdf}, options.force);
+  if (options.manual == options.poses.empty()) return;
+  throw InputError(options.manual ? "--manual: a person moves the robot, so --poses has no use"
+                                  : "--poses is required, or --manual");
+}
+
+/// A session and what it has recorded.
+struct Session {
+  const CaptureOptions& options;
+  std::string urdf;  ///< text
+  Robot robot;
+  std::vector<CapturePose> poses;
+  std::vector<Sample> samples;  ///< those of an earlier session first
+  std::optional<Follower> follower;
+  std::size_t done = 0;  ///< poses
+  Stamp spent{};         ///< on the robot's clock
+
+  /// Prints, writes and follows what came of a pose.
+  void take(const CapturedPose& captured) {
+    print_pose(++done, poses.size(), captured);
+    spent += captured.duration;
+    if (captured.samples.empty()) return;
+    samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
+    write_recording(options.output, samples, urdf);
+    for (const Sample& sample : captured.samples) {
+      if (follower) follower->add(sample);
+    }
+  }
+
+  /// Runs until the last pose, Ctrl-C or the accuracy.
+  /// @returns  why the robot cannot be reached any more; empty if it can
+  [[nodiscard]] std::string run(const CaptureConfig& config) {
+    AnyRobot hardware = connect(options.robot, config, robot);
+    std::vector<SessionFinder> finders;
+    for (const CaptureFinder& finder : config.finders) {
+      finders.push_back(finder_of(finder, robot, hardware));
+    }
+    const NextPose from_list = next_pose(options, poses);
+    const NextPose next = [&]() -> std::optional<CapturePose> {
+      if (stop_asked != 0 || (follower && follower->enough())) return std::nullopt;
+      return from_list();
+    };
+    SessionOptions session;
+    session.velocity_factor = options.velocity;
+    stop_asked = 0;
+    std::signal(SIGINT, ask_to_stop);
+    std::string lost;
+    try {
+      run_session(
+          hardware.arm, next, finders, [&](const CapturedPose& pose) { take(pose); }, session);
+    } catch (const ConnectionError& error) {
+      lost = error.what();
+    }
+    std::signal(SIGINT, SIG_DFL);
+    return lost;
+  }
+};
+
+/// The result folder of `--result`.
+int calibrate_samples(const CaptureOptions& options) {
+  CalibrateOptions calibrating;
+  calibrating.urdf = options.urdf;
+  calibrating.config = options.calibrate;
+  calibrating.samples = {options.output};
+  calibrating.output = options.result;
+  calibrating.force = options.force;
+  return calibrate(calibrating);
+}
+
+}  // namespace
+
+int capture(const CaptureOptions& options) {
+  check(options);
+  Diagnostics diagnostics;
+  const CaptureConfig config = read_capture_config(options.config, diagnostics);
+  print(diagnostics);
+  if (!diagnostics.errors.empty()) return kBadInput;
+  Session session{options, read_urdf_text(options.urdf), {}, {}, earlier_samples(options), {}};
+  session.robot = parse_urdf(session.urdf, options.urdf);
+  const std::size_t before = session.samples.size();
+  if (!options.manual)
+    session.poses = poses_left(read_poses(options.poses, config), session.samples);
+  if (!options.calibrate.empty()) {
+    session.follower.emplace(options, session.robot);
+    for (const Sample& sample : session.samples) session.follower->add(sample);
+  }
+  const std::string lost = session.run(config);
+  const double minutes = std::chrono::duration<double, std::ratio<60>>(session.spent).count();
+  fmt::print("{}: {} of {} in {:.1f} minutes of the robot's time{}\n", options.output,
+             counted(session.samples.size(), "sample"), counted(session.done, "pose"), minutes,
+             before > 0 ? fmt::format(" ({} from before)", before) : "");
+  if (session.follower && session.follower->enough()) {
+    fmt::print("'{}' is reached\n", options.until);
+  }
+  std::fflush(stdout);
+  if (!lost.empty()) {
+    fmt::print(stderr, "error: {}; --resume goes on from here\n", printable(lost));
+    return kBadInput;
+  }
+  if (session.samples.empty()) {
+    fmt::print(stderr, "error: nothing was found in any pose\n");
+    return kBadInput;
+  }
+  return options.result.empty() ? kDone : calibrate_samples(options);
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_link.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "input.hpp"
+#include "kinecal/io/bridge/pipe_robot.hpp"
+#include "kinecal/io/bridge/ros_robot.hpp"
+#include "kinecal/io/simulation/simulation_plan.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// A robot that is arm, camera and lamp at once: each finder uses the same ones.
+template <class R>
+AnyRobot whole_robot(std::shared_ptr<R> robot, const CaptureConfig& config) {
+  AnyRobot any{any_arm(*robot), {}, {}};
+  for (const CaptureFinder& finder : config.finders) {
+    any.cameras[finder.name] = any_camera(*robot);
+    any.lamps[finder.name] = any_lamp(*robot);
+  }
+  any.owner = std::move(robot);
+  return any;
+}
+
+AnyRobot simulated(const std::string& scene, const CaptureConfig& config, const Robot& robot) {
+  Diagnostics diagnostics;
+  const SimulationPlan plan = read_simulation(robot, scene, "", 0, diagnostics);
+  print(diagnostics);
+  diagnostics.throw_if_errors();
+  return whole_robot(std::make_shared<SimulatedRobot>(plan.setup), config);
+}
+
+/// What is behind a bridge.
+struct RosParts {
+  explicit RosParts(const std::string& url) : bridge({.url = url}) {}
+
+  RosBridge bridge;
+  std::unique_ptr<RosArm> arm = {};
+  std::vector<std::unique_ptr<RosCamera>> cameras = {};
+  std::vector<std::unique_ptr<RosLamp>> lamps = {};
+};
+
+AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, const Robot& robot) {
+  auto parts = std::make_shared<RosParts>(url);
+  RosArmOptions arm;
+  arm.duration = config.duration;
+  for (const CaptureChain& chain : config.chains) {
+    arm.controllers.push_back({chain.topic, chain.joints});
+    for (const std::string& joint : chain.joints) {
+      if (robot.has_joint(joint)) continue;
+      throw InputError("chain '" + chain.name + "': the robot has no joint '" + joint + "'");
+    }
+  }
+  parts->arm = std::make_unique<RosArm>(parts->bridge, arm);
+  AnyRobot any{any_arm(*parts->arm), {}, {}};
+  for (const CaptureFinder& finder : config.finders) {
+    const bool wants_image = std::holds_alternative<CheckerboardSettings>(finder.settings) ||
+                             std::holds_alternative<AprilTagSettings>(finder.settings);
+    const bool is_2d = wants_image && finder.type.ends_with("2d");
+    RosCameraOptions options;
+    (is_2d ? options.image : options.cloud) = finder.topic;
+    options.camera_info = finder.camera_info;
+    parts->cameras.push_back(std::make_unique<RosCamera>(parts->bridge, options));
+    any.cameras[finder.name] = any_camera(*parts->cameras.back());
+    if (finder.action.empty()) continue;
+    parts->lamps.push_back(std::make_unique<RosLamp>(parts->bridge, finder.action));
+    any.lamps[finder.name] = any_lamp(*parts->lamps.back());
+  }
+  any.owner = std::move(parts);
+  return any;
+}
+
+}  // namespace
+
+AnyRobot connect(const std::string& address, const CaptureConfig& config, const Robot& robot) {
+  const auto after = [&](const std::string& scheme) { return address.substr(scheme.size()); };
+  if (address.starts_with("ws://")) return behind_bridge(address, config, robot);
+  if (address.starts_with("pipe:")) {
+    return whole_robot(std::make_shared<PipeRobot>(PipeOptions{.command = after("pipe:")}), config);
+  }
+  if (address.starts_with("simulated:")) return simulated(after("simulated:"), config, robot);
+  throw InputError("--robot: '" + address +
+                   "' is not an address; write ws://HOST:PORT, pipe:COMMAND or simulated:SCENE");
+}
+
+}  // namespace kinecal::cli

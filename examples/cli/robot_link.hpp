@@ -1,0 +1,22 @@
+// The robot of a capture session, by its address.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/capture/any_robot.hpp"
+#include "kinecal/io/capture/capture_config.hpp"
+
+namespace kinecal::cli {
+
+/// Connects to a robot.
+///   ws://HOST:PORT    ROS 1 or ROS 2 behind foxglove_bridge
+///   pipe:COMMAND      a program that speaks JSON lines: examples/pipe_robot
+///   simulated:SCENE   a simulation; SCENE may be empty
+/// @param robot  by the URDF
+/// @throws InputError       if the address is none of these, or the scene is wrong
+/// @throws ConnectionError  if the robot cannot be reached
+[[nodiscard]] AnyRobot connect(const std::string& address, const CaptureConfig& config,
+                               const Robot& robot);
+
+}  // namespace kinecal::cli
