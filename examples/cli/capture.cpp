@@ -27,6 +27,7 @@
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "output_file.hpp"
 #include "robot_link.hpp"
+#include "truth.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -134,6 +135,8 @@ class Follower {
   }
 
   [[nodiscard]] bool enough() const { return enough_; }
+  /// The calibration of all samples so far.
+  [[nodiscard]] Fit fit_all() const { return fit(input_, {}, {}, {}); }
 
  private:
   void print_state(const FollowedState& state) const {
@@ -151,7 +154,7 @@ class Follower {
 
   /// True if the whole calibration agrees: it is usable, and knows the pose as well.
   [[nodiscard]] bool is_confirmed() const {
-    const Findings findings = fit(input_, {}, {}, {}).findings;
+    const Findings findings = fit_all().findings;
     if (findings.judgement.verdict == Grade::do_not_use) return false;
     const std::optional<PoseUncertainty>& pose = findings.assessments.back().pose;
     if (!pose || !until_->frame.empty()) return true;
@@ -312,7 +315,12 @@ int capture(const CaptureOptions& options) {
     fmt::print(stderr, "error: nothing was found in any pose\n");
     return kBadInput;
   }
-  return options.result.empty() ? kDone : calibrate_samples(options);
+  const int code = options.result.empty() ? kDone : calibrate_samples(options);
+  if (session.follower && options.robot.starts_with(kSimulated)) {
+    const std::string scene = options.robot.substr(kSimulated.size());
+    fmt::print("{}", truth_text(session.robot, scene, session.follower->fit_all()));
+  }
+  return code;
 }
 
 }  // namespace kinecal::cli

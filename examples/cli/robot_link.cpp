@@ -75,12 +75,12 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
 }  // namespace
 
 AnyRobot connect(const std::string& address, const CaptureConfig& config, const Robot& robot) {
-  const auto after = [&](const std::string& scheme) { return address.substr(scheme.size()); };
+  const auto after = [&](std::string_view scheme) { return address.substr(scheme.size()); };
   if (address.starts_with("ws://")) return behind_bridge(address, config, robot);
   if (address.starts_with("pipe:")) {
     return whole_robot(std::make_shared<PipeRobot>(PipeOptions{.command = after("pipe:")}), config);
   }
-  if (address.starts_with("simulated:")) return simulated(after("simulated:"), config, robot);
+  if (address.starts_with(kSimulated)) return simulated(after(kSimulated), config, robot);
   throw InputError("--robot: '" + address +
                    "' is not an address; write ws://HOST:PORT, pipe:COMMAND or simulated:SCENE");
 }

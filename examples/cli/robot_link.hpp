@@ -3,11 +3,15 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "kinecal/capture/any_robot.hpp"
 #include "kinecal/io/capture/capture_config.hpp"
 
 namespace kinecal::cli {
+
+/// How the address of a simulation begins.
+inline constexpr std::string_view kSimulated = "simulated:";
 
 /// Connects to a robot.
 ///   ws://HOST:PORT    ROS 1 or ROS 2 behind foxglove_bridge
