@@ -89,8 +89,8 @@ KINECAL_INLINE std::string registration_problem(const View& view) {
   if (errors.empty()) return "the cloud has no valid point";
   const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
   std::nth_element(errors.begin(), middle, errors.end());
-  constexpr double kMostPixels = 3.0;
-  if (*middle <= kMostPixels) return "";
+  constexpr double kMostPixels = 3.0, kMostOfWidth = 0.02;  // a driver may have its own intrinsics
+  if (*middle <= std::max(kMostPixels, kMostOfWidth * view.image.width)) return "";
   return "the points of the cloud are " + reading(*middle, "px") +
          " from where camera_info sees them; are both of the same camera?";
 }
