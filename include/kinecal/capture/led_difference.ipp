@@ -44,8 +44,9 @@ inline LedLight led_light(const std::array<Image<std::int32_t>, 2>& halves, int 
   if (pulses < 2 || box.right < box.left || box.bottom < box.top) return part;
   part = {Image<float>(box.right - box.left + 1, box.bottom - box.top + 1), box.left, box.top,
           within};
-  const float even = static_cast<float>(pulses) / static_cast<float>((pulses + 1) / 2);
-  const float odd = static_cast<float>(pulses) / static_cast<float>(pulses / 2);
+  const int odd_pulses = pulses / 2, even_pulses = pulses - odd_pulses;
+  const float even = static_cast<float>(pulses) / static_cast<float>(even_pulses);
+  const float odd = static_cast<float>(pulses) / static_cast<float>(odd_pulses);
   for (int v = 0; v < part.light.height; ++v) {
     const std::int32_t* a = &halves[0](box.left, box.top + v);
     const std::int32_t* b = &halves[1](box.left, box.top + v);

@@ -36,8 +36,9 @@ inline std::vector<double> projection_errors(const View& view) {
     const Vector3<double> point = view.points.pixels[i].template cast<double>();
     if (!point.allFinite() || !(point.z() > 0.0)) continue;
     const auto width = static_cast<std::size_t>(view.points.width);
-    const double u = p[0] * point.x() / point.z() + p[2] - static_cast<double>(i % width);
-    const double v = p[5] * point.y() / point.z() + p[6] - static_cast<double>(i / width);
+    const std::size_t column = i % width, row = i / width;
+    const double u = p[0] * point.x() / point.z() + p[2] - static_cast<double>(column);
+    const double v = p[5] * point.y() / point.z() + p[6] - static_cast<double>(row);
     errors.push_back(std::hypot(u, v));
   }
   return errors;
