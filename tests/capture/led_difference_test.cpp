@@ -108,6 +108,8 @@ TEST(LedDifference, LooksInACircleOnly) {
   }
   EXPECT_NEAR(difference.spot(500.0, PixelCircle{110.0, 100.0, 30.0}).u, 100.0, 0.3);
   EXPECT_EQ(difference.spot(500.0, PixelCircle{110.0, 100.0, 30.0}).problem, "");
+  EXPECT_NEAR(difference.spot(500.0, PixelCircle{69.0, 100.0, 30.0}).u, 100.0, 0.5)
+      << "a light at the edge of the circle is not cut";
   EXPECT_NE(difference.spot(500.0, PixelCircle{30.0, 30.0, 30.0}).problem, "");
   EXPECT_NE(difference.spot(500.0, PixelCircle{-1e9, 1e9, 30.0}).problem, "");
   EXPECT_NE(difference.spot(500.0, PixelCircle{std::nan(""), 0.0, 30.0}).problem, "");

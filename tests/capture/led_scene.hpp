@@ -86,7 +86,7 @@ struct LedScene {
 
   GrayImage image() {
     GrayImage out(640, 480);
-    const double t = std::chrono::duration<double>(now - start).count();
+    const double t = std::chrono::duration<double>(now - kStart).count();
     const int shift = static_cast<int>(sway * views);
     const double at = std::fmod(80.0 + walker * views, 560.0);
     for (int v = 0; v < 480; ++v) {
@@ -158,8 +158,8 @@ struct LedScene {
     int code;
   };
   std::vector<Switch> history;
-  static constexpr Stamp start = std::chrono::seconds(100);
-  Stamp now = start;
+  static constexpr Stamp kStart = std::chrono::seconds(100);
+  Stamp now = kStart;
   int views = 0;
   std::function<void(View&)> edit;  ///< what is wrong with views
   std::mt19937 random{7};

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "capture/led_scene.hpp"
 
 namespace kinecal {
@@ -48,6 +50,33 @@ TEST(LedSearch, IsOverWhereViewsCannotBeUsed) {
   small.image = GrayImage(480, 640);
   other.pulse(0, small, dark);
   EXPECT_THAT(other.found().refusal, testing::HasSubstr("differ in size"));
+}
+
+TEST(LedSearch, TakesViewsOfAnySizeAndContent) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const int size : {1, 2, 7}) {
+    for (const double wrong : {0.0, nan, 1e300}) {
+      LedFinder finder = LedScene{}.finder();
+      finder.frame_T_camera = [wrong](const View&) {
+        Pose<double> pose;
+        pose.translation = {wrong, -0.5, wrong};
+        return pose;
+      };
+      View view;
+      view.camera = vga_camera();
+      view.camera->width = view.camera->height = size;
+      view.image = GrayImage(size, size, 30);
+      view.points = PointCloud(size, size, Vector3<float>(-0.6F, -0.45F, 1.0F));
+      view.points(0, 0) = no_point();
+      View lit = view;
+      lit.image(0, 0) = 255;
+      LedSearch search(finder, view, view);
+      while (const auto led = search.next()) search.pulse(*led, lit, view);
+      const Found found = search.found();
+      EXPECT_FALSE(found) << size << ' ' << wrong;
+      EXPECT_NE(found.refusal, "");
+    }
+  }
 }
 
 }  // namespace

@@ -34,7 +34,10 @@ inline UsualChange usual_change(const GrayImage& earlier, const GrayImage& later
   const std::vector<std::size_t> some = thinned(earlier.pixels.size(), kPixels);
   const auto total = static_cast<int>(some.size());
   const auto change = [&](std::size_t i) { return int{later.pixels[i]} - int{earlier.pixels[i]}; };
-  for (const std::size_t i : some) ++changes[static_cast<std::size_t>(change(i) + 255)];
+  for (const std::size_t i : some) {
+    const int of_zero = change(i) + 255;
+    ++changes[static_cast<std::size_t>(of_zero)];
+  }
   const int middle = median_index(changes, total) - 255;
   for (const std::size_t i : some) {
     ++deviations[static_cast<std::size_t>(std::min(510, std::abs(change(i) - middle)))];

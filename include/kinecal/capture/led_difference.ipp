@@ -13,7 +13,13 @@ namespace detail {
 /// Accumulated differences in a part of the image.
 struct LedLight {
   Image<float> light;
-  int left = 0, top = 0;  ///< of the part
+  int left = 0, top = 0;                   ///< of the part
+  std::optional<PixelCircle> within = {};  ///< where its brightest pixel may be
+
+  /// True if a pixel of the part may be the brightest.
+  [[nodiscard]] bool may_be(int u, int v) const {
+    return !within || std::hypot(left + u - within->u, top + v - within->v) <= within->radius;
+  }
 };
 
 inline PixelBox led_box(const PixelCircle& circle, int width, int height) {
@@ -26,17 +32,21 @@ inline PixelBox led_box(const PixelCircle& circle, int width, int height) {
           std::min(height - 1, pixel(circle.v + circle.radius + 1.0, height - 1))};
 }
 
-/// The lesser of the means of both halves, times the number of pulses; 0 outside of the circle.
+/// The lesser of the means of both halves, times the number of pulses, in a circle and a
+/// little around it: a light at its edge is not to be cut.
 inline LedLight led_light(const std::array<Image<std::int32_t>, 2>& halves, int pulses,
                           const std::optional<PixelCircle>& within) {
   const int width = halves[0].width, height = halves[0].height;
   PixelBox box{0, 0, width - 1, height - 1};
-  if (within) box = led_box(*within, width, height);
+  constexpr double kAround = 20.0;  // pixels
+  if (within) box = led_box({within->u, within->v, within->radius + kAround}, width, height);
   LedLight part;
   if (pulses < 2 || box.right < box.left || box.bottom < box.top) return part;
-  part = {Image<float>(box.right - box.left + 1, box.bottom - box.top + 1), box.left, box.top};
-  const float even = static_cast<float>(pulses) / static_cast<float>((pulses + 1) / 2);
-  const float odd = static_cast<float>(pulses) / static_cast<float>(pulses / 2);
+  part = {Image<float>(box.right - box.left + 1, box.bottom - box.top + 1), box.left, box.top,
+          within};
+  const int odd_pulses = pulses / 2, even_pulses = pulses - odd_pulses;
+  const float even = static_cast<float>(pulses) / static_cast<float>(even_pulses);
+  const float odd = static_cast<float>(pulses) / static_cast<float>(odd_pulses);
   for (int v = 0; v < part.light.height; ++v) {
     const std::int32_t* a = &halves[0](box.left, box.top + v);
     const std::int32_t* b = &halves[1](box.left, box.top + v);
@@ -44,22 +54,18 @@ inline LedLight led_light(const std::array<Image<std::int32_t>, 2>& halves, int 
     for (int u = 0; u < part.light.width; ++u) {
       sum[u] = std::min(even * static_cast<float>(a[u]), odd * static_cast<float>(b[u]));
     }
-    if (!within) continue;
-    const double dv = box.top + v - within->v;
-    for (int u = 0; u < part.light.width; ++u) {
-      if (std::hypot(box.left + u - within->u, dv) > within->radius) sum[u] = 0.0F;
-    }
   }
   return part;
 }
 
 /// The brightest pixel outside of a box.
-inline LightPixel brightest_pixel(const Image<float>& light, const PixelBox& except = {}) {
+inline LightPixel brightest_pixel(const LedLight& part, const PixelBox& except = {}) {
+  const Image<float>& light = part.light;
   LightPixel best{-1, -1};
   float most = 0.0F;
   for (int v = 0; v < light.height; ++v) {
     for (int u = 0; u < light.width; ++u) {
-      if (light(u, v) <= most || except.contains(u, v)) continue;
+      if (light(u, v) <= most || except.contains(u, v) || !part.may_be(u, v)) continue;
       most = light(u, v);
       best = {u, v};
     }
@@ -68,8 +74,8 @@ inline LightPixel brightest_pixel(const Image<float>& light, const PixelBox& exc
 }
 
 /// What speaks against a light that is bright enough; empty if nothing does.
-/// @param pixels  of the whole image
-inline std::string led_doubt(const LightBlob& blob, const LedSpot& spot, const Image<float>& light,
+/// @param whole  the accumulated differences of the whole image
+inline std::string led_doubt(const LightBlob& blob, const LedSpot& spot, const LedLight& part,
                              const Image<std::int32_t>& whole) {
   constexpr double kMostElongated = 2.5, kRival = 0.5;
   constexpr std::size_t kMostOfImage = 50;  // one part in this many
@@ -86,13 +92,13 @@ inline std::string led_doubt(const LightBlob& blob, const LedSpot& spot, const I
     return "its light is elongated, " + size + "; it moves, or is a reflection";
   }
   const int near = 3 + std::max(blob.box.right - blob.box.left, blob.box.bottom - blob.box.top);
-  const LightPixel rival = brightest_pixel(light, blob.box.grown(near));
-  if (rival.u < 0 || static_cast<double>(light(rival.u, rival.v)) < kRival * spot.peak) return "";
+  const LightPixel rival = brightest_pixel(part, blob.box.grown(near));
+  if (rival.u < 0) return "";
+  const double share = static_cast<double>(part.light(rival.u, rival.v)) / spot.peak;
+  if (share < kRival) return "";
   const int du = rival.u - static_cast<int>(blob.u), dv = rival.v - static_cast<int>(blob.v);
   return "it is ambiguous: another light, " + std::to_string(static_cast<int>(std::hypot(du, dv))) +
-         " pixels away, has " +
-         std::to_string(
-             static_cast<int>(100.0 * static_cast<double>(light(rival.u, rival.v)) / spot.peak)) +
+         " pixels away, has " + std::to_string(static_cast<int>(100.0 * share)) +
          " % of its brightness";
 }
 
@@ -133,7 +139,7 @@ KINECAL_INLINE LedSpot LedDifference::spot(double threshold,
            std::to_string(static_cast<int>(threshold));
   };
   const detail::LedLight part = detail::led_light(halves_, pulses_, within);
-  const LightPixel peak = detail::brightest_pixel(part.light);
+  const LightPixel peak = detail::brightest_pixel(part);
   spot.problem = weak();
   if (peak.u < 0) return spot;
   spot.peak = static_cast<double>(part.light(peak.u, peak.v));
@@ -146,7 +152,7 @@ KINECAL_INLINE LedSpot LedDifference::spot(double threshold,
   spot.v = part.top + blob.v;
   spot.box = {part.left + blob.box.left, part.top + blob.box.top, part.left + blob.box.right,
               part.top + blob.box.bottom};
-  spot.problem = detail::led_doubt(blob, spot, part.light, halves_[0]);
+  spot.problem = detail::led_doubt(blob, spot, part, halves_[0]);
   return spot;
 }
 

@@ -55,7 +55,7 @@ inline ScoredPlane dominating_plane(const PlanePoints& points, const PlaneSearch
     return static_cast<double>(plane.count) /
            static_cast<double>(std::max<std::size_t>(1, points.size()));
   };
-  const ScoredPlane best = best_plane(points, search, by_prior);
+  ScoredPlane best = best_plane(points, search, by_prior);
   if (best.count >= 3 && share(best) >= search.least_share) return best;
   const ScoredPlane any = by_prior ? best_plane(points, search, false) : best;
   if (any.count >= 3 && share(any) >= search.least_share) {

@@ -46,7 +46,8 @@ KINECAL_INLINE Observation observed_points(const View& view, const std::string& 
     feature.point = view.points.pixels[i].cast<double>();
     observation.features.push_back(feature);
     if (view.points.height > 1) {
-      marks.push_back({static_cast<double>(i % width), static_cast<double>(i / width), {}});
+      const std::size_t column = i % width, row = i / width;
+      marks.push_back({static_cast<double>(column), static_cast<double>(row), {}});
     }
   }
   return observation;

@@ -36,8 +36,9 @@ inline std::vector<double> projection_errors(const View& view) {
     const Vector3<double> point = view.points.pixels[i].template cast<double>();
     if (!point.allFinite() || !(point.z() > 0.0)) continue;
     const auto width = static_cast<std::size_t>(view.points.width);
-    const double u = p[0] * point.x() / point.z() + p[2] - static_cast<double>(i % width);
-    const double v = p[5] * point.y() / point.z() + p[6] - static_cast<double>(i / width);
+    const std::size_t column = i % width, row = i / width;
+    const double u = p[0] * point.x() / point.z() + p[2] - static_cast<double>(column);
+    const double v = p[5] * point.y() / point.z() + p[6] - static_cast<double>(row);
     errors.push_back(std::hypot(u, v));
   }
   return errors;
@@ -90,8 +91,8 @@ KINECAL_INLINE std::string registration_problem(const View& view) {
   if (errors.empty()) return "the cloud has no valid point";
   const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
   std::nth_element(errors.begin(), middle, errors.end());
-  constexpr double kMostPixels = 3.0;
-  if (*middle <= kMostPixels) return "";
+  constexpr double kMostPixels = 3.0, kMostOfWidth = 0.02;  // a driver may have its own intrinsics
+  if (*middle <= std::max(kMostPixels, kMostOfWidth * view.image.width)) return "";
   return "the points of the cloud are " + reading(*middle, "px") +
          " from where camera_info sees them; are both of the same camera?";
 }
