@@ -7,7 +7,7 @@
 
 #include "support/board_images.hpp"
 
-#ifdef KINECAL_HAVE_OPENCV
+#ifdef KINECAL_HAVE_ARUCO
 #include <opencv2/aruco/charuco.hpp>
 #endif
 
@@ -30,7 +30,7 @@ CharucoSettings board_of(int squares_x, int squares_y) {
   return settings;
 }
 
-#ifdef KINECAL_HAVE_OPENCV
+#ifdef KINECAL_HAVE_ARUCO
 
 constexpr int kCell = 96;  // pixels of a square in the drawing
 

@@ -168,7 +168,7 @@ KINECAL_INLINE CharucoFinder::CharucoFinder(CharucoSettings settings)
 }
 
 KINECAL_INLINE Found CharucoFinder::find(const View& view) const {
-  if (const auto fault = detail::opencv_fault("ChArUco boards"); !fault.empty()) {
+  if (const auto fault = detail::aruco_fault(); !fault.empty()) {
     return refused(fault);
   }
   if (const auto fault = view_fault(view, settings_.target.corners); !fault.empty()) {

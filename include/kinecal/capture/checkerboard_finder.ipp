@@ -84,7 +84,7 @@ KINECAL_INLINE CheckerboardFinder::CheckerboardFinder(CheckerboardSettings setti
 
 KINECAL_INLINE Found CheckerboardFinder::find(const View& view) const {
   const std::string board = detail::board_text(settings_);
-  if (const auto fault = detail::opencv_fault("checkerboards"); !fault.empty()) {
+  if (const auto fault = detail::chessboard_fault(); !fault.empty()) {
     return refused(fault);
   }
   if (const auto fault = view_fault(view, settings_.target.corners); !fault.empty()) {
