@@ -14,7 +14,7 @@ namespace detail {
 
 inline constexpr double kFarthestDepth = 12.0;  // from a corner, pixels: 600 points are enough
 
-[[nodiscard]] KINECAL_INLINE std::string pixels_text(int width, int height) {
+KINECAL_INLINE std::string pixels_text(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
 
