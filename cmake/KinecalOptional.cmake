@@ -24,19 +24,24 @@ function(kinecal_add_optional user library)
     target_compile_definitions(kinecal_${user} PUBLIC ${ARG_DEFINE})
   endif()
   set(prefix KINECAL_OPTIONAL_${user})
-  set(${prefix}_LIBRARIES ${${prefix}_LIBRARIES} ${library} PARENT_SCOPE)
+  set(libraries ${${prefix}_LIBRARIES} ${library})
+  set(packages ${KINECAL_OPTIONAL_PACKAGES} ${ARG_DEBIAN})
+  list(REMOVE_DUPLICATES libraries)
+  list(REMOVE_DUPLICATES packages)
+  set(${prefix}_LIBRARIES ${libraries} PARENT_SCOPE)
   set(${prefix}_FLAGS "${${prefix}_FLAGS} ${ARG_FLAGS}" PARENT_SCOPE)
-  set(KINECAL_OPTIONAL_PACKAGES ${KINECAL_OPTIONAL_PACKAGES} ${ARG_DEBIAN} PARENT_SCOPE)
+  set(KINECAL_OPTIONAL_PACKAGES ${packages} PARENT_SCOPE)
 endfunction()
 
 find_package(apriltag QUIET)
-find_package(OpenCV 4 QUIET COMPONENTS core imgproc calib3d aruco)
+find_package(OpenCV 4 QUIET COMPONENTS core imgproc calib3d OPTIONAL_COMPONENTS aruco)
 kinecal_add_optional(capture apriltag TARGETS apriltag::apriltag DEBIAN libapriltag-dev
   FLAGS -lapriltag DEFINE KINECAL_HAVE_APRILTAG FOR "AprilTags")
+kinecal_add_optional(capture OpenCV TARGETS opencv_core opencv_imgproc opencv_calib3d
+  DEBIAN libopencv-dev FLAGS "-lopencv_calib3d -lopencv_imgproc -lopencv_core"
+  DEFINE KINECAL_HAVE_OPENCV FOR "checkerboards")
 kinecal_add_optional(capture OpenCV TARGETS opencv_core opencv_imgproc opencv_calib3d opencv_aruco
-  DEBIAN libopencv-dev
-  FLAGS "-lopencv_aruco -lopencv_calib3d -lopencv_imgproc -lopencv_core"
-  DEFINE KINECAL_HAVE_OPENCV FOR "checkerboards and ChArUco boards")
+  DEBIAN libopencv-dev FLAGS -lopencv_aruco DEFINE KINECAL_HAVE_ARUCO FOR "ChArUco boards")
 
 find_package(BZip2 QUIET)
 find_package(SQLite3 QUIET)

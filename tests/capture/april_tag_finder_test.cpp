@@ -4,13 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "support/board_images.hpp"
 
 #ifdef KINECAL_HAVE_APRILTAG
-#include <apriltag/apriltag.h>
-#include <apriltag/tag36h11.h>
+#include "support/tag_images.hpp"
 #endif
 
 namespace kinecal {
@@ -25,8 +23,8 @@ using kinecal::testing::Print;
 using kinecal::testing::Target;
 using ::testing::HasSubstr;
 
-constexpr double kTag = 0.05;
-constexpr double kSpacing = 0.3;
+constexpr double kTag = 0.05;     // as kTagSize
+constexpr double kSpacing = 0.3;  // as kTagSpacing
 
 AprilTagSettings grid(int columns, int rows) {
   AprilTagSettings settings;
@@ -39,45 +37,6 @@ AprilTagSettings grid(int columns, int rows) {
 }
 
 #ifdef KINECAL_HAVE_APRILTAG
-
-/// A tag as libapriltag draws it, with a border of so many bits: brightness of cells from the top
-/// left, its white margin left out.
-GrayImage drawn_tag(int id, int border) {
-  apriltag_family_t* family = tag36h11_create();
-  image_u8_t* drawn = apriltag_to_image(family, id);
-  const int width = family->width_at_border, margin = (drawn->width - width) / 2;
-  GrayImage cells(width + 2 * border - 2, width + 2 * border - 2, 0);
-  for (int v = 0; v < width; ++v) {
-    for (int u = 0; u < width; ++u) {
-      cells(u + border - 1, v + border - 1) = drawn->buf[(v + margin) * drawn->stride + u + margin];
-    }
-  }
-  std::free(drawn->buf);
-  std::free(drawn);
-  tag36h11_destroy(family);
-  return cells;
-}
-
-/// A grid of tags, ids from the bottom left; `twice` puts tag 0 in the last place, too.
-Print tag_grid(int columns, int rows, int border = 1, bool twice = false) {
-  std::vector<GrayImage> tags;
-  for (int i = 0; i < columns * rows; ++i) {
-    tags.push_back(drawn_tag(twice && i + 1 == columns * rows ? 0 : i, border));
-  }
-  return [=](double x, double y) {
-    const double pitch = kTag * (1 + kSpacing), gap = kTag * kSpacing;
-    const double right = columns * pitch, top = rows * pitch;
-    if (x < -gap || y < -gap || x > right || y > top) return -1.0;
-    const int column = static_cast<int>(std::floor(x / pitch)),
-              row = static_cast<int>(std::floor(y / pitch));
-    if (column < 0 || row < 0 || column >= columns || row >= rows) return 1.0;
-    const double a = (x - column * pitch) / kTag, b = (y - row * pitch) / kTag;
-    if (a < 0 || b < 0 || a >= 1 || b >= 1) return 1.0;
-    const GrayImage& cells = tags[static_cast<std::size_t>(row * columns + column)];
-    const int u = static_cast<int>(a * cells.width), v = static_cast<int>((1 - b) * cells.height);
-    return cells(u, std::min(v, cells.height - 1)) > 127 ? 1.0 : 0.0;
-  };
-}
 
 /// The target faces the camera: its y is up, its z towards the viewer.
 Target target_of(const Print& print, int columns, int rows, const Vector3<double>& at,
@@ -107,7 +66,7 @@ double mean_error(const Found& found, const Target& target) {
 }
 
 TEST(AprilTagFinder, FindsCornersOfAGridToATenthOfAPixel) {
-  const Print print = tag_grid(4, 3);
+  const Print print = kinecal::testing::tag_grid(4, 3);
   for (const double roll : {0.0, 1.0, 2.0, -1.5, 3.0}) {
     const Target target = target_of(print, 4, 3, {0.01, 0.0, 0.5}, 0.3, -0.4, roll);
     const Found found = AprilTagFinder(grid(4, 3)).find(view_of({target}));
@@ -118,7 +77,7 @@ TEST(AprilTagFinder, FindsCornersOfAGridToATenthOfAPixel) {
 }
 
 TEST(AprilTagFinder, IdsAreFourTimesTheTagPlusTheCorner) {
-  const Target target = target_of(tag_grid(2, 2), 2, 2, {0, 0, 0.5}, 0, 0, 0);
+  const Target target = target_of(kinecal::testing::tag_grid(2, 2), 2, 2, {0, 0, 0.5}, 0, 0, 0);
   const Found found = AprilTagFinder(grid(2, 2)).find(view_of({target}));
   ASSERT_TRUE(found) << found.refusal;
   const Observation& held = found.observations[1];
@@ -130,7 +89,8 @@ TEST(AprilTagFinder, IdsAreFourTimesTheTagPlusTheCorner) {
 }
 
 TEST(AprilTagFinder, APartOfTheGridIsEnough) {
-  const Target target = target_of(tag_grid(4, 3), 4, 3, {0.2, 0.05, 0.45}, 0.2, 0.2, 0.1);
+  const Target target =
+      target_of(kinecal::testing::tag_grid(4, 3), 4, 3, {0.2, 0.05, 0.45}, 0.2, 0.2, 0.1);
   const Found found = AprilTagFinder(grid(4, 3)).find(view_of({target}));
   ASSERT_TRUE(found) << found.refusal;
   EXPECT_LT(found.observations[0].features.size(), 48u);
@@ -142,7 +102,8 @@ TEST(AprilTagFinder, APartOfTheGridIsEnough) {
 }
 
 TEST(AprilTagFinder, ReadsTheWideBorderOfKalibr) {
-  const Target target = target_of(tag_grid(3, 2, 2), 3, 2, {0, 0, 0.4}, 0.2, 0.2, 0.1);
+  const Target target =
+      target_of(kinecal::testing::tag_grid(3, 2, 2), 3, 2, {0, 0, 0.4}, 0.2, 0.2, 0.1);
   AprilTagSettings settings = grid(3, 2);
   EXPECT_FALSE(AprilTagFinder(settings).find(view_of({target})));
   settings.border = 2;
@@ -153,13 +114,15 @@ TEST(AprilTagFinder, ReadsTheWideBorderOfKalibr) {
 }
 
 TEST(AprilTagFinder, ATagThatIsSeenTwiceIsRefused) {
-  const Target target = target_of(tag_grid(3, 2, 1, true), 3, 2, {0, 0, 0.5}, 0, 0.2, 0);
+  const Target target =
+      target_of(kinecal::testing::tag_grid(3, 2, 1, true), 3, 2, {0, 0, 0.5}, 0, 0.2, 0);
   EXPECT_THAT(AprilTagFinder(grid(3, 2)).find(view_of({target})).refusal,
               HasSubstr("tag 0 is seen twice"));
 }
 
 TEST(AprilTagFinder, SingleTagsHaveTheirOwnSizesAndPlacesAndOthersAreLeftAlone) {
-  const Target target = target_of(tag_grid(3, 2), 3, 2, {0, 0, 0.5}, 0.2, 0.2, 0.1);
+  const Target target =
+      target_of(kinecal::testing::tag_grid(3, 2), 3, 2, {0, 0, 0.5}, 0.2, 0.2, 0.1);
   AprilTagSettings settings;
   settings.tags = {{4, kTag, {1.3 * kTag + kTag / 2, 1.3 * kTag + kTag / 2, 0.0}}};
   const Found found = AprilTagFinder(settings).find(view_of({target}));
@@ -170,7 +133,7 @@ TEST(AprilTagFinder, SingleTagsHaveTheirOwnSizesAndPlacesAndOthersAreLeftAlone) 
 }
 
 TEST(AprilTagFinder, BlurAndSmallTagsAreRefused) {
-  const Print print = tag_grid(2, 2);
+  const Print print = kinecal::testing::tag_grid(2, 2);
   Exposure moving;
   moving.motion = 9;
   const Target near = target_of(print, 2, 2, {0, 0, 0.3}, 0, 0.1, 0);

@@ -203,6 +203,9 @@ TEST(CheckerboardFinder, ViewsWithoutImageOrCameraInfoAreRefused) {
   view.camera = camera_640();
   EXPECT_EQ(finder_of(5, 4).find(view).refusal,
             "camera_info is of 640 x 480 pixels, the image has 8 x 8");
+  view.camera->width = view.camera->height = 8;
+  EXPECT_EQ(finder_of(5, 4).find(view).refusal,
+            "an image of 8 x 8 pixels is too small for a checkerboard of 5 x 4 corners");
 #endif
 }
 

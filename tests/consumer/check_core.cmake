@@ -51,4 +51,8 @@ flags_of(io)
 execute_process(COMMAND ${COMPILER} -std=c++20 ${WORK}/consumer/io.cpp ${flags}
                         -o ${WORK}/core/io COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/core/io ${WORK}/consumer/pendulum.urdf COMMAND_ERROR_IS_FATAL ANY)
+flags_of(capture)
+execute_process(COMMAND ${COMPILER} -std=c++20 ${WORK}/consumer/finders.cpp ${flags}
+                        -o ${WORK}/core/finders COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK}/core/finders COMMAND_ERROR_IS_FATAL ANY)
 file(RENAME ${WORK}/moved ${prefix})

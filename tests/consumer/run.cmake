@@ -80,6 +80,7 @@ execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/build ${
                         ${consumer_options} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/build/consumer COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK}/build/finders COMMAND_ERROR_IS_FATAL ANY)
 
 # A calibrator of a user's own: six lines of CMake, forty of C++ and a URDF.
 if(MODE STREQUAL install)

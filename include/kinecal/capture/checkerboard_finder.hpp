@@ -6,7 +6,7 @@
 //
 // Corner (column, row) is at (column * size, row * size, 0) of the board and has the id
 // row * points_x + column; board_order.hpp says which corner is the first.  A board that looks the same
-// when it is turned needs resolve_turns() (board_turns.hpp) after the session.  Several boards in one
+// when it is turned needs resolve_flips() (board_flips.hpp) after the session.  Several boards in one
 // image, each of its own size, are several finders.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -52,6 +52,16 @@ struct BoardsSeen {
          " corners";
 }
 
+/// True if a board cannot be in an image, however it is turned: its squares need 4 pixels.
+[[nodiscard]] KINECAL_INLINE bool too_small_for(const GrayImage& image,
+                                                const CheckerboardSettings& s) {
+  constexpr int kLeastSquare = 4;
+  const int across = kLeastSquare * (std::min(s.points_x, s.points_y) + 1);
+  const int along = kLeastSquare * (std::max(s.points_x, s.points_y) + 1);
+  return std::min(image.width, image.height) < across ||
+         std::max(image.width, image.height) < along;
+}
+
 /// Half the side of a window that holds one corner and no other.
 [[nodiscard]] KINECAL_INLINE int window_reach(double side) {
   return std::clamp(static_cast<int>(side / 3.0), 2, 12);
@@ -84,11 +94,15 @@ KINECAL_INLINE CheckerboardFinder::CheckerboardFinder(CheckerboardSettings setti
 
 KINECAL_INLINE Found CheckerboardFinder::find(const View& view) const {
   const std::string board = detail::board_text(settings_);
-  if (const auto fault = detail::opencv_fault("checkerboards"); !fault.empty()) {
+  if (const auto fault = detail::chessboard_fault(); !fault.empty()) {
     return refused(fault);
   }
   if (const auto fault = view_fault(view, settings_.target.corners); !fault.empty()) {
     return refused(fault);
+  }
+  if (detail::too_small_for(view.image, settings_)) {
+    return refused("an image of " + detail::pixels_text(view.image.width, view.image.height) +
+                   " pixels is too small for a " + board);
   }
   const detail::BoardsSeen search =
       detail::search_boards(view.image, settings_.points_x, settings_.points_y);

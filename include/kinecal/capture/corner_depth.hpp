@@ -3,7 +3,7 @@
 // On a plane, x/z, y/z and 1/z of a camera's points are linear in the pixel (u, v), whatever its
 // intrinsics.  So each is fitted by a line through the points around the place and read there.
 // Points that do not lie on the plane, such as those behind the edge of a board, are left out: those
-// whose 1/z is further from the fit than four times the median.
+// further from the plane of least median error than five times that error.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

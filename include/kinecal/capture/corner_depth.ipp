@@ -1,8 +1,11 @@
 // Definitions of corner_depth.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 #include <vector>
 
 #include "kinecal/capture/corner_depth.hpp"
@@ -53,6 +56,44 @@ struct PointNearCorner {
   return Matrix3<double>(factors.solve(right));
 }
 
+/// Distance of points from a plane of 1/z, its median.
+[[nodiscard]] KINECAL_INLINE double median_error(const std::vector<PointNearCorner>& near,
+                                                 const Vector3<double>& depth) {
+  std::vector<double> errors;
+  errors.reserve(near.size());
+  for (const auto& p : near) errors.push_back(std::abs(p.place.dot(depth) - p.value.z()));
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  return *middle;
+}
+
+/// The plane of 1/z through three of the points with the least median error.
+/// Source: Rousseeuw, Least Median of Squares Regression, 1984.
+[[nodiscard]] KINECAL_INLINE Vector3<double> median_plane(
+    const std::vector<PointNearCorner>& near) {
+  constexpr int kTrials = 24;  // one in 10^5 fails with a quarter of the points elsewhere
+  std::mt19937 random(1);
+  Vector3<double> best = Vector3<double>::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Matrix3<double> places;
+    Vector3<double> values;
+    for (int k = 0; k < 3; ++k) {
+      const PointNearCorner& p = near[random() % near.size()];
+      places.row(k) = p.place.transpose();
+      values(k) = p.value.z();
+    }
+    if (!(std::abs(places.determinant()) > 0.5)) continue;
+    const Vector3<double> depth = places.inverse() * values;
+    const double error = median_error(near, depth);
+    if (error < least) {
+      least = error;
+      best = depth;
+    }
+  }
+  return best;
+}
+
 }  // namespace detail
 
 KINECAL_INLINE std::optional<Vector3<double>> point_at(const PointCloud& points,
@@ -61,23 +102,15 @@ KINECAL_INLINE std::optional<Vector3<double>> point_at(const PointCloud& points,
   std::vector<detail::PointNearCorner> near =
       detail::points_near_corner(points, pixel, std::max(reach, 1.0), places);
   const std::size_t enough = static_cast<std::size_t>(places + 1) / 2;
-  std::optional<Matrix3<double>> lines;
-  for (int pass = 0; pass < 3; ++pass) {
-    if (near.size() < enough) return std::nullopt;
-    lines = detail::corner_lines(near);
-    if (!lines) return std::nullopt;
-    const Vector3<double> depth = lines->col(2);
-    std::vector<double> errors;
-    for (const auto& p : near) errors.push_back(std::abs(p.place.dot(depth) - p.value.z()));
-    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-    std::nth_element(errors.begin(), middle, errors.end());
-    const double limit = 4.0 * *middle + 1e-9;
-    const std::size_t before = near.size();
-    std::erase_if(near, [&](const detail::PointNearCorner& p) {
-      return std::abs(p.place.dot(depth) - p.value.z()) > limit;
-    });
-    if (near.size() == before) break;
-  }
+  if (near.size() < enough) return std::nullopt;
+  const Vector3<double> depth = detail::median_plane(near);
+  const double limit = 5.0 * detail::median_error(near, depth) + 1e-9;
+  std::erase_if(near, [&](const detail::PointNearCorner& p) {
+    return std::abs(p.place.dot(depth) - p.value.z()) > limit;
+  });
+  if (near.size() < enough) return std::nullopt;
+  const auto lines = detail::corner_lines(near);
+  if (!lines) return std::nullopt;
   const Vector3<double> at = lines->row(0).transpose();
   if (!(at.z() > 0.0)) return std::nullopt;
   return Vector3<double>(at.x() / at.z(), at.y() / at.z(), 1.0 / at.z());

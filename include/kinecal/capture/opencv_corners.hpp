@@ -1,9 +1,10 @@
 // What kinecal takes from OpenCV: corners of checkerboards and ArUco markers.
 //
-// OpenCV's core, imgproc, calib3d and aruco are linked directly: 24 shared libraries, with which the
-// program starts 4 ms later (5 ms without).  Nothing of OpenCV is in a header, so a program that
-// includes kinecal compiles without it.  `-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON` builds kinecal, and
-// its Debian package, without it.
+// OpenCV's core, imgproc, calib3d and aruco are linked directly: with these and what they need, 24
+// shared libraries, the program starts 4 to 5 ms later (4 ms without).  Nothing of OpenCV is in a
+// header, so a program that includes kinecal compiles without it.  Where there is no aruco, ChArUco
+// boards alone are left out.  `-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON` builds kinecal, and its Debian
+// package, without OpenCV.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,8 +17,11 @@
 
 namespace kinecal::detail {
 
-/// Why this build cannot find a target; empty if it can.
-[[nodiscard]] std::string opencv_fault(const std::string& target);
+/// Why this build cannot find checkerboards; empty if it can.
+[[nodiscard]] std::string chessboard_fault();
+
+/// Why this build cannot find ArUco markers; empty if it can.
+[[nodiscard]] std::string aruco_fault();
 
 /// How boards are searched.  Of 240 boards of 5 x 4 to 9 x 6 corners in 640 x 480 pixels, some blurred,
 /// squares found 185 and sectors 237; of 80 with 3 x 3, squares 80 and sectors 72.

@@ -7,13 +7,20 @@
 #include "kinecal/linkage.hpp"
 
 #ifdef KINECAL_HAVE_OPENCV
-#include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/version.hpp>
 #include <opencv2/imgproc.hpp>
 #endif
+#ifdef KINECAL_HAVE_ARUCO
+#include <opencv2/aruco.hpp>
+#endif
 
 namespace kinecal::detail {
+
+[[nodiscard]] KINECAL_INLINE std::string opencv_missing(const std::string& what) {
+  return "this kinecal was built without OpenCV, which finds " + what +
+         "; install libopencv-dev and build it again";
+}
 
 /// ArUco numbers its dictionaries in this order.
 KINECAL_INLINE const std::vector<std::string>& marker_dictionaries() {
@@ -29,7 +36,7 @@ KINECAL_INLINE const std::vector<std::string>& marker_dictionaries() {
 
 #ifdef KINECAL_HAVE_OPENCV
 
-KINECAL_INLINE std::string opencv_fault(const std::string&) {
+KINECAL_INLINE std::string chessboard_fault() {
   return "";
 }
 
@@ -76,6 +83,27 @@ KINECAL_INLINE void refine_corners(const GrayImage& image, int reach,
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = {points[i].x, points[i].y};
 }
 
+#else
+
+KINECAL_INLINE std::string chessboard_fault() {
+  return opencv_missing("checkerboards");
+}
+
+KINECAL_INLINE std::vector<Eigen::Vector2d> find_chessboard(const GrayImage&, int, int,
+                                                            BoardSearch) {
+  return {};
+}
+
+KINECAL_INLINE void refine_corners(const GrayImage&, int, std::vector<Eigen::Vector2d>&) {}
+
+#endif
+
+#ifdef KINECAL_HAVE_ARUCO
+
+KINECAL_INLINE std::string aruco_fault() {
+  return "";
+}
+
 KINECAL_INLINE std::vector<Marker> find_markers(const GrayImage& image,
                                                 const std::string& dictionary) {
   const auto& names = marker_dictionaries();
@@ -102,17 +130,9 @@ KINECAL_INLINE std::vector<Marker> find_markers(const GrayImage& image,
 
 #else
 
-KINECAL_INLINE std::string opencv_fault(const std::string& target) {
-  return "this kinecal was built without OpenCV, which finds " + target +
-         "; install libopencv-dev and build it again";
+KINECAL_INLINE std::string aruco_fault() {
+  return opencv_missing("ChArUco boards, with its module aruco");
 }
-
-KINECAL_INLINE std::vector<Eigen::Vector2d> find_chessboard(const GrayImage&, int, int,
-                                                            BoardSearch) {
-  return {};
-}
-
-KINECAL_INLINE void refine_corners(const GrayImage&, int, std::vector<Eigen::Vector2d>&) {}
 
 KINECAL_INLINE std::vector<Marker> find_markers(const GrayImage&, const std::string&) {
   return {};

@@ -49,6 +49,13 @@ struct TargetCorner {
 [[nodiscard]] Found observed(const View& view, const TargetSettings& settings,
                              std::vector<TargetCorner> corners);
 
+namespace detail {
+
+/// "640 x 480"
+[[nodiscard]] std::string pixels_text(int width, int height);
+
+}  // namespace detail
+
 /// Checks settings.
 /// @throws std::invalid_argument  if both sensors have one name, a name is empty, or a limit is not
 ///                                positive

@@ -12,7 +12,9 @@ namespace kinecal {
 
 namespace detail {
 
-[[nodiscard]] KINECAL_INLINE std::string pixels_text(int width, int height) {
+inline constexpr double kFarthestDepth = 12.0;  // from a corner, pixels: 600 points are enough
+
+KINECAL_INLINE std::string pixels_text(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
 
@@ -56,7 +58,9 @@ KINECAL_INLINE Found observed(const View& view, const TargetSettings& settings,
       throw std::invalid_argument("two corners have id " + std::to_string(c.id));
     }
     std::optional<Vector3<double>> seen = Vector3<double>(c.pixel.x(), c.pixel.y(), 0.0);
-    if (settings.corners == CornerKind::points) seen = point_at(view.points, c.pixel, c.reach);
+    if (settings.corners == CornerKind::points) {
+      seen = point_at(view.points, c.pixel, std::min(c.reach, detail::kFarthestDepth));
+    }
     if (!seen) continue;
     camera.features.push_back({view.frame, *seen, {}, {}, c.id});
     chain.features.push_back({settings.frame, c.target, {}, {}, c.id});

@@ -1,0 +1,53 @@
+// Finds a ChArUco board, a checkerboard with ArUco markers in its white squares, also when only a part
+// of it is in view: a Finder.
+//
+// The frame of the board is at the outer corner of its top left square, x right, y down, z away from
+// the viewer.  Inner corner (column, row) is at ((column + 1) square, (row + 1) square, 0) and has the
+// id row * (squares_x - 1) + column.  A corner is found if both markers beside it are.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/capture/robot_interface.hpp"
+#include "kinecal/capture/target.hpp"
+
+namespace kinecal {
+
+/// A ChArUco board, with OpenCV's names.
+struct CharucoSettings {
+  int squares_x = 5;                       ///< squares of a row
+  int squares_y = 7;                       ///< squares of a column
+  double square_size = 0.04;               ///< side of a square, metres
+  double marker_size = 0.03;               ///< side of a marker, metres
+  std::string dictionary = "DICT_4X4_50";  ///< of the markers
+  int first_id = 0;                        ///< of the first marker
+  bool legacy = false;  ///< drawn by OpenCV before 4.6: with an even number of rows, the top left
+                        ///< square is white
+  int min_corners = 6;  ///< that must be seen, in two rows and two columns at least
+  TargetSettings target = {};  ///< its sensors and what is demanded of its image
+};
+
+/// Finds one ChArUco board.  It needs OpenCV.
+class CharucoFinder {
+ public:
+  /// @throws std::invalid_argument  if the board is impossible, its dictionary is unknown, or
+  ///                                check_target() refuses
+  explicit CharucoFinder(CharucoSettings settings);
+
+  /// The corners in a view, or why there are none.
+  [[nodiscard]] Found find(const View& view) const;
+
+  /// As it was constructed.
+  [[nodiscard]] const CharucoSettings& settings() const { return settings_; }
+
+ private:
+  CharucoSettings settings_;
+};
+static_assert(Finder<CharucoFinder>);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/capture/charuco_finder.ipp"
+#endif
