@@ -203,8 +203,8 @@ TEST_P(RosRobotTest, AStreamThatStopsIsNamedWithItsLastStamp) {
   RosArm arm(bridge, kArm);
   RosCamera camera(bridge, kCamera);
   (void)camera.next_view(Stamp::min());
-  server().make(R"({"fault": "silent", "topics": ["/camera/image", "/joint_states"]})");
   const Stamp last = arm.next_joints(Stamp::min()).stamp;
+  server().make(R"({"fault": "silent", "topics": ["/camera/image", "/joint_states"]})");
   EXPECT_THAT(error_of([&] { (void)camera.next_view(last + std::chrono::hours(1)); }),
               AllOf(HasSubstr("pose: topic '/camera/image': nothing after "),
                     HasSubstr("the newest message is of "), HasSubstr("the stream has stopped")));
