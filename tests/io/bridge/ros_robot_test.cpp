@@ -122,6 +122,21 @@ TEST_P(RosRobotTest, ACloudAloneHasBrightnessFromItsColour) {
   EXPECT_FALSE(view.camera.has_value());
 }
 
+TEST_P(RosRobotTest, CompressedImagesAndDepthAreThoseThatWereNot) {
+  RosBridge bridge = connect();
+  const std::string info = "/camera/camera_info";
+  RosCamera raw(bridge, {.image = "/camera/image", .depth = "/camera/depth", .camera_info = info});
+  RosCamera packed(bridge, {.image = "/camera/image/compressed",
+                            .depth = "/camera/depth/compressedDepth",
+                            .camera_info = info});
+  const View expected = raw.next_view(Stamp::min());
+  const View view = packed.next_view(Stamp::min());
+  EXPECT_EQ(view.image.pixels, expected.image.pixels);
+  EXPECT_TRUE(std::isnan(view.points(0, 0).z()));
+  EXPECT_TRUE(view.points(18, 13).isApprox(Vector3<float>(0.2F, 0.1F, 2.0F), 1e-5F));
+  EXPECT_TRUE(expected.points(18, 13).isApprox(Vector3<float>(0.2F, 0.1F, 2.0F), 1e-5F));
+}
+
 TEST_P(RosRobotTest, AViewAfterALampWasSwitchedShowsIt) {
   RosBridge bridge = connect();
   RosLamp lamp(bridge, kLeds);
@@ -188,8 +203,8 @@ TEST_P(RosRobotTest, AStreamThatStopsIsNamedWithItsLastStamp) {
   RosArm arm(bridge, kArm);
   RosCamera camera(bridge, kCamera);
   (void)camera.next_view(Stamp::min());
-  server().make(R"({"fault": "silent", "topics": ["/camera/image", "/joint_states"]})");
   const Stamp last = arm.next_joints(Stamp::min()).stamp;
+  server().make(R"({"fault": "silent", "topics": ["/camera/image", "/joint_states"]})");
   EXPECT_THAT(error_of([&] { (void)camera.next_view(last + std::chrono::hours(1)); }),
               AllOf(HasSubstr("pose: topic '/camera/image': nothing after "),
                     HasSubstr("the newest message is of "), HasSubstr("the stream has stopped")));

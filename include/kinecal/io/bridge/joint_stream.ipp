@@ -122,11 +122,11 @@ class RosRobot {
       }
       if (position->second.stamp <= after && *newest_ > after) {
         return "topic '" + topic_ + "': joint '" + joint + "' is not measured any more, since " +
-               seconds_text(position->second.stamp);
+               stamp_text(position->second.stamp);
       }
     }
-    return "topic '" + topic_ + "': no joint positions after " + seconds_text(after) +
-           "; the newest are of " + seconds_text(*newest_);
+    return "topic '" + topic_ + "': no joint positions after " + stamp_text(after) +
+           "; the newest are of " + stamp_text(*newest_);
   }
 
   std::string topic_;

@@ -63,7 +63,7 @@ namespace kinecal::detail {
 }
 
 /// "12.345 s" of a stamp, for messages.
-[[nodiscard]] inline std::string seconds_text(Stamp stamp) {
+[[nodiscard]] inline std::string stamp_text(Stamp stamp) {
   const auto milliseconds = stamp.count() / 1'000'000;
   const bool negative = milliseconds < 0;
   const auto whole = negative ? -milliseconds : milliseconds;

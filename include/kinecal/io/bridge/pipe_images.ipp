@@ -4,21 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "kinecal/capture/image.hpp"
 #include "kinecal/io/bridge/json_value.hpp"
+#include "kinecal/io/images/read_image.hpp"
 #include "kinecal/io/printable.hpp"
-
-#ifdef KINECAL_HAVE_PNG
-#include <png.h>
-#endif
 
 namespace kinecal::detail {
 
@@ -43,64 +39,18 @@ namespace kinecal::detail {
   return bytes;
 }
 
-/// The bytes of a file name or of {"base64": "..."}.
-/// @throws JsonError  naming a file that cannot be read
-[[nodiscard]] inline std::string image_bytes(const JsonValue& image) {
-  if (!image.is_text()) return from_base64(image.text("base64"));
+/// The image of a file name or of {"base64": "..."}.
+/// @param decode  decode_image or decode_depth
+/// @throws JsonError   if a file cannot be read
+/// @throws InputError  if it is not such an image
+template <class Decode>
+[[nodiscard]] auto pipe_image(const JsonValue& image, Decode&& decode) {
+  if (!image.is_text()) return decode(from_base64(image.text("base64")), "the image");
   const std::string name = image.as_text();
   std::ifstream file(name, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!file && bytes.empty()) throw JsonError("'" + printable(name) + "' cannot be read");
-  return bytes;
-}
-
-/// A PNG as one number a pixel: 8 bits of brightness, or 16 bits as they are in the file.
-/// @throws std::runtime_error  if it is not a PNG, or not of so many bits
-template <class P>
-[[nodiscard]] Image<P> read_png(const std::string& bytes) {
-#ifdef KINECAL_HAVE_PNG
-  constexpr bool kDepth = sizeof(P) == 2;
-  constexpr std::uint64_t kMostPixels = 100'000'000;
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  const auto fail = [&png](const std::string& why) {
-    png_image_free(&png);
-    throw std::runtime_error(why);
-  };
-  if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) {
-    fail(std::string("an image is not a PNG: ") + png.message);
-  }
-  if (kDepth && png.format != PNG_FORMAT_LINEAR_Y) {
-    fail("a depth image is not a gray PNG of 16 bits, in millimetres");
-  }
-  if (std::uint64_t{png.width} * png.height > kMostPixels) fail("an image has over 100 megapixels");
-  png.format = kDepth ? PNG_FORMAT_LINEAR_Y : PNG_FORMAT_GRAY;
-  Image<P> image(static_cast<int>(png.width), static_cast<int>(png.height));
-  if (png_image_finish_read(&png, nullptr, image.pixels.data(), 0, nullptr) == 0) {
-    fail(std::string("a PNG is damaged: ") + png.message);
-  }
-  return image;
-#else
-  (void)bytes;
-  throw std::runtime_error(
-      "kinecal was built without libpng; install libpng-dev and build it again");
-#endif
-}
-
-[[nodiscard]] inline GrayImage pipe_image(const JsonValue& image) {
-  return read_png<std::uint8_t>(image_bytes(image));
-}
-
-/// Metres, from millimetres; 0 was not measured.
-[[nodiscard]] inline DepthImage pipe_depth(const JsonValue& image) {
-  const auto millimetres = read_png<std::uint16_t>(image_bytes(image));
-  DepthImage depth(millimetres.width, millimetres.height, no_point().z());
-  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
-    constexpr float kMillimetre = 1e-3F;
-    const std::uint16_t z = millimetres.pixels[i];
-    if (z > 0) depth.pixels[i] = static_cast<float>(z) * kMillimetre;
-  }
-  return depth;
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (bytes.empty()) throw JsonError("'" + printable(name) + "' cannot be read");
+  return decode(bytes, name);
 }
 
 template <std::size_t N>

@@ -15,7 +15,7 @@
 //   {"light": 3}                                                     lights the LEDs of this code
 //       {"stamp": 18}
 //
-// Images are PNG; depth has 16 bits in millimetres, 0 where nothing was measured.  Instead of a file
+// Images are PNG or JPEG; depth is a gray PNG of 16 bits in millimetres, 0 where nothing was measured.  Instead of a file
 // name they may be {"base64": "..."} of such a file.  A view has an image, depth or both; depth needs
 // the camera.  {"error": "the gripper is hot"} skips the pose.
 // SPDX-License-Identifier: Apache-2.0

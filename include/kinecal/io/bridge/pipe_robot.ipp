@@ -37,7 +37,7 @@ class PipeRobot::Pipe {
     const auto line = process_.read_line(time_limit_);
     if (!line) {
       ++late_;
-      throw PoseError(who + "no answer within " + seconds_text(time_limit_));
+      throw PoseError(who + "no answer within " + limit_text(time_limit_));
     }
     try {
       const detail::JsonValue answer = detail::JsonValue::parse(*line);
@@ -52,8 +52,8 @@ class PipeRobot::Pipe {
   }
 
  private:
-  [[nodiscard]] static std::string seconds_text(std::chrono::milliseconds time) {
-    return detail::seconds_text(std::chrono::duration_cast<Stamp>(time));
+  [[nodiscard]] static std::string limit_text(std::chrono::milliseconds time) {
+    return detail::stamp_text(std::chrono::duration_cast<Stamp>(time));
   }
 
   detail::ChildProcess process_;
@@ -129,10 +129,11 @@ KINECAL_INLINE View PipeRobot::next_view(Stamp after) {
     view.stamp = detail::stamp_after(answer, after);
     view.frame = answer.text("frame");
     if (const auto camera = answer.find("camera")) view.camera = detail::pipe_camera(*camera);
-    if (const auto image = answer.find("image")) view.image = detail::pipe_image(*image);
+    if (const auto image = answer.find("image"))
+      view.image = detail::pipe_image(*image, decode_image);
     if (const auto depth = answer.find("depth")) {
       if (!view.camera) throw detail::JsonError("depth needs the field 'camera'");
-      view.points = points_of(detail::pipe_depth(*depth), *view.camera);
+      view.points = points_of(detail::pipe_image(*depth, decode_depth), *view.camera);
     }
     if (view.image.empty() && view.points.empty()) {
       throw detail::JsonError("it has neither 'image' nor 'depth'");

@@ -87,7 +87,7 @@ static_assert(Arm<RosArm>);
 /// Topics of a camera; empty: none.
 struct RosCameraOptions {
   std::string image = {};  ///< sensor_msgs/Image or CompressedImage
-  std::string depth = {};  ///< sensor_msgs/Image of the same size, registered to the image
+  std::string depth = {};  ///< the same in depth, registered to the image; needs camera_info
   std::string cloud = {};  ///< sensor_msgs/PointCloud2; its colour is the image if there is none
   std::string camera_info = {};  ///< sensor_msgs/CameraInfo
 };

@@ -1,5 +1,6 @@
-// Images, clouds and camera settings from their messages.
-// Source: packages sensor_msgs, cv_bridge (names of encodings), REP 118 (depth images).
+// Images and depth from their messages, raw and compressed.
+// Source: packages sensor_msgs, cv_bridge (names of encodings), compressed_depth_image_transport; REP
+// 118 (depth images).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,6 +18,7 @@
 #include "kinecal/capture/image.hpp"
 #include "kinecal/io/bags/bytes.hpp"
 #include "kinecal/io/bridge/message_fields.ipp"
+#include "kinecal/io/images/read_image.hpp"
 #include "kinecal/io/printable.hpp"
 
 namespace kinecal::detail {
@@ -75,8 +78,17 @@ inline constexpr std::array kPixelForms = {
   return static_cast<std::uint8_t>((299 * red + 587 * green + 114 * blue + 500) / 1000);
 }
 
+/// The bytes of a sensor_msgs/CompressedImage; nullopt of other messages.
+[[nodiscard]] inline std::optional<std::string_view> compressed(const MessageFields& message) {
+  const MessageValue* data = field_at(message, "data");
+  const auto* bytes = data == nullptr ? nullptr : data->as<Bytes>();
+  if (field_at(message, "format") == nullptr || bytes == nullptr) return std::nullopt;
+  return std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
 /// @throws std::runtime_error  if the encoding is not one of gray or colour images
 [[nodiscard]] inline GrayImage gray_image(const MessageFields& message) {
+  if (const auto file = compressed(message)) return decode_image(*file, "the image");
   const std::string_view encoding = text_at(message, "encoding");
   if (encoding == "mono16" || encoding == "16UC1") {
     const MessageRows rows = rows_of(message, "step", 2);
@@ -107,9 +119,24 @@ inline constexpr std::array kPixelForms = {
   throw std::runtime_error("images of encoding '" + printable(encoding) + "' are not supported");
 }
 
+/// A PNG of 16 bits, after the settings that the transport compressedDepth puts before it.
+[[nodiscard]] inline DepthImage compressed_depth(std::string_view file, std::string_view format) {
+  if (format.starts_with("32FC1")) {
+    throw std::runtime_error("compressed depth of encoding 32FC1 is not supported; expected 16UC1");
+  }
+  constexpr std::size_t kSettings = 12;
+  if (format.find("compressedDepth") != std::string_view::npos) {
+    file.remove_prefix(std::min(kSettings, file.size()));
+  }
+  return decode_depth(file, "the image");
+}
+
 /// Metres (32FC1) or millimetres (16UC1, 0: not measured).
 /// @throws std::runtime_error  if the encoding is not one of depth
 [[nodiscard]] inline DepthImage depth_image(const MessageFields& message) {
+  if (const auto file = compressed(message)) {
+    return compressed_depth(*file, text_at(message, "format"));
+  }
   const std::string_view encoding = text_at(message, "encoding");
   const bool metres = encoding == "32FC1";
   if (!metres && encoding != "16UC1" && encoding != "mono16") {
@@ -128,54 +155,6 @@ inline constexpr std::array kPixelForms = {
     }
   }
   return depth;
-}
-
-/// No field of a point.
-inline constexpr std::size_t kNoField = 1 << 20;
-
-/// Byte of a field in each point; kNoField if the cloud does not have it as a 4-byte number.
-[[nodiscard]] inline std::size_t point_field(const MessageFields& cloud, std::string_view name) {
-  constexpr double kUint32 = 6, kFloat32 = 7;
-  for (const MessageValue& item : list_at(cloud, "fields")) {
-    const auto* field = item.as<MessageFields>();
-    if (field == nullptr || text_at(*field, "name") != name) continue;
-    const double type = number_at(*field, "datatype");
-    if (type != kUint32 && type != kFloat32) continue;
-    return static_cast<std::size_t>(number_at(*field, "offset"));
-  }
-  return kNoField;
-}
-
-[[nodiscard]] inline float float_at(const MessageRows& rows, int row, std::size_t byte) {
-  return rows.at(row, byte).number<float>();
-}
-
-/// Points, and colour as brightness if there is any and the image is empty.
-/// @throws std::runtime_error  if it has no x, y, z
-inline void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage& image) {
-  const std::size_t x = point_field(cloud, "x"), y = point_field(cloud, "y"),
-                    z = point_field(cloud, "z");
-  const std::size_t rgb = std::min(point_field(cloud, "rgb"), point_field(cloud, "rgba"));
-  const auto point_step = static_cast<std::size_t>(number_at(cloud, "point_step"));
-  if (std::max({x, y, z}) + sizeof(float) > point_step) {
-    throw std::runtime_error("the cloud has no float32 fields x, y, z within its points");
-  }
-  const MessageRows rows = rows_of(cloud, "row_step", point_step);
-  const bool has_colour = image.empty() && rgb + sizeof(float) <= point_step;
-  points = PointCloud(rows.width, rows.height, no_point());
-  if (has_colour) image = GrayImage(rows.width, rows.height);
-  for (int v = 0; v < rows.height; ++v) {
-    for (int u = 0; u < rows.width; ++u) {
-      const std::size_t at = static_cast<std::size_t>(u) * point_step;
-      const float px = float_at(rows, v, at + x), py = float_at(rows, v, at + y),
-                  pz = float_at(rows, v, at + z);
-      if (std::isfinite(px) && std::isfinite(py) && std::isfinite(pz)) points(u, v) << px, py, pz;
-      if (!has_colour) continue;
-      constexpr unsigned kByte = 0xff;
-      const auto c = rows.at(v, at + rgb).number<std::uint32_t>();
-      image(u, v) = brightness((c >> 16) & kByte, (c >> 8) & kByte, c & kByte);
-    }
-  }
 }
 
 }  // namespace kinecal::detail

@@ -13,6 +13,7 @@
 
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/io/bridge/camera_message.ipp"
+#include "kinecal/io/bridge/cloud_message.ipp"
 #include "kinecal/io/bridge/joint_stream.ipp"
 #include "kinecal/io/bridge/ros_robot.hpp"
 #include "kinecal/io/bridge/view_message.ipp"
@@ -23,8 +24,8 @@ class ViewStreams {
  public:
   ViewStreams(RosRobot& robot, RosCameraOptions options)
       : robot_(&robot), options_(std::move(options)) {
-    subscribe(options_.image, {"sensor_msgs/Image"});
-    subscribe(options_.depth, {"sensor_msgs/Image"});
+    subscribe(options_.image, {"sensor_msgs/Image", "sensor_msgs/CompressedImage"});
+    subscribe(options_.depth, {"sensor_msgs/Image", "sensor_msgs/CompressedImage"});
     subscribe(options_.cloud, {"sensor_msgs/PointCloud2"});
     if (streams_.empty()) {
       throw std::invalid_argument("a camera needs a topic of images, depth or clouds");
@@ -163,7 +164,7 @@ class ViewStreams {
 
   [[nodiscard]] std::string why_ahead(const Stamped& message) const {
     return "topic '" + streams_.front().topic + "': its stamps are " +
-           seconds_text(lead(message).value_or(ClockOffset{})) +
+           stamp_text(lead(message).value_or(ClockOffset{})) +
            " ahead of those of the joint states: they are of another clock; synchronise the clocks "
            "(ntp, use_sim_time)";
   }
@@ -171,8 +172,8 @@ class ViewStreams {
   [[nodiscard]] std::string why_late(const Stream& stream, Stamp after) const {
     if (stream.newest.empty()) return robot_->bridge.why_silent(stream.topic);
     const Stamped& last = stream.newest.back();
-    std::string why = "topic '" + stream.topic + "': nothing after " + seconds_text(after) +
-                      "; the newest message is of " + seconds_text(last.stamp);
+    std::string why = "topic '" + stream.topic + "': nothing after " + stamp_text(after) +
+                      "; the newest message is of " + stamp_text(last.stamp);
     if (last.stamp > after) {
       return why + ", and no other topic has one within " + std::to_string(kTogether.count()) +
              " ms of it";
@@ -182,7 +183,7 @@ class ViewStreams {
     }
     const auto ahead = lead(last);
     if (ahead && *ahead < -kSameClock) {
-      why += ", " + seconds_text(-*ahead) +
+      why += ", " + stamp_text(-*ahead) +
              " behind the joint states: it lags, or is of another clock; synchronise the clocks "
              "(ntp, use_sim_time)";
     }

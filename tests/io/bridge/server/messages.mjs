@@ -22,6 +22,7 @@ const types = {
   "sensor_msgs/Image": () =>
     "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\n" +
     "uint32 step\nuint8[] data",
+  "sensor_msgs/CompressedImage": () => "std_msgs/Header header\nstring format\nuint8[] data",
   "sensor_msgs/PointField": () => "string name\nuint32 offset\nuint8 datatype\nuint32 count",
   "sensor_msgs/PointCloud2": () =>
     "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n" +

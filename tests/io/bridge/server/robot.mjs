@@ -1,5 +1,19 @@
 // A robot that is simulated: joints that move linearly to their goal, LEDs, and what a camera sees.
 // SPDX-License-Identifier: Apache-2.0
+import { crc32, deflateSync } from "node:zlib";
+
+/** Gray PNG; rows of bytes, numbers of 16 bits with the upper byte first. */
+function png(width, height, bits, rows) {
+  const number = (n) => { const b = Buffer.alloc(4); b.writeUInt32BE(n); return b; };
+  const chunk = (name, data) => {
+    const named = Buffer.concat([Buffer.from(name), data]);
+    return Buffer.concat([number(data.length), named, number(crc32(named))]);
+  };
+  const header = Buffer.concat([number(width), number(height), Buffer.from([bits, 0, 0, 0, 0])]);
+  const data = deflateSync(Buffer.concat(rows.flatMap((row) => [Buffer.from([0]), row])));
+  const chunks = [chunk("IHDR", header), chunk("IDAT", data), chunk("IEND", Buffer.alloc(0))];
+  return Buffer.concat([Buffer.from("89504e470d0a1a0a", "hex"), ...chunks]);
+}
 
 export const width = 32;
 export const height = 24;
@@ -39,6 +53,27 @@ export class Robot {
 
   image(now) {
     return { height, width, encoding: "mono8", is_bigendian: 0, step: width, data: this.pixels(now) };
+  }
+
+  compressedImage(now) {
+    const all = Buffer.from(this.pixels(now));
+    const rows = [...Array(height).keys()].map((v) => all.subarray(v * width, (v + 1) * width));
+    return { format: "png", data: png(width, height, 8, rows) };
+  }
+
+  /** A wall at 2 m, with a hole in the first pixel. */
+  depth() {
+    const data = Buffer.alloc(2 * width * height);
+    for (let i = 1; i < width * height; ++i) data.writeUInt16LE(2000, 2 * i);
+    return { height, width, encoding: "16UC1", is_bigendian: 0, step: 2 * width, data };
+  }
+
+  compressedDepth() {
+    const all = this.depth().data.swap16();
+    const step = 2 * width;
+    const rows = [...Array(height).keys()].map((v) => all.subarray(v * step, (v + 1) * step));
+    const data = Buffer.concat([Buffer.alloc(12), png(width, height, 16, rows)]);
+    return { format: "16UC1; compressedDepth png", data };
   }
 
   /** A wall at 2 m, with a hole in the first pixel. */

@@ -52,6 +52,9 @@ function topic(name, type, advertised = type) {
 const joints = topic("/joint_states", "sensor_msgs/JointState", options.joint_type);
 const image = topic("/camera/image", "sensor_msgs/Image");
 const cloud = topic("/camera/points", "sensor_msgs/PointCloud2");
+const compressedImage = topic("/camera/image/compressed", "sensor_msgs/CompressedImage");
+const depth = topic("/camera/depth", "sensor_msgs/Image");
+const compressedDepth = topic("/camera/depth/compressedDepth", "sensor_msgs/CompressedImage");
 const info = topic("/camera/camera_info", "sensor_msgs/CameraInfo");
 
 function stream() {
@@ -64,6 +67,9 @@ function look() {
   const at = header(now + state.imageLead, "camera_optical_frame");
   image({ header: at, ...robot.image(now) });
   cloud({ header: at, ...robot.cloud(now) });
+  compressedImage({ header: at, ...robot.compressedImage(now) });
+  depth({ header: at, ...robot.depth() });
+  compressedDepth({ header: at, ...robot.compressedDepth() });
   info({ header: at, ...robot.camera(ros2) });
 }
 setInterval(stream, 10);
