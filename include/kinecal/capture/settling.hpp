@@ -88,24 +88,24 @@ template <Arm A>
 MeasuredJoints settle_joints(A& arm, const JointTarget& target, Stamp after,
                              const SettleOptions& options) {
   JointRest rest(options);
-  std::optional<Stamp> start, elsewhere;  // first reading; since when they are still, not there
+  MeasuredJoints reading = arm.next_joints(after);
+  const Stamp start = reading.stamp;
+  Stamp moved = start;  // when they last were not still
   std::string missing = "joints do not stop";
   while (true) {
-    MeasuredJoints reading = arm.next_joints(after);
-    after = reading.stamp;
-    if (!start) start = after;
+    const Stamp now = reading.stamp;
     rest.add(std::move(reading));
     if (rest.still()) {
       missing = rest.not_arrived(target);
       if (missing.empty()) return rest.mean();
-      if (!elsewhere) elsewhere = after;
-      if (after - *elsewhere > options.patience) throw PoseError(missing);
+      if (now - moved > options.patience) throw PoseError(missing);
     } else {
-      elsewhere.reset();
+      moved = now;
     }
-    if (after - *start > options.time_limit) {
-      throw PoseError(missing + "; waited " + detail::seconds_text(after - *start));
+    if (now - start > options.time_limit) {
+      throw PoseError(missing + "; waited " + detail::seconds_text(now - start));
     }
+    reading = arm.next_joints(now);
   }
 }
 
