@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "capture/led_scene.hpp"
+#include "support/repetitions.hpp"
 
 namespace kinecal {
 namespace {
@@ -65,6 +66,48 @@ TEST(FindLeds, WithstandsNoiseLightLatencyAndDimness) {
                 0.3);
     }
   }
+}
+
+/// Any scene with noise, drifting light, latency, dark LEDs and, in some, somebody who walks by.
+LedScene any_scene(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double least, double most) {
+    return least + (most - least) * static_cast<double>(random()) / 4294967296.0;
+  };
+  LedScene scene;
+  scene.random.seed(seed);
+  scene.sigma = uniform(2.0, 4.0);
+  scene.spot_sigma = uniform(0.7, 3.0);
+  scene.brightness = uniform(50.0, 190.0);
+  scene.light_drift = uniform(-10.0, 10.0);
+  scene.latency = uniform(0.0, 0.08);
+  scene.hole = uniform(0.0, 8.0);
+  scene.depth_sigma = uniform(0.0005, 0.003);
+  if (seed % 3 == 0) scene.walker = uniform(3.0, 40.0);
+  scene.gripper = {uniform(-0.03, 0.03), uniform(-0.03, 0.03), uniform(0.7, 0.9)};
+  for (std::size_t i = 0; i < 4; ++i) scene.works[i] = uniform(0.0, 1.0) < 0.8;
+  return scene;
+}
+
+TEST(FindLeds, FindsAllThatLightAndNoOther) {
+  int lit = 0, seen = 0;
+  double sum = 0.0;
+  for (int n = 0; n < test::repetitions(30, 5); ++n) {
+    LedScene scene = any_scene(static_cast<unsigned>(n));
+    for (const bool works : scene.works) lit += static_cast<int>(works);
+    const Found found = n % 2 == 0 ? found_in(scene) : found_in(scene, informed(scene));
+    for (std::size_t i = 0; i < found.marks.size(); ++i) {
+      const auto led = static_cast<std::size_t>(*found.observations[0].features[i].id);
+      const Vector3<double> pixel = scene.pixel(led);
+      const double error = std::hypot(found.marks[i].u - pixel.x(), found.marks[i].v - pixel.y());
+      EXPECT_TRUE(scene.works[led]) << n;
+      EXPECT_LT(error, 0.3) << n;
+      sum += error;
+      ++seen;
+    }
+  }
+  EXPECT_EQ(seen, lit);
+  EXPECT_LT(sum / seen, 0.1) << "pixels";
 }
 
 TEST(FindLeds, WaitsForTheExposureOfASlowCamera) {
