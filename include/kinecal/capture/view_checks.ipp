@@ -67,7 +67,8 @@ KINECAL_INLINE std::string camera_problem(const View& view) {
     return camera.width > 0 && camera.height > 0 && width > 0 && height > 1 &&
            (width != camera.width || height != camera.height);
   };
-  const std::string of = "camera_info is of " + detail::checked_size_text(camera.width, camera.height);
+  const std::string of =
+      "camera_info is of " + detail::checked_size_text(camera.width, camera.height);
   if (differs(view.image.width, view.image.height)) {
     return of + " pixels, the image has " +
            detail::checked_size_text(view.image.width, view.image.height);
