@@ -116,7 +116,7 @@ inline void read_target(ConfigMap& map, SimulationPlan& plan) {
 inline void read_plan_poses(ConfigMap& map, SimulationPlan& plan) {
   const ConfigEntry* entry = map.find("poses");
   if (entry == nullptr) return;
-  if (config_count(entry->value)) {
+  if (config_number(entry->value)) {
     plan.poses = map.count("poses", plan.poses);
   } else if (const auto file = map.text("poses")) {
     for (CapturePose& pose : read_poses_yaml(beside(map.place(), *file), map.diagnostics())) {
