@@ -6,9 +6,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <variant>
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/capture/board_order.hpp"
 #include "kinecal/io/cameras/read_camera_file.hpp"
 #include "kinecal/io/detect/contact_sheet.hpp"
 #include "kinecal/io/detect/image_folder.hpp"
@@ -39,12 +41,28 @@ struct Detections {
   std::size_t features = 0;
 };
 
+/// Warns of a board that shows no difference when it is turned.
+void warn_of_turns(const CaptureFinder& finder, Diagnostics& diagnostics) {
+  constexpr int kFullTurn = 4;  // quarters
+  const auto* board = std::get_if<CheckerboardSettings>(&finder.settings);
+  if (board == nullptr || turns_alike(board->points_x, board->points_y) == kFullTurn) {
+    return;
+  }
+  diagnostics.warning(finder.place,
+                      fmt::format("finder '{}': a board of {}x{} corners looks the same when it is "
+                                  "turned; x is taken as the direction nearest to the image's "
+                                  "right, so leave out images in which it is turned further, or "
+                                  "use a board of which points_x + points_y is odd",
+                                  finder.name, board->points_x, board->points_y));
+}
+
 std::vector<ViewFinder> make_finders(const DetectOptions& options, Diagnostics& diagnostics) {
   const CaptureConfig config = read_capture_config(options.config, diagnostics);
   std::optional<Robot> robot;
   if (!options.urdf.empty()) robot = read_urdf(options.urdf);
   std::vector<ViewFinder> finders;
   for (const CaptureFinder& finder : config.finders) {
+    warn_of_turns(finder, diagnostics);
     try {
       if (!finder.region_frame.empty() && !robot) {
         throw InputError(finder.place.str() + ": finder '" + finder.name +

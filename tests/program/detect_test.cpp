@@ -66,6 +66,15 @@ TEST_F(Detect, WhereNothingIsFoundThereAreNoSamples) {
 }
 #endif
 
+TEST_F(Detect, ABoardThatLooksTheSameWhenTurnedIsAWarning) {
+  const std::string board =
+      "type: robot_calibration/CheckerboardFinder2d\n    points_x: 6\n    points_y: ";
+  write("photos/capture.yaml", "features:\n  board:\n    " + board + "4\n");
+  EXPECT_THAT(detect().err, HasSubstr("a board of 6x4 corners looks the same when it is turned"));
+  write("photos/capture.yaml", "features:\n  board:\n    " + board + "5\n");
+  EXPECT_THAT(detect().err, testing::Not(HasSubstr("looks the same")));
+}
+
 TEST_F(Detect, ATableWithFewerRowsThanImagesNamesTheImages) {
   write("photos/poses.csv", read("photos/poses.csv").substr(0, 200));
   std::string table = read("photos/poses.csv");
