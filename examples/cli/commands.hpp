@@ -59,6 +59,23 @@ struct InitOptions {
 /// Writes a first configuration from a URDF and a few answers.
 int init(const InitOptions& options);
 
+struct DetectOptions {
+  std::string config;   ///< capture.yaml
+  std::string images;   ///< folder
+  std::string poses;    ///< table of joint positions
+  std::string columns;  ///< what its columns mean; empty: each is a joint
+  std::string depth;    ///< folder; empty: none
+  std::string camera;   ///< file; empty: none
+  std::string urdf;     ///< file; empty: none
+  std::string frame;    ///< of the camera
+  std::string output;   ///< samples
+  std::string sheet;    ///< PNG; empty: none
+  bool force = false;   ///< replace files
+};
+
+/// Writes samples of what finders find in photographs.
+int detect(const DetectOptions& options);
+
 struct DescribeOptions {
   std::string format;  ///< man, bash or zsh
   std::string output;  ///< empty: the standard output

@@ -181,6 +181,45 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
   command.add_flag("--force", options.force, "replace the images that are in the folder");
 }
 
+void add_detect(CLI::App& command, DetectOptions& options) {
+  command
+      .add_option("config", options.config, "what to look for: robot_calibration's capture.yaml")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--images", options.images, "folder of PNG or JPEG images")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option("--poses", options.poses,
+                  "table of joint positions, radians and metres: a column for each joint, and "
+                  "'image' for the file's name")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--columns", options.columns, "what the table's columns mean, as for convert")
+      ->type_name("FILE");
+  command
+      .add_option("--camera", options.camera,
+                  "camera_info, a file of Kalibr or OpenCV (file.yaml:cam1 for one of several)")
+      ->type_name("FILE");
+  command
+      .add_option("--depth", options.depth,
+                  "folder of depth images under the same names: 16-bit PNG, millimetres")
+      ->type_name("DIR");
+  command.add_option("--urdf", options.urdf, "the robot's URDF, for regions in a link's frame")
+      ->type_name("FILE");
+  command
+      .add_option("--frame", options.frame,
+                  "the camera's optical frame, as the configuration of the calibration has it")
+      ->required()
+      ->type_name("NAME");
+  command.add_option("-o,--output", options.output, "samples: .yaml, .bag or .mcap")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--contact-sheet", options.sheet, "a picture of all detections, PNG")
+      ->type_name("FILE");
+  command.add_flag("--force", options.force, "replace files that are there");
+}
+
 void add_capture(CLI::App& command, CaptureOptions& options) {
   command
       .add_option("config", options.config,
@@ -473,6 +512,8 @@ void add_commands(Commands& commands) {
   commands.add<CaptureOptions>("capture",
                                "move a robot through poses and record what its finders see",
                                add_capture, capture);
+  commands.add<DetectOptions>("detect", "find boards and tags in photographs, and write samples",
+                              add_detect, detect);
   commands.add<SimulateOptions>(
       "simulate", "photograph a simulated robot that differs from its URDF by known errors",
       add_simulate, simulate);

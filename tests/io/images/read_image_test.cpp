@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/simulation/png_bytes.hpp"
+#include "kinecal/io/images/png_bytes.hpp"
 #include "support/error_of.hpp"
 
 #ifdef KINECAL_HAVE_JPEG

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/images/png_bytes.hpp"
 #include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/simulation/photographs.hpp"
 #include "kinecal/io/simulation/place_target.ipp"
-#include "kinecal/io/simulation/png_bytes.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 
 namespace kinecal {

@@ -1,4 +1,4 @@
-#include "kinecal/io/simulation/png_bytes.hpp"
+#include "kinecal/io/images/png_bytes.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kinecal/io/simulation/png_bytes.hpp"
+#include "kinecal/io/images/png_bytes.hpp"
 
 namespace kinecal::detail {
 
@@ -27,18 +27,27 @@ inline void append_png_chunk(std::string& out, const std::string& name,
   append_big_endian(out, static_cast<std::uint32_t>(crc32_z(0, bytes, body.size())), 4);
 }
 
+inline void append_pixel(std::string& out, std::uint8_t gray) {
+  append_big_endian(out, gray, 1);
+}
+inline void append_pixel(std::string& out, std::uint16_t gray) {
+  append_big_endian(out, gray, 2);
+}
+inline void append_pixel(std::string& out, const Rgb& colour) {
+  for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) append_pixel(out, part);
+}
+
 template <class P>
-[[nodiscard]] std::string gray_png(const Image<P>& image) {
+[[nodiscard]] std::string png_of(const Image<P>& image) {
   if (image.empty()) throw std::invalid_argument("an image without pixels cannot be written");
-  constexpr int kBytes = sizeof(P);
-  constexpr char kGray = 0, kNoFilter = 0;
+  constexpr char kBits = sizeof(P) == 2 ? 16 : 8, kKind = sizeof(P) == 3 ? 2 : 0, kNoFilter = 0;
   std::string header, rows;
   append_big_endian(header, static_cast<std::uint32_t>(image.width), 4);
   append_big_endian(header, static_cast<std::uint32_t>(image.height), 4);
-  header += {static_cast<char>(8 * kBytes), kGray, 0, 0, 0};
+  header += {kBits, kKind, 0, 0, 0};
   for (int v = 0; v < image.height; ++v) {
     rows.push_back(kNoFilter);
-    for (int u = 0; u < image.width; ++u) append_big_endian(rows, image(u, v), kBytes);
+    for (int u = 0; u < image.width; ++u) append_pixel(rows, image(u, v));
   }
   uLongf size = compressBound(rows.size());
   std::string packed(size, '\0');
@@ -55,11 +64,15 @@ template <class P>
 }
 
 KINECAL_INLINE std::string png_bytes(const GrayImage& image) {
-  return gray_png(image);
+  return png_of(image);
 }
 
 KINECAL_INLINE std::string png_bytes(const Image<std::uint16_t>& image) {
-  return gray_png(image);
+  return png_of(image);
+}
+
+KINECAL_INLINE std::string png_bytes(const Image<Rgb>& image) {
+  return png_of(image);
 }
 
 }  // namespace kinecal::detail

@@ -1,4 +1,4 @@
-// Grey images as the bytes of PNG files, to write them together with other files.
+// Images as the bytes of PNG files, to write them together with other files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,6 +10,11 @@
 
 namespace kinecal::detail {
 
+/// A colour, 0 to 255 each.
+struct Rgb {
+  std::uint8_t red = 0, green = 0, blue = 0;
+};
+
 /// A PNG file with 8 bits for each pixel.
 /// @throws std::invalid_argument  if the image is empty
 [[nodiscard]] std::string png_bytes(const GrayImage& image);
@@ -18,8 +23,12 @@ namespace kinecal::detail {
 /// @throws std::invalid_argument  if the image is empty
 [[nodiscard]] std::string png_bytes(const Image<std::uint16_t>& image);
 
+/// A PNG file in colour.
+/// @throws std::invalid_argument  if the image is empty
+[[nodiscard]] std::string png_bytes(const Image<Rgb>& image);
+
 }  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/io/simulation/png_bytes.ipp"
+#include "kinecal/io/images/png_bytes.ipp"
 #endif

@@ -1,0 +1,88 @@
+// kinecal detect as its users meet it: photographs and a table become samples that calibrate.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using testing::HasSubstr;
+
+class Detect : public test::ProgramTest {
+ protected:
+  Detect() {
+    fs::copy(fs::path(KINECAL_SOURCE_DIR) / "examples/robots/panda/panda.urdf", folder_);
+    const Outcome made = kinecal("simulate panda.urdf --target apriltag --poses 12 -o photos");
+    EXPECT_EQ(made.code, 0) << made.err;
+    const std::string config = read("photos/calibrate.yaml");
+    const std::size_t camera = config.find("name: camera\n");
+    const std::size_t frame = config.find("frame: ", camera) + 7;
+    frame_ = config.substr(frame, config.find('\n', frame) - frame);
+  }
+  [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
+    return run(std::string(KINECAL_PROGRAM) + " " + arguments + " < /dev/null");
+  }
+  [[nodiscard]] Outcome detect(const std::string& more = "") const {
+    return kinecal(
+        "detect photos/capture.yaml --images photos/images --poses photos/poses.csv "
+        "--camera photos/camera.yaml --frame " +
+        frame_ + " -o samples.yaml " + more);
+  }
+
+  std::string frame_;  ///< of the camera
+};
+
+#if defined(KINECAL_HAVE_PNG) && defined(KINECAL_HAVE_APRILTAG)
+TEST_F(Detect, PhotographsCalibrateWithoutAnInitialGuess) {
+  const Outcome found = detect("--contact-sheet sheet.png");
+  EXPECT_EQ(found.code, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("wrote samples.yaml: "));
+  EXPECT_EQ(read("sheet.png").substr(1, 3), "PNG");
+  const Outcome checked = kinecal(
+      "check --urdf photos/robot.urdf --config photos/calibrate.yaml --samples samples.yaml");
+  EXPECT_EQ(checked.code, 0) << checked.err;
+}
+
+TEST_F(Detect, ADamagedImageIsNamedAndNothingIsWritten) {
+  write("photos/images/0002.png", read("photos/images/0002.png").substr(0, 3000));
+  const Outcome failed = detect();
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.err, HasSubstr("photos/images/0002.png: the PNG is damaged"));
+  EXPECT_FALSE(fs::exists(folder_ / "samples.yaml"));
+}
+
+TEST_F(Detect, WhereNothingIsFoundThereAreNoSamples) {
+  std::string config = read("photos/capture.yaml");
+  config += "    family: tag16h5\n";
+  write("photos/capture.yaml", config);
+  const Outcome failed = detect("--contact-sheet sheet.png");
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.err, HasSubstr("nothing was found in "));
+  EXPECT_FALSE(fs::exists(folder_ / "samples.yaml"));
+  EXPECT_TRUE(fs::exists(folder_ / "sheet.png"));
+}
+#endif
+
+TEST_F(Detect, ABoardThatLooksTheSameWhenTurnedIsAWarning) {
+  const std::string board =
+      "type: robot_calibration/CheckerboardFinder2d\n    points_x: 6\n    points_y: ";
+  write("photos/capture.yaml", "features:\n  board:\n    " + board + "4\n");
+  EXPECT_THAT(detect().err, HasSubstr("a board of 6x4 corners looks the same when it is turned"));
+  write("photos/capture.yaml", "features:\n  board:\n    " + board + "5\n");
+  EXPECT_THAT(detect().err, testing::Not(HasSubstr("looks the same")));
+}
+
+TEST_F(Detect, ATableWithFewerRowsThanImagesNamesTheImages) {
+  write("photos/poses.csv", read("photos/poses.csv").substr(0, 200));
+  std::string table = read("photos/poses.csv");
+  write("photos/poses.csv", table.substr(0, table.rfind('\n') + 1));
+  const Outcome failed = detect();
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.err, HasSubstr("has no row for image 0012.png"));
+}
+
+}  // namespace
+}  // namespace kinecal
