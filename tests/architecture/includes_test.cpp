@@ -181,6 +181,7 @@ constexpr LongSource kLongSources[] = {
     {"io/install/launch_folder.ipp", "one sequence of file operations that may stop anywhere"},
     {"io/messages/definition.ipp", "the grammar of .msg files and its parser"},
     {"io/parameters_from_config.ipp", "every kind of parameter that a configuration names"},
+    {"io/samples/sample_schema.ipp", "one table: every key of a sample"},
     {"kinematics/twist_walker.hpp", "the derivation of the twists and its one walker"},
     {"parameters/free_parameters.hpp", "every kind of free parameter as a type"},
 };
