@@ -20,6 +20,7 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/capture/session_follower.hpp"
 #include "kinecal/io/config/read_config.hpp"
+#include "kinecal/io/detect/detect.hpp"
 #include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/pose_messages.hpp"
@@ -85,20 +86,7 @@ SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobo
               return find_leds(leds, camera, lamp, still.stamp, still.joints);
             }};
   }
-  if (const auto* board = std::get_if<CheckerboardSettings>(&settings)) {
-    return session_finder(finder.name, CheckerboardFinder(*board), camera);
-  }
-  if (const auto* tags = std::get_if<AprilTagSettings>(&settings)) {
-    auto shared = std::make_shared<AprilTagFinder>(*tags);
-    return {finder.name, camera.viewer, [shared](const View& view) { return shared->find(view); }};
-  }
-  if (const auto* plane = std::get_if<PlaneFinder>(&settings)) {
-    return session_finder(finder.name, *plane, camera);
-  }
-  if (const auto* scan = std::get_if<ScanFinder>(&settings)) {
-    return session_finder(finder.name, *scan, camera);
-  }
-  return session_finder(finder.name, std::get<RobotFinder>(settings), camera);
+  return {finder.name, camera.viewer, view_finder(finder, settings).find};
 }
 
 /// Follows the session and says when it is enough.

@@ -56,11 +56,8 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
   parts->arm = std::make_unique<RosArm>(parts->bridge, arm);
   AnyRobot any{any_arm(*parts->arm), {}, {}};
   for (const CaptureFinder& finder : config.finders) {
-    const bool wants_image = std::holds_alternative<CheckerboardSettings>(finder.settings) ||
-                             std::holds_alternative<AprilTagSettings>(finder.settings);
-    const bool is_2d = wants_image && finder.type.ends_with("2d");
     RosCameraOptions options;
-    (is_2d ? options.image : options.cloud) = finder.topic;
+    (finder.type.ends_with("2d") ? options.image : options.cloud) = finder.topic;
     options.camera_info = finder.camera_info;
     parts->cameras.push_back(std::make_unique<RosCamera>(parts->bridge, options));
     any.cameras[finder.name] = any_camera(*parts->cameras.back());

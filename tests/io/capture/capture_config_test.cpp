@@ -63,13 +63,16 @@ TEST(CaptureConfig, ReadsTheDialectOfRos2) {
   const CaptureFile file(
       "robot_calibration:\n  ros__parameters:\n    chains: [arm]\n"
       "    arm: {topic: /arm/follow_joint_trajectory, joints: [elbow, wrist]}\n"
-      "    features: [board, tags]\n"
+      "    features: [board, tags, both]\n"
       "    board: {type: 'robot_calibration::CheckerboardFinder2d', topic: /camera/image_raw,\n"
       "            points_x: 7, points_y: 5, size: 0.03}\n"
       "    tags: {type: AprilTagFinder2d, topic: /camera/image_raw, columns: 6, rows: 5,\n"
-      "           size: 0.04, spacing: 0.25}\n");
+      "           size: 0.04, spacing: 0.25}\n"
+      "    both: {type: CharucoFinder, topic: /camera/points, squares_x: 8, dictionary: "
+      "DICT_5X5_100}\n");
   EXPECT_THAT(file.diagnostics.errors, IsEmpty());
-  ASSERT_EQ(file.config.finders.size(), 2u);
+  ASSERT_EQ(file.config.finders.size(), 3u);
+  EXPECT_EQ(std::get<CharucoSettings>(file.config.finders[2].settings).squares_x, 8);
   const auto& board = std::get<CheckerboardSettings>(file.config.finders[0].settings);
   EXPECT_EQ(board.points_x, 7);
   EXPECT_EQ(board.target.corners, CornerKind::pixels);

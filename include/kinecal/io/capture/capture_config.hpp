@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "kinecal/capture/april_tag_finder.hpp"
+#include "kinecal/capture/charuco_finder.hpp"
 #include "kinecal/capture/checkerboard_finder.hpp"
 #include "kinecal/capture/led_finder.hpp"
 #include "kinecal/capture/plane_finder.hpp"
@@ -34,8 +35,8 @@ struct CaptureChain {
 };
 
 /// Settings of a finder of any type.
-using FinderSettings = std::variant<LedFinder, CheckerboardSettings, AprilTagSettings, PlaneFinder,
-                                    ScanFinder, RobotFinder>;
+using FinderSettings = std::variant<LedFinder, CheckerboardSettings, AprilTagSettings,
+                                    CharucoSettings, PlaneFinder, ScanFinder, RobotFinder>;
 
 /// A finder and where its views come from.
 struct CaptureFinder {

@@ -97,6 +97,22 @@ inline void read_target(ConfigMap& map, TargetSettings& target) {
   return tags;
 }
 
+[[nodiscard]] inline CharucoSettings read_charuco(ConfigMap& map, CornerKind corners) {
+  CharucoSettings board;
+  board.squares_x = map.count("squares_x", board.squares_x);
+  board.squares_y = map.count("squares_y", board.squares_y);
+  board.square_size = map.positive("square_size", board.square_size);
+  board.marker_size = map.positive("marker_size", board.marker_size);
+  board.dictionary = map.text("dictionary").value_or(board.dictionary);
+  board.first_id = read_index(map, "first_id", board.first_id);
+  board.legacy = map.flag("legacy", board.legacy);
+  board.min_corners = map.count("min_corners", board.min_corners);
+  board.target.corners = corners;
+  read_target(map, board.target);
+  map.ignore({"debug"});
+  return board;
+}
+
 [[nodiscard]] inline PlaneFinder read_plane_finder(ConfigMap& map) {
   PlaneFinder finder;
   finder.camera_sensor = map.text("camera_sensor_name").value_or(finder.camera_sensor);
@@ -144,6 +160,10 @@ inline const std::map<std::string, FinderSettings (*)(ConfigMap&)> kFinderTypes 
      [](ConfigMap& map) -> FinderSettings { return read_april_tags(map, CornerKind::points); }},
     {"AprilTagFinder2d",
      [](ConfigMap& map) -> FinderSettings { return read_april_tags(map, CornerKind::pixels); }},
+    {"CharucoFinder",
+     [](ConfigMap& map) -> FinderSettings { return read_charuco(map, CornerKind::points); }},
+    {"CharucoFinder2d",
+     [](ConfigMap& map) -> FinderSettings { return read_charuco(map, CornerKind::pixels); }},
     {"PlaneFinder", [](ConfigMap& map) -> FinderSettings { return read_plane_finder(map); }},
     {"ScanFinder", [](ConfigMap& map) -> FinderSettings { return read_scan_finder(map); }},
     {"RobotFinder", [](ConfigMap& map) -> FinderSettings { return read_robot_finder(map); }},

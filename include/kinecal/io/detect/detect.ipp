@@ -33,6 +33,8 @@ template <class F>
           return shared_finder(CheckerboardFinder(chosen));
         } else if constexpr (std::is_same_v<Chosen, AprilTagSettings>) {
           return shared_finder(AprilTagFinder(chosen));
+        } else if constexpr (std::is_same_v<Chosen, CharucoSettings>) {
+          return shared_finder(CharucoFinder(chosen));
         } else {
           return shared_finder(chosen);
         }
