@@ -14,4 +14,5 @@ echo "== A robot that differs from its URDF by known errors: $out/truth.yaml"
 echo "== kinecal capture"
 "$kinecal" capture "$out/capture.yaml" --urdf "$out/robot.urdf" --poses "$out/poses.yaml" \
   --robot "simulated:$out/scene.yaml" -o "$out/samples.yaml" \
-  --calibrate "$out/calibrate.yaml" --until "gripper 3 mm" --result "$out/calibrated"
+  --calibrate "$out/calibrate.yaml" --until "gripper 3 mm" --result "$out/calibrated" \
+  --contact-sheet "$out/views.png"

@@ -20,6 +20,7 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/capture/session_follower.hpp"
 #include "kinecal/io/config/read_config.hpp"
+#include "kinecal/io/detect/contact_sheet.hpp"
 #include "kinecal/io/detect/detect.hpp"
 #include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/printable.hpp"
@@ -214,18 +215,30 @@ struct Session {
   std::vector<CapturePose> poses;
   std::vector<Sample> samples;  ///< those of an earlier session first
   std::optional<Follower> follower;
-  std::size_t done = 0;  ///< poses
-  Stamp spent{};         ///< on the robot's clock
+  std::size_t done = 0;                    ///< poses
+  Stamp spent{};                           ///< on the robot's clock
+  std::vector<Thumbnail> thumbnails = {};  ///< of what finders looked at
 
   /// Prints, writes and follows what came of a pose.
   void take(const CapturedPose& captured) {
     print_pose(++done, poses.size(), captured);
     spent += captured.duration;
+    add_thumbnails(captured);
     if (captured.samples.empty()) return;
     samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
     write_recording(options.output, samples, urdf);
     for (const Sample& sample : captured.samples) {
       if (follower) follower->add(sample);
+    }
+  }
+
+  void add_thumbnails(const CapturedPose& captured) {
+    if (options.sheet.empty()) return;
+    for (const FinderOutcome& outcome : captured.outcomes) {
+      if (outcome.view.image.empty()) continue;
+      thumbnails.push_back(thumbnail(outcome.view.image, outcome.found.marks,
+                                     fmt::format("pose {}", done),
+                                     outcome.found ? "" : outcome.found.refusal));
     }
   }
 
@@ -287,6 +300,11 @@ int capture(const CaptureOptions& options) {
     for (const Sample& sample : session.samples) session.follower->add(sample);
   }
   const std::string lost = session.run(config);
+  if (!session.thumbnails.empty()) {
+    write_file(options.sheet, contact_sheet(session.thumbnails));
+    fmt::print("{}: what was found in {}\n", options.sheet,
+               counted(session.thumbnails.size(), "view"));
+  }
   const double minutes = std::chrono::duration<double, std::ratio<60>>(session.spent).count();
   fmt::print("{}: {} of {} in {:.1f} minutes of the robot's time{}\n", options.output,
              counted(session.samples.size(), "sample"), counted(session.done, "pose"), minutes,

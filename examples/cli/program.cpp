@@ -260,6 +260,10 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
   command.add_option("--result", options.result, "calibrate at the end, into this folder")
       ->needs(calibrate)
       ->type_name("DIR");
+  command
+      .add_option("--contact-sheet", options.sheet,
+                  "a PNG of all views with what was found in them")
+      ->type_name("FILE");
   command.add_flag("--force", options.force, "replace files that are there");
 }
 

@@ -46,13 +46,15 @@ class CaptureProgram : public ProgramTest {
 
 TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
   simulate(40);
-  const Outcome session =
-      capture("--calibrate sim/calibrate.yaml --until 'gripper 5 mm' --result calibrated");
+  const Outcome session = capture(
+      "--calibrate sim/calibrate.yaml --until 'gripper 5 mm' --result calibrated "
+      "--contact-sheet views.png");
   EXPECT_EQ(session.code, 0) << session.out << session.err;
   EXPECT_THAT(session.out,
               AllOf(HasSubstr("led_finder: 4 features"), HasSubstr("'gripper 5 mm' is reached"),
                     HasSubstr("next, move"), HasSubstr("truth: '"), HasSubstr("by the URDF, ")));
   EXPECT_LT(samples(), 40);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "views.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "calibrated/calibrated.urdf"));
 }
 

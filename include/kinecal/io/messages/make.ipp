@@ -29,7 +29,7 @@ template <class Range, class F>
 [[nodiscard]] MessageValue::List list_of(const Range& range, F&& item) {
   MessageValue::List list;
   list.reserve(std::size(range));
-  for (const auto& x : range) list.push_back(MessageValue(item(x)));
+  for (const auto& x : range) list.emplace_back(item(x));
   return list;
 }
 
