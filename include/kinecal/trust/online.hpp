@@ -9,9 +9,10 @@
 //
 //   X = r^T (s^2 I + A C A^T)^-1 r / rows      is F with rows and n - rank degrees of freedom,
 //
-// C the covariance and s the noise so far.  A sample that chance makes as bad once in a million
-// times is left out.  So are earlier samples that turn out not to fit, by the noise that the median
-// sample shows: a bad one among the first few cannot be told from the others.
+// C the covariance and s the noise so far.  From the ninth sample on, one that chance makes as bad
+// once in a million times, and that is off by three times the noise, is left out.  So are earlier
+// samples that turn out not to fit, by the noise that the median sample shows: a bad one among the
+// first few cannot be told from the others.
 // Source: Bar-Shalom et al., Estimation with Applications to Tracking and Navigation, 5.4 (innovations).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -41,8 +41,6 @@ struct OnlineCalibration::Inside {
 
 namespace detail {
 
-inline constexpr double kOnceIn = 1e-6;  ///< how often chance may make a sample look bad
-
 /// Rows and derivatives of one sample, weighted.
 struct SampleRows {
   Eigen::VectorXd residual = {};

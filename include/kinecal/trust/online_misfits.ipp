@@ -12,10 +12,24 @@
 
 namespace kinecal {
 
+namespace detail {
+
+inline constexpr std::size_t kFewestToTest = 8;  ///< samples; with fewer none is tested
+
+/// True if a sample is too far off for chance.  Its features share the errors of its joints, so their
+/// number counts for little: it must be off by several times the noise as well.
+/// @param ratio  mean square of its residuals, over that of the noise
+/// @param tests  how many samples are asked
+inline bool is_misfit(double ratio, double rows, double freedom, double tests) {
+  constexpr double kTimes = 3.0, kOnceIn = 1e-6;
+  return ratio > kTimes * kTimes && f_tail(ratio, rows, freedom) < kOnceIn / tests;
+}
+
+}  // namespace detail
+
 /// The worst sample, if it does not fit the others.
 inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator& evaluator) const {
-  constexpr std::size_t kFewest = 8;
-  if (samples.size() < kFewest || freedom <= 0) return std::nullopt;
+  if (samples.size() < detail::kFewestToTest || freedom <= 0) return std::nullopt;
   std::vector<double> squares(samples.size(), 0.0), rows(samples.size(), 0.0);
   (void)evaluator.evaluate(values, false, [&](int term, int sample, const TermResiduals& of_term) {
     const double weight = problem->term(term).options().weight;
@@ -36,8 +50,10 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
   const double n = rows[worst], all = problem->num_residuals();
   const double usual = *middle / std::pow(1.0 - 2.0 / (9.0 * n), 3.0) * (all / freedom);
   if (!(usual > 0.0)) return std::nullopt;
-  const double chance = f_tail(squares[worst] / n / usual, n, freedom);
-  if (chance > detail::kOnceIn / static_cast<double>(samples.size())) return std::nullopt;
+  if (!detail::is_misfit(squares[worst] / n / usual, n, freedom,
+                         static_cast<double>(samples.size()))) {
+    return std::nullopt;
+  }
   return worst;
 }
 
@@ -54,12 +70,15 @@ inline bool OnlineCalibration::Inside::add_if_it_fits(const Sample& sample, Onli
   samples.push_back(sample);
   numbers.push_back(++added);
   auto evaluator = problem->evaluator(free);
-  constexpr int kEnough = 20;  // residuals for the noise: then samples are tested
-  if (freedom >= kEnough && noise2 > 0.0) {
+  if (!std::isfinite(evaluator->normal_equations(values, false).cost)) {
+    leave_out(samples.size() - 1);  // a residual is undefined: a point behind a camera
+    return false;
+  }
+  if (samples.size() > detail::kFewestToTest && noise2 > 0.0) {
     int rows = 0;
     const double x = innovation(*evaluator, rows);
     state.times = std::sqrt(std::max(0.0, x));
-    if (!(rows == 0 || f_tail(std::max(0.0, x), rows, freedom) > detail::kOnceIn)) {
+    if (rows > 0 && (!std::isfinite(x) || detail::is_misfit(x, rows, freedom, 1.0))) {
       leave_out(samples.size() - 1);
       return false;
     }
