@@ -106,7 +106,8 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
   SimulatedSetup setup = simulated_fetch(seed);
   setup.faults.outliers = kOutliers;
   SimulatedRobot robot(setup);
-  LedFinder leds{.frame = kFetchLedLink, .frame_T_camera = {}};
+  LedFinder leds;
+  leds.frame = kFetchLedLink;
   for (const Vector3<double>& led : fetch_leds()) {
     const int number = static_cast<int>(leds.leds.size());
     leds.leds.push_back({number + 1, "led" + std::to_string(number + 1), led});

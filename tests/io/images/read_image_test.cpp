@@ -77,10 +77,6 @@ TEST(ReadImage, AHeaderOfFarTooManyPixelsIsRefusedBeforeTheyAreStored) {
   // Width and height of the header become 2^30; its checksum is wrong then, too.
   bytes[16] = bytes[20] = 0x40;
   EXPECT_EQ(error_of([&] { (void)decode_image(bytes, "a.png"); }).find("a.png: "), 0u);
-  EXPECT_NE(error_of([] {
-              detail::check_image_size(20000, 20000, "a.png");
-            }).find("a.png: has 20000x20000 pixels; at most 100 megapixels are read"),
-            std::string::npos);
 }
 #endif
 
