@@ -34,7 +34,8 @@ namespace detail {
     const Sample& sample, const CheckerboardSettings& board) {
   const Observation* camera = sample.observation(board.target.camera_sensor);
   const Observation* chain = sample.observation(board.target.chain_sensor);
-  const auto corners = static_cast<std::size_t>(board.points_x * board.points_y);
+  const auto corners =
+      static_cast<std::size_t>(board.points_x) * static_cast<std::size_t>(board.points_y);
   if (!camera || !chain || camera->features.size() != corners ||
       chain->features.size() != corners || chain->features[0].frame != board.target.frame) {
     return std::nullopt;

@@ -40,7 +40,8 @@ KINECAL_INLINE double even_squares_brighter(const GrayImage& image, int columns,
   int counts[2] = {0, 0};
   for (int r = 0; r + 1 < rows; ++r) {
     for (int c = 0; c + 1 < columns; ++c) {
-      const auto i = static_cast<std::size_t>(r * columns + c);
+      const int place = r * columns + c;
+      const auto i = static_cast<std::size_t>(place);
       const auto j = i + static_cast<std::size_t>(columns);
       const Eigen::Vector2d middle =
           (corners[i] + corners[i + 1] + corners[j] + corners[j + 1]) / 4.0;
@@ -54,7 +55,7 @@ KINECAL_INLINE double even_squares_brighter(const GrayImage& image, int columns,
 KINECAL_INLINE void order_corners(const GrayImage& image, int columns, int rows,
                                   std::vector<Eigen::Vector2d>& corners) {
   const std::size_t across = static_cast<std::size_t>(columns) - 1;
-  const std::size_t down = static_cast<std::size_t>((rows - 1) * columns);
+  const std::size_t down = (static_cast<std::size_t>(rows) - 1) * static_cast<std::size_t>(columns);
   const Eigen::Vector2d x = corners[across] - corners[0], y = corners[down] - corners[0];
   if (x.x() * y.y() - x.y() * y.x() < 0.0) {  // seen in a mirror: read each row backwards
     for (auto row = corners.begin(); row != corners.end(); row += columns) {

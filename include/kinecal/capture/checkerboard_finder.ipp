@@ -116,7 +116,8 @@ KINECAL_INLINE Found CheckerboardFinder::find(const View& view) const {
   order_corners(view.image, settings_.points_x, settings_.points_y, corners);
   std::vector<TargetCorner> found;
   for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
-    const double x = i % settings_.points_x, y = i / settings_.points_x;
+    const int column = i % settings_.points_x, row = i / settings_.points_x;
+    const double x = column, y = row;
     found.push_back({i,
                      corners[static_cast<std::size_t>(i)],
                      {x * settings_.size, y * settings_.size, 0.0},

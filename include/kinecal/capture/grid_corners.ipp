@@ -19,7 +19,8 @@ KINECAL_INLINE Eigen::Vector2d CornerGrid::at(int column, int row) const {
   if (row < 0) return 2.0 * at(column, 0) - at(column, 1);
   if (column >= columns) return 2.0 * at(columns - 1, row) - at(columns - 2, row);
   if (row >= rows) return 2.0 * at(column, rows - 1) - at(column, rows - 2);
-  return corners[static_cast<std::size_t>(row * columns + column)];
+  const int place = row * columns + column;
+  return corners[static_cast<std::size_t>(place)];
 }
 
 /// Calls f(a, b, direction) for each side of a square; 0 is along rows.
@@ -148,7 +149,8 @@ KINECAL_INLINE double glare_share(const GrayImage& image, const CornerGrid& grid
       const Eigen::Vector2d origin = grid.at(c, r), x = grid.at(c + 1, r) - origin,
                             y = grid.at(c, r + 1) - origin;
       for (int k = 0; k < 25; ++k) {
-        const double s = 0.3 + 0.1 * (k % 5), t = 0.3 + 0.1 * (k / 5);
+        const int across = k % 5, down = k / 5;
+        const double s = 0.3 + 0.1 * across, t = 0.3 + 0.1 * down;
         ++pixels;
         if (brightness_at(image, origin + s * x + t * y) >= kSaturatedSquare) ++saturated;
       }

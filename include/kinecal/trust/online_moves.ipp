@@ -63,7 +63,7 @@ inline std::vector<std::pair<NextMove, Sample>> OnlineCalibration::Inside::candi
       }
       const Vector3<double> p_in = (of_in.at(there).inverse() * of_frame.at(there)).translation;
       if (detail::has_camera(last) && !detail::in_image(there, p_in)) continue;
-      found.push_back({{name, change, 0.0}, std::move(there)});
+      found.emplace_back(NextMove{name, change, 0.0}, std::move(there));
     }
   }
   return found;

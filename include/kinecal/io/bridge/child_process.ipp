@@ -24,8 +24,6 @@
 #include "kinecal/io/bridge/child_process.hpp"
 #include "kinecal/linkage.hpp"
 
-extern char** environ;
-
 namespace kinecal::detail {
 
 /// A pair of connected sockets, which unlike pipes can be written to without a signal when the other

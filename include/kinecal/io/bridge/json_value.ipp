@@ -24,7 +24,7 @@ namespace kinecal::detail {
 
 #ifdef KINECAL_HAVE_JSON
 
-struct JsonValue::Tree {
+struct JsonValue::Tree {  // NOLINT(bugprone-exception-escape): moving JSON throws nothing
   nlohmann::json json;
 };
 

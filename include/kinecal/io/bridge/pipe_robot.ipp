@@ -23,7 +23,8 @@ namespace kinecal {
 
 class PipeRobot::Pipe {
  public:
-  explicit Pipe(PipeOptions options) : process_(options.command), time_limit_(options.time_limit) {}
+  explicit Pipe(const PipeOptions& options)
+      : process_(options.command), time_limit_(options.time_limit) {}
 
   /// Sends a request and gives the answer to what reads it.
   /// @param what  the request in messages: "view"

@@ -111,7 +111,7 @@ namespace detail {
 [[nodiscard]] inline std::string depth_of(const ImageFolder& folder, const std::string& image,
                                           const std::string& source, Diagnostics& diagnostics) {
   if (folder.depth.empty()) return {};
-  const std::string path =
+  std::string path =
       (std::filesystem::path(folder.depth) / image).replace_extension(".png").string();
   if (!std::filesystem::exists(path)) {
     diagnostics.errors.push_back(source + ": image '" + printable(image) +

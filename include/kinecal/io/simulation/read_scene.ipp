@@ -59,7 +59,7 @@ namespace kinecal::detail {
 /// One of a few words; nothing, and an error, if it is another.
 [[nodiscard]] inline std::optional<std::string> read_word(ConfigMap& map, const std::string& key,
                                                           const std::vector<std::string>& words) {
-  const auto word = map.text(key);
+  std::optional<std::string> word = map.text(key);
   if (!word || std::find(words.begin(), words.end(), *word) != words.end()) return word;
   std::string all;
   for (const std::string& known : words) all += (all.empty() ? "" : ", ") + known;
