@@ -502,7 +502,8 @@ std::vector<OddInput> odd_inputs() {
       {"joints_in_another_order_in_each_sample", kArm,
        [](Files& files) {
          for (std::size_t i = 0; i < files.samples.size(); ++i) {
-           auto& [names, positions, seen, source, conditions] = files.samples[i];
+           auto& names = files.samples[i].joint_names;
+           auto& positions = files.samples[i].joint_positions;
            const auto by = static_cast<std::ptrdiff_t>(i % names.size());
            std::rotate(names.begin(), names.begin() + by, names.end());
            std::rotate(positions.begin(), positions.begin() + by, positions.end());
