@@ -49,7 +49,7 @@ std::vector<CapturePose> read_poses(const std::string& path, const CaptureConfig
   Diagnostics diagnostics;
   std::vector<CapturePose> poses =
       is_poses_yaml(path) ? read_poses_yaml(path, diagnostics) : read_bag_poses(path, diagnostics);
-  print(diagnostics);
+  cli::print(diagnostics);
   diagnostics.throw_if_errors();
   if (poses.empty()) throw InputError(path + ": has no poses");
   std::set<std::string> moved;
@@ -96,7 +96,7 @@ class Follower {
   Follower(const CaptureOptions& options, const Robot& robot) {
     input_.robot = robot;
     input_.config = read_config(options.calibrate, input_.diagnostics);
-    print(input_.diagnostics);
+    cli::print(input_.diagnostics);
     input_.diagnostics.throw_if_errors();
     if (!options.until.empty()) until_ = parse_accuracy(options.until);
     follower_.emplace(input_.config, robot, until_ ? until_->frame : "");
@@ -194,12 +194,12 @@ std::vector<Sample> earlier_samples(const CaptureOptions& options) {
   if (!options.resume || !std::filesystem::exists(options.output)) return {};
   Diagnostics diagnostics;
   std::vector<Sample> samples = read_recordings({options.output}, diagnostics).samples;
-  print(diagnostics);
+  cli::print(diagnostics);
   diagnostics.throw_if_errors();
   return samples;
 }
 
-void check(const CaptureOptions& options) {
+void check_options(const CaptureOptions& options) {
   (void)output_encoding(options.output);
   if (!options.resume) check_output(options.output, {options.config, options.urdf}, options.force);
   if (options.manual == options.poses.empty()) return;
@@ -285,7 +285,7 @@ int calibrate_samples(const CaptureOptions& options) {
 }  // namespace
 
 int capture(const CaptureOptions& options) {
-  check(options);
+  check_options(options);
   Diagnostics diagnostics;
   const CaptureConfig config = read_capture_config(options.config, diagnostics);
   print(diagnostics);

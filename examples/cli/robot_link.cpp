@@ -27,7 +27,7 @@ AnyRobot whole_robot(std::shared_ptr<R> robot, const CaptureConfig& config) {
 AnyRobot simulated(const std::string& scene, const CaptureConfig& config, const Robot& robot) {
   Diagnostics diagnostics;
   const SimulationPlan plan = read_simulation(robot, scene, "", 0, diagnostics);
-  print(diagnostics);
+  cli::print(diagnostics);
   diagnostics.throw_if_errors();
   return whole_robot(std::make_shared<SimulatedRobot>(plan.setup), config);
 }

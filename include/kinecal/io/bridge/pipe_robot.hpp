@@ -42,7 +42,7 @@ struct PipeOptions {
 class PipeRobot {
  public:
   /// Starts the program; it is ended with this object.
-  explicit PipeRobot(PipeOptions options);
+  explicit PipeRobot(const PipeOptions& options);
   PipeRobot(PipeRobot&&) noexcept;
   PipeRobot& operator=(PipeRobot&&) noexcept;
   ~PipeRobot();

@@ -96,8 +96,8 @@ template <class Items, class F>
 
 }  // namespace detail
 
-KINECAL_INLINE PipeRobot::PipeRobot(PipeOptions options)
-    : pipe_(std::make_unique<Pipe>(std::move(options))) {}
+KINECAL_INLINE PipeRobot::PipeRobot(const PipeOptions& options)
+    : pipe_(std::make_unique<Pipe>(options)) {}
 KINECAL_INLINE PipeRobot::PipeRobot(PipeRobot&&) noexcept = default;
 KINECAL_INLINE PipeRobot& PipeRobot::operator=(PipeRobot&&) noexcept = default;
 KINECAL_INLINE PipeRobot::~PipeRobot() = default;
