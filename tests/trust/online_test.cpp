@@ -119,7 +119,8 @@ TEST(Online, ProposesAMoveThatHelpsMoreThanTheUsualSample) {
   const std::optional<NextMove> move = online.next_move();
   ASSERT_TRUE(move.has_value());
   EXPECT_LT(move->position, state.position);
-  const auto& joint = mobile_manipulator().joint(move->joint);
+  const Robot robot = mobile_manipulator();
+  const Joint& joint = robot.joint(move->joint);
   const double there = scene.samples.back().position(move->joint).value() + move->change;
   if (joint.limits) {
     EXPECT_GE(there, joint.limits->lower);

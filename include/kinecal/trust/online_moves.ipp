@@ -41,8 +41,9 @@ inline std::vector<std::pair<NextMove, Sample>> OnlineCalibration::Inside::candi
   const detail::PoseInBase of_frame(robot, frame), of_in(robot, in);
   std::set<std::string> joints;
   for (const FrameOnRobot* of : {&frame, &in}) {
-    for (const ChainJoint& joint :
-         make_chain(problem->robot(), problem->base(), of->link, problem->frames()).joints) {
+    const RuntimeChain chain =
+        make_chain(problem->robot(), problem->base(), of->link, problem->frames());
+    for (const ChainJoint& joint : chain.joints) {
       if (moves(joint.type)) joints.insert(joint.drive.joint);
     }
   }
