@@ -25,8 +25,8 @@ struct Feature {
   /// Standard deviation of this measurement, metres or pixels: the unit of the residual.  It takes
   /// the place of the error block's sigma.
   std::optional<double> sigma = {};
-  /// Which feature of the target this is: the corner of a board, the tag.  Sensors pair features by
-  /// their ids; those without are paired by their place in the list.
+  /// Which feature of the target this is, as its finder numbers them: the corner of a board, the tag.
+  /// Error blocks pair features by their place in the list.
   std::optional<int> id = {};
 };
 
