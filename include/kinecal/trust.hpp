@@ -6,6 +6,7 @@
 #include "kinecal/trust/capture_causes.hpp"
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/compared_frames.hpp"
+#include "kinecal/trust/design_effect.hpp"
 #include "kinecal/trust/drift.hpp"
 #include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/held_out.hpp"

@@ -51,11 +51,27 @@ TEST(UnknownFrames, AreABoardAndABracketThatTheUrdfPutsAtZero) {
   }
 }
 
-TEST(UnknownFrames, AreNotThoseOfWhichAValueIsGiven) {
+TEST(UnknownFrames, HaveAGuessIfTheConfigurationGivesMoreThanZeros) {
   Scenario scenario = test::board_scenario(true, 1, 3);
-  scenario.config.steps[0].frame_initial_values = {{.name = "board", .place = {}}};
-  scenario.config.steps[0].initial_values = {{.name = "bracket_z", .value = 0.1, .place = {}}};
-  EXPECT_THAT(unknown_of(scenario.calibration()), IsEmpty());
+  StepConfig& step = scenario.config.steps[0];
+  step.frame_initial_values = {{.name = "board", .place = {}}};
+  step.initial_values = {{.name = "bracket_z", .value = 0.1, .place = {}}};
+  const Calibration calibration = scenario.calibration();
+  ASSERT_THAT(unknown_of(calibration), ElementsAre("bracket", "board"));
+  EXPECT_TRUE(calibration.steps[0].unknown_frames[0].has_guess);
+  EXPECT_FALSE(calibration.steps[0].unknown_frames[1].has_guess);
+}
+
+TEST(UnknownFrames, AreFoundInSpiteOfABadGuess) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    Scenario scenario = test::board_scenario(true, seed, 20);
+    const double reference = calibrate(scenario.calibration()).steps.back().final_cost;
+    for (const char* frame : {"board", "bracket"}) {
+      scenario.config.steps[0].frame_initial_values.push_back(
+          {.name = frame, .xyz = {-1.0, 2.0, -3.0}, .rpy = {3.0, 0.2, 2.0}, .place = {}});
+    }
+    expect_found(scenario.calibration(), reference);
+  }
 }
 
 TEST(UnknownFrames, AreKnownAfterTheStepThatFoundThem) {

@@ -14,25 +14,32 @@
 
 namespace kinecal::detail {
 
-/// Names of frames whose pose is given in this step or found by one before it.
-[[nodiscard]] inline std::set<std::string> known_frames(const Config& config,
+/// Names of frames that a step before this one has found.
+[[nodiscard]] inline std::set<std::string> found_frames(const Config& config,
                                                         const StepConfig& until) {
-  std::set<std::string> known;
+  std::set<std::string> found;
+  for (const StepConfig& step : config.steps) {
+    if (&step == &until) break;
+    for (const FreeFrameConfig& frame : step.free_frames) found.insert(frame.name);
+  }
+  return found;
+}
+
+/// True if the configuration says, in this step or before it, where a frame is.
+[[nodiscard]] inline bool is_given(const Config& config, const StepConfig& until,
+                                   const std::string& frame) {
   for (const StepConfig& step : config.steps) {
     for (const FrameInitialValueConfig& value : step.frame_initial_values) {
-      known.insert(value.name);
+      if (value.name == frame && !(value.xyz.isZero() && value.rpy.isZero())) return true;
     }
     for (const InitialValueConfig& value : step.initial_values) {
-      for (const FreeFrameConfig& frame : until.free_frames) {
-        for (const auto axis : kFrameAxes) {
-          if (value.name == parameter_name(frame.name, axis)) known.insert(frame.name);
-        }
+      for (const auto axis : kFrameAxes) {
+        if (value.name == parameter_name(frame, axis) && value.value != 0.0) return true;
       }
     }
     if (&step == &until) break;
-    for (const FreeFrameConfig& frame : step.free_frames) known.insert(frame.name);
   }
-  return known;
+  return false;
 }
 
 /// True for a joint whose pose may be a placeholder: it is fixed, free in all axes, and no prior
@@ -45,22 +52,24 @@ namespace kinecal::detail {
                       [&](const BlockConfig& block) { return block.param == frame.name; });
 }
 
-/// The free frames of a step whose pose is to be searched for: virtual frames, for which nobody gave
-/// a value, and fixed joints, of which the URDF may not know better.  An origin of zeros is no guess.
+/// The free frames of a step whose pose may have to be searched for: virtual frames, and fixed joints, of
+/// which the URDF may not know better.  A pose of zeros is no guess, whoever gives it.
 [[nodiscard]] inline std::vector<UnknownFrame> unknown_frames(const Config& config,
                                                               const StepConfig& step,
                                                               const Robot& robot,
                                                               const ParameterTable& table,
                                                               const FreeSet& free) {
-  const std::set<std::string> known = known_frames(config, step);
+  const std::set<std::string> found_before = found_frames(config, step);
   std::vector<UnknownFrame> unknown;
   for (const FreeFrameConfig& frame : step.free_frames) {
-    if (known.contains(frame.name)) continue;
+    if (found_before.contains(frame.name)) continue;
     UnknownFrame found{frame.name};
+    found.has_guess = is_given(config, step, frame.name);
     if (robot.has_joint(frame.name)) {
       const Joint& joint = robot.joint(frame.name);
       if (!may_be_anywhere(joint, frame, step)) continue;
-      found.has_guess = !joint.origin.rotation.isIdentity() || !joint.origin.translation.isZero();
+      found.has_guess = found.has_guess || !joint.origin.rotation.isIdentity() ||
+                        !joint.origin.translation.isZero();
     }
     bool any = false;
     for (std::size_t k = 0; k < 6; ++k) {

@@ -147,13 +147,15 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
   }
   return fmt::format(
       "{{\n  \"verdict\": {},\n  \"reasons\": {},\n  \"converged\": {},\n  \"termination\": {},\n"
-      "  \"steps\": {},\n  \"error_blocks\": {},\n  \"noise\": {},\n  \"parameters\": {},\n"
+      "  \"steps\": {},\n  \"error_blocks\": {},\n  \"noise\": {},\n  \"design_effect\": {},\n"
+      "  \"parameters\": {},\n"
       "  \"pose\": {},\n  \"observability\": {},\n  \"bad_samples\": {},\n"
       "  \"left_out\": {},\n  \"images\": {{{}}},\n  \"covariance\": {},\n  \"poses\": {}\n}}\n",
       detail::json_string(to_string(findings.judgement.verdict)),
       detail::json_list(findings.judgement.reasons, detail::json_string), result.converged,
       detail::json_string(result.termination), detail::json_list(result.steps, write),
       detail::json_list(result.blocks, write), detail::json_list(last.noise, noise),
+      detail::json_number(last.uncertainty.design_effect),
       detail::json_list(result.calibrated,
                         [&](int i) { return detail::json_parameter(findings, i); }),
       last.pose ? detail::json(*last.pose) : "null",

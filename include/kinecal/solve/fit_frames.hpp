@@ -19,12 +19,12 @@
 
 namespace kinecal {
 
-/// A free frame whose pose nobody gave.
+/// A free frame whose pose may not be known.
 struct UnknownFrame {
   std::string name;  ///< joint of the robot or virtual frame
   /// Table indices of x y z a b c; -1: this axis is held.
   std::array<int, 6> axes = {-1, -1, -1, -1, -1, -1};
-  /// The URDF has a pose for it.  It is searched for only if a start there ends badly.
+  /// URDF or configuration have a pose for it.  It is searched for only if a start there ends badly.
   bool has_guess = false;
 
   /// True if some rotation is free.

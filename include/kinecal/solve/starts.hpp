@@ -3,8 +3,8 @@
 // Frames whose pose nobody gave are fitted alone, from a grid of orientations, to a few samples
 // (fit_frames.hpp), and the best few fits are solved with everything free.  So is the start that the
 // configuration gives, and its minimum is taken unless another is lower by more than rounding.  A
-// frame with a pose in the URDF takes part only if the step ends badly without: it does not converge,
-// or it turns this frame by more than 30 degrees.
+// frame with a pose in the URDF or in the configuration takes part only if the step ends badly without:
+// it does not converge, or it turns this frame by more than 30 degrees.
 //
 // The result does not depend on the number of threads.
 // SPDX-License-Identifier: Apache-2.0

@@ -28,7 +28,7 @@ class Starts {
  public:
   Starts(const AnyProblem& problem, const FreeSet& free, const SolveOptions& options,
          const Eigen::VectorXd& from)
-      : problem_(problem), free_(free), options_(options) {
+      : problem_(problem), free_(free), options_(options), from_(from) {
     const double cost = cost_at(*problem.evaluator(free, options.threads), from);
     if (std::isfinite(cost)) floor_ = kRounding * cost;
   }
@@ -78,7 +78,7 @@ class Starts {
     constexpr double kLikely = std::numbers::pi / 6.0;  // a bracket that is mounted as drawn
     return !best_.result.converged ||
            std::any_of(frames.begin(), frames.end(), [&](const UnknownFrame& frame) {
-             return frame.has_guess && rotation_of(frame, best_.values).norm() > kLikely;
+             return frame.has_guess && turned(frame) > kLikely;
            });
   }
 
@@ -101,6 +101,13 @@ class Starts {
   static constexpr std::size_t kFinished = 4;       // fits that are solved with everything free
   static constexpr double kWorthFinishing = 100.0;  // of the least cost: ten times the error
   static constexpr double kRounding = 1e-16;        // of the cost at the start
+
+  /// How far the best solve so far turned a frame, radians.
+  [[nodiscard]] double turned(const UnknownFrame& frame) const {
+    const Matrix3<double> turn =
+        exp(rotation_of(frame, from_)).transpose() * exp(rotation_of(frame, best_.values));
+    return log(turn).norm();
+  }
 
   [[nodiscard]] static double cost_at(AnyEvaluator& evaluator, const Eigen::VectorXd& values) {
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
@@ -169,6 +176,7 @@ class Starts {
   const AnyProblem& problem_;
   const FreeSet& free_;
   const SolveOptions& options_;
+  const Eigen::VectorXd& from_;
   StartSummary summary_;
   Attempt best_;
   double floor_ = 0.0;  ///< costs below are rounding

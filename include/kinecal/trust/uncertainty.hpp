@@ -5,7 +5,8 @@
 // with P the priors, s_b the weighted noise of error block b, and s = 1 if all blocks have a sigma, else
 // that of all blocks: without sigmas weights are ratios.  One common s gives s^2 H^-1.  With robust losses the
 // sandwich of M-estimators: A^-1 B A^-1 with A the Hessian including rho'', B the sum of g g^T over
-// features, g their gradients.
+// features, g their gradients.  Both suppose that features err independently; where those of a sample do
+// not, C is multiplied by the design effect.
 // Source: Huber, Robust Statistics, 1981, 6.3.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -24,6 +25,8 @@ struct Uncertainty {
                            ///< that nothing determines
   /// Standard deviation of each free parameter; infinite if samples and priors do not determine it.
   PlainMatrix deviation;
+  /// Factor in the covariance for features of a sample that err together: see design_effect().
+  double design_effect = 1.0;
 };
 
 /// Covariance of the free parameters.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kinecal/trust/design_effect.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 
@@ -87,14 +88,15 @@ KINECAL_INLINE Uncertainty uncertainty(const AnyProblem& problem, const LinearFi
   }
   const Eigen::MatrixXd inverse = detail::Spectrum(hessian).pseudo_inverse();
   const Coordinates& by = fit.coordinates;
-  const Eigen::MatrixXd coordinates = inverse * middle * inverse;
+  const double effect = design_effect(problem, fit);
+  const Eigen::MatrixXd coordinates = effect * inverse * middle * inverse;
   const Eigen::MatrixXd covariance = by.basis * coordinates * by.basis.transpose();
   Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   constexpr double kLost = 0.03;  // more than this of a parameter is not determined
   for (Eigen::Index i = 0; i < by.lost.size(); ++i) {
     if (by.lost(i) > kLost) deviation(i) = std::numeric_limits<double>::infinity();
   }
-  return {static_cast<int>(coordinates.rows()), covariance, deviation};
+  return {static_cast<int>(coordinates.rows()), covariance, deviation, effect};
 }
 
 KINECAL_INLINE std::vector<Correlation> high_correlations(const Uncertainty& known, double limit) {

@@ -121,11 +121,10 @@ inline void add_board(InitPlan& plan, const std::string& name, const std::string
       "Where the checkerboard is, seen from link " + name_to_yaml(link) +
           ".  The URDF does not contain this frame; it is the frame_id of the board's corners.");
   add_initial_value(plan, name,
-                    "Measure by hand where the board's first corner is in link " +
+                    "Zeros are no guess: kinecal searches for the board.  Should it not find it, "
+                    "measure where the board's first corner is in link " +
                         name_to_yaml(link) +
-                        " and how the board is turned (x along its rows, y along its columns).  "
-                        "An accuracy of 0.1 m and 30 degrees is enough; if the board is upside "
-                        "down, the search may fail.");
+                        " and how the board is turned (x along its rows, y along its columns).");
 }
 
 }  // namespace kinecal::detail

@@ -129,8 +129,8 @@ namespace kinecal::detail {
                true);
   }
   add_initial_value(plan, tracker,
-                    "Measure by hand where the tracker stands and how it is turned.  An accuracy "
-                    "of 0.5 m and 60 degrees is enough.");
+                    "Zeros are no guess: kinecal searches for the tracker.  Should it not find it, "
+                    "measure where it stands and how it is turned.");
   for (const std::string& frame : reflectors) add_initial_value(plan, frame, "");
   plan.error_blocks.push_back(
       {"Both observe the same point.  sigma combines the accuracy of the tracker and the "
