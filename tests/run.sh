@@ -9,5 +9,8 @@ for preset in "${@:-dev}"; do
   echo "== $preset, $(date +%H:%M:%S)"
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset"
-  ctest --preset "$preset" -j "$(nproc)"
+  ctest --preset "$preset" -j "$(nproc)" && continue
+  echo "== once more, so that this ends with what failed"
+  ctest --preset "$preset" --rerun-failed --output-on-failure 2>&1 | tail -n 80
+  exit 1
 done

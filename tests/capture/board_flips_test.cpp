@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "kinecal/capture/board_order.hpp"
+#include "kinecal/study/seeded_random.hpp"
 #include "support/board_images.hpp"
 
 namespace kinecal {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "kinecal/study/seeded_random.hpp"
 #include "support/board_images.hpp"
 
 namespace kinecal {
