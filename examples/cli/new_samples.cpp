@@ -192,7 +192,7 @@ Assessment assess_new(const Result& result, const NewSamples& fresh) {
       }
       worst.others = worst.term == t ? worst.distance : 0.0;
       worst.term = t;
-      worst.feature = static_cast<int>(row) / size;
+      worst.feature = problem.feature(t, sample, row / size);
       worst.distance = distance;
       worst.times = distance / noise.sigma;
     }

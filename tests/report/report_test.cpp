@@ -48,7 +48,7 @@ Findings findings() {
   step.held_out = {{"hand_eye", "m", 10, 0.0017, 0.0021}};
   step.captures = {{.sample = 0, .times = 1.0},
                    {.sample = 1,
-                    .feature = 1,
+                    .feature = {1},
                     .distance = 0.048,
                     .others = 0.003,
                     .times = 43.0,

@@ -44,5 +44,32 @@ TEST(ResidualsCsv, HasARowForEachFeatureWithItsDistance) {
   EXPECT_NEAR(0.5 * squares, scene.result.steps[0].final_cost * 1e-6, 1e-12);
 }
 
+TEST(ResidualsCsv, NumbersFeaturesAsTheSampleListsThemAndGivesTheirIds) {
+  test::NoisyScene scene(12);
+  scene.samples[0].observations[0].features[1].point.x() = std::nan("");
+  std::vector<Observation>& seen = scene.samples[1].observations;
+  for (Observation& observation : seen) {
+    for (std::size_t i = 0; i < 4; ++i) observation.features[i].id = 20 + static_cast<int>(i);
+  }
+  std::reverse(seen[1].features.begin(), seen[1].features.end());  // the block's first sensor
+  seen[0].features.erase(seen[0].features.begin());
+  scene.solve();
+  const Findings findings =
+      find(test::mobile_manipulator(), scene.calibration, scene.result, scene.samples);
+  std::istringstream text(residuals_csv(scene.calibration, findings));
+  std::string line;
+  std::getline(text, line);
+  EXPECT_EQ(line, "error_block,sample,source,feature,id,unit,distance,residual");
+  std::map<std::string, std::string> features;  // of each sample: feature and id
+  while (std::getline(text, line)) {
+    const std::vector<std::string> row = cells(line);
+    ASSERT_EQ(row.size(), 10U) << line;
+    features[row[1]] += " " + row[3] + ":" + row[4];
+  }
+  EXPECT_EQ(features["1"], " 1: 3: 4:");
+  EXPECT_EQ(features["2"], " 3:21 2:22 1:23");
+  EXPECT_EQ(features["3"], " 1: 2: 3: 4:");
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -91,6 +91,37 @@ TEST_F(CaptureCauses, ABoardThatIsTurnedIsNamed) {
               testing::Each(HasSubstr("a board turned by 90 degrees?")));
 }
 
+/// The camera saw three of four features and lists them in another order.
+TEST_F(CaptureCauses, FeaturesAreNamedByTheirIds) {
+  const auto number = [](Sample& sample) {
+    for (const char* sensor : {"arm", "camera"}) {
+      std::vector<Feature>& all = features(sample, sensor);
+      for (std::size_t i = 0; i < all.size(); ++i) all[i].id = 10 + static_cast<int>(i);
+    }
+  };
+  const auto take_part = [](Sample& sample) {
+    std::vector<Feature>& camera = features(sample, "camera");
+    camera = {camera[3], camera[2], camera[1]};
+  };
+  EXPECT_THAT(causes([&](Sample& sample, test::Chance&) {
+                number(sample);
+                std::swap(features(sample, "camera")[1].point, features(sample, "camera")[3].point);
+                take_part(sample);
+              }),
+              testing::Each("the features with ids 11 and 13 are exchanged"));
+  EXPECT_THAT(causes([&](Sample& sample, test::Chance&) {
+                number(sample);
+                features(sample, "camera")[2].point = features(sample, "camera")[3].point;
+                take_part(sample);
+              }),
+              testing::Each("the feature with id 12 shows the feature with id 13"));
+  EXPECT_THAT(causes([&](Sample& sample, test::Chance&) {
+                number(sample);
+                take_part(sample);
+              }),
+              testing::Each(""));
+}
+
 TEST_F(CaptureCauses, TheReadingOfOneJointIsNamedWithItsSign) {
   const double degree = std::numbers::pi / 180.0;
   for (const char* joint : {"shoulder_pan", "shoulder_lift", "elbow", "wrist", "head_tilt"}) {

@@ -73,7 +73,7 @@ TEST(Captures, SayWhichFeatureIsOffAndHowFarTheOthersAre) {
   const Assessment found = scene.solve_and_assess();
   EXPECT_THAT(bad_ones(found), testing::ElementsAre(17));
   const CaptureError& error = found.captures[17];
-  EXPECT_EQ(error.feature, 2);
+  EXPECT_EQ(error.feature.place, 2);
   EXPECT_NEAR(error.distance, 0.048, 5.0 * test::kPointNoise);
   EXPECT_LT(error.others, 5.0 * test::kPointNoise);
   EXPECT_GT(error.times, 40.0);

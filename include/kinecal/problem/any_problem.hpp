@@ -28,6 +28,7 @@
 #include "kinecal/errors/ray_to_ray.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_term.hpp"
+#include "kinecal/problem/feature_label.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
 #include "kinecal/problem/prior_term.hpp"
 #include "kinecal/sensors/chain_point.hpp"
@@ -75,6 +76,8 @@ class AnyProblem {
   /// Adds a sample.  Sensors and blocks must have been added before.
   /// @throws SampleError  with the sample and what is missing or wrong; the sample is not added
   void add_sample(const Sample& sample);
+  /// The sample as blocks pair its features by their ids: see pair_features().
+  [[nodiscard]] std::optional<Sample> paired(const Sample& sample) const;
 
   /// The robot as its URDF says.
   [[nodiscard]] const Robot& robot() const { return robot_; }
@@ -98,6 +101,8 @@ class AnyProblem {
   [[nodiscard]] const std::string& source(int sample) const {
     return sources_[static_cast<std::size_t>(sample)];
   }
+  /// The feature to which residuals of a term in a sample belong: the i-th that it compares there.
+  [[nodiscard]] FeatureLabel feature(int term, int sample, std::ptrdiff_t i) const;
   /// Number of residuals: those of all features, and those of each prior once.
   [[nodiscard]] int num_residuals() const {
     return residuals_ + static_cast<int>(priors_.size()) * Prior::kRows;
@@ -175,6 +180,8 @@ class AnyProblem {
   std::vector<PriorTerm> priors_;
   int residuals_ = 0;                 ///< of all features
   std::vector<std::string> sources_;  ///< of each sample
+  /// Of a sample and a term: the features that it compares, unless they are 0, 1, 2 ... without ids.
+  std::map<std::pair<int, int>, std::vector<FeatureLabel>> labels_;
 
   /// Samples of one layout.
   struct OfLayout {

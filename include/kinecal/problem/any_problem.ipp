@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/problem/paired_features.hpp"
 #include "kinecal/problem/parameter_owners.ipp"
 #include "kinecal/problem/term_applies.ipp"
 
@@ -49,24 +50,41 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
 
 namespace detail {
 
+inline void check_positions(const Sample& sample) {
+  const std::size_t names = sample.joint_names.size(), positions = sample.joint_positions.size();
+  if (names == positions) return;
+  throw SampleError("it has " + std::to_string(names) + " joint names, but positions of " +
+                    std::to_string(positions));
+}
+
 [[nodiscard]] inline bool has_term(const detail::SampleLayout& layout, int term) {
   return std::find(layout.terms.begin(), layout.terms.end(), term) != layout.terms.end();
 }
 
 }  // namespace detail
 
+KINECAL_INLINE std::optional<Sample> AnyProblem::paired(const Sample& sample) const {
+  if (!has_ids(sample)) return std::nullopt;
+  std::vector<ComparedSensors> blocks;
+  for (int t = 0; t < num_terms(); ++t) {
+    ComparedSensors& block = blocks.emplace_back();
+    for (const int s : term(t).sensors()) block.names.push_back(sensor(s).mount().name);
+    block.paired = term(t).pairs_features();
+  }
+  return pair_features(sample, blocks);
+}
+
 KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
+  std::optional<Sample> in_order;
   detail::SampleNumbers seen;
   seen.sensors.resize(sensors_.size());
   detail::SampleLayout layout;
   try {
-    if (sample.joint_names.size() != sample.joint_positions.size()) {
-      throw SampleError("it has " + std::to_string(sample.joint_names.size()) +
-                        " joint names, but positions of " +
-                        std::to_string(sample.joint_positions.size()));
-    }
+    detail::check_positions(sample);
+    in_order = paired(sample);
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
-      const Observation* observation = sample.observation(sensors_[s].mount().name);
+      const Observation* observation =
+          (in_order ? *in_order : sample).observation(sensors_[s].mount().name);
       if (observation == nullptr || observation->features.empty()) continue;
       seen.sensors[s] = sensors_[s].numbers(sample, *observation);
     }
@@ -82,6 +100,11 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   }
   for (const int t : layout.terms) {
     residuals_ += term(t).count(detail::observations_of(term(t), seen)) * term(t).feature_size();
+    const std::string& first = sensor(term(t).sensors().front()).mount().name;
+    const Observation* recorded = sample.observation(first);
+    auto labels = detail::labels_of(term(t), seen, *recorded,
+                                    in_order ? *in_order->observation(first) : *recorded);
+    if (!labels.empty()) labels_.emplace(std::pair(num_samples(), t), std::move(labels));
   }
   forget_unused(layout, seen);
   auto& [of_sample, of_layout] =
@@ -89,6 +112,12 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   add_to_batch(of_layout.index, of_sample, seen);
   ++of_layout.samples;
   sources_.push_back(sample.source);
+}
+
+KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdiff_t i) const {
+  const auto labels = labels_.find({sample, term});
+  if (labels == labels_.end()) return {static_cast<int>(i)};
+  return labels->second.at(static_cast<std::size_t>(i));
 }
 
 KINECAL_INLINE int AnyProblem::samples_of(int term) const {

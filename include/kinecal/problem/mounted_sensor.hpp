@@ -17,6 +17,7 @@
 
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/problem/batch.hpp"
+#include "kinecal/problem/feature_label.hpp"
 #include "kinecal/sensors/any_sensor.hpp"
 
 namespace kinecal {
@@ -113,7 +114,8 @@ class MountedSensor {
       const double sigma = features[i].sigma.value_or(0.0), variance = sigma * sigma;
       if (features[i].sigma && !(sigma > 0.0 && std::isnormal(variance))) {
         std::ostringstream message;
-        message << "sensor '" << mount_.name << "': the sigma of feature " << i + 1
+        const FeatureLabel label{static_cast<int>(i), features[i].id};
+        message << "sensor '" << mount_.name << "': the sigma of " << label.text()
                 << " must be positive and finite, is " << sigma;
         throw SampleError(message.str());
       }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "kinecal/errors/plane_fit.hpp"
 #include "kinecal/problem/any_problem.hpp"
@@ -40,6 +41,37 @@ namespace detail {
     of_feature = of_feature > 0.0 ? term.options().sigma / std::sqrt(of_feature) : 1.0;
   }
   return factors;
+}
+
+/// The features that a term compares in a sample; empty if they are 0, 1, 2 ... and have no ids.
+/// @param recorded  what its first sensor observed
+/// @param paired    the same as it was paired
+[[nodiscard]] inline std::vector<FeatureLabel> labels_of(const AnyTerm& term,
+                                                         const SampleNumbers& observed,
+                                                         const Observation& recorded,
+                                                         const Observation& paired) {
+  std::vector<FeatureLabel> labels;
+  if (!term.pairs_features()) return labels;  // they are one plane
+  std::map<int, int> places;                  // where they were recorded, by id
+  if (&recorded != &paired) {
+    for (const Feature& feature : recorded.features) {
+      if (feature.id) places.emplace(*feature.id, static_cast<int>(places.size()));
+    }
+  }
+  const auto seen = observations_of(term, observed);
+  bool plain = true;
+  for (std::size_t i = 0; i < paired.features.size(); ++i) {
+    const bool compared = std::all_of(seen.begin(), seen.end(), [i](const auto* of_sensor) {
+      return of_sensor->usable[i] > 0.0;
+    });
+    if (!compared) continue;
+    const std::optional<int>& id = paired.features[i].id;
+    const auto place = id ? places.find(*id) : places.end();
+    labels.push_back({place != places.end() ? place->second : static_cast<int>(i), id});
+    plain = plain && !id && i + 1 == labels.size();
+  }
+  if (plain) labels.clear();
+  return labels;
 }
 
 /// The conditions that a term takes of a sample.
@@ -82,7 +114,8 @@ KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sampl
     if (seen[i]->usable.size() == seen[0]->usable.size()) continue;
     throw SampleError("error block '" + term.name() + "': sensor '" + name(0) + "' has " +
                       std::to_string(seen[0]->usable.size()) + " features, sensor '" + name(i) +
-                      "' has " + std::to_string(seen[i]->usable.size()));
+                      "' has " + std::to_string(seen[i]->usable.size()) +
+                      "; give them ids, so that they are paired by id, not by place");
   }
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (term.quantities()[i] != Quantity::plane) continue;

@@ -177,8 +177,8 @@ KINECAL_INLINE Findings find(const Robot& robot, const Calibration& calibration,
 
 KINECAL_INLINE std::string capture_text(const CaptureError& error, const Assessment& assessment) {
   const BlockNoise& noise = assessment.noise[static_cast<std::size_t>(error.term)];
-  std::string text = fmt::format("error block '{}': feature {} is {} off", noise.block,
-                                 error.feature + 1, reading(error.distance, noise.unit));
+  std::string text = fmt::format("error block '{}': {} is {} off", noise.block,
+                                 error.feature.text(), reading(error.distance, noise.unit));
   if (error.others > 0.0) {
     text += fmt::format(", all others at most {}", reading(error.others, noise.unit));
   }

@@ -10,7 +10,8 @@
 namespace kinecal {
 
 /// A row for each feature of the last step: error block, sample, its source location, feature, unit,
-/// residuals and their distance.
+/// residuals and their distance.  The feature is its number, from 1, in the list of the block's first
+/// sensor; a column `id` follows if any feature has one.
 /// @param calibration  the one that was solved, with its samples
 [[nodiscard]] std::string residuals_csv(const Calibration& calibration, const Findings& findings);
 

@@ -25,8 +25,8 @@ struct Feature {
   /// Standard deviation of this measurement, metres or pixels: the unit of the residual.  It takes
   /// the place of the error block's sigma.
   std::optional<double> sigma = {};
-  /// Which feature of the target this is, as its finder numbers them: the corner of a board, the tag.
-  /// Error blocks pair features by their place in the list.
+  /// Which feature of the target this is, from 0: the corner of a board, the tag.  Error blocks pair
+  /// features of several sensors by their ids; without ids, by their places in the lists.
   std::optional<int> id = {};
 };
 
@@ -46,7 +46,7 @@ struct CameraInfo {
 /// What one sensor observed in a sample.
 struct Observation {
   std::string sensor;                     ///< name of the sensor
-  std::vector<Feature> features;          ///< in an order that all sensors share
+  std::vector<Feature> features;          ///< with ids, or in an order that all sensors share
   std::optional<CameraInfo> camera = {};  ///< of cameras only
 };
 

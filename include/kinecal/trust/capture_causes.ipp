@@ -19,13 +19,15 @@ struct FeatureOrder {
   Sample sample;
 };
 
-/// Features in another order: those of place i come from place order[i].
+/// What was measured in another order: that of place i comes from place order[i].  Ids stay.
 [[nodiscard]] inline Sample with_order(const Sample& sample, std::size_t observation,
                                        const std::vector<std::size_t>& order) {
   Sample changed = sample;
   std::vector<Feature>& features = changed.observations[observation].features;
   for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::optional<int> id = features[i].id;
     features[i] = sample.observations[observation].features[order[i]];
+    features[i].id = id;
   }
   return changed;
 }
@@ -34,29 +36,39 @@ struct FeatureOrder {
 /// @param of  " of 'camera'", where that is of interest
 inline void add_exchanges(const Sample& sample, std::size_t observation, std::size_t worst, int bad,
                           const std::string& of, std::vector<FeatureOrder>& all) {
-  std::vector<std::size_t> order(sample.observations[observation].features.size());
+  const std::vector<Feature>& features = sample.observations[observation].features;
+  const auto label = [&](std::size_t i) {
+    return FeatureLabel{static_cast<int>(i), features[i].id};
+  };
+  const auto number = [&](std::size_t i) {
+    return std::to_string(features[i].id.value_or(static_cast<int>(i) + 1));
+  };
+  const std::string both = features[worst].id ? "the features with ids " : "features ";
+  std::vector<std::size_t> order(features.size());
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t other = 0; other < order.size(); ++other) {
     if (other == worst) continue;
     const auto [less, more] = std::minmax(worst, other);
     std::vector<std::size_t> changed = order;
     std::swap(changed[worst], changed[other]);
-    all.push_back({"features " + std::to_string(less + 1) + " and " + std::to_string(more + 1) +
-                       of + " are exchanged",
+    all.push_back({both + number(less) + " and " + number(more) + of + " are exchanged",
                    with_order(sample, observation, changed)});
     if (bad > 1) continue;
     changed = order;
     changed[worst] = other;
-    all.push_back(
-        {"feature " + std::to_string(worst + 1) + " shows feature " + std::to_string(other + 1),
-         with_order(sample, observation, changed)});
+    all.push_back({label(worst).text() + " shows " + label(other).text(),
+                   with_order(sample, observation, changed)});
   }
 }
 
-/// A board that was read from another corner.
+/// A board that was read from another corner.  Of a part of a board, nobody knows where the corner is.
 inline void add_turns(const Sample& sample, std::size_t observation,
                       std::vector<FeatureOrder>& all) {
-  const std::size_t size = sample.observations[observation].features.size();
+  const std::vector<Feature>& features = sample.observations[observation].features;
+  const std::size_t size = features.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    if (features[i].id && *features[i].id != static_cast<int>(i)) return;
+  }
   const auto add = [&](const std::string& cause, auto&& place) {
     std::vector<std::size_t> order(size);
     for (std::size_t i = 0; i < size; ++i) order[i] = place(i);
@@ -113,10 +125,12 @@ KINECAL_INLINE std::string capture_cause(const ProblemMaker& make, std::span<con
                                          const std::vector<BlockNoise>& noise,
                                          const Sample& sample) {
   const detail::CaptureTrials trials(make, values, noise);
-  const detail::TrialRows now = trials({sample}).front();
+  detail::TrialRows now = trials({sample}).front();
   if (!now.defined || now.fits()) return {};
   const std::unique_ptr<AnyProblem> problem = make();
-  std::string cause = detail::wrong_order(trials, *problem, sample, now);
+  const std::optional<Sample> in_order = problem->paired(sample);
+  if (in_order) now = trials({*in_order}).front();  // the same, numbered as in it
+  std::string cause = detail::wrong_order(trials, *problem, in_order.value_or(sample), now);
   if (!cause.empty()) return cause;
   constexpr double kBetter = 25.0;  // by five parameters more: once in 10000 by chance
   detail::JointCause one = detail::wrong_reading(trials, problem->robot(), sample, now);

@@ -73,12 +73,13 @@ class CaptureTrials {
       }
     }
     std::vector<std::vector<double>> rows(variants.size());
-    (void)evaluate(*problem, values_, nullptr,
-                   [&](int term, int sample, const TermResiduals& residuals) {
-                     const std::size_t of = numbers[static_cast<std::size_t>(sample)];
-                     add(problem->term(term), noise_[static_cast<std::size_t>(term)], residuals,
-                         all[of], rows[of]);
-                   });
+    (void)evaluate(
+        *problem, values_, nullptr, [&](int term, int sample, const TermResiduals& residuals) {
+          const std::size_t of = numbers[static_cast<std::size_t>(sample)];
+          const auto label = [&](Eigen::Index i) { return problem->feature(term, sample, i); };
+          add(problem->term(term), noise_[static_cast<std::size_t>(term)], residuals, label,
+              all[of], rows[of]);
+        });
     for (std::size_t i = 0; i < variants.size(); ++i) {
       all[i].rows = Eigen::Map<const Eigen::VectorXd>(rows[i].data(), std::ssize(rows[i]));
       const bool complete = !rows[i].empty() && rows[i].size() >= rows[0].size();
@@ -88,14 +89,15 @@ class CaptureTrials {
   }
 
  private:
+  template <class LabelOf>
   static void add(const AnyTerm& term, const BlockNoise& noise, const TermResiduals& residuals,
-                  TrialRows& to, std::vector<double>& rows) {
+                  const LabelOf& label, TrialRows& to, std::vector<double>& rows) {
     constexpr double kRounding = 1e-9;  // of exact data, as in captures.ipp
     const double sigma = std::max(noise.robust > 0.0 ? noise.robust : noise.sigma,
                                   kRounding * std::max(noise.unit_sigma, 1e-3));
     const int size = term.feature_size();
     for (Eigen::Index row = 0; row + size <= residuals.residual.size(); row += size) {
-      TrialFeature feature{term.pairs_features() ? static_cast<int>(row / size) : -1, size, 0.0};
+      TrialFeature feature{term.pairs_features() ? label(row / size).place : -1, size, 0.0};
       for (Eigen::Index k = row; k < row + size; ++k) {
         rows.push_back(residuals.residual(k) * residuals.factor(k) / sigma);
         feature.chi2 += rows.back() * rows.back();

@@ -22,14 +22,14 @@ namespace kinecal {
 
 /// The worst feature of a sample.
 struct CaptureError {
-  int sample = 0;         ///< by number in the problem
-  int term = 0;           ///< error block, by number in the problem
-  int feature = 0;        ///< from 0, in the sample
-  double distance = 0.0;  ///< from the fit without bad samples, unit of the residual
-  double others = 0.0;    ///< the largest distance of the sample's other features of the block
-  double times = 0.0;     ///< distance in standard deviations of the noise
-  double limit = 0.0;     ///< of `times`: beyond it a feature is bad
-  bool bad = false;       ///< beyond the limit
+  int sample = 0;             ///< by number in the problem
+  int term = 0;               ///< error block, by number in the problem
+  FeatureLabel feature = {};  ///< which one it is
+  double distance = 0.0;      ///< from the fit without bad samples, unit of the residual
+  double others = 0.0;        ///< the largest distance of the sample's other features of the block
+  double times = 0.0;         ///< distance in standard deviations of the noise
+  double limit = 0.0;         ///< of `times`: beyond it a feature is bad
+  bool bad = false;           ///< beyond the limit
   double influence =
       0.0;  ///< how far the parameters move without the sample: sqrt(dz^T H dz / size),
             ///< 1: by their own uncertainty

@@ -147,7 +147,7 @@ class CaptureSearch {
         of.times = so_far;
         of.limit = limit(f);
         of.term = f.term;
-        of.feature = f.number;
+        of.feature = problem_.feature(f.term, f.sample, f.number);
         of.distance = d;
       } else if (of.term == f.term) {
         of.others = std::max(of.others, d);

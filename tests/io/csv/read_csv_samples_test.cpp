@@ -82,6 +82,40 @@ TEST_F(ReadCsvSamples, PutsEveryColumnWhereItBelongs) {
   EXPECT_EQ(sample.observations[2].features[0].point, Vector3<double>(320.5, 240.0, 0.0));
 }
 
+TEST_F(ReadCsvSamples, TakesIdsFromTheMappingOrFromColumns) {
+  const std::string mapping =
+      "joints: {columns: {pan: q}}\nobservations:\n"
+      "- {sensor: arm, frame: board, constant: [[0, 0, 0], [0.1, 0, 0], [0.2, 0, 0]], ids: [4, 5, "
+      "7]}\n"
+      "- {sensor: camera, frame: optical, pixels: [[u, v], [w, x]], id_columns: [tag, other]}\n";
+  const std::string table = "q,tag,u,v,other,w,x\n0.1,7,1,2,4,3,4\n0.2,,,,5,3,4\n";
+  const auto samples = read(table, mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 2u);
+  const auto ids = [&](std::size_t sample, std::size_t sensor) {
+    std::vector<std::optional<int>> all;
+    for (const Feature& f : samples[sample].observations[sensor].features) all.push_back(f.id);
+    return all;
+  };
+  EXPECT_THAT(ids(0, 0), ElementsAre(4, 5, 7));
+  EXPECT_THAT(ids(0, 1), ElementsAre(7, 4));
+  EXPECT_THAT(ids(1, 1), ElementsAre(5)) << "the other one was not seen";
+  EXPECT_EQ(samples[1].observations[1].features[0].point, Vector3<double>(3.0, 4.0, 0.0));
+
+  (void)read(with(table, "7,1,2", ",1,2"), mapping);
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("t.csv:2: column 'tag' has no id")));
+  (void)read(with(table, "7,1,2", "7.5,1,2"), mapping);
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("t.csv:2: column 'tag' has no id")));
+  (void)read(table, with(mapping, "[4, 5, 7]", "[4, 5]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:3: sensor 'arm': has 2 ids")));
+  (void)read(table, with(mapping, "[4, 5, 7]", "[4, 5, -7]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("-7 is not a whole number from 0")));
+  (void)read(table, with(mapping, "[tag, other]", "[tag, othr]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:4: column 'othr'")));
+  (void)read(table, with(mapping, "[tag, other]", "[tag, other], ids: [1, 2]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("has ids and id_columns")));
+}
+
 TEST_F(ReadCsvSamples, TakesConditionsFromColumns) {
   const std::string mapping =
       kMapping + std::string("conditions: {temperature: u, load: [l, dl]}\n");

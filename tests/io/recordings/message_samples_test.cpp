@@ -54,7 +54,8 @@ std::vector<Sample> read_again(const std::vector<Sample>& samples, Encoding enco
   const MessageDefinition definition = parse_definition(kType, known_definition(kType, encoding));
   MessageSamples messages("made.bag");
   for (std::size_t n = 0; n < samples.size(); ++n) {
-    const auto bytes = encode(sample_message(samples[n]), definition, encoding);
+    std::deque<std::string> texts;
+    const auto bytes = encode(sample_message(samples[n], texts), definition, encoding);
     messages.add(decode(definition, encoding, bytes), static_cast<int>(n) + 1);
   }
   return messages.take(diagnostics);
@@ -86,6 +87,52 @@ TEST(MessageSamples, AreThoseThatWereWrittenInBothEncodings) {
   }
 }
 
+/// The parameters of an observation in a message, as "name=value".
+std::vector<std::string> parameters(const Observation& seen) {
+  std::deque<std::string> texts;
+  std::vector<std::string> all;
+  for (const MessageValue& parameter : parameters_message(seen, texts)) {
+    const auto& fields = *parameter.as<MessageFields>();
+    all.push_back(std::string(*fields.find("name")->as<std::string_view>()) + "=" +
+                  std::to_string(std::lround(*fields.find("value")->as<double>())));
+  }
+  return all;
+}
+
+Observation numbered(const std::vector<std::optional<int>>& ids) {
+  Observation seen{"arm", {}};
+  for (const auto& id : ids) seen.features.push_back({"tip", {1.0, 2.0, 3.0}, {}, {}, id});
+  return seen;
+}
+
+/// The message of upstream has no field for ids.
+TEST(MessageSamples, KeepIdsAsParametersOfTheCamera) {
+  EXPECT_THAT(parameters(numbered({0, 1, 2, 3, 4})), ElementsAre("feature_id_0=0"));
+  EXPECT_THAT(parameters(numbered({})), ElementsAre());
+  EXPECT_THAT(parameters(numbered({{}, {}})), ElementsAre());
+  EXPECT_THAT(parameters(numbered({7, 8, 3, 2, {}, {}, 0})),
+              ElementsAre("feature_id_0=7", "feature_id_2=3", "feature_id_3=2", "feature_id_4=-1",
+                          "feature_id_6=0"));
+  EXPECT_THAT(parameters(made_sample().observations[1]),
+              ElementsAre("z_offset_mm=12", "z_scaling=1"));
+  for (const Encoding encoding : {Encoding::ros1, Encoding::cdr}) {
+    Sample sample = made_sample();
+    const std::vector<std::optional<int>> ids = {7, 8, 3, 2, {}, {}, 0, 2147483647};
+    sample.observations[0] = numbered(ids);
+    sample.observations[1].features[0].id = 5;
+    Diagnostics diagnostics;
+    const std::vector<Sample> again = read_again({sample}, encoding, diagnostics);
+    EXPECT_THAT(diagnostics.errors, ElementsAre());
+    EXPECT_THAT(diagnostics.warnings, ElementsAre());
+    ASSERT_EQ(again.size(), 1u);
+    const Observation &arm = again[0].observations[0], &camera = again[0].observations[1];
+    for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(arm.features[i].id, ids[i]);
+    EXPECT_FALSE(arm.camera);
+    EXPECT_EQ(camera.features[0].id, 5);
+    EXPECT_EQ(camera.camera.value().z_scaling, 1.01);
+  }
+}
+
 TEST(MessageSamples, ReportsErrorsAsForYaml) {
   Sample sample = made_sample();
   sample.joint_positions.pop_back();
@@ -101,7 +148,9 @@ TEST(MessageSamples, TakesMessagesWithMoreAndOtherFields) {
   const std::string feature = "Point point\n";
   text.insert(text.find(feature), "float64 confidence\n");
   const MessageDefinition definition = parse_definition(kType, text);
-  const auto bytes = encode(sample_message(made_sample()), definition, Encoding::cdr);
+  std::deque<std::string> texts;
+  const Sample sample = made_sample();
+  const auto bytes = encode(sample_message(sample, texts), definition, Encoding::cdr);
   MessageSamples messages("made.bag");
   messages.add(decode(definition, Encoding::cdr, bytes), 1);
   Diagnostics diagnostics;

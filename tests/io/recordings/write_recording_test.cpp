@@ -43,6 +43,26 @@ TEST(WriteRecording, WritesWhatIsReadAgainInEachFormat) {
   }
 }
 
+TEST(WriteRecording, KeepsIdsInEachFormatAndWritesNothingWithoutThem) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"samples.yaml", "samples.bag", "samples.mcap"}) {
+    const std::string path = (folder.path() / name).string();
+    std::vector<Sample> samples = two_samples();
+    for (const int id : {12, 0, 1, 7}) {
+      samples[1].observations[0].features.push_back({"optical", {0.5, 0, 1}, {}, {}, id});
+    }
+    write_recording(path, samples);
+    Diagnostics diagnostics;
+    const Recording read = read_recording(path, diagnostics);
+    EXPECT_THAT(diagnostics.errors, ::testing::IsEmpty()) << name;
+    ASSERT_EQ(read.samples.size(), 2u) << name;
+    EXPECT_EQ(read.samples[0].observations[0].features[0].id, std::nullopt);
+    std::vector<std::optional<int>> ids;
+    for (const Feature& f : read.samples[1].observations[0].features) ids.push_back(f.id);
+    EXPECT_THAT(ids, ::testing::ElementsAre(std::nullopt, 12, 0, 1, 7)) << name;
+  }
+}
+
 TEST(WriteRecording, RefusesAnotherFormat) {
   EXPECT_THROW(write_recording("samples.txt", two_samples()), InputError);
   EXPECT_FALSE(std::filesystem::exists("samples.txt"));

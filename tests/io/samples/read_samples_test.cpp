@@ -245,6 +245,7 @@ TEST(ReadSamples, MisspeltKeysOfKinecalAreDoubtedOnce) {
               ElementsAre(HasSubstr("sample: unknown key 'condition' is skipped; did you mean "
                                     "'conditions'?")));
   EXPECT_THAT(spoilt("sigma:", "stamp:").warnings, IsEmpty()) << "another word";
+  EXPECT_THAT(spoilt("sigma:", "ID:").warnings, ElementsAre(HasSubstr("did you mean 'id'?")));
 }
 
 TEST(ReadSamples, TellsHowMuchHasBeenRead) {
@@ -331,6 +332,37 @@ TEST(ReadSamples, OrientationThatIsNoUnitQuaternionIsAnError) {
   expect_error(pose("{x: 0, y: 0, z: 0, w: 0}"), 4, {"orientation", "length 1"});
   expect_error(pose("{x: 0, y: 0, z: 1}"), 4, {"orientation without 'w'"});
   expect_error(pose("{x: 0, y: 0, z: up, w: 1}"), 4, {"'up' is not a number"});
+}
+
+TEST(ReadSamples, AFeatureMayHaveAnId) {
+  const auto features = [](const std::string& first, const std::string& parameters = "[]") {
+    return kJoints + "observations:\n- sensor_name: arm\n  features: [{point: {x: 1, y: 2, z: 3}" +
+           first + "}, {point: {x: 1, y: 2, z: 3}, id: 7}]\n  ext_camera_info:\n    parameters: " +
+           parameters + "\n---\n";
+  };
+  const auto ids = [](const Reading& reading) {
+    EXPECT_THAT(reading.diagnostics.errors, IsEmpty());
+    std::vector<std::optional<int>> all;
+    for (const Feature& f : reading.samples.at(0).observations[0].features) all.push_back(f.id);
+    return all;
+  };
+  const std::string as_printed = "[{name: feature_id_0, value: 12.0}]";  // of a message
+  EXPECT_THAT(ids(read_text(features(""))), ElementsAre(std::nullopt, 7));
+  EXPECT_THAT(ids(read_text(features(", id: 0"))), ElementsAre(0, 7));
+  EXPECT_THAT(ids(read_text(features("", as_printed))), ElementsAre(12, 7)) << "a key counts more";
+  for (const char* wrong : {"-1", "1.5", "2147483648", ".nan"}) {
+    expect_error(features(std::string(", id: ") + wrong), 4,
+                 {"id: ", "is not a whole number from 0"});
+  }
+  expect_error(features(", id: A4"), 4, {"id: 'A4' is not a number"});
+  expect_error(features("", "[{name: feature_id_2, value: 1}]"), 3,
+               {"sensor 'arm': feature_id_2 is the id of feature 3 of 2"});
+  expect_error(features("", "[{name: feature_id_0, value: 0.5}]"), 6,
+               {"feature_id_0: an id is a whole number"});
+  expect_error(features("", "[{name: feature_id_x, value: 1}]"), 6,
+               {"feature_id_x: its name must end in the number of a feature"});
+  expect_error(features("", "[{name: feature_id_0, value: 2147483647}]"), 3,
+               {"feature_id_0: the ids after it are too large"});
 }
 
 TEST(ReadSamples, AFeatureMayHaveASigma) {

@@ -18,6 +18,8 @@
 //    - sensor: camera
 //      frame: optical_frame
 //      pixels: [[u1, v1], [u2, v2]]
+//      ids: [4, 7]                  # of the points, pixels or constants: what pairs the sensors'
+//                                   #   features.  From columns: id_columns: [tag1, tag2]
 //
 // A column is given by its name or by its number from 1.  Each point becomes a feature.  A sensor may
 // occur several times, each time with another frame: its features follow one another.  If the frame
@@ -71,6 +73,8 @@ struct CsvObservation {
   CsvUnit unit;                               ///< of the columns of its points
   std::vector<std::array<CsvSum, 3>> points;  ///< the third sum of a pixel is empty: zero
   std::vector<Vector3<double>> constants;     ///< metres
+  std::vector<int> ids;                       ///< of each point or constant; empty: not given here
+  CsvSum id_columns;                          ///< one column for each; empty: see `ids`
 };
 
 /// What the columns of a table mean.

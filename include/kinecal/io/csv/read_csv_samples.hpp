@@ -1,6 +1,7 @@
 // Samples from a table: each row is a pose of the robot and its observations.
 //
-// A feature with a missing value becomes NaN and gets no weight.  A row in which a joint's position
+// A feature with a missing value becomes NaN and gets no weight.  If its id is missing, too, it is left
+// out.  A row in which a joint's position
 // is missing is left out, with a warning.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,70 +12,16 @@
 #include <set>
 #include <utility>
 
+#include "kinecal/io/csv/csv_columns.ipp"
 #include "kinecal/io/csv/csv_table.hpp"
 #include "kinecal/io/csv/read_csv_samples.hpp"
+#include "kinecal/io/samples/feature_id_parameters.ipp"
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
 
 namespace kinecal {
 
 namespace detail {
-
-/// A table whose columns are found by name or number.
-class CsvColumns {
- public:
-  /// @param header  names of the columns; empty if the table does not have them
-  CsvColumns(std::vector<std::string> header, std::size_t columns, Diagnostics& diagnostics)
-      : header_(std::move(header)), columns_(columns), diagnostics_(diagnostics) {}
-
-  /// The index of a column, from 0; nothing, and an error, if there is no such column.
-  [[nodiscard]] std::optional<std::size_t> find(const CsvColumn& column) {
-    const auto same = std::find(header_.begin(), header_.end(), column.name);
-    if (same != header_.end()) {
-      if (std::find(same + 1, header_.end(), column.name) != header_.end()) {
-        error(column, "occurs twice in the table; give its number, from 1");
-      }
-      return same - header_.begin();
-    }
-    std::size_t number = 0;
-    const char* const end = column.name.data() + column.name.size();
-    const auto [stop, failed] = std::from_chars(column.name.data(), end, number);
-    const bool is_number = failed == std::errc() && stop == end;
-    if (is_number && number >= 1 && number <= columns_) return number - 1;
-    if (is_number) {
-      error(column, columns_ == 1
-                        ? "does not exist; the table has 1 column: is the separator right?"
-                        : fmt::format("does not exist; the table has columns 1 to {}", columns_));
-    } else if (header_.empty()) {
-      error(column, "is a name, but the table has no header; give its number, from 1");
-    } else {
-      error(column,
-            fmt::format("is not in the table's header{}{}",
-                        columns_ == 1 ? ", which has one column: is the separator right?" : "",
-                        did_you_mean(column.name, header_)));
-    }
-    return std::nullopt;
-  }
-
- private:
-  void error(const CsvColumn& column, const std::string& what) {
-    diagnostics_.error(column.place, fmt::format("column '{}' {}", column.name, what));
-  }
-
-  std::vector<std::string> header_;
-  std::size_t columns_;
-  Diagnostics& diagnostics_;
-};
-
-/// The number in a cell, NaN if it is missing.
-/// @return  nothing if the cell contains something else
-[[nodiscard]] inline std::optional<double> csv_number(const std::string& cell) {
-  for (const char* missing : {"", "-", "NA", "N/A", "n/a", "null", "NULL", "None"}) {
-    if (cell == missing) return std::numeric_limits<double>::quiet_NaN();
-  }
-  return number_from_yaml(cell);
-}
 
 /// Makes samples of rows.  After a few bad cells it only counts the others.
 class CsvSamples {
@@ -93,6 +38,7 @@ class CsvSamples {
     }
     for (const CsvObservation& observation : mapping.observations) {
       frames_.push_back(find(observation.frame_column));
+      ids_.push_back(find(observation.id_columns));
       for (const auto& point : observation.points) {
         for (const CsvSum& sum : point) points_.push_back(find(sum));
       }
@@ -124,7 +70,7 @@ class CsvSamples {
     }
     std::size_t next = 0;
     for (std::size_t i = 0; i < mapping_.observations.size(); ++i) {
-      add_features(row, mapping_.observations[i], frames_[i], next, sample);
+      add_features(row, mapping_.observations[i], frames_[i], ids_[i], next, sample);
     }
     if (!complete) return std::nullopt;
     return sample;
@@ -145,13 +91,14 @@ class CsvSamples {
   /// Adds the features of one entry to the observation of its sensor.
   /// @param next  index in points_ of its first number; advanced beyond its last one
   void add_features(const CsvRow& row, const CsvObservation& observation, const Indices& column,
-                    std::size_t& next, Sample& sample) {
+                    const Indices& ids, std::size_t& next, Sample& sample) {
     const std::string frame = column.empty() ? observation.frame : text(row, column.front());
     auto seen = std::find_if(sample.observations.begin(), sample.observations.end(),
                              [&](const Observation& o) { return o.sensor == observation.sensor; });
     if (seen == sample.observations.end()) {
       seen = sample.observations.insert(seen, Observation{observation.sensor, {}});
     }
+    const std::size_t before = seen->features.size();
     for (const auto& point : observation.constants) seen->features.push_back({frame, point});
     for (const auto& point : observation.points) {
       Vector3<double> p;
@@ -160,6 +107,25 @@ class CsvSamples {
         doubt(row, "sensor '" + observation.sensor + "'", p.cwiseAbs().maxCoeff(), 100.0, "metres");
       }
       seen->features.push_back({frame, p});
+    }
+    add_ids(row, observation.ids, ids, before, seen->features);
+  }
+
+  /// Sets the ids of the features from `first` on.  One with neither point nor id was not seen.
+  void add_ids(const CsvRow& row, const std::vector<int>& ids, const Indices& columns,
+               std::size_t first, std::vector<Feature>& features) {
+    for (std::size_t i = 0; i < ids.size(); ++i) features[first + i].id = ids[i];
+    std::size_t at = first;
+    for (const auto& column : columns) {
+      const double number = value(row, {column}, {});
+      if (std::isnan(number) && !features[at].point.allFinite()) {
+        features.erase(features.begin() + static_cast<std::ptrdiff_t>(at));
+        continue;
+      }
+      features[at].id = feature_id(number);
+      if (!features[at++].id) {
+        bad_cell(row, *column.second, "has no id; an id is a whole number from 0");
+      }
     }
   }
 
@@ -226,7 +192,8 @@ class CsvSamples {
   CsvColumns columns_;
   std::string file_;
   Diagnostics& diagnostics_;
-  std::vector<Indices> joints_, conditions_, frames_, points_;  ///< in the order of the mapping
+  /// In the order of the mapping.
+  std::vector<Indices> joints_, conditions_, frames_, ids_, points_;
   std::size_t bad_cells_ = 0;
   std::set<std::string> doubted_;  ///< joints and sensors with a warning
 };

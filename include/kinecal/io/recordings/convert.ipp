@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -90,8 +91,10 @@ KINECAL_INLINE void write_samples(BagOutput& to, const std::vector<Sample>& samp
   constexpr std::int64_t kSecond = 1'000'000'000;
   const BagTopic topic{"calibration_data", "robot_calibration_msgs/CalibrationData", {}, {}, {}};
   std::int64_t time = 0;
-  for (const Sample& sample : samples)
-    to.write(topic, time += kSecond, detail::sample_message(sample));
+  for (const Sample& sample : samples) {
+    std::deque<std::string> texts;
+    to.write(topic, time += kSecond, detail::sample_message(sample, texts));
+  }
 }
 
 KINECAL_INLINE void write_urdf(BagOutput& to, const std::string& urdf) {

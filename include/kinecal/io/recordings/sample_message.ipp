@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "kinecal/io/messages/make.ipp"
 #include "kinecal/io/results/output_file.hpp"
+#include "kinecal/io/samples/feature_id_parameters.ipp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
 
@@ -27,33 +29,53 @@ namespace kinecal::detail {
 }
 
 [[nodiscard]] inline MessageFields camera_message(const CameraInfo& camera) {
-  const double offset = *number_from_yaml(millimetres_from_metres(camera.z_offset));
   MessageFields info =
       fields("height", static_cast<std::int64_t>(camera.height), "width",
              static_cast<std::int64_t>(camera.width), "distortion_model",
              std::string_view(camera.distortion_model), "d", numbers(camera.d), "k",
              numbers(camera.k), "r", numbers(camera.r), "p", numbers(camera.p));
-  MessageValue::List parameters;
-  parameters.emplace_back(fields("name", std::string_view("z_offset_mm"), "value", offset));
-  parameters.emplace_back(fields("name", std::string_view("z_scaling"), "value", camera.z_scaling));
-  return fields("camera_info", std::move(info), "parameters", std::move(parameters));
+  return fields("camera_info", std::move(info));
 }
 
-[[nodiscard]] inline MessageFields observation_message(const Observation& seen) {
+/// The depth driver's parameters and the ids of features: see feature_id_parameters.ipp.
+/// @param texts  keeps the names that the message views
+[[nodiscard]] inline MessageValue::List parameters_message(const Observation& seen,
+                                                           std::deque<std::string>& texts) {
+  MessageValue::List parameters;
+  if (seen.camera) {
+    const double offset = *number_from_yaml(millimetres_from_metres(seen.camera->z_offset));
+    parameters.emplace_back(fields("name", std::string_view("z_offset_mm"), "value", offset));
+    parameters.emplace_back(
+        fields("name", std::string_view("z_scaling"), "value", seen.camera->z_scaling));
+  }
+  for (const auto& [name, id] : feature_id_parameters(seen.features)) {
+    texts.push_back(name);
+    parameters.emplace_back(fields("name", std::string_view(texts.back()), "value", id));
+  }
+  return parameters;
+}
+
+[[nodiscard]] inline MessageFields observation_message(const Observation& seen,
+                                                       std::deque<std::string>& texts) {
   MessageFields message =
       fields("sensor_name", std::string_view(seen.sensor), "features",
              list_of(seen.features, [](const Feature& f) { return feature_message(f); }));
-  if (seen.camera) message.fields.emplace_back("ext_camera_info", camera_message(*seen.camera));
+  MessageValue::List parameters = parameters_message(seen, texts);
+  if (!seen.camera && parameters.empty()) return message;
+  MessageFields camera = seen.camera ? camera_message(*seen.camera) : MessageFields{};
+  camera.fields.emplace_back("parameters", std::move(parameters));
+  message.fields.emplace_back("ext_camera_info", std::move(camera));
   return message;
 }
 
-/// @return  views of the sample, which must outlive it
-[[nodiscard]] inline MessageFields sample_message(const Sample& sample) {
+/// @param texts  keeps names; like the sample, it must outlive the message, which views them
+[[nodiscard]] inline MessageFields sample_message(const Sample& sample,
+                                                  std::deque<std::string>& texts) {
   if (!sample.conditions.empty()) {
     throw OutputError("a message of samples cannot hold conditions; write YAML");
   }
-  MessageFields joints =
-      fields("name", texts(sample.joint_names), "position", numbers(sample.joint_positions));
+  MessageFields joints = fields("name", detail::texts(sample.joint_names), "position",
+                                numbers(sample.joint_positions));
   if (sample.stamp && sample.stamp->count() >= 0) {
     constexpr std::int64_t kSecond = 1'000'000'000;
     joints.fields.emplace_back(
@@ -62,7 +84,7 @@ namespace kinecal::detail {
   }
   return fields("joint_states", std::move(joints), "observations",
                 list_of(sample.observations,
-                        [](const Observation& seen) { return observation_message(seen); }));
+                        [&](const Observation& seen) { return observation_message(seen, texts); }));
 }
 
 }  // namespace kinecal::detail

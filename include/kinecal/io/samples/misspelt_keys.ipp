@@ -1,5 +1,5 @@
 // Keys of samples that only kinecal reads, and that are probably misspelt: no message has them, so
-// a wrong letter would silently leave out a sigma or the conditions.
+// a wrong letter would silently leave out a sigma, an id or the conditions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,7 +20,7 @@ namespace kinecal::detail {
 [[nodiscard]] inline std::string_view meant_sample_key(SampleNode parent, std::string_view key) {
   constexpr std::size_t kMostLetters = 2;
   for (const SampleNode own :
-       {SampleNode::conditions, SampleNode::orientation, SampleNode::sigma}) {
+       {SampleNode::conditions, SampleNode::orientation, SampleNode::sigma, SampleNode::id}) {
     const SampleNodeRule& rule = sample_rule(own);
     if (rule.parent != parent) continue;
     const NearestName near = NearestName::none(key).or_nearer(rule.key, key);

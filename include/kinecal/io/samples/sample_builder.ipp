@@ -94,6 +94,10 @@ class SampleBuilder {
       sample_.conditions[condition_] = value;
     } else if (node == SampleNode::sigma) {
       feature().sigma = value;
+    } else if (node == SampleNode::id) {
+      feature().id = feature_id(value);
+      if (!feature().id)
+        errors_.add(line, fmt::format("id: {} is not a whole number from 0", value));
     } else {
       camera_.number(node, line, value, errors_);
     }
@@ -150,6 +154,9 @@ class SampleBuilder {
     const auto same = [&](const Observation& o) { return o.sensor == name; };
     if (std::any_of(sample_.observations.begin(), sample_.observations.end() - 1, same)) {
       errors_.add(line, where() + " occurs twice");
+    }
+    if (const std::string wrong = camera_.ids().apply(observation().features); !wrong.empty()) {
+      errors_.add(line, where() + ": " + wrong);
     }
     observation().camera = camera_.take(line, where, errors_);
   }

@@ -16,6 +16,7 @@
 
 #include "kinecal/io/camera_info.hpp"
 #include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/samples/feature_id_parameters.ipp"
 #include "kinecal/io/samples/sample_schema.ipp"
 #include "kinecal/io/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
@@ -97,9 +98,14 @@ class SampleCamera {
     if (node == SampleNode::p_item) append(info_.p, p_, value);
   }
 
-  /// Only z_offset_mm and z_scaling matter; others may have any value.  The value is text until
+  /// Only z_offset_mm, z_scaling and ids matter; others may have any value.  The value is text until
   /// here: millimetres become metres by moving its decimal point, without a rounding error.
   void end_parameter(SampleErrors& errors) {
+    if (parameter_.name.starts_with(kFeatureId)) {
+      const std::string wrong = ids_.add(parameter_.name, number_from_yaml(parameter_.value));
+      if (!wrong.empty()) errors.add(parameter_.line, wrong);
+      return;
+    }
     const bool offset = parameter_.name == "z_offset_mm";
     if (!offset && parameter_.name != "z_scaling") return;
     const auto value =
@@ -110,6 +116,9 @@ class SampleCamera {
     }
     (offset ? info_.z_offset : info_.z_scaling) = value.value_or(0.0);
   }
+
+  /// The ids of features that its parameters give.
+  [[nodiscard]] const FeatureIdParameters& ids() const { return ids_; }
 
   /// @param where  returns "sample at line 37, sensor 'camera'"
   /// @return       nullopt for a sensor that is not a camera, or if a list has the wrong size
@@ -165,6 +174,7 @@ class SampleCamera {
   CameraInfo info_;
   List k_, r_, p_;
   Parameter parameter_;
+  FeatureIdParameters ids_;
 };
 
 }  // namespace kinecal::detail

@@ -7,7 +7,7 @@
 //   - sensor_name: camera
 //     features: [{header: {frame_id: ...}, point: {x: ..., y: ..., z: ...},
 //                 orientation: {x: ..., y: ..., z: ..., w: ...},          (of poses only)
-//                 sigma: ...}, ...]                                       (if it has its own)
+//                 sigma: ..., id: ...}, ...]                              (if it has them)
 //     ext_camera_info:
 //       camera_info: {height, width, distortion_model, D, K, R, P}
 //       parameters: [{name: ..., value: ...}, ...]
@@ -55,6 +55,7 @@ enum class SampleNode : std::uint8_t {
   qz,
   qw,
   sigma,
+  id,
   ext_camera_info,
   camera_info,
   height,
@@ -120,6 +121,7 @@ struct SampleNodeRule {
       {qz, orientation, number, "z", "", true},
       {qw, orientation, number, "w", "", true},
       {sigma, feature, number, "sigma"},
+      {id, feature, number, "id"},
       {ext_camera_info, observation, map, "ext_camera_info"},
       {camera_info, ext_camera_info, map, "camera_info"},
       {height, camera_info, number, "height"},

@@ -54,6 +54,7 @@ namespace detail {
                          number_to_yaml(q(1)), number_to_yaml(q(2)), number_to_yaml(q(3)));
   }
   if (feature.sigma) others += fmt::format(", sigma: {}", number_to_yaml(*feature.sigma));
+  if (feature.id) others += fmt::format(", id: {}", *feature.id);
   return fmt::format("  - {{header: {{frame_id: {}}}, point: {{x: {}, y: {}, z: {}}}{}}}\n",
                      name_to_yaml(feature.frame), number_to_yaml(p.x()), number_to_yaml(p.y()),
                      number_to_yaml(p.z()), others);
