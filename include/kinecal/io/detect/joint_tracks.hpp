@@ -41,6 +41,9 @@ class JointTracks {
   /// Joints that never stand still, whatever others do.
   [[nodiscard]] std::vector<std::string> never_still(const SettleOptions& options = {}) const;
 
+  /// All joints that are measured.
+  [[nodiscard]] std::set<std::string> names() const;
+
   /// Mean positions of all joints near a moment of a standstill.
   [[nodiscard]] MeasuredJoints positions(Stamp stamp, const Standstill& during) const;
 

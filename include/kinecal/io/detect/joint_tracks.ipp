@@ -73,8 +73,7 @@ KINECAL_INLINE void JointTracks::choose_topics(const std::vector<std::string>& t
   });
   if (tracks_.empty() && diagnostics.errors.empty()) {
     diagnostics.error({file, 0},
-                      "has no joint positions (sensor_msgs/JointState); record the topic "
-                      "joint_states together with the images");
+                      "has no joint positions (sensor_msgs/JointState); record joint_states, too");
   }
 }
 
@@ -146,9 +145,9 @@ KINECAL_INLINE std::vector<Standstill> JointTracks::standstills(
     all = all ? detail::common(*all, own) : own;
   }
   if (!all && !tracks_.empty()) all = {*span()};
-  std::vector<Standstill> result = all.value_or(std::vector<Standstill>{});
-  std::erase_if(result, [&](const Standstill& s) { return s.end - s.begin < options.window; });
-  return result;
+  if (!all) return {};
+  std::erase_if(*all, [&](const Standstill& s) { return s.end - s.begin < options.window; });
+  return *all;
 }
 
 KINECAL_INLINE std::vector<std::string> JointTracks::never_still(
@@ -160,6 +159,13 @@ KINECAL_INLINE std::vector<std::string> JointTracks::never_still(
     }
   }
   return result;
+}
+
+KINECAL_INLINE std::set<std::string> JointTracks::names() const {
+  std::set<std::string> all;
+  for (const detail::JointTrack& track : tracks_)
+    all.insert(track.names.begin(), track.names.end());
+  return all;
 }
 
 KINECAL_INLINE MeasuredJoints JointTracks::positions(Stamp stamp, const Standstill& during) const {
