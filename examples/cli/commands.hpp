@@ -60,20 +60,26 @@ struct InitOptions {
 int init(const InitOptions& options);
 
 struct DetectOptions {
-  std::string config;   ///< capture.yaml
-  std::string images;   ///< folder
-  std::string poses;    ///< table of joint positions
-  std::string columns;  ///< what its columns mean; empty: each is a joint
-  std::string depth;    ///< folder; empty: none
-  std::string camera;   ///< file; empty: none
-  std::string urdf;     ///< file; empty: none
-  std::string frame;    ///< of the camera
-  std::string output;   ///< samples
-  std::string sheet;    ///< PNG; empty: none
-  bool force = false;   ///< replace files
+  std::string config;                 ///< capture.yaml
+  std::string images;                 ///< folder; empty: none
+  std::string poses;                  ///< table of joint positions, for the images
+  std::string columns;                ///< what its columns mean; empty: each is a joint
+  std::vector<std::string> bags;      ///< recordings
+  std::vector<std::string> joints;    ///< topics of joint states in recordings; empty: all
+  std::vector<std::string> restless;  ///< joints that need not stand still in recordings
+  std::string depth;        ///< folder of the images' depth, or topic of recordings; empty: none
+  std::string camera;       ///< file; empty: none
+  std::string urdf;         ///< file; empty: none
+  std::string board_link;   ///< that holds boards; empty: their frame, if it is a link
+  std::string camera_link;  ///< that holds the camera; empty: its frame, if it is a link
+  std::string frame;        ///< of the camera; empty: as recordings have it
+  std::string output;       ///< samples
+  std::string sheet;        ///< PNG; empty: none
+  int threads = 0;          ///< zero: one per core
+  bool force = false;       ///< replace files
 };
 
-/// Writes samples of what finders find in photographs.
+/// Writes samples of what finders find in photographs and recordings.
 int detect(const DetectOptions& options);
 
 struct DescribeOptions {

@@ -1,23 +1,26 @@
-// kinecal detect: samples from photographs and a table of joint positions.
+// kinecal detect: samples from photographs with a table of joint positions, and from recordings.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/io/detect/detect.hpp"
 
 #include <fmt/core.h>
 
-#include <filesystem>
+#include <iterator>
 #include <optional>
-#include <variant>
+#include <utility>
 
+#include "board_turns.hpp"
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/capture/board_order.hpp"
+#include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/io/cameras/read_camera_file.hpp"
 #include "kinecal/io/detect/contact_sheet.hpp"
-#include "kinecal/io/detect/image_folder.hpp"
+#include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/write_recording.hpp"
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+#include "look.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "words.hpp"
@@ -27,117 +30,137 @@ namespace {
 
 /// What is looked at, and by what.
 struct Task {
-  std::vector<ViewFinder> finders;
-  std::vector<PosedImage> images;
+  CaptureConfig config;
+  std::optional<Robot> robot;
   std::optional<CameraInfo> camera;
+  std::vector<PosedImage> images;
+  std::vector<RecordedViews> recordings;
 };
 
-/// What was found in all images.
-struct Detections {
-  std::vector<Sample> samples;
-  std::vector<Thumbnail> thumbnails;
-  std::vector<std::string> refused;  ///< lines
-  std::size_t images = 0;            ///< in which something was found
-  std::size_t features = 0;
-};
-
-/// Warns of a board that shows no difference when it is turned.
-void warn_of_turns(const CaptureFinder& finder, Diagnostics& diagnostics) {
-  constexpr int kFullTurn = 4;  // quarters
-  const auto* board = std::get_if<CheckerboardSettings>(&finder.settings);
-  if (board == nullptr || turns_alike(board->points_x, board->points_y) == kFullTurn) {
-    return;
+/// @throws InputError  if options do not go together
+void check_options(const DetectOptions& options) {
+  if (options.images.empty() && options.bags.empty()) {
+    throw InputError("give photographs (--images, --poses and --frame) or recordings (--bag)");
   }
-  diagnostics.warning(finder.place,
-                      fmt::format("finder '{}': a board of {}x{} corners looks the same when it is "
-                                  "turned; x is taken as the direction nearest to the image's "
-                                  "right, so leave out images in which it is turned further, or "
-                                  "use a board of which points_x + points_y is odd",
-                                  finder.name, board->points_x, board->points_y));
+  if (!options.images.empty() && options.frame.empty()) {
+    throw InputError("photographs need the name of the camera's frame: --frame");
+  }
+  const bool has_links = !options.board_link.empty() || !options.camera_link.empty();
+  if (has_links && options.urdf.empty()) {
+    throw InputError("--board-link and --camera-link need the robot: --urdf");
+  }
 }
 
-std::vector<ViewFinder> make_finders(const DetectOptions& options, Diagnostics& diagnostics) {
-  const CaptureConfig config = read_capture_config(options.config, diagnostics);
-  std::optional<Robot> robot;
-  if (!options.urdf.empty()) robot = read_urdf(options.urdf);
+/// Errors of links that the robot does not have.
+void check_links(const DetectOptions& options, const Robot& robot, Diagnostics& diagnostics) {
+  for (const auto& [option, link] : {std::pair("--board-link", options.board_link),
+                                     std::pair("--camera-link", options.camera_link)}) {
+    if (link.empty() || robot.has_link(link)) continue;
+    std::vector<std::string> links;
+    for (const Joint& joint : robot.joints()) links.push_back(joint.child);
+    diagnostics.errors.push_back(std::string(option) + ": the robot has no link '" + link + "'" +
+                                 did_you_mean(link, links));
+  }
+}
+
+/// The finders of a configuration.
+/// @param errors  receives those that cannot work
+std::vector<ViewFinder> make_finders(const Task& task, std::vector<std::string>& errors) {
   std::vector<ViewFinder> finders;
-  for (const CaptureFinder& finder : config.finders) {
-    warn_of_turns(finder, diagnostics);
+  for (const CaptureFinder& finder : task.config.finders) {
     try {
-      if (!finder.region_frame.empty() && !robot) {
+      if (!finder.region_frame.empty() && !task.robot) {
         throw InputError(finder.place.str() + ": finder '" + finder.name +
                          "' has a region in frame '" + finder.region_frame +
                          "'; give the robot with --urdf");
       }
-      finders.push_back(view_finder(finder, robot ? on_robot(finder, *robot) : finder.settings));
+      finders.push_back(
+          view_finder(finder, task.robot ? on_robot(finder, *task.robot) : finder.settings));
     } catch (const InputError& error) {
-      diagnostics.errors.emplace_back(error.what());
+      errors.emplace_back(error.what());
     }
   }
   return finders;
 }
 
+void read_recordings(const DetectOptions& options, Task& task, Diagnostics& diagnostics) {
+  for (const std::string& bag : options.bags) {
+    RecordingOptions recording{.path = bag, .frame = options.frame, .camera = task.camera};
+    for (const std::string& topic : options.joints) {
+      recording.joints.push_back(detail::plain_topic(topic));
+    }
+    recording.restless.insert(options.restless.begin(), options.restless.end());
+    if (options.images.empty()) recording.depth = options.depth;
+    ProgressLine line;
+    task.recordings.emplace_back(std::move(recording), task.config.finders, diagnostics,
+                                 line.meter());
+  }
+}
+
 Task read_task(const DetectOptions& options, Diagnostics& diagnostics) {
   Task task;
-  task.finders = make_finders(options, diagnostics);
+  task.config = read_capture_config(options.config, diagnostics);
+  if (!options.urdf.empty()) {
+    task.robot = read_urdf(options.urdf);
+    check_links(options, *task.robot, diagnostics);
+  }
+  (void)make_finders(task, diagnostics.errors);
   if (!options.camera.empty()) task.camera = read_camera_argument(options.camera, diagnostics);
-  task.images =
-      list_images({options.images, options.poses, options.columns, options.depth}, diagnostics);
+  if (!options.images.empty()) {
+    task.images =
+        list_images({options.images, options.poses, options.columns, options.depth}, diagnostics);
+  }
+  if (diagnostics.errors.empty()) read_recordings(options, task, diagnostics);
   return task;
 }
 
-/// @throws InputError  naming both images, if they differ in size
-void check_size(const View& view, const std::string& path, const GrayImage& first,
-                const std::string& first_path) {
-  if (view.image.width == first.width && view.image.height == first.height) return;
-  throw InputError(fmt::format(
-      "{}: has {}x{} pixels, but {} has {}x{}; images of one camera have "
-      "one size",
-      path, view.image.width, view.image.height, first_path, first.width, first.height));
-}
-
-Detections detect_all(const Task& task, const DetectOptions& options) {
-  Detections all;
-  GrayImage first;
-  ProgressLine line;
-  const ProgressMeter meter = line.meter();
-  for (std::size_t i = 0; i < task.images.size(); ++i) {
-    const PosedImage& image = task.images[i];
-    if (meter) {
-      meter(static_cast<double>(i) / static_cast<double>(task.images.size()), "detecting");
-    }
-    const View view = read_view(image, task.camera, options.frame);
-    if (i == 0) first = view.image;
-    check_size(view, image.path, first, task.images.front().path);
-    Detection found = detect(view, task.finders, image.source);
-    all.features += found.features;
-    if (!found.samples.empty()) ++all.images;
-    std::string reasons;
-    for (const std::string& refused : found.refused) {
-      all.refused.push_back(image.path + ": " + refused);
-      if (found.samples.empty()) reasons += (reasons.empty() ? "" : "; ") + refused;
-    }
-    if (!options.sheet.empty()) {
-      all.thumbnails.push_back(thumbnail(view.image, std::move(found.marks),
-                                         std::filesystem::path(image.path).filename().string(),
-                                         reasons));
-    }
-    for (Sample& sample : found.samples) all.samples.push_back(std::move(sample));
-  }
+std::vector<Look> look_at_all(const Task& task, const DetectOptions& options) {
+  const auto finders = [&task] {
+    std::vector<std::string> errors;  // were reported: there are none
+    return make_finders(task, errors);
+  };
+  const LookOptions how{finders, detail::number_of_threads(options.threads),
+                        !options.sheet.empty()};
+  std::vector<Look> all;
+  const auto add = [&all](std::vector<Look> more) {
+    all.insert(all.end(), std::make_move_iterator(more.begin()),
+               std::make_move_iterator(more.end()));
+  };
+  if (!task.images.empty()) add(look_at(task.images, task.camera, options.frame, how));
+  for (const RecordedViews& recording : task.recordings) add(look_at(recording, how));
   return all;
 }
 
-void write(const DetectOptions& options, const Detections& all) {
+/// Takes samples and pictures from what was found, and prints what was refused.
+/// @returns  how many features were found, in how many photographs or standstills
+std::pair<std::size_t, std::size_t> collect(std::vector<Look> looks, std::vector<Sample>& samples,
+                                            std::vector<Thumbnail>& thumbnails) {
+  std::size_t features = 0, used = 0;
+  for (Look& look : looks) {
+    for (const std::string& refused : look.refused) {
+      fmt::print(stderr, "warning: {}\n", printable(look.source + ": " + refused));
+    }
+    features += look.features;
+    if (!look.samples.empty()) ++used;
+    std::move(look.samples.begin(), look.samples.end(), std::back_inserter(samples));
+    std::move(look.thumbnails.begin(), look.thumbnails.end(), std::back_inserter(thumbnails));
+  }
+  return {features, used};
+}
+
+void write(const DetectOptions& options, const std::vector<Sample>& samples) {
   const OutputFolder folder(folder_of(options.output));  // creates it if it is missing
-  write_recording(options.output, all.samples,
+  write_recording(options.output, samples,
                   options.urdf.empty() ? "" : detail::read_text_file(options.urdf));
 }
 
 }  // namespace
 
 int detect(const DetectOptions& options) {
-  const std::vector<std::string> inputs = {options.config, options.poses, options.columns,
-                                           options.camera, options.urdf};
+  check_options(options);
+  std::vector<std::string> inputs = {options.config, options.poses, options.columns, options.camera,
+                                     options.urdf};
+  inputs.insert(inputs.end(), options.bags.begin(), options.bags.end());
   check_output(options.output, inputs, options.force);
   (void)output_encoding(options.output);
   if (!options.sheet.empty()) check_output(options.sheet, inputs, options.force);
@@ -145,18 +168,28 @@ int detect(const DetectOptions& options) {
   const Task task = read_task(options, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
-  const Detections all = detect_all(task, options);
-  for (const std::string& refused : all.refused) fmt::print(stderr, "warning: {}\n", refused);
-  if (!options.sheet.empty()) write_file(options.sheet, contact_sheet(all.thumbnails));
-  if (all.samples.empty()) {
-    fmt::print(stderr, "error: nothing was found in {}; {} was not written\n",
-               counted(task.images.size(), "image"), options.output);
+  std::vector<Look> looks = look_at_all(task, options);
+  const std::string noun = options.bags.empty()     ? "image"
+                           : options.images.empty() ? "standstill"
+                                                    : "view";
+  const std::string seen = counted(looks.size(), noun);
+  const std::size_t count = looks.size();
+  std::vector<Sample> samples;
+  std::vector<Thumbnail> thumbnails;
+  const auto [features, used] = collect(std::move(looks), samples, thumbnails);
+  Diagnostics turns;
+  turn_boards(task.config.finders, task.robot, {options.board_link, options.camera_link}, samples,
+              turns);
+  print(turns);
+  if (!options.sheet.empty()) write_file(options.sheet, contact_sheet(thumbnails));
+  if (samples.empty()) {
+    fmt::print(stderr, "error: nothing was found in {}; {} was not written\n", seen,
+               options.output);
     return kBadInput;
   }
-  write(options, all);
-  fmt::print("wrote {}: {} of {}: {}; {} refused\n", options.output, all.images,
-             counted(task.images.size(), "image"), counted(all.features, "feature"),
-             task.images.size() - all.images);
+  write(options, samples);
+  fmt::print("wrote {}: {} of {}: {}; {} refused\n", options.output, used, seen,
+             counted(features, "feature"), count - used);
   if (!options.sheet.empty()) fmt::print("wrote {}\n", options.sheet);
   return kDone;
 }

@@ -186,37 +186,79 @@ void add_detect(CLI::App& command, DetectOptions& options) {
       .add_option("config", options.config, "what to look for: robot_calibration's capture.yaml")
       ->required()
       ->type_name("FILE");
-  command.add_option("--images", options.images, "folder of PNG or JPEG images")
-      ->required()
-      ->type_name("DIR");
-  command
-      .add_option("--poses", options.poses,
-                  "table of joint positions, radians and metres: a column for each joint, and "
-                  "'image' for the file's name")
-      ->required()
-      ->type_name("FILE");
+  CLI::Option* images =
+      command.add_option("--images", options.images, "folder of PNG or JPEG photographs")
+          ->type_name("DIR");
+  CLI::Option* poses =
+      command
+          .add_option(
+              "--poses", options.poses,
+              "table of joint positions for --images, radians and metres: a column for each "
+              "joint, and 'image' for the file's name")
+          ->type_name("FILE");
+  images->needs(poses);
+  poses->needs(images);
   command.add_option("--columns", options.columns, "what the table's columns mean, as for convert")
+      ->needs(poses)
       ->type_name("FILE");
+  command
+      .add_option(
+          "--bag", options.bags,
+          "recording of images or clouds, camera_info and joint states: ROS 1 bag, ROS 2 bag "
+          "or MCAP; each time that the robot stands still gives a sample; may be repeated")
+      ->type_name("FILE");
+  command
+      .add_option("--joints", options.joints,
+                  "topics of joint states in recordings, default: all of sensor_msgs/JointState")
+      ->delimiter(',')
+      ->type_name("TOPIC");
+  command
+      .add_option("--restless", options.restless,
+                  "joints that need not stand still in recordings, such as that of a scanner")
+      ->delimiter(',')
+      ->type_name("JOINT");
   command
       .add_option("--camera", options.camera,
-                  "camera_info, a file of Kalibr or OpenCV (file.yaml:cam1 for one of several)")
+                  "camera_info, a file of Kalibr or OpenCV (file.yaml:cam1 for one of several); "
+                  "default: as recordings have it")
       ->type_name("FILE");
   command
       .add_option("--depth", options.depth,
-                  "folder of depth images under the same names: 16-bit PNG, millimetres")
-      ->type_name("DIR");
-  command.add_option("--urdf", options.urdf, "the robot's URDF, for regions in a link's frame")
+                  "folder of depth images under the names of --images: 16-bit PNG, millimetres; or "
+                  "topic of depth in recordings")
+      ->type_name("DIR|TOPIC");
+  command
+      .add_option(
+          "--urdf", options.urdf,
+          "the robot's URDF, for regions in a link's frame and for boards that look the same "
+          "when they are turned")
       ->type_name("FILE");
   command
+      .add_option(
+          "--board-link", options.board_link,
+          "link that the board is fixed to, which shows whether it was seen turned; default: "
+          "its frame_id, if that is a link")
+      ->type_name("LINK");
+  command
+      .add_option(
+          "--camera-link", options.camera_link,
+          "link that the camera is fixed to, for the same; default: --frame, if that is a link")
+      ->type_name("LINK");
+  command
       .add_option("--frame", options.frame,
-                  "the camera's optical frame, as the configuration of the calibration has it")
-      ->required()
+                  "the camera's optical frame, as the configuration of the calibration has it; "
+                  "default: as recordings have it")
       ->type_name("NAME");
   command.add_option("-o,--output", options.output, "samples: .yaml, .bag or .mcap")
       ->required()
       ->type_name("FILE");
   command.add_option("--contact-sheet", options.sheet, "a picture of all detections, PNG")
       ->type_name("FILE");
+  command
+      .add_option("--threads", options.threads,
+                  "number of threads, default: one per core; the result does not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
   command.add_flag("--force", options.force, "replace files that are there");
 }
 
@@ -516,8 +558,9 @@ void add_commands(Commands& commands) {
   commands.add<CaptureOptions>("capture",
                                "move a robot through poses and record what its finders see",
                                add_capture, capture);
-  commands.add<DetectOptions>("detect", "find boards and tags in photographs, and write samples",
-                              add_detect, detect);
+  commands.add<DetectOptions>(
+      "detect", "find boards and tags in photographs and recordings, and write samples", add_detect,
+      detect);
   commands.add<SimulateOptions>(
       "simulate", "photograph a simulated robot that differs from its URDF by known errors",
       add_simulate, simulate);

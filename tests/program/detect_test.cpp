@@ -46,11 +46,22 @@ TEST_F(Detect, PhotographsCalibrateWithoutAnInitialGuess) {
   EXPECT_EQ(checked.code, 0) << checked.err;
 }
 
-TEST_F(Detect, ADamagedImageIsNamedAndNothingIsWritten) {
+TEST_F(Detect, ADamagedImageIsNamedAndTheOthersAreUsed) {
   write("photos/images/0002.png", read("photos/images/0002.png").substr(0, 3000));
+  const Outcome found = detect("--contact-sheet sheet.png");
+  EXPECT_EQ(found.code, 0);
+  EXPECT_THAT(found.err, HasSubstr("warning: photos/images/0002.png: the PNG is damaged"));
+  EXPECT_THAT(found.out, HasSubstr("11 of 12 images"));
+  EXPECT_THAT(found.out, HasSubstr("; 1 refused"));
+}
+
+TEST_F(Detect, IfAllImagesAreDamagedNothingIsWritten) {
+  for (const auto& image : fs::directory_iterator(folder_ / "photos/images")) {
+    write(image.path().lexically_relative(folder_).string(), "GIF");
+  }
   const Outcome failed = detect();
   EXPECT_EQ(failed.code, 1);
-  EXPECT_THAT(failed.err, HasSubstr("photos/images/0002.png: the PNG is damaged"));
+  EXPECT_THAT(failed.err, HasSubstr("nothing was found in 12 images"));
   EXPECT_FALSE(fs::exists(folder_ / "samples.yaml"));
 }
 

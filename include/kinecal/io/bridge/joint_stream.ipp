@@ -12,7 +12,7 @@
 
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/io/bridge/bridge_client.hpp"
-#include "kinecal/io/bridge/message_fields.ipp"
+#include "kinecal/io/messages/message_fields.ipp"
 
 namespace kinecal::detail {
 

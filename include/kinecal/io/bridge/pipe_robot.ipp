@@ -13,9 +13,9 @@
 
 #include "kinecal/io/bridge/child_process.hpp"
 #include "kinecal/io/bridge/json_value.hpp"
-#include "kinecal/io/bridge/message_fields.ipp"
 #include "kinecal/io/bridge/pipe_images.ipp"
 #include "kinecal/io/bridge/pipe_robot.hpp"
+#include "kinecal/io/messages/message_fields.ipp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/linkage.hpp"
 

@@ -11,9 +11,9 @@
 
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/io/bridge/action_definitions.ipp"
-#include "kinecal/io/bridge/message_fields.ipp"
 #include "kinecal/io/bridge/ros_action.hpp"
 #include "kinecal/io/messages/make.ipp"
+#include "kinecal/io/messages/message_fields.ipp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/linkage.hpp"
 

@@ -12,11 +12,10 @@
 #include <vector>
 
 #include "kinecal/capture/robot_interface.hpp"
-#include "kinecal/io/bridge/camera_message.ipp"
-#include "kinecal/io/bridge/cloud_message.ipp"
 #include "kinecal/io/bridge/joint_stream.ipp"
 #include "kinecal/io/bridge/ros_robot.hpp"
-#include "kinecal/io/bridge/view_message.ipp"
+#include "kinecal/io/messages/camera_message.ipp"
+#include "kinecal/io/messages/view_message.hpp"
 
 namespace kinecal::detail {
 

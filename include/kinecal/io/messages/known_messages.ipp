@@ -94,6 +94,10 @@ inline constexpr std::array kKnownMessages = {
                  "uint8 is_bigendian\n"
                  "uint32 step\n"
                  "uint8[] data\n"},
+    KnownMessage{"sensor_msgs/CompressedImage",
+                 "std_msgs/Header header\n"
+                 "string format\n"
+                 "uint8[] data\n"},
     KnownMessage{"geometry_msgs/PointStamped",
                  "std_msgs/Header header\n"
                  "Point point\n"},

@@ -9,7 +9,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "kinecal/io/bridge/view_message.ipp"
+#include "kinecal/io/messages/message_rows.ipp"
+#include "kinecal/io/messages/view_message.hpp"
 
 namespace kinecal::detail {
 
@@ -33,9 +34,7 @@ inline constexpr std::size_t kNoField = 1 << 20;
   return rows.at(row, byte).number<float>();
 }
 
-/// Points, and colour as brightness if there is any and the image is empty.
-/// @throws std::runtime_error  if it has no x, y, z
-inline void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage& image) {
+KINECAL_INLINE void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage& image) {
   const std::size_t x = point_field(cloud, "x"), y = point_field(cloud, "y"),
                     z = point_field(cloud, "z");
   const std::size_t rgb = std::min(point_field(cloud, "rgb"), point_field(cloud, "rgba"));
@@ -56,7 +55,8 @@ inline void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage
       if (!has_colour) continue;
       constexpr unsigned kByte = 0xff;
       const auto c = rows.at(v, at + rgb).number<std::uint32_t>();
-      image(u, v) = brightness((c >> 16) & kByte, (c >> 8) & kByte, c & kByte);
+      image(u, v) =
+          static_cast<std::uint8_t>(brightness((c >> 16) & kByte, (c >> 8) & kByte, c & kByte));
     }
   }
 }

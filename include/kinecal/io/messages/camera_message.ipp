@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/io/bridge/message_fields.ipp"
+#include "kinecal/io/messages/message_fields.ipp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "look.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <mutex>
+#include <span>
+#include <utility>
+
+#include "kinecal/evaluation/parallel.hpp"
+#include "progress.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// Finders of each camera.
+using CameraFinders = std::vector<std::vector<ViewFinder>>;
+
+/// @param camera_of  camera of a finder, by its place in the list
+CameraFinders by_camera(const MakeFinders& make, std::size_t cameras,
+                        const std::function<std::size_t(std::size_t)>& camera_of) {
+  CameraFinders finders(cameras);
+  const std::vector<ViewFinder> all = make();
+  for (std::size_t f = 0; f < all.size(); ++f) finders[camera_of(f)].push_back(all[f]);
+  return finders;
+}
+
+/// Adds observations of another camera at the same moment.
+void join(std::vector<Sample>& all, std::vector<Sample> more) {
+  for (Sample& sample : more) {
+    const auto is_free = [&](const Sample& other) {
+      return std::none_of(
+          sample.observations.begin(), sample.observations.end(),
+          [&](const Observation& o) { return other.observation(o.sensor) != nullptr; });
+    };
+    const auto to = std::find_if(all.begin(), all.end(), is_free);
+    if (to == all.end()) {
+      all.push_back(std::move(sample));
+    } else {
+      to->observations.insert(to->observations.end(), sample.observations.begin(),
+                              sample.observations.end());
+    }
+  }
+}
+
+/// The picture of a view; of none, a gray one.
+Thumbnail picture(const std::optional<View>& view, std::vector<Mark> marks, const std::string& name,
+                  const std::string& reasons) {
+  constexpr std::uint8_t kGray = 200;
+  if (view && !view->image.empty()) return thumbnail(view->image, std::move(marks), name, reasons);
+  return thumbnail(GrayImage(kThumbnailWidth, kThumbnailWidth * 3 / 4, kGray), {}, name, reasons);
+}
+
+/// Looks at all views of one moment; the joints are those of the first.
+/// @param source  of the samples, for messages
+Look look(std::vector<RecordedView> views, const CameraFinders& finders, const std::string& source,
+          const std::string& name, bool thumbnails) {
+  Look all{name, {}, 0, {}, {}};
+  const std::string title = std::filesystem::path(name).filename().string();
+  const MeasuredJoints* joints = nullptr;
+  for (std::size_t c = 0; c < views.size(); ++c) {
+    Detection found;
+    if (views[c].view) {
+      View& view = *views[c].view;
+      if (joints != nullptr) view.joints = *joints;
+      joints = &view.joints;
+      found = detect(view, finders[c], source);
+    } else {
+      found.refused.push_back(views[c].refusal);
+    }
+    std::string reasons;
+    for (const std::string& refused : found.refused) {
+      all.refused.push_back(refused);
+      if (found.samples.empty()) reasons += (reasons.empty() ? "" : "; ") + refused;
+    }
+    all.features += found.features;
+    if (thumbnails) {
+      all.thumbnails.push_back(picture(views[c].view, std::move(found.marks), title, reasons));
+    }
+    join(all.samples, std::move(found.samples));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<Look> look_at(const std::vector<PosedImage>& images,
+                          const std::optional<CameraInfo>& camera, const std::string& frame,
+                          const LookOptions& options) {
+  const int count = static_cast<int>(images.size());
+  std::vector<CameraFinders> finders;
+  for (int t = 0; t < std::min(options.threads, count); ++t) {
+    finders.push_back(by_camera(options.finders, 1, [](std::size_t) { return 0; }));
+  }
+  ProgressLine line;
+  const ProgressMeter meter = line.meter();
+  std::mutex metering;
+  int done = 0;
+  std::vector<Look> looks(images.size());
+  detail::for_each_piece(count, options.threads, [&](int i, int thread) {
+    const PosedImage& image = images[static_cast<std::size_t>(i)];
+    RecordedView view;
+    try {
+      view.view = read_view(image, camera, frame);
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      const std::string name = image.path + ": ";
+      view.refusal = text.starts_with(name) ? text.substr(name.size()) : text;
+    }
+    looks[static_cast<std::size_t>(i)] =
+        look({std::move(view)}, finders[static_cast<std::size_t>(thread)], image.source, image.path,
+             options.thumbnails);
+    const std::scoped_lock lock(metering);
+    if (meter) meter(static_cast<double>(++done) / count, "detecting");
+  });
+  return looks;
+}
+
+std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& options) {
+  const std::size_t cameras = recording.cameras().size();
+  std::vector<CameraFinders> finders;
+  for (int t = 0; t < options.threads; ++t) {
+    finders.push_back(
+        by_camera(options.finders, cameras, [&](std::size_t f) { return recording.camera_of(f); }));
+  }
+  std::vector<Look> looks(recording.standstills());
+  std::vector<RecordedStandstill> batch;  // as many as are in memory
+  const auto finish_batch = [&] {
+    detail::for_each_piece(static_cast<int>(batch.size()), options.threads, [&](int i, int thread) {
+      RecordedStandstill& standstill = batch[static_cast<std::size_t>(i)];
+      std::vector<RecordedView> views;
+      for (std::size_t c = 0; c < cameras; ++c) views.push_back(recording.view(standstill, c));
+      looks[standstill.number] = look(std::move(views), finders[static_cast<std::size_t>(thread)],
+                                      standstill.source, standstill.source, options.thumbnails);
+      standstill.views.clear();
+    });
+    batch.clear();
+  };
+  ProgressLine line;
+  recording.read(
+      [&](RecordedStandstill standstill) {
+        batch.push_back(std::move(standstill));
+        if (batch.size() >= static_cast<std::size_t>(options.threads)) finish_batch();
+      },
+      line.meter());
+  finish_batch();
+  return looks;
+}
+
+}  // namespace kinecal::cli
