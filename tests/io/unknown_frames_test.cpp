@@ -118,6 +118,38 @@ TEST(UnknownFrames, AreSearchedForWithAFewCornersOfAFewSamples) {
   EXPECT_EQ(excerpt.num_residuals(), 12 * 4 * 3) << "four corners each, and lines of sight";
 }
 
+/// The camera sees some corners of the board and lists them in another order.
+TEST(UnknownFrames, AreFoundFromPartsOfABoard) {
+  Scenario scenario = test::board_scenario(true, 1);
+  for (std::size_t n = 0; n < scenario.samples.size(); ++n) {
+    std::vector<Observation>& seen = scenario.samples[n].observations;
+    for (Observation& observation : seen) {
+      for (std::size_t i = 0; i < 35; ++i) observation.features[i].id = static_cast<int>(i);
+    }
+    std::vector<Feature>& corners = seen[1].features;
+    corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(n), corners.begin() + 12);
+    std::reverse(corners.begin(), corners.end());
+    if (n == 11) break;
+  }
+  const Calibration calibration = scenario.calibration();
+  EXPECT_EQ(calibration.steps[0].excerpt->num_residuals(), 12 * 4 * 3) << "four corners each";
+  expect_found(calibration, test::cost_from_truth(scenario, calibration));
+}
+
+TEST(UnknownFrames, TheFewCornersAreThoseOfEachCamera) {
+  Sample sample;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Observation board{"board", {}}, left{"left", {}}, right{"right", {}};
+  for (int i = 0; i < 9; ++i) {
+    const Vector3<double> at(i, 0.0, 0.0), none(nan, nan, nan);
+    board.features.push_back({"board", at});
+    left.features.push_back({"left", i < 4 ? at : none});
+    right.features.push_back({"right", i > 4 ? at : none});
+  }
+  sample.observations = {board, left, right};
+  EXPECT_THAT(detail::far_apart(sample, 9), testing::UnorderedElementsAre(0u, 3u, 6u, 8u));
+}
+
 TEST(UnknownFrames, TheFewCornersAreFarApartAndHaveNumbers) {
   Sample sample;
   Observation holder{"board_holder", {}}, eye{"eye", {}};

@@ -563,6 +563,23 @@ TEST_F(Program, LeavesOutFeaturesThatAreNotNumbersWithACount) {
       58);
 }
 
+TEST_F(Program, SaysWhichSamplesHaveNoFeatureInCommon) {
+  auto all = samples();
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    for (Observation& seen : all[n].observations) {
+      const int first = n < 2 && seen.sensor == "arm" ? 10 : 0;
+      for (std::size_t i = 0; i < seen.features.size(); ++i) {
+        seen.features[i].id = first + static_cast<int>(i);
+      }
+    }
+  }
+  write_all(all);
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("error block 'hand_eye' does not use 2 samples: its sensors "
+                                    "observed no feature of the same id; the first is at "));
+}
+
 TEST_F(Program, RefusesSamplesInWhichNoFeatureIsANumber) {
   auto all = samples();
   for (Sample& sample : all) {

@@ -55,6 +55,7 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
                                     [&](const BlockConfig& b) { return b.name == term.name(); });
     const int count = problem.samples_of(t);
     total += count;
+    warn_of_disjoint_ids(term, *block, samples, diagnostics);
     if (count == 0) {
       diagnostics.warning(block->place, fmt::format("error block '{}': no sample has usable "
                                                     "features of all its sensors{}",
@@ -209,7 +210,7 @@ inline void prepare_search(CalibrationStep& step, const Config& config, const St
   for (const ModelConfig& model : of_step.models) {
     if (model.type == PinholeCamera::kType) eyes[model.name] = {model.image};
   }
-  add_samples(*few, few_samples(samples, eyes), ignored);
+  add_samples(*few, few_samples(*step.problem, samples, eyes), ignored);
   if (few->num_residuals() > 0) step.excerpt = std::move(few);
 }
 

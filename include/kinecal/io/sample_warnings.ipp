@@ -16,6 +16,8 @@
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/problem/any_term.hpp"
+#include "kinecal/problem/paired_features.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
@@ -132,6 +134,23 @@ inline void warn_of_joints_with_two_positions(std::span<const Sample> samples,
       "{} joint{} of a sample {} a second position that differs; the first one is used.  "
       "The first is at {}",
       count, count == 1 ? "" : "s", count == 1 ? "has" : "have", first));
+}
+
+/// Warns of samples in which the sensors of a term saw different features.
+inline void warn_of_disjoint_ids(const AnyTerm& term, const BlockConfig& block,
+                                 std::span<const Sample> samples, Diagnostics& diagnostics) {
+  std::size_t disjoint = 0;
+  std::string first;
+  for (const Sample& sample : samples) {
+    if (!term.pairs_features() || !ids_are_disjoint(sample, block.models)) continue;
+    if (disjoint++ == 0) first = sample.source;
+  }
+  if (disjoint == 0) return;
+  diagnostics.warning(
+      block.place,
+      fmt::format("error block '{}' does not use {} sample{}: its sensors observed no feature of "
+                  "the same id; the first is at {}",
+                  term.name(), disjoint, disjoint == 1 ? "" : "s", first));
 }
 
 /// Warns of models whose sensor is not in any sample: probably one of the names is misspelt.

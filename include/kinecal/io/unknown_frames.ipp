@@ -95,16 +95,20 @@ namespace kinecal::detail {
   return chosen;
 }
 
-/// How far apart two features are, added up over a sample's observations; -1 if one has no number.
+/// How far apart two features are, added up over a sample's observations that have both; -1 if one
+/// of them is not observed twice, so that nothing compares it.
 [[nodiscard]] inline double distance_of_features(const Sample& sample, std::size_t i,
                                                  std::size_t j) {
   double sum = 0.0;
+  std::size_t of_i = 0, of_j = 0;  // observations
   for (const Observation& seen : sample.observations) {
-    const double distance = (seen.features[i].point - seen.features[j].point).norm();
-    if (!std::isfinite(distance)) return -1.0;
-    sum += distance;
+    const Vector3<double>&a = seen.features[i].point, &b = seen.features[j].point;
+    of_i += a.allFinite() ? 1 : 0;
+    of_j += b.allFinite() ? 1 : 0;
+    if (a.allFinite() && b.allFinite()) sum += (a - b).norm();
   }
-  return sum;
+  const std::size_t enough = std::min<std::size_t>(2, sample.observations.size());
+  return std::min(of_i, of_j) >= enough ? sum : -1.0;
 }
 
 /// A few features of a sample, each as far as possible from those before: the corners of a board.
@@ -167,9 +171,11 @@ inline void rectify(Observation& seen, const PinholeCamera& camera = {}) {
 }
 
 /// A few samples of each kind: those with observations of the same sensors.
+/// @param problem  that takes all of them
 /// @param cameras  the sensors that observe pixels, by name
 [[nodiscard]] inline std::vector<Sample> few_samples(
-    std::span<const Sample> samples, const std::map<std::string, PinholeCamera>& cameras) {
+    const AnyProblem& problem, std::span<const Sample> samples,
+    const std::map<std::string, PinholeCamera>& cameras) {
   constexpr std::size_t kOfEachKind = 12;
   std::map<std::set<std::string>, std::vector<std::size_t>> kinds;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -180,7 +186,8 @@ inline void rectify(Observation& seen, const PinholeCamera& camera = {}) {
   std::vector<Sample> few;
   for (const auto& [sensors, indices] : kinds) {
     for (const std::size_t i : spread(indices.size(), kOfEachKind)) {
-      few.push_back(with_few_features(samples[indices[i]]));
+      const Sample& sample = samples[indices[i]];
+      few.push_back(with_few_features(problem.paired(sample).value_or(sample)));
       for (Observation& seen : few.back().observations) {
         const auto camera = cameras.find(seen.sensor);
         if (camera != cameras.end()) rectify(seen, camera->second);

@@ -109,7 +109,7 @@ TEST_F(ReadCsvSamples, TakesIdsFromTheMappingOrFromColumns) {
   (void)read(table, with(mapping, "[4, 5, 7]", "[4, 5]"));
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:3: sensor 'arm': has 2 ids")));
   (void)read(table, with(mapping, "[4, 5, 7]", "[4, 5, -7]"));
-  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("-7 is not a whole number from 0")));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("'-7' is not a whole number from 0")));
   (void)read(table, with(mapping, "[tag, other]", "[tag, othr]"));
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:4: column 'othr'")));
   (void)read(table, with(mapping, "[tag, other]", "[tag, other], ids: [1, 2]"));

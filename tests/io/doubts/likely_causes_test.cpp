@@ -93,6 +93,14 @@ TEST_F(LikelyCauses, FeaturesInReverseOrderAreNamed) {
     std::swap(sample.observations[1].features[0].point, sample.observations[1].features[1].point);
   }
   EXPECT_THAT(first(), HasSubstr("in reverse order"));
+  for (Sample& sample : samples) {
+    for (Observation& seen : sample.observations) {
+      for (std::size_t i = 0; i < seen.features.size(); ++i) {
+        seen.features[i].id = static_cast<int>(i);
+      }
+    }
+  }
+  EXPECT_THAT(first(), HasSubstr("in reverse order")) << "the ids are wrong";
 }
 
 TEST_F(LikelyCauses, NamesInTheOrderOfTheAlphabetAreNamed) {

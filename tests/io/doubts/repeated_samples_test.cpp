@@ -83,5 +83,25 @@ TEST_F(RepeatedSamples, AnotherPointAtOnePoseIsADoubt) {
   EXPECT_THAT(found().doubts, IsEmpty());
 }
 
+TEST_F(RepeatedSamples, FeaturesAreComparedByTheirIds) {
+  for (Sample& sample : samples) {
+    for (Observation& seen : sample.observations) {
+      for (std::size_t i = 0; i < seen.features.size(); ++i) {
+        seen.features[i].id = static_cast<int>(i);
+      }
+    }
+  }
+  samples.push_back(samples[4]);
+  samples.back().source = "more.yaml:1";
+  for (Observation& seen : samples.back().observations) {
+    std::reverse(seen.features.begin(), seen.features.end());
+  }
+  EXPECT_THAT(found().doubts, IsEmpty());
+  samples.back().observations[1].features[0].point.x() += 0.02;
+  EXPECT_THAT(found().doubts, ElementsAre(HasSubstr("sensor 'tracker'")));
+  samples.back().observations[1].features[0].id = 50;  // another one
+  EXPECT_THAT(found().doubts, IsEmpty());
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -101,7 +101,11 @@ inline void add_sensor_hypotheses(const Config& config, std::vector<Hypothesis>&
     };
     all.push_back({fmt::format("with the features of '{}' in reverse order", name), [=](Sample& s) {
                      each(s, [](Observation& seen) {
-                       std::reverse(seen.features.begin(), seen.features.end());
+                       std::vector<Feature>& features = seen.features;
+                       std::reverse(features.begin(), features.end());
+                       for (std::size_t i = 0; i < features.size() / 2; ++i) {  // ids stay
+                         std::swap(features[i].id, features[features.size() - 1 - i].id);
+                       }
                      });
                    }});
     if (pixels.contains(name)) continue;

@@ -14,6 +14,7 @@
 
 #include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/repeated_samples.hpp"
+#include "kinecal/io/doubts/same_feature.ipp"
 
 namespace kinecal::detail {
 
@@ -39,17 +40,21 @@ namespace kinecal::detail {
 /// if they are not comparable.
 [[nodiscard]] inline double change_between(const Observation& a, const Observation& b) {
   double most = 0.0;
-  if (a.features.size() != b.features.size()) return HUGE_VAL;
+  std::size_t compared = 0;
   for (std::size_t i = 0; i < a.features.size(); ++i) {
-    if (a.features[i].frame != b.features[i].frame) return HUGE_VAL;
-    const auto &p = a.features[i].point, &q = b.features[i].point;
+    if (!a.features[i].id && a.features.size() != b.features.size()) return HUGE_VAL;
+    const Feature* other = same_feature(b, a.features[i], i);
+    if (other == nullptr) continue;
+    ++compared;
+    if (a.features[i].frame != other->frame) return HUGE_VAL;
+    const auto &p = a.features[i].point, &q = other->point;
     if (!p.allFinite() || !q.allFinite()) {
       if (p.allFinite() != q.allFinite()) return HUGE_VAL;
       continue;
     }
     most = std::max(most, (p - q).norm());
   }
-  return most;
+  return compared > 0 || (a.features.empty() && b.features.empty()) ? most : HUGE_VAL;
 }
 
 /// All that the sensors recorded in a sample, for comparison.

@@ -10,6 +10,7 @@
 #include "kinecal/io/doubts/camera_features.ipp"
 #include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/point_spreads.ipp"
+#include "kinecal/io/doubts/same_feature.ipp"
 #include "kinecal/io/doubts/sensor_points.hpp"
 #include "kinecal/io/registry.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
@@ -20,12 +21,12 @@ namespace kinecal::detail {
 /// @param first  the observation of the first sample with one
 inline void add_points(RecordedPoints& all, const Observation& seen, std::size_t sample,
                        const Observation& first) {
-  all.is_constant = all.is_constant && seen.features.size() == first.features.size();
   for (std::size_t i = 0; i < seen.features.size(); ++i) {
     const Feature& feature = seen.features[i];
-    if (all.is_constant) {
-      all.is_constant =
-          feature.point == first.features[i].point && feature.frame == first.features[i].frame;
+    if (!feature.id && seen.features.size() != first.features.size()) all.is_constant = false;
+    const Feature* before = all.is_constant ? same_feature(first, feature, i) : nullptr;
+    if (before != nullptr) {
+      all.is_constant = feature.point == before->point && feature.frame == before->frame;
     }
     if (!feature.point.allFinite()) continue;
     all.points.push_back(feature.point);

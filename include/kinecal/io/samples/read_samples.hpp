@@ -5,7 +5,8 @@
 // off.  Keys are those of ROS 1 (D K R P) or ROS 2 (d k r p); unknown keys are skipped.  The depth
 // driver's z_offset_mm becomes metres.  ROS sends a camera_info of zeros for a sensor that is not a
 // camera: it leaves Observation::camera unset.  Beyond the messages of ROS, a feature may have an
-// `orientation` and a `sigma`, and a sample `conditions`.  NaN and infinity are values like any other here.
+// `orientation`, a `sigma` and an `id`, and a sample `conditions`.  NaN and infinity are values like any
+// other here.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
