@@ -55,10 +55,12 @@ Thumbnail picture(const std::optional<View>& view, std::vector<Mark> marks, cons
 /// @param source  of the samples, for messages
 Look look(std::vector<RecordedView> views, const CameraFinders& finders, const std::string& source,
           const std::string& name, bool thumbnails) {
-  Look all{name, {}, 0, {}, {}};
+  Look all;
+  all.source = name;
   const std::string title = std::filesystem::path(name).filename().string();
   const MeasuredJoints* joints = nullptr;
   for (std::size_t c = 0; c < views.size(); ++c) {
+    all.compared = all.compared && views[c].compared;
     Detection found;
     if (views[c].view) {
       View& view = *views[c].view;

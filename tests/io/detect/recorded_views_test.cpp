@@ -159,6 +159,15 @@ TEST_F(RecordedViewsTest, ARobotThatNeverRestsIsAnErrorThatNamesTheJoint) {
               ElementsAre(HasSubstr("has no joint 'scaner'; did you mean 'scanner'?")));
 }
 
+TEST_F(RecordedViewsTest, ARobotThatAlwaysMovesShouldRest) {
+  const auto turning = [](Recorder& to, Stamp stamp, double time) {
+    to.joints("/joint_states", {stamp, {"pan", "tilt"}, {0.3 * time, 0.2 * time}});
+  };
+  record({.joints = false, .more = turning});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("let it rest for a second in each pose")));
+}
+
 TEST_F(RecordedViewsTest, AnImageThatMovesWhileTheJointsRestIsRefused) {
   const auto passer_by = [](double position, double time) {
     const bool second = time > 1.5 && time < 2.5;
@@ -222,6 +231,9 @@ TEST_F(RecordedViewsTest, FindersOfTheSameTopicsShareACamera) {
 }
 
 TEST_F(RecordedViewsTest, WhatIsNotABagIsAnError) {
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a.mcap: does not exist")));
+  diagnostics_ = {};
   write("a.mcap", "samples: []\n");
   (void)open();
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a.mcap: is not a bag")));

@@ -46,8 +46,9 @@ struct RecordedStandstill {
 
 /// The view of a camera in a standstill, or why there is none.
 struct RecordedView {
-  std::optional<View> view;  ///< with the joints of its moment
-  std::string refusal;       ///< empty if there is one
+  std::optional<View> view = {};  ///< with the joints of its moment
+  std::string refusal = {};       ///< empty if there is one
+  bool compared = true;           ///< false: of a single image, which may have moved
 };
 
 /// A recording: see above.
