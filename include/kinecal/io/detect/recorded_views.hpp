@@ -41,6 +41,7 @@ struct RecordedStandstill {
   std::size_t number = 0;  ///< from 0, in the order of time
   std::string source;      ///< "drive.bag at 12.300 s": since the first joint states
   Standstill time;         ///< when it was
+  std::size_t bytes = 0;   ///< of the messages
   std::vector<std::vector<std::shared_ptr<detail::RawView>>> views;  ///< a few of each camera
 };
 

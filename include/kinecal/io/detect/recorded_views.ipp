@@ -46,6 +46,7 @@ class StandstillReader {
       const auto& [standstill, part] = at->second;
       part->form = forms_.of(message.topic);
       part->data.assign(message.data.begin(), message.data.end());
+      standstills_[standstill].bytes += part->data.size();
       if (--missing_[standstill] == 0) give(standstill);
     }
   }
