@@ -135,8 +135,9 @@ std::vector<Look> look_at_all(const Task& task, const DetectOptions& options) {
 /// @returns  how many features were found, in how many photographs or standstills
 std::pair<std::size_t, std::size_t> collect(std::vector<Look> looks, std::vector<Sample>& samples,
                                             std::vector<Thumbnail>& thumbnails) {
-  std::size_t features = 0, used = 0;
+  std::size_t features = 0, used = 0, single = 0;
   for (Look& look : looks) {
+    if (!look.samples.empty() && !look.compared) ++single;
     for (const std::string& refused : look.refused) {
       fmt::print(stderr, "warning: {}\n", printable(look.source + ": " + refused));
     }
@@ -144,6 +145,12 @@ std::pair<std::size_t, std::size_t> collect(std::vector<Look> looks, std::vector
     if (!look.samples.empty()) ++used;
     std::move(look.samples.begin(), look.samples.end(), std::back_inserter(samples));
     std::move(look.thumbnails.begin(), look.thumbnails.end(), std::back_inserter(thumbnails));
+  }
+  if (single > 0) {
+    fmt::print(stderr,
+               "note: {} used with a single image each: whether it moved is not known; record more "
+               "images a second\n",
+               single == 1 ? "1 standstill is" : std::to_string(single) + " standstills are");
   }
   return {features, used};
 }

@@ -16,14 +16,32 @@ namespace {
 /// Finders of each camera.
 using CameraFinders = std::vector<std::vector<ViewFinder>>;
 
-/// @param camera_of  camera of a finder, by its place in the list
-CameraFinders by_camera(const MakeFinders& make, std::size_t cameras,
-                        const std::function<std::size_t(std::size_t)>& camera_of) {
-  CameraFinders finders(cameras);
-  const std::vector<ViewFinder> all = make();
-  for (std::size_t f = 0; f < all.size(); ++f) finders[camera_of(f)].push_back(all[f]);
-  return finders;
-}
+/// Finders of each thread, made when it needs them.
+class ThreadFinders {
+ public:
+  /// @param camera_of  camera of a finder, by its place in the list
+  ThreadFinders(const LookOptions& options, std::size_t cameras,
+                std::function<std::size_t(std::size_t)> camera_of)
+      : make_(options.finders),
+        camera_of_(std::move(camera_of)),
+        cameras_(cameras),
+        finders_(static_cast<std::size_t>(options.threads)) {}
+
+  [[nodiscard]] const CameraFinders& of(int thread) {
+    CameraFinders& own = finders_[static_cast<std::size_t>(thread)];
+    if (!own.empty()) return own;
+    own.resize(cameras_);
+    const std::vector<ViewFinder> all = make_();
+    for (std::size_t f = 0; f < all.size(); ++f) own[camera_of_(f)].push_back(all[f]);
+    return own;
+  }
+
+ private:
+  const MakeFinders& make_;
+  std::function<std::size_t(std::size_t)> camera_of_;
+  std::size_t cameras_;
+  std::vector<CameraFinders> finders_;  ///< of each thread
+};
 
 /// Adds observations of another camera at the same moment.
 void join(std::vector<Sample>& all, std::vector<Sample> more) {
@@ -55,10 +73,12 @@ Thumbnail picture(const std::optional<View>& view, std::vector<Mark> marks, cons
 /// @param source  of the samples, for messages
 Look look(std::vector<RecordedView> views, const CameraFinders& finders, const std::string& source,
           const std::string& name, bool thumbnails) {
-  Look all{name, {}, 0, {}, {}};
+  Look all;
+  all.source = name;
   const std::string title = std::filesystem::path(name).filename().string();
   const MeasuredJoints* joints = nullptr;
   for (std::size_t c = 0; c < views.size(); ++c) {
+    all.compared = all.compared && views[c].compared;
     Detection found;
     if (views[c].view) {
       View& view = *views[c].view;
@@ -88,10 +108,7 @@ std::vector<Look> look_at(const std::vector<PosedImage>& images,
                           const std::optional<CameraInfo>& camera, const std::string& frame,
                           const LookOptions& options) {
   const int count = static_cast<int>(images.size());
-  std::vector<CameraFinders> finders;
-  for (int t = 0; t < std::min(options.threads, count); ++t) {
-    finders.push_back(by_camera(options.finders, 1, [](std::size_t) { return 0; }));
-  }
+  ThreadFinders finders(options, 1, [](std::size_t) { return 0; });
   ProgressLine line;
   const ProgressMeter meter = line.meter();
   std::mutex metering;
@@ -108,8 +125,7 @@ std::vector<Look> look_at(const std::vector<PosedImage>& images,
       view.refusal = text.starts_with(name) ? text.substr(name.size()) : text;
     }
     looks[static_cast<std::size_t>(i)] =
-        look({std::move(view)}, finders[static_cast<std::size_t>(thread)], image.source, image.path,
-             options.thumbnails);
+        look({std::move(view)}, finders.of(thread), image.source, image.path, options.thumbnails);
     const std::scoped_lock lock(metering);
     if (meter) meter(static_cast<double>(++done) / count, "detecting");
   });
@@ -118,29 +134,29 @@ std::vector<Look> look_at(const std::vector<PosedImage>& images,
 
 std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& options) {
   const std::size_t cameras = recording.cameras().size();
-  std::vector<CameraFinders> finders;
-  for (int t = 0; t < options.threads; ++t) {
-    finders.push_back(
-        by_camera(options.finders, cameras, [&](std::size_t f) { return recording.camera_of(f); }));
-  }
+  ThreadFinders finders(options, cameras, [&](std::size_t f) { return recording.camera_of(f); });
   std::vector<Look> looks(recording.standstills());
-  std::vector<RecordedStandstill> batch;  // as many as are in memory
+  std::vector<RecordedStandstill> batch;  // those in memory
+  std::size_t bytes = 0;                  // of their messages
   const auto finish_batch = [&] {
     detail::for_each_piece(static_cast<int>(batch.size()), options.threads, [&](int i, int thread) {
       RecordedStandstill& standstill = batch[static_cast<std::size_t>(i)];
       std::vector<RecordedView> views;
       for (std::size_t c = 0; c < cameras; ++c) views.push_back(recording.view(standstill, c));
-      looks[standstill.number] = look(std::move(views), finders[static_cast<std::size_t>(thread)],
-                                      standstill.source, standstill.source, options.thumbnails);
+      looks[standstill.number] = look(std::move(views), finders.of(thread), standstill.source,
+                                      standstill.source, options.thumbnails);
       standstill.views.clear();
     });
     batch.clear();
+    bytes = 0;
   };
   ProgressLine line;
   recording.read(
       [&](RecordedStandstill standstill) {
+        constexpr std::size_t kMost = std::size_t{1} << 29;
+        bytes += standstill.bytes;
         batch.push_back(std::move(standstill));
-        if (batch.size() >= static_cast<std::size_t>(options.threads)) finish_batch();
+        if (static_cast<int>(batch.size()) >= options.threads || bytes > kMost) finish_batch();
       },
       line.meter());
   finish_batch();

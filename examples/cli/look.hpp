@@ -32,6 +32,7 @@ struct Look {
   std::vector<std::string>
       refused;  ///< views that were not looked at, and finders, with their reasons
   std::vector<Thumbnail> thumbnails;  ///< of each view
+  bool compared = true;               ///< false: a view has a single image, which may have moved
 };
 
 /// Looks at photographs.  One that cannot be read is refused.

@@ -206,16 +206,19 @@ void add_detect(CLI::App& command, DetectOptions& options) {
           "--bag", options.bags,
           "recording of images or clouds, camera_info and joint states: ROS 1 bag, ROS 2 bag "
           "or MCAP; each time that the robot stands still gives a sample; may be repeated")
+      ->allow_extra_args(false)
       ->type_name("FILE");
   command
       .add_option("--joints", options.joints,
                   "topics of joint states in recordings, default: all of sensor_msgs/JointState")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("TOPIC");
   command
       .add_option("--restless", options.restless,
                   "joints that need not stand still in recordings, such as that of a scanner")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("JOINT");
   command
       .add_option("--camera", options.camera,

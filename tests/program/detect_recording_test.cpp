@@ -175,7 +175,7 @@ TEST_F(DetectRecording, WhatIsMissingIsNamed) {
     to.image(topic, test::kTourStart, GrayImage(8, 8));
   }
   to.finish();
-  const Outcome failed = kinecal("detect capture.yaml --bag eyes.mcap -o samples.yaml");
+  const Outcome failed = kinecal("detect --bag eyes.mcap capture.yaml -o samples.yaml");
   EXPECT_EQ(failed.code, 1);
   EXPECT_THAT(failed.err, HasSubstr("error: eyes.mcap: has no joint positions"));
   EXPECT_THAT(failed.err,

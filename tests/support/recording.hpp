@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -38,6 +39,15 @@ class Recorder {
           detail::fields("height", std::int64_t{image.height}, "width", std::int64_t{image.width},
                          "encoding", encoding, "step", std::int64_t{image.width}, "data",
                          std::as_bytes(std::span(image.pixels))));
+  }
+
+  /// @param millimetres  0 where nothing was measured
+  void depth(const std::string& topic, Stamp stamp, const Image<std::uint16_t>& millimetres) {
+    write(topic, "sensor_msgs/Image", stamp, camera_ahead,
+          detail::fields("height", std::int64_t{millimetres.height}, "width",
+                         std::int64_t{millimetres.width}, "encoding", std::string_view("16UC1"),
+                         "step", std::int64_t{2 * millimetres.width}, "data",
+                         std::as_bytes(std::span(millimetres.pixels))));
   }
 
   /// @param file  PNG or JPEG

@@ -148,6 +148,19 @@ TEST(JointTracks, OfTwoTopicsJointStatesIsTaken) {
   EXPECT_THAT(tracks.standstills(), SizeIs(1));
 }
 
+TEST(JointTracks, AJointThatIsMeasuredForAWhileOnlyIsAWarning) {
+  JointTracks tracks;
+  record(tracks, "joint_states", "arm", stands);
+  record(tracks, "joint_states", "arm", stands, milliseconds(20), kStart + std::chrono::seconds(4));
+  record(tracks, "gripper", "finger", stands);
+  const Diagnostics diagnostics = chosen(tracks);
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.warnings,
+              ElementsAre(HasSubstr("joints 'finger' were measured for 3 s of 7 s")));
+  EXPECT_THAT(tracks.standstills(), SizeIs(1));
+  EXPECT_THAT(tracks.standstills({"finger"}), SizeIs(2));
+}
+
 TEST(JointTracks, WithoutPositionsThereIsNothing) {
   JointTracks none;
   EXPECT_THAT(chosen(none).errors, ElementsAre(HasSubstr("has no joint positions")));

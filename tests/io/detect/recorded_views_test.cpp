@@ -159,6 +159,15 @@ TEST_F(RecordedViewsTest, ARobotThatNeverRestsIsAnErrorThatNamesTheJoint) {
               ElementsAre(HasSubstr("has no joint 'scaner'; did you mean 'scanner'?")));
 }
 
+TEST_F(RecordedViewsTest, ARobotThatAlwaysMovesShouldRest) {
+  const auto turning = [](Recorder& to, Stamp stamp, double time) {
+    to.joints("/joint_states", {stamp, {"pan", "tilt"}, {0.3 * time, 0.2 * time}});
+  };
+  record({.joints = false, .more = turning});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("let it rest for a second in each pose")));
+}
+
 TEST_F(RecordedViewsTest, AnImageThatMovesWhileTheJointsRestIsRefused) {
   const auto passer_by = [](double position, double time) {
     const bool second = time > 1.5 && time < 2.5;
@@ -221,7 +230,32 @@ TEST_F(RecordedViewsTest, FindersOfTheSameTopicsShareACamera) {
   EXPECT_EQ(recording.camera_of(1), 0U);
 }
 
+TEST_F(RecordedViewsTest, DepthOfTheSameMomentGivesAPointForEachPixel) {
+  finders_.push_back(finders_.front());
+  finders_.back().type = "CheckerboardFinder";
+  const auto depth = [](Recorder& to, Stamp stamp, double time) {
+    const auto distance = static_cast<std::uint16_t>(time < 1.2 ? 1000 : 2000);
+    const Stamp late = stamp + std::chrono::milliseconds(10);
+    to.depth("/cam/depth", late, Image<std::uint16_t>(64, 48, distance));
+  };
+  record({.more = depth});
+  const RecordedViews recording = open();
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(recording.cameras().size(), 2U);
+  std::vector<float> distances;
+  recording.read([&](const RecordedStandstill& standstill) {
+    EXPECT_TRUE(recording.view(standstill, 0).view.value().points.empty());
+    const View view = recording.view(standstill, recording.camera_of(1)).view.value();
+    EXPECT_EQ(view.points.width, view.image.width);
+    distances.push_back(view.points(10, 10).z());
+  });
+  EXPECT_THAT(distances, ElementsAre(1.0F, 2.0F, 2.0F));
+}
+
 TEST_F(RecordedViewsTest, WhatIsNotABagIsAnError) {
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a.mcap: does not exist")));
+  diagnostics_ = {};
   write("a.mcap", "samples: []\n");
   (void)open();
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a.mcap: is not a bag")));

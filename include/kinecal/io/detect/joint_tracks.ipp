@@ -7,27 +7,13 @@
 #include <map>
 #include <utility>
 
+#include "kinecal/io/detect/joint_checks.ipp"
 #include "kinecal/io/detect/joint_tracks.hpp"
+#include "kinecal/io/detect/listed.ipp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
 
 namespace kinecal {
-namespace detail {
-
-/// "'a', 'b'"; of many, the first.
-template <class Names>
-[[nodiscard]] std::string listed(const Names& names) {
-  constexpr std::size_t kMost = 6;
-  std::string text;
-  std::size_t count = 0;
-  for (const std::string& name : names) {
-    if (count++ == kMost) return text + " ...";
-    text += (text.empty() ? "'" : ", '") + printable(name) + "'";
-  }
-  return text;
-}
-
-}  // namespace detail
 
 KINECAL_INLINE void JointTracks::add(const std::string& topic, const MeasuredJoints& reading) {
   std::map<std::string, double> sorted;
@@ -119,15 +105,9 @@ KINECAL_INLINE void JointTracks::choose(const std::vector<std::string>& topics,
                                        std::to_string(track.stamps.size()) + " times only");
     return true;
   });
+  const std::optional<Standstill> all = span();
   for (detail::JointTrack& track : tracks_) {
-    if (track.back) {
-      diagnostics.error(
-          {file, 0},
-          "topic '" + track.topic + "': stamps go back from " +
-              detail::seconds_text(track.back->end) + " to " +
-              detail::seconds_text(track.back->begin) +
-              ": the clock was set, or a simulation began anew; cut the recording there");
-    }
+    detail::check_stamps(track, *all, file, diagnostics);
     track.sort();
   }
 }
@@ -190,7 +170,8 @@ KINECAL_INLINE std::optional<Standstill> JointTracks::span() const {
   std::optional<Standstill> all;
   for (const detail::JointTrack& track : tracks_) {
     if (track.stamps.empty()) continue;
-    const Standstill own{track.stamps.front(), track.stamps.back()};
+    const auto [first, last] = std::minmax_element(track.stamps.begin(), track.stamps.end());
+    const Standstill own{*first, *last};
     if (!all) all = own;
     all = Standstill{std::min(all->begin, own.begin), std::max(all->end, own.end)};
   }

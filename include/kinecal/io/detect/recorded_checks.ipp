@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/io/detect/listed.ipp"
 #include "kinecal/io/detect/raw_view.ipp"
 #include "kinecal/io/detect/recorded_views.hpp"
 
@@ -98,15 +99,13 @@ inline void check_clocks(const RecordedSurvey& survey, const std::vector<ViewTop
   std::vector<Standstill> times = survey.joints.standstills(options.restless, options.settle);
   if (!times.empty() || !diagnostics.errors.empty()) return times;
   std::string text = "the robot never stands still for " + seconds_text(options.settle.window);
-  std::string restless;
-  for (const std::string& joint : survey.joints.never_still(options.settle)) {
-    if (options.restless.count(joint) > 0) continue;
-    restless += (restless.empty() ? "'" : ", '") + printable(joint) + "'";
-  }
-  if (restless.empty()) {
+  std::vector<std::string> moving = survey.joints.never_still(options.settle);
+  std::erase_if(moving,
+                [&](const std::string& joint) { return options.restless.count(joint) > 0; });
+  if (moving.empty() || moving.size() + options.restless.size() == names.size()) {
     text += "; let it rest for a second in each pose";
   } else {
-    text += ": joints " + restless +
+    text += ": joints " + listed(moving) +
             " always move; name those that need not stand still with --restless";
   }
   diagnostics.error({options.path, 0}, text);

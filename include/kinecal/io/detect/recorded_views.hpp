@@ -41,13 +41,15 @@ struct RecordedStandstill {
   std::size_t number = 0;  ///< from 0, in the order of time
   std::string source;      ///< "drive.bag at 12.300 s": since the first joint states
   Standstill time;         ///< when it was
+  std::size_t bytes = 0;   ///< of the messages
   std::vector<std::vector<std::shared_ptr<detail::RawView>>> views;  ///< a few of each camera
 };
 
 /// The view of a camera in a standstill, or why there is none.
 struct RecordedView {
-  std::optional<View> view;  ///< with the joints of its moment
-  std::string refusal;       ///< empty if there is one
+  std::optional<View> view = {};  ///< with the joints of its moment
+  std::string refusal = {};       ///< empty if there is one
+  bool compared = true;           ///< false: of a single image, which may have moved
 };
 
 /// A recording: see above.

@@ -46,6 +46,7 @@ class StandstillReader {
       const auto& [standstill, part] = at->second;
       part->form = forms_.of(message.topic);
       part->data.assign(message.data.begin(), message.data.end());
+      standstills_[standstill].bytes += part->data.size();
       if (--missing_[standstill] == 0) give(standstill);
     }
   }
@@ -183,12 +184,12 @@ KINECAL_INLINE RecordedView RecordedViews::view(const RecordedStandstill& stands
       failure = error.what();
     }
   }
-  if (views.empty()) return {std::nullopt, failure};
+  if (views.empty()) return {{}, failure};
   const StillView chosen = still_view(views);
-  if (!chosen.refusal.empty()) return {std::nullopt, chosen.refusal};
+  if (!chosen.refusal.empty()) return {{}, chosen.refusal};
   View& view = views[chosen.index];
   view.joints = survey_->joints.positions(view.stamp, standstill.time);
-  return {std::move(view), {}};
+  return {std::move(view), {}, views.size() > 1};
 }
 
 }  // namespace kinecal

@@ -55,8 +55,11 @@ KINECAL_INLINE void read_bag(const std::string& path, const BagReader& reader,
       return read_ros2_bag(path, reader, diagnostics);
     case RecordingFormat::zstd:
       return detail::read_ros2_bag_file(path, reader, diagnostics);
-    case RecordingFormat::yaml:
-      diagnostics.error({path, 0}, "is not a bag");
+    case RecordingFormat::yaml: {
+      std::error_code ignored;
+      const bool exists = std::filesystem::exists(path, ignored);
+      diagnostics.error({path, 0}, exists ? "is not a bag" : "does not exist");
+    }
   }
 }
 
