@@ -22,12 +22,11 @@
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/io/detect/contact_sheet.hpp"
 #include "kinecal/io/detect/detect.hpp"
-#include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/printable.hpp"
-#include "kinecal/io/recordings/pose_messages.hpp"
 #include "kinecal/io/recordings/write_recording.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "output_file.hpp"
+#include "pose_file.hpp"
 #include "robot_link.hpp"
 #include "truth.hpp"
 #include "words.hpp"
@@ -46,12 +45,7 @@ extern "C" void ask_to_stop(int) {
 
 /// Poses of a file, with the joints that the robot's chains move.
 std::vector<CapturePose> read_poses(const std::string& path, const CaptureConfig& config) {
-  Diagnostics diagnostics;
-  std::vector<CapturePose> poses =
-      is_poses_yaml(path) ? read_poses_yaml(path, diagnostics) : read_bag_poses(path, diagnostics);
-  cli::print(diagnostics);
-  diagnostics.throw_if_errors();
-  if (poses.empty()) throw InputError(path + ": has no poses");
+  std::vector<CapturePose> poses = read_pose_file(path);
   std::set<std::string> moved;
   for (const CaptureChain& chain : config.chains) {
     moved.insert(chain.joints.begin(), chain.joints.end());
@@ -160,8 +154,10 @@ class Follower {
   bool enough_ = false;
 };
 
-/// Prints what became of a pose: one line, or two.
-void print_pose(std::size_t number, std::size_t count, const CapturedPose& captured) {
+/// Prints what became of a pose on one line.
+/// @param left  of the session: "; 6 min left"
+void print_pose(std::size_t number, std::size_t count, const CapturedPose& captured,
+                const std::string& left) {
   std::string text;
   for (const FinderOutcome& outcome : captured.outcomes) {
     const Found& found = outcome.found;
@@ -173,7 +169,7 @@ void print_pose(std::size_t number, std::size_t count, const CapturedPose& captu
   }
   if (!captured.failure.empty()) text = "skipped: " + captured.failure;
   const std::string of = count > 0 ? fmt::format(" of {}", count) : "";
-  fmt::print("pose {}{}: {}\n", number, of, printable(text));
+  fmt::print("pose {}{}: {}{}\n", number, of, printable(text), left);
   std::fflush(stdout);
 }
 
@@ -216,13 +212,15 @@ struct Session {
   std::vector<Sample> samples;  ///< those of an earlier session first
   std::optional<Follower> follower;
   std::size_t done = 0;                    ///< poses
-  Stamp spent{};                           ///< on the robot's clock
+  Stamp spent{};                           ///< on the robot's clock, for `timed` of these poses
+  std::size_t timed = 0;                   ///< poses that were not skipped
   std::vector<Thumbnail> thumbnails = {};  ///< of what finders looked at
 
   /// Prints, writes and follows what came of a pose.
   void take(const CapturedPose& captured) {
-    print_pose(++done, poses.size(), captured);
     spent += captured.duration;
+    timed += captured.duration > Stamp::zero() ? 1 : 0;
+    print_pose(++done, poses.size(), captured, time_left());
     add_thumbnails(captured);
     if (captured.samples.empty()) return;
     samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
@@ -230,6 +228,17 @@ struct Session {
     for (const Sample& sample : captured.samples) {
       if (follower) follower->add(sample);
     }
+  }
+
+  /// "; 6 min left": the poses that are left take the mean time of those so far.
+  [[nodiscard]] std::string time_left() const {
+    if (timed == 0 || done >= poses.size()) return {};
+    const double mean = std::chrono::duration<double>(spent).count() / static_cast<double>(timed);
+    const double seconds = mean * static_cast<double>(poses.size() - done);
+    constexpr double kMinute = 60.0, kLong = 90.0;
+    return fmt::format("; {}{:.0f} {} left", options.until.empty() ? "" : "at most ",
+                       seconds < kLong ? seconds : seconds / kMinute,
+                       seconds < kLong ? "s" : "min");
   }
 
   void add_thumbnails(const CapturedPose& captured) {
@@ -245,7 +254,8 @@ struct Session {
   /// Runs until the last pose, Ctrl-C or the accuracy.
   /// @returns  why the robot cannot be reached any more; empty if it can
   [[nodiscard]] std::string run(const CaptureConfig& config) {
-    AnyRobot hardware = connect(options.robot, config, robot);
+    AnyRobot hardware = connect(options.robot, config, robot,
+                                options.manual ? MovedBy::person : MovedBy::controllers);
     std::vector<SessionFinder> finders;
     for (const CaptureFinder& finder : config.finders) {
       finders.push_back(finder_of(finder, robot, hardware));

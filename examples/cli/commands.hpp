@@ -161,6 +161,17 @@ struct CaptureOptions {
 /// Moves a robot through poses and records what its finders see.
 int capture(const CaptureOptions& options);
 
+struct CapturePosesOptions {
+  std::string config;       ///< capture.yaml
+  std::string urdf, robot;  ///< file; address
+  std::string output;       ///< file of poses
+  bool resume = false;      ///< go on with the poses of the output
+  bool force = false;       ///< replace it
+};
+
+/// Records poses into which a person moves the robot.
+int capture_poses(const CapturePosesOptions& options);
+
 struct InstallOptions {
   std::string result;  ///< folder that calibrate wrote
   std::string folder;  ///< with the launch file

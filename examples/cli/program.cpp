@@ -265,7 +265,9 @@ void add_detect(CLI::App& command, DetectOptions& options) {
   command.add_flag("--force", options.force, "replace files that are there");
 }
 
-void add_capture(CLI::App& command, CaptureOptions& options) {
+/// Configuration, address and URDF of a robot that is captured.
+template <class Options>
+void add_robot(CLI::App& command, Options& options) {
   command
       .add_option("config", options.config,
                   "chains that move and finders that look: capture.yaml of robot_calibration")
@@ -278,6 +280,21 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       ->required()
       ->type_name("ADDRESS");
   command.add_option("--urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+}
+
+void add_capture_poses(CLI::App& command, CapturePosesOptions& options) {
+  add_robot(command, options);
+  command
+      .add_option("-o,--output", options.output,
+                  "the poses, written at each Enter: .yaml, .bag (ROS 1) or .mcap")
+      ->required()
+      ->type_name("FILE");
+  command.add_flag("--resume", options.resume, "add to the poses that the output has");
+  command.add_flag("--force", options.force, "replace the file that is there");
+}
+
+void add_capture(CLI::App& command, CaptureOptions& options) {
+  add_robot(command, options);
   command.add_option("--poses", options.poses, "poses in YAML or in a bag")->type_name("FILE");
   command.add_flag("--manual", options.manual,
                    "record wherever a person has put the robot, at each Enter");
@@ -561,6 +578,9 @@ void add_commands(Commands& commands) {
   commands.add<CaptureOptions>("capture",
                                "move a robot through poses and record what its finders see",
                                add_capture, capture);
+  commands.add<CapturePosesOptions>(
+      "capture_poses", "record the poses for capture: a person moves the robot, at each Enter",
+      add_capture_poses, capture_poses);
   commands.add<DetectOptions>(
       "detect", "find boards and tags in photographs and recordings, and write samples", add_detect,
       detect);

@@ -42,12 +42,17 @@ struct RosParts {
   std::vector<std::unique_ptr<RosLamp>> lamps = {};
 };
 
-AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, const Robot& robot) {
+AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, const Robot& robot,
+                       MovedBy mover) {
   auto parts = std::make_shared<RosParts>(url);
   RosArmOptions arm;
   arm.duration = config.duration;
   for (const CaptureChain& chain : config.chains) {
-    arm.controllers.push_back({chain.topic, chain.joints});
+    if (mover == MovedBy::controllers) {
+      arm.controllers.push_back({chain.topic, chain.joints});
+    } else {
+      arm.measured.insert(arm.measured.end(), chain.joints.begin(), chain.joints.end());
+    }
     for (const std::string& joint : chain.joints) {
       if (robot.has_joint(joint)) continue;
       throw InputError("chain '" + chain.name + "': the robot has no joint '" + joint + "'");
@@ -71,9 +76,10 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
 
 }  // namespace
 
-AnyRobot connect(const std::string& address, const CaptureConfig& config, const Robot& robot) {
+AnyRobot connect(const std::string& address, const CaptureConfig& config, const Robot& robot,
+                 MovedBy mover) {
   const auto after = [&](std::string_view scheme) { return address.substr(scheme.size()); };
-  if (address.starts_with("ws://")) return behind_bridge(address, config, robot);
+  if (address.starts_with("ws://")) return behind_bridge(address, config, robot, mover);
   if (address.starts_with("pipe:")) {
     return whole_robot(std::make_shared<PipeRobot>(PipeOptions{.command = after("pipe:")}), config);
   }

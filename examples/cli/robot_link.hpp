@@ -13,6 +13,9 @@ namespace kinecal::cli {
 /// How the address of a simulation begins.
 inline constexpr std::string_view kSimulated = "simulated:";
 
+/// Who moves a robot.  If a person does, nothing is sent to its controllers, and they need not run.
+enum class MovedBy { controllers, person };
+
 /// Connects to a robot.
 ///   ws://HOST:PORT    ROS 1 or ROS 2 behind foxglove_bridge
 ///   pipe:COMMAND      a program that speaks JSON lines: examples/pipe_robot
@@ -21,6 +24,6 @@ inline constexpr std::string_view kSimulated = "simulated:";
 /// @throws InputError       if the address is none of these, or the scene is wrong
 /// @throws ConnectionError  if the robot cannot be reached
 [[nodiscard]] AnyRobot connect(const std::string& address, const CaptureConfig& config,
-                               const Robot& robot);
+                               const Robot& robot, MovedBy mover = MovedBy::controllers);
 
 }  // namespace kinecal::cli

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "support/toy_robot.hpp"
 
@@ -11,6 +14,7 @@ namespace kinecal {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::ToyArm;
 using testing::ToyCamera;
@@ -132,13 +136,58 @@ TEST(Session, DropsASampleIfAJointMovesWhileFindersLook) {
   EXPECT_THAT(session.captured[0].failure, HasSubstr("joint 'tilt' moved while finders looked"));
 }
 
-TEST(Session, AStreamThatStopsSkipsItsPose) {
+TEST(Session, EndsWhenAStreamIsSilentInTwoPoses) {
   ToySession session;
   session.arm.readings_left = 200;
-  session.run(five_poses());
-  EXPECT_LT(session.samples.size(), 5u);
-  EXPECT_GT(session.samples.size(), 0u);
+  std::string why;
+  try {
+    session.run(five_poses());
+  } catch (const ConnectionError& error) {
+    why = error.what();
+  }
+  EXPECT_THAT(why, AllOf(HasSubstr("no joint states since 1000"), HasSubstr("in two poses")));
+  ASSERT_GT(session.samples.size(), 0u);
+  ASSERT_EQ(session.captured.size(), session.samples.size() + 2) << "not all that were left";
   EXPECT_THAT(session.captured.back().failure, HasSubstr("no joint states"));
+}
+
+/// Captured poses of a session of five whose camera is silent in the second and the fourth.
+/// @param delivers  stamps of what it delivered before
+std::size_t poses_with_silences(const std::vector<std::optional<Stamp>>& delivers) {
+  ToySession session;
+  int pose = 0;
+  std::size_t silence = 0;
+  session.finders.front().next_view = [&](Stamp after) {
+    if (pose % 2 == 1) throw SilenceError("no images", "/image", delivers[silence++]);
+    return session.camera.next_view(after);
+  };
+  NextPose next = poses_of(five_poses());
+  const auto count = [&](const CapturedPose& captured) {
+    session.captured.push_back(captured);
+    ++pose;
+  };
+  try {
+    run_session(session.arm, next, session.finders, count);
+  } catch (const ConnectionError&) {
+  }
+  return session.captured.size();
+}
+
+TEST(Session, AStreamThatDeliversBetweenItsSilencesOnlySkipsPoses) {
+  EXPECT_EQ(poses_with_silences({Stamp(1), Stamp(2)}), 5u);
+  EXPECT_EQ(poses_with_silences({std::nullopt, Stamp(2)}), 5u);
+  EXPECT_EQ(poses_with_silences({Stamp(1), Stamp(1)}), 4u);
+  EXPECT_EQ(poses_with_silences({std::nullopt, std::nullopt}), 4u);
+}
+
+TEST(Session, ARobotThatFailsInEachPoseSkipsAll) {
+  ToySession session;
+  session.arm.stuck = "tilt";
+  std::vector<CapturePose> poses = five_poses();
+  poses.erase(poses.begin());
+  session.run(poses);
+  EXPECT_EQ(session.captured.size(), 4u);
+  EXPECT_TRUE(session.samples.empty());
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace kinecal::test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -52,7 +53,8 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
   EXPECT_EQ(session.code, 0) << session.out << session.err;
   EXPECT_THAT(session.out,
               AllOf(HasSubstr("led_finder: 4 features"), HasSubstr("'gripper 5 mm' is reached"),
-                    HasSubstr("next, move"), HasSubstr("truth: '"), HasSubstr("by the URDF, ")));
+                    HasSubstr("next, move"), HasSubstr("truth: '"), HasSubstr("by the URDF, "),
+                    ContainsRegex("pose 1 of 40: .*; at most [0-9]+ min left\n")));
   EXPECT_LT(samples(), 40);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "views.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "calibrated/calibrated.urdf"));
@@ -74,7 +76,10 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
   EXPECT_EQ(capture("").code, 1);  // the file is there
   const Outcome rest = capture("--resume");
   EXPECT_EQ(rest.code, 0) << rest.err;
-  EXPECT_THAT(rest.out, HasSubstr("(" + std::to_string(before) + " from before)"));
+  EXPECT_THAT(rest.out, AllOf(HasSubstr("(" + std::to_string(before) + " from before)"),
+                              ContainsRegex("pose 1 of [0-9]: .*; [0-9]+ s left\n"),
+                              ContainsRegex("features\n")))
+      << "nothing is left after the last pose";
   EXPECT_EQ(samples(), 6);
   EXPECT_THAT(capture("--resume").out, HasSubstr("6 samples of 0 poses"));
 }
@@ -116,6 +121,20 @@ TEST_F(CaptureProgram, RecordsWhereAPersonHasPutTheRobot) {
                               "--robot simulated:sim/scene.yaml -o manual.bag < keys.txt");
   EXPECT_THAT(session.out,
               AllOf(HasSubstr("press Enter"), HasSubstr("pose 2:"), Not(HasSubstr("pose 3:"))));
+}
+
+TEST_F(CaptureProgram, CapturesThePosesThatAPersonHasRecorded) {
+  simulate(3);
+  const std::string robot =
+      " sim/capture.yaml --urdf sim/robot.urdf --robot simulated:sim/scene.yaml ";
+  for (const std::string poses : {"p.yaml", "p.bag"}) {
+    const Outcome recorded =
+        run("printf 'led_finder\n\nq\n' | " + kProgram + " capture_poses" + robot + "-o " + poses);
+    EXPECT_EQ(recorded.code, 0) << recorded.err;
+    const Outcome session =
+        run(kProgram + " capture" + robot + "--poses " + poses + " -o s-" + poses);
+    EXPECT_THAT(session.out, HasSubstr("pose 1 of 1: led_finder: "));
+  }
 }
 
 }  // namespace

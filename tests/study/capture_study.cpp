@@ -71,28 +71,6 @@ void judge_found(const SimulatedRobot& robot, const Found& found, Outcome& outco
   }
 }
 
-/// RMS distance of the LEDs in the camera between two robots, over poses at which they are measured.
-double difference(const TrueRobot& a, const TrueRobot& b, const std::vector<Sample>& samples) {
-  double squares = 0.0;
-  int points = 0;
-  for (const Sample& sample : samples) {
-    Positions positions;
-    for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
-      positions[sample.joint_names[i]] = sample.joint_positions[i];
-    }
-    const auto in_camera = [&](const TrueRobot& robot) {
-      return robot.pose("base_link", kFetchCamera, positions).inverse() *
-             robot.pose("base_link", kFetchLedLink, positions);
-    };
-    const Pose<double> of_a = in_camera(a), of_b = in_camera(b);
-    for (const Vector3<double>& led : fetch_leds()) {
-      squares += (of_a * led - of_b * led).squaredNorm();
-      ++points;
-    }
-  }
-  return std::sqrt(squares / std::max(1, points));
-}
-
 /// What the program says of the samples so far.
 bool is_good(const cli::Input& input) {
   const Findings findings = cli::fit(input, {}, {}, {}).findings;
@@ -150,8 +128,8 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
   const TrueRobot truth(setup.robot, setup.truth, setup.frames);
   const TrueRobot drawn(setup.robot, {}, setup.frames);
   const TrueRobot calibrated(setup.robot, fitted.findings.result.table, setup.frames);
-  outcome.before = difference(drawn, truth, input.samples);
-  outcome.error = difference(calibrated, truth, input.samples);
+  outcome.before = led_difference(drawn, truth, input.samples);
+  outcome.error = led_difference(calibrated, truth, input.samples);
   outcome.reasons = fitted.findings.judgement.reasons;
   outcome.usable = fitted.findings.judgement.verdict != Grade::do_not_use;
   return outcome;

@@ -38,17 +38,26 @@ inline std::string why_no_bridge_server() {
   return why;
 }
 
+/// The command that starts server.mjs.
+/// @param options  JSON
+inline std::string server_command(const std::string& options) {
+  return "cd " + std::string(KINECAL_BRIDGE_FOLDER) + " && exec node server.mjs '" + options + "'";
+}
+
+/// Where a server that has just been started is.
+inline std::string url_of(detail::ChildProcess& server) {
+  constexpr std::chrono::seconds kStart{20};
+  const std::string line = server.read_line(kStart).value_or("nothing");
+  const std::size_t port = line.find("\"port\":");
+  if (port == std::string::npos) throw std::runtime_error("the server printed: " + line);
+  return "ws://127.0.0.1:" + std::to_string(std::stoi(line.substr(port + 7)));
+}
+
 class BridgeServer {
  public:
   /// @param options  JSON for server.mjs, such as {"encoding": "cdr"}
   explicit BridgeServer(const std::string& options = "{}")
-      : process_("cd " + std::string(KINECAL_BRIDGE_FOLDER) + " && exec node server.mjs '" +
-                 options + "'") {
-    const std::string line = process_.read_line(kStart).value_or("nothing");
-    const std::size_t port = line.find("\"port\":");
-    if (port == std::string::npos) throw std::runtime_error("the server printed: " + line);
-    url_ = "ws://127.0.0.1:" + std::to_string(std::stoi(line.substr(port + 7)));
-  }
+      : process_(server_command(options)), url_(url_of(process_)) {}
 
   [[nodiscard]] const std::string& url() const { return url_; }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/study/simulated_robot.hpp"
+#include "kinecal/study/true_robot.hpp"
 
 namespace kinecal::test {
 
@@ -72,6 +74,30 @@ inline SimulatedSetup simulated_fetch(std::uint64_t seed) {
           {0.16, 0.12, 0.08});
   add_leds(setup.scene, kFetchLedLink, fetch_leds(), {0.0, 0.0, 1.0});
   return setup;
+}
+
+/// RMS distance of the LEDs in the camera between two robots, over poses at which they were measured,
+/// metres.
+inline double led_difference(const TrueRobot& a, const TrueRobot& b,
+                             const std::vector<Sample>& samples) {
+  double squares = 0.0;
+  int points = 0;
+  for (const Sample& sample : samples) {
+    Positions positions;
+    for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
+      positions[sample.joint_names[i]] = sample.joint_positions[i];
+    }
+    const auto in_camera = [&](const TrueRobot& robot) {
+      return robot.pose("base_link", kFetchCamera, positions).inverse() *
+             robot.pose("base_link", kFetchLedLink, positions);
+    };
+    const Pose<double> of_a = in_camera(a), of_b = in_camera(b);
+    for (const Vector3<double>& led : fetch_leds()) {
+      squares += (of_a * led - of_b * led).squaredNorm();
+      ++points;
+    }
+  }
+  return std::sqrt(squares / std::max(1, points));
 }
 
 /// Poses of a bag, of the joints that a robot has.

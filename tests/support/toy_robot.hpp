@@ -37,7 +37,7 @@ class ToyArm {
   }
 
   MeasuredJoints next_joints(Stamp after) {
-    if (--readings_left < 0) throw PoseError("no joint states since 1000 s");
+    if (--readings_left < 0) throw SilenceError("no joint states since 1000 s", "joints", now);
     do advance();
     while (now <= after);
     std::normal_distribution<double> normal(0.0, noise);

@@ -12,8 +12,10 @@
 #pragma once
 
 #include <concepts>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/capture/view.hpp"
@@ -23,6 +25,16 @@ namespace kinecal {
 /// Something that a robot did not do in one pose, which is then skipped: "elbow did not arrive".
 struct PoseError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+/// A stream of the robot, such as joint states or images, delivered nothing in time.  The pose is
+/// skipped; if a later pose waits in vain, too, and nothing came in between, the session ends.
+struct SilenceError : PoseError {
+  SilenceError(const std::string& what, std::string name, std::optional<Stamp> last)
+      : PoseError(what), stream(std::move(name)), newest(last) {}
+
+  std::string stream;           ///< its name, such as that of a topic
+  std::optional<Stamp> newest;  ///< of what it delivered; nullopt if it never delivered anything
 };
 
 /// The robot cannot be reached any more; the session ends.
@@ -39,7 +51,7 @@ struct JointTarget {
 
 /// A robot whose joints move and are measured.
 ///   arm.move(target)        starts to move; throws PoseError if the robot refuses
-///   arm.next_joints(after)  waits for positions stamped after this time; throws PoseError if
+///   arm.next_joints(after)  waits for positions stamped after this time; throws SilenceError if
 ///                           none come within the adapter's time limit
 /// Both throw ConnectionError if the robot cannot be reached.
 template <class A>

@@ -3,7 +3,7 @@
 // For each pose: move, wait until joints and image stand still, run the finders that the pose asks
 // for, check that nothing moved meanwhile.  A pose that fails is skipped, with the reason.  Nothing
 // is kept here: the observer writes each sample as soon as it is there, so a crash loses at most the
-// one in progress.
+// one in progress.  A stream that is silent in two poses is dead, and ends the session.
 //
 // Where the next pose comes from is a function: a list, a list without what an earlier session has
 // recorded, or a person who puts the robot somewhere (a pose without joints).
@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -63,7 +64,8 @@ using PoseObserver = std::function<void(const CapturedPose&)>;
 /// @param finders  a pose without names of finders asks for all
 /// @param took     may throw; what it throws ends the session
 /// @throws std::invalid_argument  if a pose names a finder that does not exist
-/// @throws ConnectionError        if the robot cannot be reached any more; what was taken is taken
+/// @throws ConnectionError        if the robot cannot be reached any more, or a stream of it delivers
+///                                nothing in two poses; what was taken is taken
 template <Arm A>
 void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> finders,
                  const PoseObserver& took, const SessionOptions& options = {});
@@ -87,6 +89,17 @@ template <Finder F, Camera C>
 }
 
 namespace detail {
+
+/// Streams that were waited for in vain.
+class SilentStreams {
+ public:
+  /// Why the session must end; empty if this is the stream's first silence, or it has delivered
+  /// something since the last one.
+  [[nodiscard]] std::string add(const SilenceError& error);
+
+ private:
+  std::map<std::string, std::optional<Stamp>> newest_;  ///< stamps, by stream
+};
 
 /// The finders that a pose asks for.
 /// @throws std::invalid_argument  naming the one that does not exist
@@ -128,11 +141,13 @@ template <Arm A>
 void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> finders,
                  const PoseObserver& took, const SessionOptions& options) {
   Stamp now = Stamp::min();
+  detail::SilentStreams silent;
   while (std::optional<CapturePose> pose = next()) {
     CapturedPose captured;
     captured.pose = std::move(*pose);
     const auto wanted = detail::finders_of(captured.pose, finders);
     std::optional<Stamp> start;
+    std::string dead;
     try {
       now = arm.next_joints(now).stamp;
       start = now;
@@ -142,11 +157,15 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
       const MeasuredJoints joints = settle_joints(arm, target, now, options.settling);
       detail::look(arm, joints, wanted, options, captured);
       now = arm.next_joints(joints.stamp).stamp;
+    } catch (const SilenceError& error) {
+      captured.failure = error.what();
+      dead = silent.add(error);
     } catch (const PoseError& error) {
       captured.failure = error.what();
     }
     if (start) captured.duration = now - *start;
     took(captured);
+    if (!dead.empty()) throw ConnectionError(dead);
   }
 }
 

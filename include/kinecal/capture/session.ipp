@@ -53,6 +53,13 @@ KINECAL_INLINE std::vector<CapturePose> poses_left(std::span<const CapturePose> 
 
 namespace detail {
 
+KINECAL_INLINE std::string SilentStreams::add(const SilenceError& error) {
+  const auto [known, is_first] = newest_.try_emplace(error.stream, error.newest);
+  const bool is_dead = !is_first && known->second == error.newest;
+  known->second = error.newest;
+  return is_dead ? std::string(error.what()) + "; nothing came in two poses" : std::string();
+}
+
 KINECAL_INLINE std::vector<const SessionFinder*> finders_of(
     const CapturePose& pose, std::span<const SessionFinder> finders) {
   std::vector<const SessionFinder*> wanted;

@@ -84,11 +84,11 @@ class SimulatedRobot {
   void move(const JointTarget& target);
 
   /// Positions of all driven joints.
-  /// @throws PoseError  if none come any more
+  /// @throws SilenceError  if none come any more
   [[nodiscard]] MeasuredJoints next_joints(Stamp after);
 
   /// Image and cloud; without joints.
-  /// @throws PoseError  if none come any more
+  /// @throws SilenceError  if none come any more
   [[nodiscard]] View next_view(Stamp after);
 
   /// Lights the LEDs of a code.

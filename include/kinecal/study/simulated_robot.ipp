@@ -27,10 +27,11 @@ struct SimulatedRobot::State {
   Renderer renderer;
   SeededRandom random;
   detail::Joints joints;
-  double now = 0.0;                               ///< seconds
-  std::vector<std::pair<double, int>> lamp = {};  ///< when which code was lit
-  Positions pictured = {};                        ///< where `pictures` are valid
-  std::map<int, Picture> pictures = {};           ///< by code: the robot mostly rests
+  double now = 0.0;                                         ///< seconds
+  std::vector<std::pair<double, int>> lamp = {};            ///< when which code was lit
+  std::map<std::string, std::optional<Stamp>> newest = {};  ///< stamps, by what is awaited
+  Positions pictured = {};                                  ///< where `pictures` are valid
+  std::map<int, Picture> pictures = {};                     ///< by code: the robot mostly rests
 
   /// The first time at which something of a rate happens after another time, seconds.
   static double tick(double after, double rate) {
@@ -43,13 +44,18 @@ struct SimulatedRobot::State {
   /// @returns      its true time, seconds
   double wait(const char* what, Stamp after, double rate, double shift, double ends) {
     check_connection();
+    std::optional<Stamp>& last = newest[what];
     constexpr double kPatience = 5.0;  // seconds
     const double earliest = detail::seconds_of(after) - shift;
     const double time = tick(std::max(earliest, joints.start()), rate);
-    if (time <= ends && time <= now + kPatience) return time;
+    if (time <= ends && time <= now + kPatience) {
+      last = detail::stamp_of(time + shift);
+      return time;
+    }
     now += kPatience;
-    throw PoseError(std::string("no ") + what + " for 5 s, stamped after " +
-                    std::to_string(detail::seconds_of(after)) + " s");
+    throw SilenceError(std::string("no ") + what + " for 5 s, stamped after " +
+                           std::to_string(detail::seconds_of(after)) + " s",
+                       what, last);
   }
 
   void check_connection() const {

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -142,6 +143,22 @@ TEST(PipeRobot, AnAnswerThatComesTooLateIsNotTheNextOne) {
   EXPECT_THAT(error_of([&] { (void)robot.light(1); }), HasSubstr("it still has not answered"));
   std::this_thread::sleep_for(std::chrono::milliseconds(800));
   EXPECT_EQ(robot.light(2), Stamp(2));
+}
+
+TEST(PipeRobot, AProgramThatAnswersNoMoreIsSilentSinceItsLastAnswer) {
+  PipeRobot robot({"read a; echo '{\"stamp\": 7}'; sleep 60", std::chrono::milliseconds(100)});
+  EXPECT_EQ(robot.light(1), Stamp(7));
+  const auto silence = [&](int code) {
+    try {
+      (void)robot.light(code);
+    } catch (const SilenceError& error) {
+      EXPECT_THAT(error.stream, HasSubstr("light"));
+      return error.newest;
+    }
+    return std::optional<Stamp>();
+  };
+  EXPECT_EQ(silence(2), Stamp(7));
+  EXPECT_EQ(silence(3), Stamp(7)) << "it still has not answered";
 }
 
 }  // namespace

@@ -198,6 +198,14 @@ TEST_P(RosRobotTest, AnActionThatIsNotOfferedIsNamedWithWhatToDo) {
             HasSubstr("include_hidden:=true")));
 }
 
+TEST_P(RosRobotTest, ARobotThatAPersonMovesNeedsNoActions) {
+  start(R"(, "hidden": true)");
+  RosBridge bridge = connect();
+  RosArm arm(bridge, {.measured = {"elbow", "head"}});
+  EXPECT_EQ(arm.next_joints(Stamp::min()).position("head"), 0.0);
+  EXPECT_THAT(error_of([&] { arm.move({{"elbow"}, {0.5}}); }), HasSubstr("pose: no controller"));
+}
+
 TEST_P(RosRobotTest, AStreamThatStopsIsNamedWithItsLastStamp) {
   RosBridge bridge = connect(milliseconds(1500));
   RosArm arm(bridge, kArm);
@@ -211,6 +219,42 @@ TEST_P(RosRobotTest, AStreamThatStopsIsNamedWithItsLastStamp) {
   EXPECT_THAT(error_of([&] { (void)arm.next_joints(last + std::chrono::hours(1)); }),
               AllOf(HasSubstr("pose: topic '/joint_states': no joint positions after "),
                     HasSubstr("the newest are of ")));
+}
+
+TEST_P(RosRobotTest, ASilenceHasTheStampOfTheNewestMessage) {
+  RosBridge bridge = connect(milliseconds(600));
+  RosArm arm(bridge, kArm);
+  RosCamera camera(bridge, kCamera);
+  (void)camera.next_view(Stamp::min());
+  server().make(R"({"fault": "silent", "topics": ["/camera/image"]})");
+  const auto silence = [&] {
+    try {
+      (void)camera.next_view(arm.next_joints(Stamp::min()).stamp + milliseconds(100));
+    } catch (const SilenceError& error) {
+      EXPECT_EQ(error.stream, "/camera/image");
+      return error.newest;
+    }
+    return std::optional<Stamp>();
+  };
+  const auto first = silence();
+  ASSERT_TRUE(first.has_value());
+  EXPECT_EQ(silence(), first);
+}
+
+TEST_P(RosRobotTest, ATopicThatTheBridgeWithdrawsEndsTheSession) {
+  RosBridge bridge = connect(milliseconds(600));
+  RosArm arm(bridge, kArm);
+  RosCamera camera(bridge, kCamera);
+  (void)camera.next_view(Stamp::min());
+  server().make(R"({"fault": "withdraw", "topic": "/camera/points"})");
+  const Stamp last = arm.next_joints(arm.next_joints(Stamp::min()).stamp + milliseconds(100)).stamp;
+  EXPECT_THAT(
+      error_of([&] { (void)camera.next_view(last); }),
+      HasSubstr("connection: topic '/camera/points': the bridge has withdrawn it; its newest "
+                "message is of "));
+  server().make(R"({"fault": "withdraw", "topic": "/joint_states"})");
+  EXPECT_THAT(error_of([&] { (void)arm.next_joints(last + std::chrono::hours(1)); }),
+              HasSubstr("connection: topic '/joint_states': the bridge has withdrawn it"));
 }
 
 TEST_P(RosRobotTest, AMisspeltTopicIsNamedWithTheOneThatWasMeant) {

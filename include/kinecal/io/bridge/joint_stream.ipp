@@ -37,14 +37,15 @@ class RosRobot {
 
   /// Positions of all joints.
   /// @param needed  whose stamps must all be after this one; empty: of any
-  /// @throws PoseError  if they are not in time
+  /// @throws SilenceError     if they are not in time
+  /// @throws ConnectionError  if the bridge has withdrawn their topic
   [[nodiscard]] MeasuredJoints next(Stamp after, const std::vector<std::string>& needed) {
     const Deadline deadline = bridge.deadline();
     take(std::chrono::steady_clock::now());
     while (true) {
       const auto stamp = stamp_of(needed);
       if (stamp && *stamp > after) return joints(*stamp);
-      if (!take(deadline)) throw PoseError(why_late(after, needed));
+      if (!take(deadline)) fail_late(after, needed);
     }
   }
 
@@ -60,8 +61,20 @@ class RosRobot {
   /// Stamp of the first joint states that come from now on.
   [[nodiscard]] Stamp now() {
     take(std::chrono::steady_clock::now());
-    if (!take(bridge.deadline())) throw PoseError(why_late(newest_.value_or(Stamp{}), {}));
+    if (!take(bridge.deadline())) fail_late(newest_.value_or(Stamp{}), {});
     return newest_.value();
+  }
+
+  /// Says that a topic delivers nothing.
+  /// @param newest  stamp of its last message
+  [[noreturn]] void fail_silent(const std::string& topic, const std::string& why,
+                                std::optional<Stamp> newest) {
+    if (newest && !bridge.topic_type(topic, std::chrono::steady_clock::now())) {
+      throw ConnectionError("topic '" + topic +
+                            "': the bridge has withdrawn it; its newest message is of " +
+                            stamp_text(*newest));
+    }
+    throw SilenceError(why, topic, newest);
   }
 
  private:
@@ -113,20 +126,25 @@ class RosRobot {
     return joints;
   }
 
-  [[nodiscard]] std::string why_late(Stamp after, const std::vector<std::string>& needed) const {
-    if (!newest_) return bridge.why_silent(topic_);
+  [[noreturn]] void fail_late(Stamp after, const std::vector<std::string>& needed) {
+    if (!newest_) throw SilenceError(bridge.why_silent(topic_), topic_, {});
+    const std::string who = "topic '" + topic_ + "'";
     for (const std::string& joint : needed) {
       const auto position = positions_.find(joint);
+      const std::string stream = topic_ + ": " + joint;
       if (position == positions_.end()) {
-        return "topic '" + topic_ + "' has no positions of joint '" + joint + "'";
+        throw SilenceError(who + " has no positions of joint '" + joint + "'", stream, {});
       }
-      if (position->second.stamp <= after && *newest_ > after) {
-        return "topic '" + topic_ + "': joint '" + joint + "' is not measured any more, since " +
-               stamp_text(position->second.stamp);
-      }
+      const Stamp last = position->second.stamp;
+      if (last > after || *newest_ <= after) continue;
+      throw SilenceError(
+          who + ": joint '" + joint + "' is not measured any more, since " + stamp_text(last),
+          stream, last);
     }
-    return "topic '" + topic_ + "': no joint positions after " + stamp_text(after) +
-           "; the newest are of " + stamp_text(*newest_);
+    fail_silent(topic_,
+                who + ": no joint positions after " + stamp_text(after) + "; the newest are of " +
+                    stamp_text(*newest_),
+                newest_);
   }
 
   std::string topic_;

@@ -36,8 +36,9 @@ struct PipeOptions {
 };
 
 /// An arm, a camera and a lamp: see above.  The functions throw
-///   PoseError        for an error that the program reports, and for an answer that it does not give
-///                    in time or that cannot be read: what is wrong with it
+///   PoseError        for an error that the program reports, and for an answer that cannot be read:
+///                    what is wrong with it
+///   SilenceError     for an answer that it does not give in time
 ///   ConnectionError  once the program has ended: how
 class PipeRobot {
  public:

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,15 +34,23 @@ class PipeRobot::Pipe {
     const std::string who = "'" + process_.command() + "': " + what + ": ";
     // What comes before the request does not answer it; nor does what is late for the last one.
     while (late_ > 0 && process_.read_line(std::chrono::milliseconds(0))) --late_;
-    if (late_ > 0) throw PoseError(who + "it still has not answered to the last request");
+    if (late_ > 0) {
+      throw SilenceError(
+          who + "it still has not answered to the last request, '" + unanswered_ + "'",
+          process_.command() + ": " + unanswered_, answered_[unanswered_]);
+    }
     process_.write_line("{\"" + what + "\": " + request + "}", time_limit_);
     const auto line = process_.read_line(time_limit_);
     if (!line) {
       ++late_;
-      throw PoseError(who + "no answer within " + limit_text(time_limit_));
+      unanswered_ = what;
+      throw SilenceError(who + "no answer within " + limit_text(time_limit_),
+                         process_.command() + ": " + what, answered_[what]);
     }
     try {
       const detail::JsonValue answer = detail::JsonValue::parse(*line);
+      if (answer.find("stamp")) newest_ = Stamp(answer.integer("stamp"));
+      answered_[what] = newest_;
       const std::string error = answer.text_or("error", {});
       if (!error.empty()) throw PoseError(who + printable(error));
       return read(answer);
@@ -59,7 +68,10 @@ class PipeRobot::Pipe {
 
   detail::ChildProcess process_;
   std::chrono::milliseconds time_limit_;
-  int late_ = 0;  ///< answers that were given up
+  int late_ = 0;                                          ///< answers that were given up
+  std::string unanswered_;                                ///< the request for the last of them
+  Stamp newest_{};                                        ///< of all answers
+  std::map<std::string, std::optional<Stamp>> answered_;  ///< newest stamp then, by request
 };
 
 namespace detail {

@@ -51,9 +51,10 @@ struct JointController {
 
 /// How an arm moves.
 struct RosArmOptions {
-  std::vector<JointController> controllers;
-  double duration = 2.0;  ///< of a motion at least, seconds; that of capture.yaml
-  double speed = 0.7;     ///< of a joint at most, rad/s or m/s, at velocity factor 1
+  std::vector<JointController> controllers = {};
+  std::vector<std::string> measured = {};  ///< joints that no controller moves, but are needed
+  double duration = 2.0;                   ///< of a motion at least, seconds; that of capture.yaml
+  double speed = 0.7;  ///< of a joint at most, rad/s or m/s, at velocity factor 1
   std::map<std::string, double> speeds = {};  ///< the same, of joints that differ
 };
 
@@ -73,8 +74,9 @@ class RosArm {
   void move(const JointTarget& target);
 
   /// All joint positions.  The stamp is the oldest of the controllers' joints.
-  /// @throws PoseError  if they do not come in time: topic, newest stamp and why; or if a controller
-  ///                    gave up since the last motion started
+  /// @throws SilenceError     if they do not come in time: topic, newest stamp and why
+  /// @throws PoseError        if a controller gave up since the last motion started
+  /// @throws ConnectionError  if the bridge has withdrawn their topic
   [[nodiscard]] MeasuredJoints next_joints(Stamp after);
 
  private:
@@ -102,8 +104,10 @@ class RosCamera {
   RosCamera& operator=(RosCamera&&) noexcept;
   ~RosCamera();
 
-  /// @throws PoseError  if none comes in time: topic, newest stamp and why; or if its stamps are of
-  ///                    another clock than those of the joint states
+  /// @throws SilenceError     if none comes in time: topic, newest stamp and why
+  /// @throws PoseError        if its stamps are of another clock than those of the joint states, or
+  ///                          those of its topics have nothing in common
+  /// @throws ConnectionError  if the bridge has withdrawn a topic
   [[nodiscard]] View next_view(Stamp after);
 
  private:

@@ -109,7 +109,7 @@ KINECAL_INLINE MeasuredJoints RosArm::next_joints(Stamp after) {
   for (detail::RosAction& action : actions_) {
     if (action.is_running()) (void)action.succeeded(std::chrono::steady_clock::now());
   }
-  std::vector<std::string> needed;
+  std::vector<std::string> needed = options_.measured;
   for (const JointController& controller : options_.controllers) {
     needed.insert(needed.end(), controller.joints.begin(), controller.joints.end());
   }

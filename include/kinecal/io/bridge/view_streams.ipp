@@ -46,7 +46,7 @@ class ViewStreams {
         after = match->front()->stamp;
       }
       Stream& awaited = missing(after);
-      if (!take(awaited, deadline)) throw PoseError(why_late(awaited, after));
+      if (!take(awaited, deadline)) fail_late(awaited, after);
     }
   }
 
@@ -168,25 +168,24 @@ class ViewStreams {
            "(ntp, use_sim_time)";
   }
 
-  [[nodiscard]] std::string why_late(const Stream& stream, Stamp after) const {
-    if (stream.newest.empty()) return robot_->bridge.why_silent(stream.topic);
+  [[noreturn]] void fail_late(const Stream& stream, Stamp after) const {
+    const std::string& topic = stream.topic;
+    if (stream.newest.empty()) throw SilenceError(robot_->bridge.why_silent(topic), topic, {});
     const Stamped& last = stream.newest.back();
-    std::string why = "topic '" + stream.topic + "': nothing after " + stamp_text(after) +
+    std::string why = "topic '" + topic + "': nothing after " + stamp_text(after) +
                       "; the newest message is of " + stamp_text(last.stamp);
     if (last.stamp > after) {
-      return why + ", and no other topic has one within " + std::to_string(kTogether.count()) +
-             " ms of it";
-    }
-    if (std::chrono::steady_clock::now() - last.message.arrival > kSameClock) {
-      return why + "; the stream has stopped";
+      throw PoseError(why + ", and no other topic has one within " +
+                      std::to_string(kTogether.count()) + " ms of it");
     }
     const auto ahead = lead(last);
-    if (ahead && *ahead < -kSameClock) {
-      why += ", " + stamp_text(-*ahead) +
-             " behind the joint states: it lags, or is of another clock; synchronise the clocks "
-             "(ntp, use_sim_time)";
+    if (std::chrono::steady_clock::now() - last.message.arrival > kSameClock) {
+      why += "; the stream has stopped";
+    } else if (ahead && *ahead < -kSameClock) {
+      why += ", " + stamp_text(-*ahead) + " behind the joint states: it lags, or is of another " +
+             "clock; synchronise the clocks (ntp, use_sim_time)";
     }
-    return why;
+    robot_->fail_silent(topic, why, last.stamp);
   }
 
   RosRobot* robot_;

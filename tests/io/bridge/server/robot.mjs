@@ -38,6 +38,10 @@ export class Robot {
     });
   }
 
+  light(code) {
+    this.ledCode = code;
+  }
+
   joints(names, now) {
     return { name: names, position: names.map((n) => this.position(n, now)), velocity: [], effort: [] };
   }
@@ -76,12 +80,12 @@ export class Robot {
     return { format: "16UC1; compressedDepth png", data };
   }
 
-  /** A wall at 2 m, with a hole in the first pixel. */
+  /** A wall at 2 m, with a hole in the first pixel; the elbow moves it and makes it rough. */
   cloud(now) {
-    const step = 16;
+    const step = 16, elbow = this.position("elbow", now);
     const bytes = new DataView(new ArrayBuffer(width * height * step));
     this.pixels(now).forEach((gray, i) => {
-      const z = i === 0 ? NaN : 2;
+      const z = i === 0 ? NaN : 2 - 0.1 * elbow + 0.002 * Math.sin(1000 * elbow * (i + 1));
       bytes.setFloat32(i * step, ((i % width) - 16) * 0.1, true);
       bytes.setFloat32(i * step + 4, (Math.floor(i / width) - 12) * 0.1, true);
       bytes.setFloat32(i * step + 8, z, true);

@@ -1,25 +1,34 @@
 // A Foxglove bridge with a simulated robot behind it, for tests; by the protocol's reference server.
-//   node server.mjs '{"encoding": "ros1" | "cdr", "protocol": "foxglove.sdk.v1", "joint_type": ...}'
-// It prints {"port": ...} and then takes faults from its standard input, one a line: see `faults`.
+//   node server.mjs '{"encoding": "ros1" | "cdr", "protocol": "foxglove.sdk.v1", "joint_type": ...,
+//                     "rate": 5 (of the robot's clock), "die_after": 0.5 (seconds of the first client),
+//                     "remote": true, "camera": "/head_camera"}'
+// It prints {"port": ...} and then takes faults from its standard input, one a line: see `faults`; if it
+// is remote, see remote.mjs.
 // SPDX-License-Identifier: Apache-2.0
 import { createInterface } from "node:readline";
 import protocol from "@foxglove/ws-protocol";
 import { WebSocketServer } from "ws";
 import { definition, reader, writer } from "./messages.mjs";
+import { RemoteRobot, cameraOf, cloudOf } from "./remote.mjs";
 import { Robot } from "./robot.mjs";
 
 const { FoxgloveServer, ServerCapability } = protocol;
 const options = { encoding: "ros1", ...JSON.parse(process.argv[2] ?? "{}") };
 const ros2 = options.encoding === "cdr";
-const robot = new Robot();
+const input = createInterface({ input: process.stdin }).on("close", () => process.exit(0));
+const robot = options.remote ? new RemoteRobot(input) : new Robot();
 const server = new FoxgloveServer({
   name: "test", supportedEncodings: [options.encoding],
   capabilities: options.capabilities ?? [ServerCapability.clientPublish, ServerCapability.services],
 });
 const sockets = new Set();
-const state = { silent: new Set(), imageLead: 0, refuse: false, abort: false, half: new Set() };
+const state = { silent: new Set(), imageLead: 0, refuse: false, abort: false, half: new Set(),
+  withdrawn: new Set() };
 
-const seconds = () => Date.now() / 1000;
+const rate = options.rate ?? 1;
+const began = Date.now() / 1000;
+const seconds = () => (options.remote ? robot.now : began + rate * (Date.now() / 1000 - began));
+const later = (time) => new Promise((end) => setTimeout(end, (time * 1000) / rate));
 const fullType = (type, kind) => (ros2 ? type.replace("/", `/${kind}/`) : type);
 function stamp(now) {
   const sec = Math.floor(now), ns = Math.floor((now - sec) * 1e9);
@@ -28,6 +37,7 @@ function stamp(now) {
 const header = (now, frame = "") => ({ seq: 0, stamp: stamp(now), frame_id: frame });
 
 // Topics: a function that sends a message on each.
+const topics = new Map();
 function topic(name, type, advertised = type) {
   const write = writer(type, ros2);
   const add = () => server.addChannel({
@@ -37,25 +47,28 @@ function topic(name, type, advertised = type) {
   });
   let channel = add();
   const send = (message) => {
-    if (state.silent.has(name)) return;
+    if (state.silent.has(name) || state.withdrawn.has(name)) return;
     const bytes = write.writeMessage(message);
     const sent = state.half.has(name) ? bytes.subarray(0, bytes.length >> 1) : bytes;
     server.sendMessage(channel, BigInt(Date.now()) * 1000000n, sent);
   };
+  send.withdraw = () => server.removeChannel(channel);
   send.again = () => {
-    server.removeChannel(channel);
+    send.withdraw();
     channel = add();
   };
+  topics.set(name, send);
   return send;
 }
 
 const joints = topic("/joint_states", "sensor_msgs/JointState", options.joint_type);
-const image = topic("/camera/image", "sensor_msgs/Image");
-const cloud = topic("/camera/points", "sensor_msgs/PointCloud2");
-const compressedImage = topic("/camera/image/compressed", "sensor_msgs/CompressedImage");
-const depth = topic("/camera/depth", "sensor_msgs/Image");
-const compressedDepth = topic("/camera/depth/compressedDepth", "sensor_msgs/CompressedImage");
-const info = topic("/camera/camera_info", "sensor_msgs/CameraInfo");
+const camera = options.camera ?? "/camera";
+const image = topic(`${camera}/image`, "sensor_msgs/Image");
+const cloud = topic(`${camera}/points`, "sensor_msgs/PointCloud2");
+const compressedImage = topic(`${camera}/image/compressed`, "sensor_msgs/CompressedImage");
+const depth = topic(`${camera}/depth`, "sensor_msgs/Image");
+const compressedDepth = topic(`${camera}/depth/compressedDepth`, "sensor_msgs/CompressedImage");
+const info = topic(`${camera}/camera_info`, "sensor_msgs/CameraInfo");
 
 function stream() {
   const now = seconds();
@@ -72,21 +85,32 @@ function look() {
   compressedDepth({ header: at, ...robot.compressedDepth() });
   info({ header: at, ...robot.camera(ros2) });
 }
-setInterval(stream, 10);
-setInterval(look, 40);
+function publishJoints(name, position, now) {
+  joints({ header: header(now), name, position, velocity: [], effort: [] });
+}
+function publishView(view, now) {
+  const at = header(now, view.frame);
+  cloud({ header: at, ...cloudOf(view) });
+  info({ header: at, ...cameraOf(view, ros2) });
+}
+if (options.remote) {
+  const isBusy = () => sockets.size === 0 || [...sockets].some((s) => s.bufferedAmount > 1e6);
+  robot.follow(publishJoints, publishView, isBusy);
+} else {
+  setInterval(stream, 10);
+  setInterval(look, 40);
+}
 
-// Actions: what they do with a goal, and after how many seconds they have done it.
+// Actions: what they do with a goal; they end when they have done it.
 const actions = new Map();
 function trajectory(goal) {
   const { joint_names: names, points } = goal.trajectory;
   const t = points[0].time_from_start;
   const time = t.sec + (t.nsec ?? t.nanosec) * 1e-9;
-  robot.move(names, points[0].positions, seconds(), time);
-  return time;
+  return robot.move(names, points[0].positions, seconds(), time) ?? later(time);
 }
 function leds(goal) {
-  robot.ledCode = goal.led_code;
-  return 0;
+  return robot.light(goal.led_code) ?? later(0);
 }
 const failed = { error_code: -4, error_string: "path tolerance violated" };
 const followed = () => (state.abort ? failed : { error_code: 0, error_string: "" });
@@ -111,7 +135,7 @@ function ros1Action(name, type, run, result) {
     goals.set(message.goal_id.id, status);
     publish();
     if (state.refuse) return;
-    setTimeout(() => finish(status), (state.abort ? 0.1 : run(message.goal)) * 1000);
+    (state.abort ? later(0.1) : run(message.goal)).then(() => finish(status));
   });
 }
 
@@ -132,8 +156,7 @@ function ros2Action(name, type, run, result) {
   };
   service("send_goal", "SendGoal", (goal) => {
     const accepted = !state.refuse;
-    const time = !accepted || state.abort ? 0.1 : run(goal);
-    const done = new Promise((end) => setTimeout(end, time * 1000));
+    const done = !accepted || state.abort ? later(0.1) : run(goal);
     goals.set(goal.goal_id.uuid.join(), done);
     return { accepted, stamp: stamp(seconds()) };
   });
@@ -176,20 +199,25 @@ const faults = {
   raw: ({ bytes }) => sockets.forEach((s) => s._socket.write(Buffer.from(bytes))),
   close: () => sockets.forEach((s) => s.close()),
   cut: () => sockets.forEach((s) => s._socket.destroy()),
-  die: () => process.exit(1),
+  die: () => die(),
   again: () => joints.again(),
   status: ({ message }) => server.sendStatus({ level: 2, message }),
   set: ({ values }) => Object.assign(state, values),
   silent: ({ topics }) => (state.silent = new Set(topics)),
+  withdraw: ({ topic: name }) => {
+    state.withdrawn.add(name);
+    topics.get(name).withdraw();
+  },
   half: ({ topics }) => (state.half = new Set(topics)),
 };
-createInterface({ input: process.stdin })
-  .on("line", (line) => {
-    const fault = JSON.parse(line);
-    faults[fault.fault](fault);
-    console.log("{}");
-  })
-  .on("close", () => process.exit(0));
+function makeFault(line) {
+  const fault = JSON.parse(line);
+  faults[fault.fault](fault);
+  console.log("{}");
+}
+if (!options.remote) input.on("line", makeFault);
+
+const die = () => process.kill(process.pid, "SIGKILL");
 
 const sockets_server = new WebSocketServer({
   host: "127.0.0.1", port: 0,
@@ -199,6 +227,7 @@ const sockets_server = new WebSocketServer({
 });
 sockets_server.on("connection", (socket) => {
   sockets.add(socket);
+  if (options.die_after !== undefined) setTimeout(die, 1000 * options.die_after);
   socket.on("close", () => sockets.delete(socket));
   socket.on("error", () => {});
   if (options.mute) return;

@@ -1,0 +1,209 @@
+// kinecal capture_poses: a person moves the robot, each Enter records where it stands.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+#include <utility>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/capture/settling.hpp"
+#include "kinecal/io/printable.hpp"
+#include "kinecal/io/recordings/write_recording.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+#include "output_file.hpp"
+#include "pose_file.hpp"
+#include "robot_link.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// "led_finder, board".
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// By which readings of a joint that nobody has moved differ, radians or metres.
+constexpr double kSame = 0.005;
+
+/// A position to which a joint can be sent: encoders may read a little beyond its limits.
+double within_limits(const Robot& robot, const std::string& joint, double position) {
+  if (!robot.has_joint(joint)) return position;
+  const auto& limits = robot.joint(joint).limits;
+  if (!limits || !(limits->lower < limits->upper)) return position;
+  const double nearest = std::clamp(position, limits->lower, limits->upper);
+  return std::abs(nearest - position) <= kSame ? nearest : position;
+}
+
+/// Whether two poses capture the same at the same positions.
+bool is_same(const CapturePose& a, const CapturePose& b) {
+  const auto near = [](double p, double q) { return std::abs(p - q) <= kSame; };
+  return a.joint_names == b.joint_names && a.features == b.features &&
+         std::equal(a.positions.begin(), a.positions.end(), b.positions.begin(), b.positions.end(),
+                    near);
+}
+
+/// Poses that a person shows, and the file that always has all of them.
+class PoseRecorder {
+ public:
+  PoseRecorder(AnyArm arm, const CaptureConfig& config, const Robot& robot, std::string file,
+               std::vector<CapturePose> poses)
+      : arm_(std::move(arm)),
+        config_(config),
+        robot_(robot),
+        file_(std::move(file)),
+        poses_(std::move(poses)) {
+    for (const CaptureFinder& finder : config_.finders) known_.push_back(finder.name);
+  }
+
+  [[nodiscard]] const std::vector<CapturePose>& poses() const { return poses_; }
+  /// Names of all features.
+  [[nodiscard]] const std::vector<std::string>& known() const { return known_; }
+
+  /// Records where the robot stands.
+  /// @throws PoseError  why not
+  void record() {
+    CapturePose pose = measured();
+    if (!poses_.empty() && is_same(poses_.back(), pose)) {
+      throw PoseError("the robot has not moved since the last pose");
+    }
+    poses_.push_back(std::move(pose));
+    write_pose_file(file_, poses_);
+    fmt::print("pose {}: {}\n", poses_.size(), features());
+  }
+
+  /// Removes the last pose.
+  void undo() {
+    if (poses_.empty()) throw PoseError("there is no pose to remove");
+    poses_.pop_back();
+    write_pose_file(file_, poses_);
+    fmt::print("pose {} is removed\n", poses_.size() + 1);
+  }
+
+  /// Takes names of features for the next poses: "led_finder board", or "all".
+  void choose(const std::string& words) {
+    std::vector<std::string> chosen;
+    std::istringstream text(words);
+    for (std::string name; text >> name;) {
+      if (name == "all") continue;
+      if (std::find(known_.begin(), known_.end(), name) == known_.end()) {
+        throw PoseError("'" + name + "' is not a feature of the configuration" +
+                        did_you_mean(name, known_));
+      }
+      chosen.push_back(name);
+    }
+    features_ = chosen;
+    fmt::print("the next poses: {}\n", features());
+  }
+
+ private:
+  [[nodiscard]] std::string features() const {
+    return features_.empty() ? "all features" : listed(features_);
+  }
+
+  /// Where the robot stands: the joints of its chains, or all if there are no chains.
+  [[nodiscard]] CapturePose measured() {
+    SettleOptions settling;
+    settling.time_limit = std::chrono::seconds(3);
+    const MeasuredJoints joints = settle_joints(arm_, {}, now_, settling);
+    now_ = joints.stamp;
+    CapturePose pose{{}, {}, features_};
+    for (const CaptureChain& chain : config_.chains) {
+      for (const std::string& joint : chain.joints) {
+        const auto position = joints.position(joint);
+        if (!position) {
+          throw PoseError("joint '" + joint + "' of chain '" + chain.name + "' is not measured" +
+                          did_you_mean(joint, joints.names));
+        }
+        pose.joint_names.push_back(joint);
+        pose.positions.push_back(*position);
+      }
+    }
+    if (config_.chains.empty()) pose = {joints.names, joints.positions, features_};
+    for (std::size_t i = 0; i < pose.positions.size(); ++i) {
+      pose.positions[i] = within_limits(robot_, pose.joint_names[i], pose.positions[i]);
+    }
+    return pose;
+  }
+
+  AnyArm arm_;
+  CaptureConfig config_;
+  Robot robot_;
+  std::string file_;
+  std::vector<CapturePose> poses_;
+  std::vector<std::string> known_, features_;
+  Stamp now_ = Stamp::min();  ///< of the robot's clock
+};
+
+/// Asks until a person ends it.
+void record_poses(PoseRecorder& recorder) {
+  fmt::print(
+      "move the robot, then press Enter to record its pose; u removes the last pose, q ends\n"
+      "all poses capture all features; type the names of some for the next poses: {}, or all\n",
+      listed(recorder.known()));
+  std::fflush(stdout);
+  for (std::string line; std::getline(std::cin, line);) {
+    line.erase(0, line.find_first_not_of(" \t\r"));
+    line.erase(line.find_last_not_of(" \t\r") + 1);
+    if (line == "q") return;
+    try {
+      if (line.empty()) {
+        recorder.record();
+      } else if (line == "u") {
+        recorder.undo();
+      } else {
+        recorder.choose(line);
+      }
+    } catch (const PoseError& error) {
+      fmt::print("nothing is recorded: {}\n", printable(error.what()));
+    }
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+int capture_poses(const CapturePosesOptions& options) {
+  (void)output_encoding(options.output);
+  if (!options.resume) check_output(options.output, {options.config, options.urdf}, options.force);
+  Diagnostics diagnostics;
+  CaptureConfig config = read_capture_config(options.config, diagnostics);
+  print(diagnostics);
+  if (!diagnostics.errors.empty()) return kBadInput;
+  const Robot robot = read_urdf(options.urdf);
+  std::vector<CapturePose> before;
+  if (options.resume && std::filesystem::exists(options.output)) {
+    before = read_pose_file(options.output);
+    fmt::print("{}: {} from before\n", options.output, counted(before.size(), "pose"));
+  }
+  CaptureConfig joints_only = config;
+  joints_only.finders.clear();
+  AnyRobot hardware = connect(options.robot, joints_only, robot, MovedBy::person);
+  PoseRecorder recorder(hardware.arm, config, robot, options.output, std::move(before));
+  std::string lost;
+  try {
+    record_poses(recorder);
+  } catch (const ConnectionError& error) {
+    lost = error.what();
+  }
+  const std::size_t count = recorder.poses().size();
+  if (count > 0) fmt::print("{}: {}\n", options.output, counted(count, "pose"));
+  std::fflush(stdout);
+  if (!lost.empty()) {
+    fmt::print(stderr, "error: {}; --resume goes on from here\n", printable(lost));
+  } else if (count == 0) {
+    fmt::print(stderr, "error: no pose was recorded\n");
+  }
+  return lost.empty() && count > 0 ? kDone : kBadInput;
+}
+
+}  // namespace kinecal::cli
