@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -61,7 +62,8 @@ void write_bag(const std::string& path, Encoding encoding, int samples) {
   BagOutput bag(path, encoding, Compression::none);
   for (int n = 0; n < samples; ++n) {
     const Sample sample = made_sample(n);
-    bag.write(topic, n + 1, with_cloud(detail::sample_message(sample), cloud));
+    std::deque<std::string> texts;
+    bag.write(topic, n + 1, with_cloud(detail::sample_message(sample, texts), cloud));
   }
   bag.finish();
 }

@@ -42,7 +42,7 @@ TEST_F(Convert, ReportsErrorsAndWritesNothing) {
   const Outcome made = kinecal("convert tracker.csv samples.yaml --columns columns.yaml");
   EXPECT_EQ(made.code, 1);
   EXPECT_THAT(made.err,
-              AllOf(HasSubstr("columns.yaml:31: column 'dif_x'"), HasSubstr("'dif_xx'?")));
+              AllOf(HasSubstr("columns.yaml:32: column 'dif_x'"), HasSubstr("'dif_xx'?")));
   EXPECT_FALSE(fs::exists(folder_ / "samples.yaml"));
 }
 

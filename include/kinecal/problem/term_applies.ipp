@@ -53,10 +53,9 @@ namespace detail {
   std::vector<FeatureLabel> labels;
   if (!term.pairs_features()) return labels;  // they are one plane
   std::map<int, int> places;                  // where they were recorded, by id
-  if (&recorded != &paired) {
-    for (const Feature& feature : recorded.features) {
-      if (feature.id) places.emplace(*feature.id, static_cast<int>(places.size()));
-    }
+  for (std::size_t i = 0; &recorded != &paired && i < recorded.features.size(); ++i) {
+    const std::optional<int>& id = recorded.features[i].id;
+    if (id) places.emplace(*id, static_cast<int>(i));
   }
   const auto seen = observations_of(term, observed);
   bool plain = true;
