@@ -220,7 +220,8 @@ struct Session {
   void take(const CapturedPose& captured) {
     spent += captured.duration;
     timed += captured.duration > Stamp::zero() ? 1 : 0;
-    print_pose(++done, poses.size(), captured, time_left());
+    ++done;
+    print_pose(done, poses.size(), captured, time_left());
     add_thumbnails(captured);
     if (captured.samples.empty()) return;
     samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
