@@ -25,6 +25,7 @@
 #include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/write_recording.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/io/urdf/velocity_limits.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"
 #include "robot_link.hpp"
@@ -255,7 +256,7 @@ struct Session {
   /// Runs until the last pose, Ctrl-C or the accuracy.
   /// @returns  why the robot cannot be reached any more; empty if it can
   [[nodiscard]] std::string run(const CaptureConfig& config) {
-    AnyRobot hardware = connect(options.robot, config, robot,
+    AnyRobot hardware = connect(options.robot, config, robot, velocity_limits(urdf, options.urdf),
                                 options.manual ? MovedBy::person : MovedBy::controllers);
     std::vector<SessionFinder> finders;
     for (const CaptureFinder& finder : config.finders) {
