@@ -88,8 +88,8 @@ struct SimulatedRobot::State {
     Image<float> sum = picture(begin).brightness;
     for (int i = 1; i < kMoments; ++i) {
       const double moment = begin + setup.timing.exposure * i / (kMoments - 1);
-      const Image<float>& now = picture(moment).brightness;
-      std::transform(sum.pixels.begin(), sum.pixels.end(), now.pixels.begin(), sum.pixels.begin(),
+      const Image<float>& more = picture(moment).brightness;
+      std::transform(sum.pixels.begin(), sum.pixels.end(), more.pixels.begin(), sum.pixels.begin(),
                      std::plus<>());
     }
     smeared = picture(time);
