@@ -102,7 +102,7 @@ double sharpness(const GrayImage& image) {
   double sum = 0.0;
   for (int v = 1; v < image.height; ++v) {
     for (int u = 0; u < image.width; ++u) {
-      const double step = double{image(u, v)} - double{image(u, v - 1)};
+      const double step = int{image(u, v)} - int{image(u, v - 1)};
       sum += step * step;
     }
   }
