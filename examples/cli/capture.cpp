@@ -283,6 +283,19 @@ struct Session {
   }
 };
 
+/// Prints what a session has recorded.
+/// @param before  samples of an earlier session
+void print_session(const Session& session, std::size_t before) {
+  const double minutes = std::chrono::duration<double, std::ratio<60>>(session.spent).count();
+  fmt::print("{}: {} of {} in {:.1f} minutes of the robot's time{}\n", session.options.output,
+             counted(session.samples.size(), "sample"), counted(session.done, "pose"), minutes,
+             before > 0 ? fmt::format(" ({} from before)", before) : "");
+  if (session.follower && session.follower->enough()) {
+    fmt::print("'{}' is reached\n", session.options.until);
+  }
+  std::fflush(stdout);
+}
+
 /// The result folder of `--result`.
 int calibrate_samples(const CaptureOptions& options) {
   CalibrateOptions calibrating;
@@ -317,14 +330,7 @@ int capture(const CaptureOptions& options) {
     fmt::print("{}: what was found in {}\n", options.sheet,
                counted(session.thumbnails.size(), "view"));
   }
-  const double minutes = std::chrono::duration<double, std::ratio<60>>(session.spent).count();
-  fmt::print("{}: {} of {} in {:.1f} minutes of the robot's time{}\n", options.output,
-             counted(session.samples.size(), "sample"), counted(session.done, "pose"), minutes,
-             before > 0 ? fmt::format(" ({} from before)", before) : "");
-  if (session.follower && session.follower->enough()) {
-    fmt::print("'{}' is reached\n", options.until);
-  }
-  std::fflush(stdout);
+  print_session(session, before);
   if (!lost.empty()) {
     fmt::print(stderr, "error: {}; --resume goes on from here\n", printable(lost));
     return kBadInput;
