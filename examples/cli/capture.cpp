@@ -25,6 +25,7 @@
 #include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/write_recording.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/io/urdf/velocity_limits.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"
 #include "robot_link.hpp"
@@ -220,7 +221,8 @@ struct Session {
   void take(const CapturedPose& captured) {
     spent += captured.duration;
     timed += captured.duration > Stamp::zero() ? 1 : 0;
-    print_pose(++done, poses.size(), captured, time_left());
+    ++done;
+    print_pose(done, poses.size(), captured, time_left());
     add_thumbnails(captured);
     if (captured.samples.empty()) return;
     samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
@@ -254,7 +256,7 @@ struct Session {
   /// Runs until the last pose, Ctrl-C or the accuracy.
   /// @returns  why the robot cannot be reached any more; empty if it can
   [[nodiscard]] std::string run(const CaptureConfig& config) {
-    AnyRobot hardware = connect(options.robot, config, robot,
+    AnyRobot hardware = connect(options.robot, config, robot, velocity_limits(urdf, options.urdf),
                                 options.manual ? MovedBy::person : MovedBy::controllers);
     std::vector<SessionFinder> finders;
     for (const CaptureFinder& finder : config.finders) {
@@ -280,6 +282,19 @@ struct Session {
     return lost;
   }
 };
+
+/// Prints what a session has recorded.
+/// @param before  samples of an earlier session
+void print_session(const Session& session, std::size_t before) {
+  const double minutes = std::chrono::duration<double, std::ratio<60>>(session.spent).count();
+  fmt::print("{}: {} of {} in {:.1f} minutes of the robot's time{}\n", session.options.output,
+             counted(session.samples.size(), "sample"), counted(session.done, "pose"), minutes,
+             before > 0 ? fmt::format(" ({} from before)", before) : "");
+  if (session.follower && session.follower->enough()) {
+    fmt::print("'{}' is reached\n", session.options.until);
+  }
+  std::fflush(stdout);
+}
 
 /// The result folder of `--result`.
 int calibrate_samples(const CaptureOptions& options) {
@@ -315,14 +330,7 @@ int capture(const CaptureOptions& options) {
     fmt::print("{}: what was found in {}\n", options.sheet,
                counted(session.thumbnails.size(), "view"));
   }
-  const double minutes = std::chrono::duration<double, std::ratio<60>>(session.spent).count();
-  fmt::print("{}: {} of {} in {:.1f} minutes of the robot's time{}\n", options.output,
-             counted(session.samples.size(), "sample"), counted(session.done, "pose"), minutes,
-             before > 0 ? fmt::format(" ({} from before)", before) : "");
-  if (session.follower && session.follower->enough()) {
-    fmt::print("'{}' is reached\n", options.until);
-  }
-  std::fflush(stdout);
+  print_session(session, before);
   if (!lost.empty()) {
     fmt::print(stderr, "error: {}; --resume goes on from here\n", printable(lost));
     return kBadInput;

@@ -187,7 +187,7 @@ int capture_poses(const CapturePosesOptions& options) {
   }
   CaptureConfig joints_only = config;
   joints_only.finders.clear();
-  AnyRobot hardware = connect(options.robot, joints_only, robot, MovedBy::person);
+  AnyRobot hardware = connect(options.robot, joints_only, robot, {}, MovedBy::person);
   PoseRecorder recorder(hardware.arm, config, robot, options.output, std::move(before));
   std::string lost;
   try {

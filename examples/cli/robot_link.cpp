@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_link.hpp"
 
+#include <algorithm>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -24,11 +26,16 @@ AnyRobot whole_robot(std::shared_ptr<R> robot, const CaptureConfig& config) {
   return any;
 }
 
-AnyRobot simulated(const std::string& scene, const CaptureConfig& config, const Robot& robot) {
+using Limits = std::map<std::string, double>;
+
+/// A simulation; its joints are as fast as the URDF allows, unless the scene has a speed for all.
+AnyRobot simulated(const std::string& scene, const CaptureConfig& config, const Robot& robot,
+                   const Limits& limits) {
   Diagnostics diagnostics;
-  const SimulationPlan plan = read_simulation(robot, scene, "", 0, diagnostics);
+  SimulationPlan plan = read_simulation(robot, scene, "", 0, diagnostics);
   cli::print(diagnostics);
   diagnostics.throw_if_errors();
+  if (plan.setup.drive.speed == JointDrive{}.speed) plan.setup.speeds = limits;
   return whole_robot(std::make_shared<SimulatedRobot>(plan.setup), config);
 }
 
@@ -43,10 +50,14 @@ struct RosParts {
 };
 
 AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, const Robot& robot,
-                       MovedBy mover) {
+                       const Limits& limits, MovedBy mover) {
   auto parts = std::make_shared<RosParts>(url);
   RosArmOptions arm;
   arm.duration = config.duration;
+  constexpr double kPeak = 15.0 / 8.0;  // of a spline from rest to rest, times its mean velocity
+  for (const auto& [joint, limit] : limits) {
+    arm.speeds[joint] = std::min(arm.speed, limit / kPeak);
+  }
   for (const CaptureChain& chain : config.chains) {
     if (mover == MovedBy::controllers) {
       arm.controllers.push_back({chain.topic, chain.joints});
@@ -77,13 +88,13 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
 }  // namespace
 
 AnyRobot connect(const std::string& address, const CaptureConfig& config, const Robot& robot,
-                 MovedBy mover) {
+                 const Limits& limits, MovedBy mover) {
   const auto after = [&](std::string_view scheme) { return address.substr(scheme.size()); };
-  if (address.starts_with("ws://")) return behind_bridge(address, config, robot, mover);
+  if (address.starts_with("ws://")) return behind_bridge(address, config, robot, limits, mover);
   if (address.starts_with("pipe:")) {
     return whole_robot(std::make_shared<PipeRobot>(PipeOptions{.command = after("pipe:")}), config);
   }
-  if (address.starts_with(kSimulated)) return simulated(after(kSimulated), config, robot);
+  if (address.starts_with(kSimulated)) return simulated(after(kSimulated), config, robot, limits);
   throw InputError("--robot: '" + address +
                    "' is not an address; write ws://HOST:PORT, pipe:COMMAND or simulated:SCENE");
 }

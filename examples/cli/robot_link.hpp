@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -21,9 +22,11 @@ enum class MovedBy { controllers, person };
 ///   pipe:COMMAND      a program that speaks JSON lines: examples/pipe_robot
 ///   simulated:SCENE   a simulation; SCENE may be empty
 /// @param robot  by the URDF
+/// @param limits  of the joints' velocities by the URDF, rad/s or m/s
 /// @throws InputError       if the address is none of these, or the scene is wrong
 /// @throws ConnectionError  if the robot cannot be reached
 [[nodiscard]] AnyRobot connect(const std::string& address, const CaptureConfig& config,
-                               const Robot& robot, MovedBy mover = MovedBy::controllers);
+                               const Robot& robot, const std::map<std::string, double>& limits,
+                               MovedBy mover = MovedBy::controllers);
 
 }  // namespace kinecal::cli

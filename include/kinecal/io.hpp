@@ -91,5 +91,6 @@
 #include "kinecal/io/urdf/patch_urdf.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/io/urdf/robot_header.hpp"
+#include "kinecal/io/urdf/velocity_limits.hpp"
 #include "kinecal/io/yaml/yaml_node.hpp"
 #include "kinecal/io/yaml/yaml_text.hpp"

@@ -42,7 +42,7 @@ features:
 
 class KilledBridge : public ProgramTest {
  protected:
-  static constexpr int kPoses = 16;
+  static constexpr int kPoses = 18;
 
   void SetUp() override {
     KINECAL_NEEDS_BRIDGE_SERVER();
@@ -56,11 +56,11 @@ class KilledBridge : public ProgramTest {
     write("poses.yaml", poses);
   }
 
-  /// A session in a folder of its own, with a robot whose clock runs ten times as fast.
+  /// A session in a folder of its own, with a robot whose clock runs three times as fast.
   [[nodiscard]] Outcome capture(const std::string& folder, const std::string& options,
                                 const std::string& fault = "") const {
     std::filesystem::create_directories(folder_ / folder);
-    const BridgeServer server(R"({"rate": 10)" + fault + "}");
+    const BridgeServer server(R"({"encoding": "cdr", "rate": 3)" + fault + "}");
     return run_in(folder_ / folder, KINECAL_PROGRAM
                                         " capture ../capture.yaml --urdf ../robot.urdf "
                                         "--poses ../poses.yaml -o samples.yaml --robot " +
@@ -88,16 +88,20 @@ std::size_t found_in(const std::string& out) {
 TEST_F(KilledBridge, AtTenRandomMomentsLosesNoSampleAndResumesToTheSameResult) {
   auto whole = std::async(std::launch::async, [&] { return capture("whole", ""); });
   std::mt19937 random(4);
-  std::uniform_real_distribution<double> moment(0.0, 0.25);  // seconds; a pose takes a tenth
+  std::uniform_int_distribution<int> goals(1, 4);           // two for each pose
+  std::uniform_real_distribution<double> moment(0.0, 0.4);  // seconds; a pose takes as long
   std::size_t taken = 0;
   for (int i = 0; i < 10; ++i) {
-    const Outcome killed =
-        capture("killed", " --resume", R"(, "die_after": )" + std::to_string(moment(random)));
+    const std::string when = R"(, "goals": )" + std::to_string(goals(random)) +
+                             R"(, "die_after": )" + std::to_string(moment(random));
+    const Outcome killed = capture("killed", " --resume", when);
     EXPECT_EQ(killed.code, 1) << killed.out;
     EXPECT_THAT(killed.err, HasSubstr("bridge 'ws://127.0.0.1:"));
     taken += found_in(killed.out);
     EXPECT_EQ(samples("killed").size(), taken);
   }
+  EXPECT_GT(taken, 0u);
+
   const Outcome rest = capture("killed", " --resume");
   EXPECT_EQ(rest.code, 0) << rest.err;
   const Outcome undisturbed = whole.get();
@@ -122,7 +126,7 @@ TEST_F(KilledBridge, AtTenRandomMomentsLosesNoSampleAndResumesToTheSameResult) {
 /// capture.yaml.
 SimulatedSetup small_fetch() {
   SimulatedSetup setup = simulated_fetch(3);
-  constexpr int kSmaller = 4;
+  constexpr int kSmaller = 5;
   CameraInfo& info = setup.camera.info;
   info.width /= kSmaller;
   info.height /= kSmaller;
@@ -164,7 +168,7 @@ TEST_P(FetchBehindBridge, IsCapturedWithItsOwnFilesAndCalibratesToTheTruth) {
   const std::string data = (data_folder() / "fetch").string();
   const SimulatedSetup setup = small_fetch();
   std::vector<CapturePose> all = poses_for(setup.robot, data + "/calibration_poses.bag"), poses;
-  for (std::size_t i = 0; i < all.size(); i += 8) poses.push_back(all[i]);
+  for (std::size_t i = 0; i < all.size(); i += 11) poses.push_back(all[i]);
   std::ofstream file(folder_ / "poses.yaml");
   write_poses_yaml(file, poses);
   file.close();

@@ -84,6 +84,21 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
   EXPECT_THAT(capture("--resume").out, HasSubstr("6 samples of 0 poses"));
 }
 
+TEST_F(CaptureProgram, EndsWithADeadCamera) {
+  simulate(5);
+  std::ofstream(folder_ / "sim/blind.yaml")
+      << std::ifstream(folder_ / "sim/scene.yaml").rdbuf() << "faults: {views_end: 20}\n";
+  const Outcome blind =
+      run(kProgram +
+          " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
+          "--robot simulated:sim/blind.yaml -o samples.yaml");
+  EXPECT_EQ(blind.code, 1) << blind.out;
+  EXPECT_THAT(blind.err, AllOf(HasSubstr("error: no images for 5 s"), HasSubstr("in two poses"),
+                               HasSubstr("--resume goes on from here")));
+  EXPECT_GT(samples(), 0);
+  EXPECT_THAT(blind.out, Not(HasSubstr("pose 5 of 5")));
+}
+
 TEST_F(CaptureProgram, SaysWhatIsWrongBeforeTheRobotMoves) {
   simulate(3);
   EXPECT_THAT(

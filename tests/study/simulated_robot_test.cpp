@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "support/robots.hpp"
 
@@ -93,6 +95,56 @@ TEST(SimulatedRobot, ViewsShowLedsWhereTheTrueRobotHasThem) {
   const Vector3<double> elsewhere =
       nominal.in_camera("plate") * Vector3<double>(-0.0501, -0.03, 0.12);
   EXPECT_GT((nominal.lens().project(elsewhere) - expected).norm(), 5.0);
+}
+
+/// Sum of squared differences between neighbours in a column.
+double sharpness(const GrayImage& image) {
+  double sum = 0.0;
+  for (int v = 1; v < image.height; ++v) {
+    for (int u = 0; u < image.width; ++u) {
+      const double step = int{image(u, v)} - int{image(u, v - 1)};
+      sum += step * step;
+    }
+  }
+  return sum;
+}
+
+TEST(SimulatedRobot, APhotographOfWhatMovesIsBlurredByItsExposure) {
+  SimulatedSetup setup = turntable_setup();
+  setup.camera.noise = 0.0;
+  SimulatedRobot quick(setup);
+  setup.timing.exposure = 0.02;
+  SimulatedRobot slow(setup);
+  for (SimulatedRobot* robot : {&quick, &slow}) robot->move({{"neck"}, {0.5}});
+  const auto views_at = [&](Stamp after) {
+    return std::pair{quick.next_view(after), slow.next_view(after)};
+  };
+  const auto [sharp, blurred] = views_at(milliseconds(400));
+  ASSERT_EQ(sharp.stamp, blurred.stamp);
+  EXPECT_LT(sharpness(blurred.image), 0.5 * sharpness(sharp.image));
+  EXPECT_GT(sharpness(blurred.image), 0.0);
+  for (SimulatedRobot* robot : {&quick, &slow}) robot->wait_for_rest();
+  const auto [still, as_still] = views_at(quick.now() + milliseconds(50));
+  EXPECT_EQ(still.image.pixels, as_still.image.pixels);
+}
+
+TEST(SimulatedRobot, AnLedThatIsSwitchedDuringAnExposureIsDimmer) {
+  SimulatedSetup setup = turntable_setup();
+  setup.camera.noise = 0.0;
+  setup.timing.exposure = 0.05;
+  SimulatedRobot robot(setup);
+  const auto brightest = [](const View& dark, const View& view) {
+    int most = 0;
+    for (std::size_t i = 0; i < view.image.pixels.size(); ++i) {
+      most = std::max(most, view.image.pixels[i] - dark.image.pixels[i]);
+    }
+    return most;
+  };
+  const View dark = robot.next_view(robot.light(0));
+  const Stamp lit = robot.light(1);
+  const View first = robot.next_view(lit), second = robot.next_view(first.stamp);
+  ASSERT_LT(first.stamp, lit + milliseconds(50));
+  EXPECT_LT(brightest(dark, first), brightest(dark, second));
 }
 
 TEST(SimulatedRobot, IsTheSameForTheSameSeed) {

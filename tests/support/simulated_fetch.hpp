@@ -11,6 +11,7 @@
 #include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/recordings/pose_messages.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/io/urdf/velocity_limits.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/study/simulated_robot.hpp"
 #include "kinecal/study/true_robot.hpp"
@@ -63,7 +64,9 @@ inline ParameterTable fetch_errors(SeededRandom& random) {
 inline SimulatedSetup simulated_fetch(std::uint64_t seed) {
   SeededRandom random(seed);
   SimulatedSetup setup;
-  setup.robot = read_urdf(std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/fetch.urdf");
+  const std::string urdf = KINECAL_SOURCE_DIR "/examples/robots/fetch/fetch.urdf";
+  setup.robot = read_urdf(urdf);
+  setup.speeds = velocity_limits(read_urdf_text(urdf), urdf);
   setup.base = "base_link";
   setup.seed = seed;
   setup.truth = fetch_errors(random);

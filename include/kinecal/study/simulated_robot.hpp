@@ -27,6 +27,7 @@ struct SimulatedTiming {
   double joint_rate = 100.0;        ///< Hz
   double image_rate = 15.0;         ///< Hz
   double image_latency = 0.06;      ///< from the exposure to whoever waits, seconds
+  double exposure = 0.0;            ///< how long an image gathers light until its stamp, seconds
   double late_stamps = 0.0;         ///< an image's stamp less its exposure, seconds
   double lamp_latency = 0.04;       ///< from the command to light, seconds
   double lamp_answers_early = 0.0;  ///< the lamp says that it has switched so long before, seconds

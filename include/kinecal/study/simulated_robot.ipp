@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -32,6 +33,7 @@ struct SimulatedRobot::State {
   std::map<std::string, std::optional<Stamp>> newest = {};  ///< stamps, by what is awaited
   Positions pictured = {};                                  ///< where `pictures` are valid
   std::map<int, Picture> pictures = {};                     ///< by code: the robot mostly rests
+  Picture smeared = {};                                     ///< by what changed during an exposure
 
   /// The first time at which something of a rate happens after another time, seconds.
   static double tick(double after, double rate) {
@@ -68,14 +70,39 @@ struct SimulatedRobot::State {
     return link.empty() ? camera_T_base : camera_T_base * robot.pose(setup.base, link, positions);
   }
 
-  const Picture& picture(double time) {
-    const Positions positions = joints.truth(time);
-    if (positions != pictured) pictures.clear();
-    pictured = positions;
+  int lit_at(double time) const {
     int code = 0;
     for (const auto& [when, lit] : lamp) {
       if (when <= time) code = lit;
     }
+    return code;
+  }
+
+  /// What an exposure that ends at a time gathers: the mean brightness, and the last depth.
+  const Picture& exposed(double time) {
+    const double begin = time - setup.timing.exposure;
+    if (joints.truth(begin) == joints.truth(time) && lit_at(begin) == lit_at(time)) {
+      return picture(time);
+    }
+    constexpr int kMoments = 8;
+    Image<float> sum = picture(begin).brightness;
+    for (int i = 1; i < kMoments; ++i) {
+      const double moment = begin + setup.timing.exposure * i / (kMoments - 1);
+      const Image<float>& more = picture(moment).brightness;
+      std::transform(sum.pixels.begin(), sum.pixels.end(), more.pixels.begin(), sum.pixels.begin(),
+                     std::plus<>());
+    }
+    smeared = picture(time);
+    std::transform(sum.pixels.begin(), sum.pixels.end(), smeared.brightness.pixels.begin(),
+                   [](float all) { return all / kMoments; });
+    return smeared;
+  }
+
+  const Picture& picture(double time) {
+    const Positions positions = joints.truth(time);
+    if (positions != pictured) pictures.clear();
+    pictured = positions;
+    const int code = lit_at(time);
     const auto found = pictures.find(code);
     if (found != pictures.end()) return found->second;
     const auto pose_of = [&](const std::string& link) { return in_camera(link, positions); };
@@ -124,7 +151,7 @@ KINECAL_INLINE View SimulatedRobot::next_view(Stamp after) {
   const double shift = timing.late_stamps + faults.other_clock;
   const double time = s.wait("images", after, timing.image_rate, shift, faults.views_end);
   s.now = std::max(s.now, time + timing.image_latency);
-  View view = photograph(s.setup.camera, s.renderer.lens(), s.picture(time), s.random);
+  View view = photograph(s.setup.camera, s.renderer.lens(), s.exposed(time), s.random);
   view.stamp = detail::stamp_of(time + shift);
   if (faults.no_camera_info) view.camera.reset();
   if (s.random.uniform(0.0, 1.0) < faults.passer_by) detail::hide_a_part(view, s.random);

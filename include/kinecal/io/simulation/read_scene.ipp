@@ -12,7 +12,7 @@
 //     joint: 0.05, sliding: 0.01, position: 0.01, rotation: 0.02, intrinsics: 0.01, z_offset: 0.005,
 //     z_scaling: 0.01, values: {shoulder_pan_joint: 0.03}
 //   motion: {speed: 1.0, encoder_noise: 2e-5, repeatability: 5e-5, backlash: 1e-4, image_rate: 15,
-//            image_latency: 0.06, late_stamps: 0.0, lamp_latency: 0.04}
+//            image_latency: 0.06, exposure_time: 0.0 (seconds), late_stamps: 0.0, lamp_latency: 0.04}
 //   faults: {stuck_joint: NAME, joints_end: 60.0, views_end: 60.0, connection_ends: 60.0,
 //            other_clock: 100.0, dark_led: 1, no_camera_info: true, passer_by: 0.1, outliers: 0.05}
 //   poses: 30, or poses: FILE       as robot_calibration has them

@@ -42,6 +42,7 @@ inline void read_motion(ConfigMap& map, SimulatedSetup& setup) {
                                    {"repeatability", &timing.repeatability},
                                    {"backlash", &timing.backlash},
                                    {"image_latency", &timing.image_latency},
+                                   {"exposure_time", &timing.exposure},
                                    {"late_stamps", &timing.late_stamps},
                                    {"lamp_latency", &timing.lamp_latency}}) {
     *value = map.number(key, *value);

@@ -1,6 +1,6 @@
 // A Foxglove bridge with a simulated robot behind it, for tests; by the protocol's reference server.
 //   node server.mjs '{"encoding": "ros1" | "cdr", "protocol": "foxglove.sdk.v1", "joint_type": ...,
-//                     "rate": 5 (of the robot's clock), "die_after": 0.5 (seconds of the first client),
+//                     "rate": 5 (of the robot's clock), "die_after": 0.5 (seconds after a goal: see "goals"),
 //                     "remote": true, "camera": "/head_camera"}'
 // It prints {"port": ...} and then takes faults from its standard input, one a line: see `faults`; if it
 // is remote, see remote.mjs.
@@ -103,7 +103,9 @@ if (options.remote) {
 
 // Actions: what they do with a goal; they end when they have done it.
 const actions = new Map();
+let goals = 0;
 function trajectory(goal) {
+  if (++goals === options.goals) setTimeout(die, 1000 * options.die_after);
   const { joint_names: names, points } = goal.trajectory;
   const t = points[0].time_from_start;
   const time = t.sec + (t.nsec ?? t.nanosec) * 1e-9;
@@ -227,7 +229,7 @@ const sockets_server = new WebSocketServer({
 });
 sockets_server.on("connection", (socket) => {
   sockets.add(socket);
-  if (options.die_after !== undefined) setTimeout(die, 1000 * options.die_after);
+  
   socket.on("close", () => sockets.delete(socket));
   socket.on("error", () => {});
   if (options.mute) return;
