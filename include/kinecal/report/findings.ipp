@@ -38,18 +38,10 @@ namespace detail {
                text(block.after.max), noise->freedom > 0.0 ? text(noise->sigma) : "-",
                noise->given > 0.0 ? text(noise->given) : "-"});
   }
-  std::string text =
-      "Fit: distances of features, root of the mean square; noise of a coordinate\n" + table.str();
   const double effect =
       findings.assessments.empty() ? 1.0 : findings.assessments.back().uncertainty.design_effect;
-  if (effect > 1.0) {
-    text += fmt::format(
-        "  Features of one sample err together, as if joints did not repeat: +- are {:.1f} times "
-        "as\n"
-        "  large as if they erred independently\n",
-        std::sqrt(effect));
-  }
-  return text;
+  return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
+         table.str() + design_effect_note(effect);
 }
 
 KINECAL_INLINE std::string cause_text(const Findings& findings, int sample) {

@@ -39,6 +39,9 @@ class TextTable {
 /// The name of that unit; "-" for a residual without unit.
 [[nodiscard]] std::string reading_unit(const std::string& unit);
 
+/// What a design effect means for the +-; empty if it is one.
+[[nodiscard]] std::string design_effect_note(double effect);
+
 /// Two lines for each step: what it did and why it stopped.
 [[nodiscard]] std::string step_lines(const CalibrationResult& result);
 

@@ -39,6 +39,14 @@ KINECAL_INLINE std::string reading_unit(const std::string& unit) {
   return unit == "m" ? "mm" : unit == "1" ? "-" : unit;
 }
 
+KINECAL_INLINE std::string design_effect_note(double effect) {
+  if (effect <= 1.0) return "";
+  return fmt::format(
+      "  Features of one sample err together, as if joints did not repeat: +- are {:.1f} times as\n"
+      "  large as if they erred independently\n",
+      std::sqrt(effect));
+}
+
 namespace detail {
 
 /// "1.234 deg", "5.678 mm" or "0.910 %".

@@ -45,6 +45,10 @@ struct FittedFrames {
 /// @returns       (3) radians
 [[nodiscard]] Vector3<double> rotation_of(const UnknownFrame& frame, const Eigen::VectorXd& values);
 
+/// How far a frame turns from one set of values to another, radians.
+[[nodiscard]] double turn_between(const UnknownFrame& frame, const Eigen::VectorXd& from,
+                                  const Eigen::VectorXd& to);
+
 /// Fits from a grid.
 struct FrameFits {
   std::vector<FittedFrames> minima;  ///< distinct, lowest cost first

@@ -20,6 +20,13 @@ KINECAL_INLINE Vector3<double> rotation_of(const UnknownFrame& frame,
   return vector;
 }
 
+KINECAL_INLINE double turn_between(const UnknownFrame& frame, const Eigen::VectorXd& from,
+                                   const Eigen::VectorXd& to) {
+  const Matrix3<double> turn =
+      exp(rotation_of(frame, from)).transpose() * exp(rotation_of(frame, to));
+  return log(turn).norm();
+}
+
 /// True if two fits ended at one minimum.
 [[nodiscard]] inline bool same_fit(const FittedFrames& a, const FittedFrames& b,
                                    std::span<const UnknownFrame> frames) {
@@ -29,9 +36,7 @@ KINECAL_INLINE Vector3<double> rotation_of(const UnknownFrame& frame,
   if (difference <= kEqual * more) return true;
   return difference <= kClose * more &&
          std::all_of(frames.begin(), frames.end(), [&](const UnknownFrame& frame) {
-           const Matrix3<double> turn =
-               exp(rotation_of(frame, a.values)).transpose() * exp(rotation_of(frame, b.values));
-           return log(turn).norm() < kSameWay;
+           return turn_between(frame, a.values, b.values) < kSameWay;
          });
 }
 

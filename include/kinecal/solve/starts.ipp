@@ -28,7 +28,7 @@ class Starts {
  public:
   Starts(const AnyProblem& problem, const FreeSet& free, const SolveOptions& options,
          const Eigen::VectorXd& from)
-      : problem_(problem), free_(free), options_(options), from_(from) {
+      : problem_(problem), free_(free), options_(options) {
     const double cost = cost_at(*problem.evaluator(free, options.threads), from);
     if (std::isfinite(cost)) floor_ = kRounding * cost;
   }
@@ -73,13 +73,14 @@ class Starts {
     solve_all(starts);
   }
 
-  /// True if the best solve so far gives reason to doubt the poses of the URDF.
-  [[nodiscard]] bool ended_badly(std::span<const UnknownFrame> frames) const {
+  /// True if the best solve so far gives reason to doubt the poses that were given.
+  [[nodiscard]] bool ended_badly(std::span<const UnknownFrame> frames,
+                                 const Eigen::VectorXd& from) const {
     constexpr double kLikely = std::numbers::pi / 6.0;  // a bracket that is mounted as drawn
-    return !best_.result.converged ||
-           std::any_of(frames.begin(), frames.end(), [&](const UnknownFrame& frame) {
-             return frame.has_guess && turned(frame) > kLikely;
-           });
+    const auto doubtful = [&](const UnknownFrame& frame) {
+      return frame.has_guess && turn_between(frame, from, best_.values) > kLikely;
+    };
+    return !best_.result.converged || std::any_of(frames.begin(), frames.end(), doubtful);
   }
 
   /// The result, and its values if it has some.
@@ -101,13 +102,6 @@ class Starts {
   static constexpr std::size_t kFinished = 4;       // fits that are solved with everything free
   static constexpr double kWorthFinishing = 100.0;  // of the least cost: ten times the error
   static constexpr double kRounding = 1e-16;        // of the cost at the start
-
-  /// How far the best solve so far turned a frame, radians.
-  [[nodiscard]] double turned(const UnknownFrame& frame) const {
-    const Matrix3<double> turn =
-        exp(rotation_of(frame, from_)).transpose() * exp(rotation_of(frame, best_.values));
-    return log(turn).norm();
-  }
 
   [[nodiscard]] static double cost_at(AnyEvaluator& evaluator, const Eigen::VectorXd& values) {
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
@@ -176,7 +170,6 @@ class Starts {
   const AnyProblem& problem_;
   const FreeSet& free_;
   const SolveOptions& options_;
-  const Eigen::VectorXd& from_;
   StartSummary summary_;
   Attempt best_;
   double floor_ = 0.0;  ///< costs below are rounding
@@ -197,7 +190,7 @@ KINECAL_INLINE StepResult solve_from_starts(const AnyProblem& problem, const Fre
                [](const UnknownFrame& frame) { return !frame.has_guess; });
   if (detail::grid_size(without_guess) > 0) starts.search(few, without_guess, from);
   starts.solve_plain(from);
-  if (without_guess.size() < unknown.size() && starts.ended_badly(unknown)) {
+  if (without_guess.size() < unknown.size() && starts.ended_badly(unknown, from)) {
     starts.search(few, unknown, from);
   }
   if (options.random_starts > 0) starts.solve_random();
