@@ -33,8 +33,7 @@ class Starts {
     if (std::isfinite(cost)) floor_ = kRounding * cost;
   }
 
-  /// Solves from the values that the configuration gives.  Takes the result if it is as good as those
-  /// before.
+  /// Solves from the values that the configuration gives; of equal results, takes this one.
   void solve_plain(const Eigen::VectorXd& start) {
     Attempt plain{start, start, {}};
     if (!solve_plain(plain)) return;
