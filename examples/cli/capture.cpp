@@ -91,8 +91,7 @@ class Follower {
   Follower(const CaptureOptions& options, const Robot& robot) {
     input_.robot = robot;
     input_.config = read_config(options.calibrate, input_.diagnostics);
-    cli::print(input_.diagnostics);
-    input_.diagnostics.throw_if_errors();
+    print_or_throw(input_.diagnostics);
     if (!options.until.empty()) until_ = parse_accuracy(options.until);
     follower_.emplace(input_.config, robot, until_ ? until_->frame : "");
   }
@@ -191,8 +190,7 @@ std::vector<Sample> earlier_samples(const CaptureOptions& options) {
   if (!options.resume || !std::filesystem::exists(options.output)) return {};
   Diagnostics diagnostics;
   std::vector<Sample> samples = read_recordings({options.output}, diagnostics).samples;
-  cli::print(diagnostics);
-  diagnostics.throw_if_errors();
+  print_or_throw(diagnostics);
   return samples;
 }
 

@@ -124,6 +124,13 @@ Input read_input(const InputOptions& options) {
   return input;
 }
 
+void print_or_throw(const Diagnostics& diagnostics) {
+  Diagnostics others = diagnostics;
+  if (!others.errors.empty()) others.errors.pop_back();
+  print(others);
+  if (!diagnostics.errors.empty()) throw InputError(diagnostics.errors.back());
+}
+
 void print(const Diagnostics& diagnostics) {
   for (const std::string& note : diagnostics.notes) {
     fmt::print(stderr, "note: {}\n", printable(note));

@@ -36,4 +36,7 @@ struct Input {
 /// Prints warnings, doubts and errors to the standard error stream.
 void print(const Diagnostics& diagnostics);
 
+/// Prints it, but throws the last error, which the program then prints.
+void print_or_throw(const Diagnostics& diagnostics);
+
 }  // namespace kinecal::cli

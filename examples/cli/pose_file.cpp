@@ -13,11 +13,12 @@
 namespace kinecal::cli {
 
 std::vector<CapturePose> read_pose_file(const std::string& path) {
+  std::error_code unknown;
+  if (std::filesystem::file_size(path, unknown) == 0) throw InputError(path + ": is empty");
   Diagnostics diagnostics;
   std::vector<CapturePose> poses =
       is_poses_yaml(path) ? read_poses_yaml(path, diagnostics) : read_bag_poses(path, diagnostics);
-  print(diagnostics);
-  diagnostics.throw_if_errors();
+  print_or_throw(diagnostics);
   if (poses.empty()) throw InputError(path + ": has no poses");
   return poses;
 }

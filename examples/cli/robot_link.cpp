@@ -33,8 +33,7 @@ AnyRobot simulated(const std::string& scene, const CaptureConfig& config, const 
                    const Limits& limits) {
   Diagnostics diagnostics;
   SimulationPlan plan = read_simulation(robot, scene, "", 0, diagnostics);
-  cli::print(diagnostics);
-  diagnostics.throw_if_errors();
+  print_or_throw(diagnostics);
   if (plan.setup.drive.speed == JointDrive{}.speed) plan.setup.speeds = limits;
   return whole_robot(std::make_shared<SimulatedRobot>(plan.setup), config);
 }

@@ -82,8 +82,11 @@ int simulate(const SimulateOptions& options) {
   files.others.push_back({"scene.yaml", scene_text(options)});
   const std::size_t images = files.images.size();
   write(folder, std::move(files));
-  fmt::print("{}: {} images of '{}' on '{}' by '{}'; truth.yaml has {} errors of the URDF\n",
-             folder.string(), images, plan.target.type, plan.target.link, plan.setup.camera.frame,
+  const std::string what =
+      images > 0 ? fmt::format("{} images", images)
+                 : fmt::format("scene.yaml, and {} poses for a session", poses.size());
+  fmt::print("{}: {} of '{}' on '{}' by '{}'; truth.yaml has {} errors of the URDF\n",
+             folder.string(), what, plan.target.type, plan.target.link, plan.setup.camera.frame,
              plan.setup.truth.size());
   return kDone;
 }
