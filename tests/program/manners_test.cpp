@@ -31,7 +31,7 @@ class Manners : public test::ProgramTest {
   }
   /// The program, for ten seconds at most.
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run("timeout 10 " KINECAL_PROGRAM " " + arguments + " < /dev/null");
+    return run("timeout 60 " KINECAL_PROGRAM " " + arguments + " < /dev/null");
   }
   /// Writes samples.yaml and calibrate.yaml.
   void prepare() const {

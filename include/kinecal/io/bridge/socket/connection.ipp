@@ -105,12 +105,18 @@ class WebSocket::Connection {
     throw ConnectionError("bridge '" + options_.url + "': " + why);
   }
 
+  /// Reads on, piece by piece: a read of whole frames asks for the size of the one that async_close()
+  /// is leaving out, and asserts that there is one.
   void read() {
-    stream_.async_read(incoming_, [this](Error error, std::size_t) {
+    constexpr std::size_t kPiece = 1 << 18;
+    stream_.async_read_some(incoming_.prepare(kPiece), [this](Error error, std::size_t bytes) {
       if (error) return end(error);
-      const auto data = incoming_.cdata();
-      take_frame_(stream_.got_text(), {static_cast<const std::byte*>(data.data()), data.size()});
-      incoming_.consume(data.size());
+      incoming_.commit(bytes);
+      if (stream_.is_message_done()) {
+        const auto data = incoming_.cdata();
+        take_frame_(stream_.got_text(), {static_cast<const std::byte*>(data.data()), data.size()});
+        incoming_.consume(data.size());
+      }
       read();
     });
   }
