@@ -194,9 +194,29 @@ std::vector<Sample> earlier_samples(const CaptureOptions& options) {
   return samples;
 }
 
+/// @throws InputError  if samples of an earlier session lack a joint that the poses move
+void check_robot(const std::vector<Sample>& samples, const std::vector<CapturePose>& poses) {
+  for (const Sample& sample : samples) {
+    for (const std::string& joint : poses.front().joint_names) {
+      if (sample.position(joint)) continue;
+      throw InputError(sample.source + ": has no joint '" + joint +
+                       "', which the poses move; --resume goes on with the same robot" +
+                       did_you_mean(joint, sample.joint_names));
+    }
+  }
+}
+
 void check_options(const CaptureOptions& options) {
   (void)output_encoding(options.output);
-  if (!options.resume) check_output(options.output, {options.config, options.urdf}, options.force);
+  std::vector<std::string> inputs = {options.config, options.urdf, options.poses,
+                                     options.calibrate};
+  if (options.robot.starts_with(kSimulated)) {
+    inputs.push_back(options.robot.substr(kSimulated.size()));
+  }
+  check_output(options.output, inputs, options.force || options.resume);
+  inputs.push_back(options.output);
+  if (!options.sheet.empty()) check_output(options.sheet, inputs, options.force);
+  if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
   if (options.manual == options.poses.empty()) return;
   throw InputError(options.manual ? "--manual: a person moves the robot, so --poses has no use"
                                   : "--poses is required, or --manual");
@@ -316,8 +336,11 @@ int capture(const CaptureOptions& options) {
   Session session{options, read_urdf_text(options.urdf), {}, {}, earlier_samples(options), {}};
   session.robot = parse_urdf(session.urdf, options.urdf);
   const std::size_t before = session.samples.size();
-  if (!options.manual)
-    session.poses = poses_left(read_poses(options.poses, config), session.samples);
+  if (!options.manual) {
+    const std::vector<CapturePose> all = read_poses(options.poses, config);
+    check_robot(session.samples, all);
+    session.poses = poses_left(all, session.samples);
+  }
   if (!options.calibrate.empty()) {
     session.follower.emplace(options, session.robot);
     for (const Sample& sample : session.samples) session.follower->add(sample);
@@ -332,6 +355,10 @@ int capture(const CaptureOptions& options) {
   if (!lost.empty()) {
     fmt::print(stderr, "error: {}; --resume goes on from here\n", printable(lost));
     return kBadInput;
+  }
+  if (stop_asked != 0) {
+    fmt::print(stderr, "error: interrupted; --resume goes on from here\n");
+    return kInterrupted;
   }
   if (session.samples.empty()) {
     fmt::print(stderr, "error: nothing was found in any pose\n");

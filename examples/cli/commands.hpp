@@ -12,7 +12,7 @@ namespace kinecal::cli {
 
 /// 0: done; 1: bad input; 2: the verdict is "do not use", the solver did not converge, or a result does
 /// not hold any more.
-enum ExitCode { kDone = 0, kBadInput = 1, kNotUsable = 2 };
+enum ExitCode { kDone = 0, kBadInput = 1, kNotUsable = 2, kInterrupted = 130 };
 
 /// What is calibrated, from which samples.
 struct InputOptions {

@@ -170,6 +170,7 @@ int detect(const DetectOptions& options) {
   inputs.insert(inputs.end(), options.bags.begin(), options.bags.end());
   check_output(options.output, inputs, options.force);
   (void)output_encoding(options.output);
+  inputs.push_back(options.output);
   if (!options.sheet.empty()) check_output(options.sheet, inputs, options.force);
   Diagnostics diagnostics;
   const Task task = read_task(options, diagnostics);

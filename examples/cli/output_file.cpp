@@ -8,9 +8,13 @@
 namespace kinecal::cli {
 
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force) {
+  const auto name = [](const std::string& path) {
+    return std::filesystem::absolute(path).lexically_normal();
+  };
   for (const std::string& input : inputs) {
+    if (input.empty()) continue;
     std::error_code missing;
-    if (std::filesystem::equivalent(output, input, missing)) {
+    if (std::filesystem::equivalent(output, input, missing) || name(output) == name(input)) {
       throw OutputError(output + ": would replace an input; choose another name");
     }
   }

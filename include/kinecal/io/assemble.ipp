@@ -56,6 +56,7 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
     const int count = problem.samples_of(t);
     total += count;
     warn_of_disjoint_ids(term, *block, samples, diagnostics);
+    warn_of_one_sided_ids(term, *block, samples, diagnostics);
     if (count == 0) {
       diagnostics.warning(block->place, fmt::format("error block '{}': no sample has usable "
                                                     "features of all its sensors{}",

@@ -153,6 +153,26 @@ inline void warn_of_disjoint_ids(const AnyTerm& term, const BlockConfig& block,
                   term.name(), disjoint, disjoint == 1 ? "" : "s", first));
 }
 
+/// Warns of samples in which some sensors of a term give ids, and others do not.
+inline void warn_of_one_sided_ids(const AnyTerm& term, const BlockConfig& block,
+                                  std::span<const Sample> samples, Diagnostics& diagnostics) {
+  if (!term.pairs_features()) return;
+  for (const Sample& sample : samples) {
+    std::string with, without;
+    for (const std::string& model : block.models) {
+      const Observation* seen = sample.observation(model);
+      if (seen == nullptr || seen->features.empty()) continue;
+      (seen->features.front().id ? with : without) = model;
+    }
+    if (with.empty() || without.empty()) continue;
+    diagnostics.warning(
+        block.place, fmt::format("error block '{}': features of '{}' have ids, those of '{}' have "
+                                 "none, so they are paired by place; the first sample is at {}",
+                                 term.name(), with, without, sample.source));
+    return;
+  }
+}
+
 /// Warns of models whose sensor is not in any sample: probably one of the names is misspelt.
 inline void warn_of_unknown_sensors(const StepConfig& step, std::span<const Sample> samples,
                                     Diagnostics& diagnostics) {

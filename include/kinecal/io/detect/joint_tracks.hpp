@@ -5,6 +5,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -51,10 +52,13 @@ class JointTracks {
   [[nodiscard]] std::optional<Standstill> span() const;
 
  private:
+  [[nodiscard]] bool measures(const std::string& topic, const std::string& joint) const;
   void choose_topics(const std::vector<std::string>& topics, const std::string& file,
                      Diagnostics& diagnostics);
   void settle_conflicts(const std::string& file, Diagnostics& diagnostics);
   std::vector<detail::JointTrack> tracks_;
+  /// Messages in which a joint's position is not a number, by topic and joint.
+  std::map<std::pair<std::string, std::string>, int> not_finite_;
   std::set<std::string> silent_;  ///< topics with messages, but no positions
 };
 

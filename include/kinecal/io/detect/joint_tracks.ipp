@@ -17,19 +17,24 @@ namespace kinecal {
 
 KINECAL_INLINE void JointTracks::add(const std::string& topic, const MeasuredJoints& reading) {
   std::map<std::string, double> sorted;
+  bool is_whole = true;
   for (std::size_t i = 0; i < reading.names.size() && i < reading.positions.size(); ++i) {
-    if (std::isfinite(reading.positions[i])) sorted[reading.names[i]] = reading.positions[i];
+    if (std::isfinite(reading.positions[i])) {
+      sorted[reading.names[i]] = reading.positions[i];
+    } else {
+      ++not_finite_[{topic, reading.names[i]}];
+      is_whole = is_whole && !measures(topic, reading.names[i]);
+    }
   }
+  if (!is_whole) return;  // a gap of joints that are measured otherwise
   if (sorted.empty()) {
     silent_.insert(topic);
     return;
   }
   std::vector<std::string> names;
   std::vector<double> positions;
-  for (const auto& [name, position] : sorted) {
-    names.push_back(name);
-    positions.push_back(position);
-  }
+  for (const auto& [name, position] : sorted) names.push_back(name);
+  for (const auto& [name, position] : sorted) positions.push_back(position);
   auto track = std::find_if(tracks_.begin(), tracks_.end(), [&](const detail::JointTrack& t) {
     return t.topic == topic && t.names == names;
   });
@@ -40,6 +45,14 @@ KINECAL_INLINE void JointTracks::add(const std::string& topic, const MeasuredJoi
   track->add(reading.stamp, positions);
 }
 
+KINECAL_INLINE bool JointTracks::measures(const std::string& topic,
+                                          const std::string& joint) const {
+  return std::any_of(tracks_.begin(), tracks_.end(), [&](const detail::JointTrack& track) {
+    return track.topic == topic &&
+           std::find(track.names.begin(), track.names.end(), joint) != track.names.end();
+  });
+}
+
 KINECAL_INLINE void JointTracks::choose_topics(const std::vector<std::string>& topics,
                                                const std::string& file, Diagnostics& diagnostics) {
   std::set<std::string> known;
@@ -47,6 +60,11 @@ KINECAL_INLINE void JointTracks::choose_topics(const std::vector<std::string>& t
   for (const std::string& topic : silent_) {
     if (known.count(topic) > 0) continue;
     diagnostics.warning({file, 0}, "topic '" + topic + "' has joint states without positions");
+  }
+  for (const auto& [joint, count] : not_finite_) {
+    diagnostics.warning({file, 0}, "topic '" + joint.first + "': the position of joint '" +
+                                       joint.second + "' is not a number in " +
+                                       std::to_string(count) + " messages");
   }
   for (const std::string& topic : topics) {
     if (known.count(topic) > 0) continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -107,6 +108,12 @@ struct RecordedSurvey {
       joints_ahead.push_back(view.ahead);
     } else if (type == "sensor_msgs/CameraInfo") {
       const CameraInfo camera = camera_of(content);
+      const auto is_number = [](double x) { return std::isfinite(x); };
+      if (!std::all_of(camera.k.begin(), camera.k.end(), is_number) ||
+          !std::all_of(camera.p.begin(), camera.p.end(), is_number) ||
+          !std::all_of(camera.d.begin(), camera.d.end(), is_number)) {
+        throw std::runtime_error("its K, P or D has something that is not a number");
+      }
       if (!topic.camera) topic.camera = camera;
       const CameraInfo& first = *topic.camera;
       topic.camera_changes |= camera.k != first.k || camera.p != first.p || camera.d != first.d ||
@@ -120,7 +127,7 @@ struct RecordedSurvey {
     }
   }
 
-  /// @throws std::runtime_error  if names and positions differ in number
+  /// @throws std::runtime_error  if names and positions differ in number, or a joint is in it twice
   [[nodiscard]] static MeasuredJoints joints_of(const MessageFields& state, Stamp stamp) {
     MeasuredJoints joints;
     joints.stamp = stamp;
@@ -134,6 +141,16 @@ struct RecordedSurvey {
       throw std::runtime_error("it has " + std::to_string(joints.names.size()) +
                                " names of joints and " + std::to_string(joints.positions.size()) +
                                " positions");
+    }
+    for (std::size_t i = 0; i < joints.positions.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (joints.names[i] != joints.names[j] || joints.positions[i] == joints.positions[j]) {
+          continue;
+        }
+        throw std::runtime_error("joint '" + joints.names[i] + "' is in it twice, at " +
+                                 std::to_string(joints.positions[j]) + " and " +
+                                 std::to_string(joints.positions[i]));
+      }
     }
     return joints;
   }
