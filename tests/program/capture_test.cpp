@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 
 #include "support/run_program.hpp"
@@ -124,8 +125,44 @@ TEST_F(CaptureProgram, SaysWhatIsWrongBeforeTheRobotMoves) {
                      "--robot simulated:sim/scene.yaml -o s.txt")
           .err,
       HasSubstr("the name must end in .yaml, .bag or .mcap"));
+  EXPECT_THAT(capture("--velocity nan").err, HasSubstr("--velocity"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "samples.yaml"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.yaml"));
+}
+
+TEST_F(CaptureProgram, ReplacesNoInputAndNoSecondOutput) {
+  simulate(2);
+  const std::string robot =
+      " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
+      "--robot simulated:sim/scene.yaml --force ";
+  const auto text = [&](const std::string& name) {
+    std::ostringstream all;
+    all << std::ifstream(folder_ / name).rdbuf();
+    return all.str();
+  };
+  for (const std::string file : {"sim/poses.yaml", "sim/robot.urdf", "sim/scene.yaml"}) {
+    const std::string before = text(file);
+    for (const std::string outputs : {"-o s.yaml --contact-sheet ", "-o "}) {
+      if (outputs == "-o " && file.ends_with("urdf")) continue;  // no format of samples
+      const Outcome refused = run(kProgram + robot + outputs + file);
+      EXPECT_EQ(refused.code, 1) << outputs << file;
+      EXPECT_THAT(refused.err, HasSubstr("would replace an input")) << outputs << file;
+    }
+    EXPECT_EQ(text(file), before);
+  }
+  EXPECT_EQ(run(kProgram + robot + "-o s.yaml --contact-sheet s.yaml").code, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "s.yaml"));
+}
+
+TEST_F(CaptureProgram, DoesNotGoOnWithTheSessionOfAnotherRobot) {
+  simulate(2);
+  std::ofstream(folder_ / "samples.yaml")
+      << "joint_states: {name: [other], position: [0.1]}\n"
+         "observations: [{sensor_name: camera, features: []}]\n---\n";
+  const Outcome refused = capture("--resume");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("samples.yaml:1: has no joint '"),
+                                 HasSubstr("--resume goes on with the same robot")));
 }
 
 TEST_F(CaptureProgram, RecordsWhereAPersonHasPutTheRobot) {

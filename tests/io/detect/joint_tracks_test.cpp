@@ -50,6 +50,23 @@ Diagnostics chosen(JointTracks& tracks, const std::vector<std::string>& topics =
   return diagnostics;
 }
 
+TEST(JointTracks, APositionThatIsNoNumberIsAGapOrNoJoint) {
+  JointTracks tracks;
+  for (int n = 0; n <= 150; ++n) {
+    const double time = 0.02 * n, lost = n % 50 == 20 ? std::nan("") : stands(time);
+    tracks.add("joint_states", {kStart + n * milliseconds(20),
+                                {"arm", "wrist", "finger"},
+                                {one_move(time), lost, std::nan("")}});
+  }
+  const Diagnostics found = chosen(tracks);
+  EXPECT_THAT(found.errors, IsEmpty());
+  EXPECT_THAT(found.warnings,
+              ElementsAre(HasSubstr("the position of joint 'finger' is not a number in 151"),
+                          HasSubstr("the position of joint 'wrist' is not a number in 3")));
+  EXPECT_THAT(tracks.names(), ElementsAre("arm", "wrist"));
+  EXPECT_THAT(tracks.standstills(), SizeIs(2));
+}
+
 TEST(JointTracks, TheRobotStandsStillBeforeAndAfterAMotion) {
   for (const auto period : {milliseconds(1), milliseconds(20), milliseconds(100)}) {
     JointTracks tracks;
