@@ -5,5 +5,6 @@
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/recorded_poses.hpp"
+#include "kinecal/report/report_data.hpp"
 #include "kinecal/report/residuals_csv.hpp"
 #include "kinecal/report/text.hpp"

@@ -57,10 +57,11 @@ class ProgressCallback final : public ceres::IterationCallback {
 /// The outcome of several runs of Ceres.
 struct Minimum {
   bool usable = false, converged = false;
-  std::string message;  ///< of the last run
-  double cost = 0.0;    ///< at the end of the last run
-  int iterations = 0;   ///< of all runs
-  int evaluations = 0;  ///< of all samples, of all runs
+  std::string message;             ///< of the last run
+  double cost = 0.0;               ///< at the end of the last run
+  std::vector<double> costs = {};  ///< of each iteration of all runs
+  int iterations = 0;              ///< of all runs
+  int evaluations = 0;             ///< of all samples, of all runs
   double seconds = 0.0;
 };
 
@@ -104,6 +105,9 @@ inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const So
   minimum.message = summary.message;
   minimum.cost = summary.final_cost;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  for (const ceres::IterationSummary& iteration : summary.iterations) {
+    minimum.costs.push_back(iteration.cost);
+  }
   minimum.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
   minimum.seconds += summary.total_time_in_seconds;
   if (!minimum.usable) return;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
@@ -51,6 +52,8 @@ struct StepResult {
   int samples = 0;                       ///< of the problem
   int evaluations = 0;                   ///< how often Ceres evaluated all samples
   StartSummary starts = {};              ///< of solve_from_starts(), if there were several
+  std::vector<double> costs = {};  ///< after each iteration, from the start on; where losses are
+                                   ///< not convex, that with convex ones comes first
 };
 
 /// Minimizes the cost of a problem over its free parameters.

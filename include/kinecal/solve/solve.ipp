@@ -149,6 +149,8 @@ KINECAL_INLINE StepResult solve(const AnyProblem& problem, const FreeSet& free,
   }
   const detail::Minimum last = detail::minimize(*evaluator, x, options, Losses::as_given);
   result.iterations = first.iterations + last.iterations;
+  result.costs = first.costs;
+  result.costs.insert(result.costs.end(), last.costs.begin(), last.costs.end());
   result.seconds = first.seconds + last.seconds;
   result.evaluations = first.evaluations + last.evaluations;
   constexpr double kRounding = 1e-9;  // a start at the minimum may end slightly above it

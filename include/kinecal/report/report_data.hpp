@@ -1,0 +1,113 @@
+// What the HTML report and its charts show, as plain numbers and text.
+//
+// Charts are drawn from this alone, so they are the same for a calibration, a comparison and a study.
+// Units: metres, radians, pixels; charts convert to millimetres, degrees and per cent.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/report/findings.hpp"
+
+namespace kinecal {
+
+/// A file that a calibration read.
+struct InputFile {
+  std::string role;         ///< "URDF", "configuration", "samples", "camera"
+  std::string name;         ///< path, as the user gave it
+  std::uint64_t bytes = 0;  ///< its size
+  std::string sha256;       ///< of its content, 64 hexadecimal digits
+};
+
+/// Residual of one feature, before and after.
+struct ReportedFeature {
+  int sample = 0;             ///< index into ReportData::samples
+  FeatureLabel feature = {};  ///< which one of the sample it is
+  double before =
+      0.0;             ///< distance at the initial values, unit of the block; not finite: undefined
+  double after = 0.0;  ///< the same at the result
+  std::vector<double> residual = {};  ///< its components at the result, unit of the block
+  std::optional<std::array<double, 2>> pixel =
+      {};                            ///< where a camera observed it; blocks in pixels only
+  std::optional<double> depth = {};  ///< from the depth camera, metres
+  std::optional<std::array<double, 3>> point =
+      {};  ///< where a depth camera saw it, in the base, metres
+};
+
+/// An error block.
+struct ReportedBlock {
+  std::string name;          ///< of the configuration
+  std::string type;          ///< "chain3d_to_chain3d"
+  std::string unit;          ///< of the residual: "m", "px" or "1"
+  bool is_plane = false;     ///< it compares with a plane: the error varies over the floor
+  int components = 1;        ///< residuals of a feature
+  double sigma = 0.0;        ///< estimated noise of a component; 0: not known
+  double sigma_given = 0.0;  ///< of the configuration; 0: none
+  double rms_before = 0.0;   ///< root of the mean squared distance of features
+  double rms_after = 0.0;    ///< the same at the result
+  std::optional<double> held_out = {};  ///< the same of samples that were held out
+  std::array<double, 2> image = {
+      0.0, 0.0};  ///< width and height of the camera's image, pixels; 0: unknown
+  std::vector<ReportedFeature> features = {};  ///< in the order of samples
+};
+
+/// A sample, used or left out.
+struct ReportedSample {
+  int number = 0;         ///< from 1, in the order of the files
+  std::string source;     ///< source location
+  bool bad = false;       ///< it does not fit the others
+  bool left_out = false;  ///< the fit does not use it
+  std::string why;        ///< what is wrong with it, and the likely cause; may be empty
+  double times = 0.0;     ///< distance of its worst feature in standard deviations of the noise
+};
+
+/// A calibrated parameter.
+struct ReportedParameter {
+  std::string name, owner;  ///< owner: joint, frame, sensor or error block
+  std::string unit;         ///< "rad", "m", "1" or "px"
+  double value = 0.0, initial = 0.0;
+  std::optional<double> sigma;  ///< standard deviation; nullopt: not determined, or at a bound
+  std::string
+      note;  ///< "", "not significant", "not determined", "hardly determined", "at its bound"
+};
+
+/// Where the pose in question is known how well: for the map of the workspace.
+struct KnownPoint {
+  std::array<double, 3> p_base{};  ///< metres
+  double deviation = 0.0;          ///< standard deviation of the position, metres
+};
+
+/// All that a report shows.
+struct ReportData {
+  std::string robot;  ///< its name
+  Grade verdict = Grade::good;
+  std::vector<std::string> reasons;  ///< for the verdict, the gravest first
+  std::string version;               ///< "kinecal 0.1.0"
+  std::string command;               ///< that repeats it
+  std::string date;                  ///< "2026-11-23"; of the calibration
+  std::string recorded;              ///< when samples were recorded; empty: not known
+  std::vector<InputFile> inputs;
+  std::vector<StepResult> steps;  ///< with the cost of each iteration
+  std::vector<ReportedBlock> blocks;
+  std::vector<ReportedSample> samples;  ///< used ones by number in the problem, then those left out
+  std::vector<ReportedParameter> parameters;
+  std::vector<std::string> correlated;           ///< names: rows and columns of the matrix below
+  std::vector<std::vector<double>> correlation;  ///< (correlated x correlated), -1 to 1
+  /// Combinations that no residual depends on: parameter names and factors.
+  std::vector<std::vector<std::pair<std::string, double>>> unobservable;
+  std::vector<std::string> hold;        ///< parameters to hold so that all others are observable
+  int rank = 0;                         ///< number of combinations that are observable
+  std::optional<PoseUncertainty> pose;  ///< of what the first error block compares
+  std::vector<KnownPoint> workspace;    ///< of the origin of that pose, over the robot's workspace
+  std::string summary;                  ///< the report as text
+};
+
+}  // namespace kinecal
