@@ -1,4 +1,5 @@
 // kinecal convert as its users meet it: a laboratory's table becomes samples that calibrate.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ class Convert : public test::ProgramTest {
     fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
   }
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(std::string(KINECAL_PROGRAM) + " " + arguments + " < /dev/null");
+    return run(fmt::format("{} {} < /dev/null", KINECAL_PROGRAM, arguments));
   }
 };
 
