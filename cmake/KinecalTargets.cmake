@@ -130,6 +130,7 @@ kinecal_add_library(io
   LINK kinecal_capture
   PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB)
 include(KinecalOptional)
+include(KinecalPage)
 if(NOT KINECAL_HEADER_ONLY)
   # What links the libraries is compiled and linked as they are.
   target_compile_options(kinecal_core PUBLIC $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)

@@ -15,8 +15,8 @@
 #include "input.hpp"
 #include "kinecal/report.hpp"
 #include "output.hpp"
-#include "output_file.hpp"
 #include "progress.hpp"
+#include "report.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -116,6 +116,7 @@ int calibrate(const CalibrateOptions& options) {
     throw InputError("--output is required (or --dry-run)");
   }
   if (!options.dry_run) check_first_targets(options);
+  check_reports(options);
   const Clock::time_point start = Clock::now();
   const Input input = read_input(options);
   print(input.diagnostics);
@@ -141,7 +142,7 @@ int calibrate(const CalibrateOptions& options) {
   add_causes(input, fitted);
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
-  if (!options.report.empty()) write_file(options.report, json_report(findings));
+  write_reports(options, input, fitted);
   if (findings.judgement.verdict == Grade::do_not_use) {
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
                result.steps.empty() ? "" : result.steps.back().name,

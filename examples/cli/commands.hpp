@@ -27,8 +27,10 @@ struct InputOptions {
 struct CalibrateOptions : InputOptions {
   std::string output;
   std::string offsets = "rising";
-  std::string report;          ///< report.json is written there, too, whatever the verdict
-  std::vector<int> exclude;    ///< samples to leave out, from 1
+  std::vector<std::string>
+      reports;               ///< files: a page if it ends in .html, else JSON; whatever the verdict
+  std::string command = {};  ///< as the user typed it, for the report
+  std::vector<int> exclude;  ///< samples to leave out, from 1
   bool keep_outliers = false;  ///< use samples that do not fit the others
   bool upstream_names = false;
   bool dry_run = false;

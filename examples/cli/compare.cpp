@@ -10,10 +10,12 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/doubts/rising.hpp"
 #include "kinecal/io/printable.hpp"
+#include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "output_file.hpp"
+#include "report.hpp"
 #include "result.hpp"
 #include "words.hpp"
 
@@ -221,6 +223,36 @@ std::string json_of(const Assembled& a, const Assembled& b, const Comparison& al
       parameters, others, pose);
 }
 
+/// The same as a page, with the chart of a report's parameters.
+std::string page_of(const Assembled& a, const Assembled& b, const Comparison& all) {
+  ReportData data;
+  std::vector<std::vector<std::string>> rows = {
+      {"parameter", "unit", a.result.folder, b.result.folder, "difference", "±", "times"}};
+  for (const auto* list : {&all.moved, &all.equal}) {
+    for (const Difference& of : *list) {
+      const auto shown = [&](double value) { return detail::for_people(value, of.unit).first; };
+      rows.push_back({of.name, detail::for_people(0.0, of.unit).second, shown(of.a), shown(of.b),
+                      shown(of.b - of.a), shown(of.deviation), fmt::format("{:.1f}", of.times())});
+      data.parameters.push_back({of.name, a.owner(of.name), of.unit, of.b - of.a, 0.0, of.deviation,
+                                 list == &all.moved ? "" : "not significant"});
+    }
+  }
+  const std::string title = a.result.folder + " and " + b.result.folder;
+  std::string body = fmt::format(
+      "<header class=\"verdict {}\">\n<button type=\"button\" id=\"theme\">Dark or light</button>\n"
+      "<h1>{}</h1>\n<p class=\"grade\">{} of {} moved</p>\n<p class=\"note\">{}: "
+      "{}</p>\n</header>\n"
+      "<main>\n<section id=\"parameters\"><h2>Differences</h2>\n",
+      all.moved.empty() ? "good" : "care", detail::html_text(a.result.robot.name()),
+      all.moved.size(), counted(all.moved.size() + all.equal.size(), "parameter"),
+      detail::html_text(title),
+      fmt::format("by more than {} standard deviations of the difference", kMoved));
+  for (const Chart& chart : charts(data)) body += detail::html_figure(chart);
+  body += detail::html_table(rows, 2) + "<details><summary>As text</summary><pre>" +
+          detail::html_text(text_of(a, b, all)) + "</pre></details></section>\n</main>\n";
+  return html_file({title, version(), body, ""});
+}
+
 }  // namespace
 
 int compare(const CompareOptions& options) {
@@ -229,7 +261,9 @@ int compare(const CompareOptions& options) {
   Comparison all = compared(a, b);
   compare_poses(a, b, all);
   fmt::print("{}", printable(text_of(a, b, all)));
-  if (!options.report.empty()) write_file(options.report, json_of(a, b, all));
+  if (!options.report.empty()) {
+    write_file(options.report, is_page(options.report) ? page_of(a, b, all) : json_of(a, b, all));
+  }
   return kDone;
 }
 

@@ -80,7 +80,12 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   command.add_flag("--upstream-names", options.upstream_names,
                    "name the files as robot_calibration does, with the date");
   command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
-  command.add_option("--report", options.report, "write report.json here, whatever the verdict")
+  command
+      .add_option(
+          "--report", options.reports,
+          "write a report, whatever the verdict: a page to look at if the name ends in .html, "
+          "else report.json; may be given twice")
+      ->allow_extra_args(false)
       ->type_name("FILE");
   command
       .add_option("--exclude", options.exclude,
@@ -457,7 +462,10 @@ void add_compare(CLI::App& command, CompareOptions& options) {
   command.add_option("b", options.b, "another one, of the same robot")
       ->required()
       ->type_name("DIR");
-  command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
+  command
+      .add_option("--report", options.report,
+                  "write what is found: a page to look at if the name ends in .html, else JSON")
+      ->type_name("FILE");
 }
 
 void add_rpy(CLI::App& command, RpyOptions& options) {
@@ -550,7 +558,26 @@ class Commands {
   std::function<int()> called_;
 };
 
-void add_commands(Commands& commands) {
+/// The command line as a shell reads it.
+std::string command_line(int argc, char** argv) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
+  std::string line = "kinecal";
+  for (int i = 1; i < argc; ++i) {
+    std::string word = argv[i];  // NOLINT: an array of main()
+    if (word.empty() || word.find_first_not_of(kPlain) != std::string::npos) {
+      for (std::size_t at = 0; (at = word.find('\'', at)) != std::string::npos; at += 4) {
+        word.replace(at, 1, "'\\''");
+      }
+      word = "'" + word + "'";
+    }
+    line += " " + word;
+  }
+  return line;
+}
+
+/// @param line  the command line, for reports
+void add_commands(Commands& commands, const std::string& line) {
   commands.add<InitOptions>(
       "init", "write a first configuration from a URDF; asks for what the options leave open",
       add_init, init);
@@ -560,7 +587,10 @@ void add_commands(Commands& commands) {
       add_check, check);
   commands.add<CalibrateOptions>(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files",
-      add_calibrate, calibrate);
+      add_calibrate, [line](CalibrateOptions options) {
+        options.command = line;
+        return calibrate(options);
+      });
   commands.add<RecheckOptions>("evaluate", "show how a result fits other samples, without solving",
                                add_recheck, evaluate);
   commands.add<RecheckOptions>(
@@ -619,7 +649,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("'kinecal help COMMAND' lists the options of a command.");
   Commands commands(app);
-  add_commands(commands);
+  add_commands(commands, command_line(argc, argv));
   std::string of;
   app.add_subcommand("help", "show this help, or that of a command")
       ->add_option("command", of)

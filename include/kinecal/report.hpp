@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/report/charts.hpp"
+#include "kinecal/report/checksum.hpp"
 #include "kinecal/report/findings.hpp"
+#include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/report/report_data.hpp"

@@ -23,3 +23,4 @@
 #include "kinecal/trust/ruined.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
+#include "kinecal/trust/workspace_map.hpp"

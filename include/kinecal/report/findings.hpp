@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/report/recorded_poses.hpp"
+#include "kinecal/report/text.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/judge.hpp"
@@ -73,7 +74,12 @@ template <class T>
 
 /// The report for people, in this order: verdict, fit, parameters, what cannot be determined, the worst
 /// samples, what to do next.  Distances in millimetres or pixels, angles in degrees.
-[[nodiscard]] std::string summary_text(const Findings& findings);
+[[nodiscard]] std::string findings_text(const Findings& findings);
+
+/// The same, then what each step did and how long it took.
+[[nodiscard]] inline std::string summary_text(const Findings& findings) {
+  return findings_text(findings) + "\n" + step_lines(findings.result);
+}
 
 }  // namespace kinecal
 

@@ -177,7 +177,7 @@ KINECAL_INLINE std::string capture_text(const CaptureError& error, const Assessm
   return text + fmt::format(", {:.1f} times the noise", error.times);
 }
 
-KINECAL_INLINE std::string summary_text(const Findings& findings) {
+KINECAL_INLINE std::string findings_text(const Findings& findings) {
   std::string text = detail::verdict_text(findings);
   text += fmt::format("\nRobot '{}', {} sample{}", findings.robot, findings.sources.size(),
                       findings.sources.size() == 1 ? "" : "s");
@@ -192,7 +192,7 @@ KINECAL_INLINE std::string summary_text(const Findings& findings) {
        {detail::correlations_text(findings), detail::captures_text(findings)}) {
     if (!part.empty()) text += "\n" + part;
   }
-  return text + "\n" + detail::next_text(findings) + "\n" + step_lines(findings.result);
+  return text + "\n" + detail::next_text(findings);
 }
 
 }  // namespace kinecal

@@ -24,6 +24,7 @@ namespace detail {
 /// max are of the features' norms.  Units are metres, radians and pixels; `sigma` of a parameter is one
 /// standard deviation, null if it is not determined.  `covariance` is of all parameters, row by row of
 /// the lower triangle, zero along the combinations of `undetermined`; `poses` are joint positions.
+/// Source: schema/report.schema.json beside this header has all of it
 [[nodiscard]] std::string json_report(const Findings& findings);
 
 }  // namespace kinecal

@@ -57,10 +57,11 @@ KINECAL_INLINE std::string json_number(double value) {
 [[nodiscard]] inline std::string json(const StepResult& step) {
   return fmt::format(
       R"({{"name": {}, "iterations": {}, "initial_cost": {}, "final_cost": {}, "seconds": {}, )"
-      R"("num_residuals": {}, "num_parameters": {}, "form": {}, "starts": {}}})",
+      R"("num_residuals": {}, "num_parameters": {}, "form": {}, "costs": {}, "starts": {}}})",
       json_string(step.name), step.iterations, json_number(step.initial_cost),
       json_number(step.final_cost), json_number(step.seconds), step.num_residuals,
-      step.num_parameters, json_string(to_string(step.form)), json(step.starts));
+      step.num_parameters, json_string(to_string(step.form)), json_row(step.costs, json_number),
+      json(step.starts));
 }
 
 [[nodiscard]] inline std::string json(const BlockStatistics& block) {

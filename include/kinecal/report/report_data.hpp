@@ -16,6 +16,7 @@
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/report/findings.hpp"
+#include "kinecal/trust/workspace_map.hpp"
 
 namespace kinecal {
 
@@ -79,12 +80,6 @@ struct ReportedParameter {
       note;  ///< "", "not significant", "not determined", "hardly determined", "at its bound"
 };
 
-/// Where the pose in question is known how well: for the map of the workspace.
-struct KnownPoint {
-  std::array<double, 3> p_base{};  ///< metres
-  double deviation = 0.0;          ///< standard deviation of the position, metres
-};
-
 /// All that a report shows.
 struct ReportData {
   std::string robot;  ///< its name
@@ -110,4 +105,14 @@ struct ReportData {
   std::string summary;                  ///< the report as text
 };
 
+/// Gathers what a report shows of a calibration, but its inputs, date and command.
+/// @param calibration  the one that was solved, with its samples
+/// @param samples      those of its problems, in their order
+[[nodiscard]] ReportData report_data(const Calibration& calibration, const Findings& findings,
+                                     std::span<const Sample> samples);
+
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/report_data.ipp"
+#endif

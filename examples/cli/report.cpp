@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+
+#include "kinecal/report/checksum.hpp"
+#include "kinecal/report/html.hpp"
+#include "kinecal/report/json.hpp"
+#include "kinecal/trust/workspace_map.hpp"
+#include "output_file.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The file of a camera: "camera=left.yaml:cam1" -> "left.yaml".
+std::string camera_file(const std::string& camera) {
+  const std::string file = camera.substr(camera.find('=') + 1);
+  return fs::exists(file) ? file : file.substr(0, file.rfind(':'));
+}
+
+/// A file that was read, with its checksum; one that is too large for that within a second has none.
+InputFile input_file(const std::string& role, const std::string& name) {
+  InputFile input{role, name, 0, ""};
+  std::error_code unreadable;
+  input.bytes = fs::file_size(name, unreadable);
+  constexpr std::uintmax_t kMost = std::uintmax_t{1} << 28U;
+  if (unreadable) {
+    input.bytes = 0;
+  } else if (input.bytes > kMost) {
+    input.sha256 = "not computed: the file is larger than 256 MB";
+  } else {
+    std::ifstream in(name, std::ios::binary);
+    input.sha256 = sha256_text(std::string(std::istreambuf_iterator<char>(in), {}));
+  }
+  return input;
+}
+
+/// All files that a calibration read; of a folder, those in it.
+std::vector<InputFile> input_files(const CalibrateOptions& options, const Input& input) {
+  std::vector<InputFile> files;
+  if (!options.urdf.empty()) {
+    files.push_back({"URDF", options.urdf, input.urdf_text.size(), sha256_text(input.urdf_text)});
+  } else {
+    files.push_back({"URDF", input.urdf, input.urdf_text.size(), sha256_text(input.urdf_text)});
+  }
+  files.push_back(
+      {"configuration", options.config, input.config_text.size(), sha256_text(input.config_text)});
+  for (const std::string& samples : options.samples) {
+    if (!fs::is_directory(samples)) {
+      files.push_back(input_file("samples", samples));
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (const auto& file : fs::directory_iterator(samples)) {
+      if (file.is_regular_file()) inside.push_back(file.path().string());
+    }
+    std::sort(inside.begin(), inside.end());
+    for (const std::string& file : inside) files.push_back(input_file("samples", file));
+  }
+  for (const std::string& camera : options.cameras) {
+    files.push_back(input_file("camera", camera_file(camera)));
+  }
+  return files;
+}
+
+/// Today, or the day that SOURCE_DATE_EPOCH names, as in reproducible builds.
+std::string day() {
+  std::time_t now = std::time(nullptr);
+  if (const char* fixed = std::getenv("SOURCE_DATE_EPOCH")) {
+    char* end = nullptr;
+    const long long seconds = std::strtoll(fixed, &end, 10);
+    constexpr long long kYear9999 = 253'402'300'799;
+    if (end != fixed && *end == '\0' && seconds >= 0 && seconds <= kYear9999) {
+      now = static_cast<std::time_t>(seconds);
+    }
+  }
+  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
+}
+
+std::string page(const CalibrateOptions& options, const Input& input, const Fit& fitted) {
+  ReportData data = report_data(fitted.calibration, fitted.findings, fitted.samples);
+  data.version = version();
+  data.command = options.command;
+  data.date = day();
+  data.inputs = input_files(options, input);
+  const Findings& findings = fitted.findings;
+  if (!findings.assessments.empty()) {
+    constexpr int kPoses = 400;
+    std::vector<double> values;
+    for (const Parameter& parameter : findings.result.table) values.push_back(parameter.value);
+    const std::size_t step = findings.assessments.size() - 1;
+    data.workspace = workspace_map(*fitted.calibration.steps[step].problem,
+                                   findings.assessments.back(), values, kPoses);
+  }
+  return html_report(data, "");
+}
+
+}  // namespace
+
+bool is_page(const std::string& file) {
+  const std::string extension = fs::path(file).extension().string();
+  return extension == ".html" || extension == ".htm";
+}
+
+void check_reports(const CalibrateOptions& options) {
+  std::vector<std::string> inputs = options.samples;
+  inputs.insert(inputs.end(), {options.urdf, options.config});
+  for (const std::string& camera : options.cameras) inputs.push_back(camera_file(camera));
+  constexpr bool kReplace = true;
+  for (const std::string& report : options.reports) check_output(report, inputs, kReplace);
+}
+
+void write_reports(const CalibrateOptions& options, const Input& input, const Fit& fitted) {
+  for (const std::string& report : options.reports) {
+    write_file(report,
+               is_page(report) ? page(options, input, fitted) : json_report(fitted.findings));
+  }
+}
+
+}  // namespace kinecal::cli

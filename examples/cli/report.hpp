@@ -1,0 +1,24 @@
+// The report of a calibration as a file: HTML to look at, or JSON.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "commands.hpp"
+#include "fit.hpp"
+#include "input.hpp"
+
+namespace kinecal::cli {
+
+/// True for the name of a page: it ends in .html or .htm.
+[[nodiscard]] bool is_page(const std::string& file);
+
+/// Checks that no report would replace an input of the calibration.
+/// @throws OutputError  if one would
+void check_reports(const CalibrateOptions& options);
+
+/// Writes the reports that the options ask for: pages or JSON.
+/// @throws OutputError  naming the file
+void write_reports(const CalibrateOptions& options, const Input& input, const Fit& fitted);
+
+}  // namespace kinecal::cli

@@ -1,0 +1,29 @@
+// SHA-256, with which a report names its inputs and the browser checks its script.
+// Source: FIPS 180-4.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// The SHA-256 of some bytes.
+[[nodiscard]] std::array<std::uint8_t, 32> sha256(std::string_view bytes);
+
+/// The same as `sha256sum` prints it: 64 hexadecimal digits.
+[[nodiscard]] std::string sha256_text(std::string_view bytes);
+
+/// Bytes as base64, padded.
+/// Source: RFC 4648, 4
+[[nodiscard]] std::string base64(std::string_view bytes);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/checksum.ipp"
+#endif

@@ -1,0 +1,47 @@
+// The report as one HTML file that opens anywhere: verdict, errors, parameters, the robot in 3-D.
+//
+// Nothing is fetched: style and script are in the file, and its content security policy allows nothing
+// else.  Every text of a user's file is escaped.  The same data give the same bytes.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/report/charts.hpp"
+#include "kinecal/report/report_data.hpp"
+
+namespace kinecal {
+
+/// A whole page.
+struct HtmlPage {
+  std::string title;    ///< plain text
+  std::string version;  ///< "kinecal 0.1.0"
+  std::string body;     ///< HTML
+  std::string scene;    ///< JSON of the 3-D view; empty: none
+};
+
+/// The page as a file, with style, script and content security policy.
+[[nodiscard]] std::string html_file(const HtmlPage& page);
+
+/// The report of a calibration.
+/// @param scene  JSON of the 3-D view: see scene_json(); empty: none
+[[nodiscard]] std::string html_report(const ReportData& data, const std::string& scene);
+
+namespace detail {
+
+/// A chart with its caption.
+[[nodiscard]] std::string html_figure(const Chart& chart);
+
+/// A table whose first columns are text and whose others are numbers; cells are plain text.
+[[nodiscard]] std::string html_table(const std::vector<std::vector<std::string>>& rows,
+                                     std::size_t text_columns);
+
+}  // namespace detail
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/html.ipp"
+#endif

@@ -1,0 +1,73 @@
+// Writing the HTML report.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "kinecal/report/checksum.hpp"
+#include "kinecal/report/html.hpp"
+#include "kinecal/report/html_sections.ipp"
+#include "kinecal/report/html_tables.ipp"
+#include "kinecal/report/page_files.ipp"  // made when kinecal is configured, of page/
+
+namespace kinecal {
+
+namespace detail {
+
+/// "'sha256-...'", as a content security policy names a text.
+[[nodiscard]] inline std::string policy_source(std::string_view text) {
+  const auto digest = sha256(text);
+  return "'sha256-" + base64(std::string(digest.begin(), digest.end())) + "'";
+}
+
+/// The 3-D view, with a sentence for readers without script.
+[[nodiscard]] inline std::string view_section() {
+  return "<section id=\"robot\"><h2>The robot</h2>\n"
+         "<figure id=\"view3d\" class=\"view3d\"><canvas aria-label=\"The robot in 3-D, before and "
+         "after the calibration\"></canvas><div class=\"controls\"></div>"
+         "<figcaption>Before (ghost) and after. Lines lead from measured to predicted points. "
+         "Drag to turn, scroll to zoom; a click on a sample in a chart or table shows it here."
+         "</figcaption></figure></section>\n";
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::string html_file(const HtmlPage& page) {
+  const std::string style = std::string(detail::kPageStyle) + chart_style();
+  const std::string script(detail::kPageScript);
+  const std::string policy = fmt::format(
+      "default-src 'none'; style-src {}; script-src {}; img-src data:; base-uri 'none'; "
+      "form-action 'none'",
+      detail::policy_source(style), detail::policy_source(script));
+  std::string text = fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+      "<meta name=\"generator\" content=\"{}\"/>\n<title>{}</title>\n",
+      policy, html_text(page.version), html_text(page.title));
+  text += "<style>" + style + "</style>\n</head>\n<body>\n" + page.body;
+  if (!page.scene.empty()) {
+    text += "<script type=\"application/json\" id=\"scene\">" + page.scene + "</script>\n";
+  }
+  return text + "<script>" + script + "</script>\n</body>\n</html>\n";
+}
+
+KINECAL_INLINE std::string html_report(const ReportData& data, const std::string& scene) {
+  const std::vector<Chart> all = charts(data);
+  std::string body = detail::html_top(data);
+  body += detail::html_navigation(!scene.empty());
+  body += "<main>\n";
+  body += detail::section("errors", "Errors", detail::fit_figures(data), all);
+  body += detail::section("samples", "Samples", detail::worst_samples(data), all);
+  if (!scene.empty()) body += detail::view_section();
+  body += detail::section("parameters", "Parameters", detail::parameter_figures(data), all);
+  body += detail::section("convergence", "Convergence", detail::step_figures(data), all);
+  body += detail::inputs_section(data);
+  body += "</main>\n";
+  return html_file({data.robot + ": " + std::string(to_string(data.verdict)) + " - calibration",
+                    data.version, body, scene});
+}
+
+}  // namespace kinecal

@@ -1,0 +1,147 @@
+// The sections of the HTML report.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/report/html.hpp"
+#include "kinecal/report/svg.hpp"
+#include "kinecal/report/text.hpp"
+#include "kinecal/trust/reading.hpp"
+#include "kinecal/trust/weak_parameters.hpp"
+
+namespace kinecal::detail {
+
+KINECAL_INLINE std::string html_figure(const Chart& chart) {
+  return fmt::format("<figure><h3>{}</h3>{}<figcaption>{}</figcaption></figure>\n",
+                     html_text(chart.title), chart.svg, html_text(chart.caption));
+}
+
+KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>>& rows,
+                                      std::size_t text_columns) {
+  std::string html = "<div class=\"scroll\"><table class=\"numbers\">";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    html += r == 0 ? "<thead><tr>" : "<tr>";
+    for (std::size_t c = 0; c < rows[r].size(); ++c) {
+      const char* kind = c < text_columns ? " class=\"text\"" : "";
+      html += r == 0 ? fmt::format("<th scope=\"col\"{}>{}</th>", kind, html_text(rows[r][c]))
+                     : fmt::format("<td{}>{}</td>", kind, html_text(rows[r][c]));
+    }
+    html += r == 0 ? "</tr></thead><tbody>" : "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+/// A section: its figures, then its charts.
+[[nodiscard]] inline std::string section(std::string_view id, std::string_view title,
+                                         const std::string& figures,
+                                         const std::vector<Chart>& charts) {
+  std::string html = fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}", id, title, figures);
+  for (const Chart& chart : charts) {
+    if (chart.section == id) html += html_figure(chart);
+  }
+  return html + "</section>\n";
+}
+
+/// How a grade is called as a class.
+[[nodiscard]] inline std::string_view class_of(Grade grade) {
+  return grade == Grade::good ? "good" : grade == Grade::use_with_care ? "care" : "bad";
+}
+
+/// Significant changes, those first that matter most: against the deviation that is of use.
+[[nodiscard]] inline std::vector<const ReportedParameter*> largest_changes(const ReportData& data) {
+  std::vector<const ReportedParameter*> all;
+  for (const ReportedParameter& parameter : data.parameters) {
+    if (parameter.note.empty() && parameter.sigma && parameter.value != parameter.initial) {
+      all.push_back(&parameter);
+    }
+  }
+  const auto size = [](const ReportedParameter* p) {
+    const double useful = useful_deviation({.name = p->name, .unit = p->unit});
+    return std::abs(p->value - p->initial) / (std::isfinite(useful) ? useful : 1.0);
+  };
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const auto* a, const auto* b) { return size(a) > size(b); });
+  constexpr std::size_t kListed = 5;
+  if (all.size() > kListed) all.resize(kListed);
+  return all;
+}
+
+/// "What was wrong", in a list.
+[[nodiscard]] inline std::string what_was_wrong(const ReportData& data) {
+  std::string items;
+  for (const ReportedParameter* parameter : largest_changes(data)) {
+    const auto [change, unit] = for_people(parameter->value - parameter->initial, parameter->unit);
+    items += fmt::format("<li><code>{}</code> {} {} <span class=\"note\">&plusmn; {}</span></li>",
+                         html_text(parameter->name), html_text(change), html_text(unit),
+                         html_text(for_people(*parameter->sigma, parameter->unit).first));
+  }
+  if (items.empty()) return "";
+  return "<div><h2>Largest corrections</h2><ul>" + items + "</ul></div>\n";
+}
+
+/// Samples that do not fit, in a list.
+[[nodiscard]] inline std::string bad_samples(const ReportData& data) {
+  constexpr int kListed = 5;
+  int bad = 0;
+  std::string items;
+  for (const ReportedSample& sample : data.samples) {
+    if (!sample.bad || ++bad > kListed) continue;
+    items +=
+        fmt::format("<li><a href=\"#sample={0}\" data-sample=\"{0}\">sample {0}</a> {1}: {2}</li>",
+                    sample.number, html_text(sample.source), html_text(sample.why));
+  }
+  if (items.empty()) return "<div><h2>Bad captures</h2><p>none</p></div>\n";
+  if (bad > kListed) items += fmt::format("<li>and {} more</li>", bad - kListed);
+  return "<div><h2>Bad captures</h2><ul>" + items + "</ul></div>\n";
+}
+
+/// "hand_eye 34.1 -> 0.9 mm"
+[[nodiscard]] inline std::string fit_sentence(const ReportData& data) {
+  std::string items;
+  for (const ReportedBlock& block : data.blocks) {
+    items += fmt::format("<li><code>{}</code> {} &rarr; <strong>{}</strong> {}</li>",
+                         html_text(block.name), in_reading_unit(block.rms_before, block.unit),
+                         in_reading_unit(block.rms_after, block.unit), reading_unit(block.unit));
+  }
+  std::string html = "<div><h2>Fit</h2><ul>" + items + "</ul>";
+  if (data.pose) {
+    html +=
+        fmt::format("<p><code>{}</code> in <code>{}</code> is known to <strong>{}</strong>, {}</p>",
+                    html_text(data.pose->frame), html_text(data.pose->in),
+                    reading(data.pose->position, "m"), reading(data.pose->rotation, "rad"));
+  }
+  return html + "</div>\n";
+}
+
+/// Verdict, reasons, what was wrong, bad captures.
+[[nodiscard]] inline std::string html_top(const ReportData& data) {
+  std::string reasons;
+  for (const std::string& reason : data.reasons) reasons += "<li>" + html_text(reason) + "</li>";
+  const auto left_out = std::count_if(data.samples.begin(), data.samples.end(),
+                                      [](const ReportedSample& sample) { return sample.left_out; });
+  std::string about = fmt::format("{} samples", data.samples.size() - left_out);
+  if (left_out > 0) about += fmt::format(", {} left out", left_out);
+  if (!data.recorded.empty()) about += ", recorded " + data.recorded;
+  if (!data.date.empty()) about += ", calibrated " + data.date;
+  return fmt::format(
+      "<header class=\"verdict {}\">\n<button type=\"button\" id=\"theme\">Dark or light</button>\n"
+      "<h1>{}</h1>\n<p class=\"grade\">{}</p>\n<p class=\"note\">{}</p>\n{}"
+      "<div class=\"cards\">{}{}{}</div>\n</header>\n",
+      class_of(data.verdict), html_text(data.robot), to_string(data.verdict), html_text(about),
+      reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n", fit_sentence(data),
+      what_was_wrong(data), bad_samples(data));
+}
+
+[[nodiscard]] inline std::string html_navigation(bool has_scene) {
+  return fmt::format(
+      "<nav class=\"toc\" aria-label=\"Sections\"><a href=\"#errors\">Errors</a> "
+      "<a href=\"#samples\">Samples</a> {}<a href=\"#parameters\">Parameters</a> "
+      "<a href=\"#convergence\">Convergence</a> <a href=\"#inputs\">Inputs</a></nav>\n",
+      has_scene ? "<a href=\"#robot\">Robot</a> " : "");
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,133 @@
+// The tables of the HTML report.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/report/html.hpp"
+#include "kinecal/report/svg.hpp"
+#include "kinecal/report/text.hpp"
+
+namespace kinecal::detail {
+
+/// Before, fitted and held out, of each error block.
+[[nodiscard]] inline std::string fit_figures(const ReportData& data) {
+  std::vector<std::vector<std::string>> rows = {
+      {"error block", "unit", "features", "before", "fitted", "held out", "noise", "sigma given"}};
+  for (const ReportedBlock& block : data.blocks) {
+    const auto text = [&](double value) { return in_reading_unit(value, block.unit); };
+    rows.push_back({block.name, reading_unit(block.unit), fmt::format("{}", block.features.size()),
+                    text(block.rms_before), text(block.rms_after),
+                    block.held_out ? text(*block.held_out) : "-",
+                    block.sigma > 0.0 ? text(block.sigma) : "-",
+                    block.sigma_given > 0.0 ? text(block.sigma_given) : "-"});
+  }
+  return "<p>Distances of features, root of the mean square; noise of a coordinate.</p>\n" +
+         html_table(rows, 2);
+}
+
+/// Samples that do not fit, and the worst of the others.
+[[nodiscard]] inline std::string worst_samples(const ReportData& data) {
+  std::vector<const ReportedSample*> worst;
+  for (const ReportedSample& sample : data.samples) {
+    if (sample.bad || sample.left_out || sample.times > 0.0) worst.push_back(&sample);
+  }
+  std::stable_sort(worst.begin(), worst.end(), [](const auto* a, const auto* b) {
+    return std::pair(a->left_out, a->times) > std::pair(b->left_out, b->times);
+  });
+  constexpr std::size_t kListed = 20;
+  std::string html =
+      "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th scope=\"col\">sample</th>"
+      "<th scope=\"col\" class=\"text\">recorded at</th><th scope=\"col\">times the noise</th>"
+      "<th scope=\"col\" class=\"text\">remark</th></tr></thead><tbody>";
+  for (std::size_t i = 0; i < std::min(kListed, worst.size()); ++i) {
+    const ReportedSample& sample = *worst[i];
+    html += fmt::format(
+        "<tr{}><td><a href=\"#sample={}\" data-sample=\"{}\">{}</a></td><td class=\"text\">{}</td>"
+        "<td>{}</td><td class=\"text\">{}{}</td></tr>\n",
+        sample.bad ? " class=\"bad\"" : "", sample.number, sample.number, sample.number,
+        html_text(sample.source), sample.times > 0.0 ? fmt::format("{:.1f}", sample.times) : "-",
+        sample.left_out ? "left out: " : "", html_text(sample.why));
+  }
+  html += "</tbody></table></div>\n";
+  if (worst.size() > kListed) {
+    html +=
+        fmt::format("<p class=\"note\">The worst {} of {} samples.</p>\n", kListed, worst.size());
+  }
+  return html;
+}
+
+/// What no sample determines, and what to hold.
+[[nodiscard]] inline std::string unobservable_text(const ReportData& data) {
+  if (data.unobservable.empty()) return "";
+  std::string html = fmt::format(
+      "<div class=\"open\"><h3>Not determined by these samples</h3><p>{} of {} parameters: no "
+      "residual "
+      "changes along</p><ul>",
+      data.unobservable.size(), static_cast<std::size_t>(data.rank) + data.unobservable.size());
+  constexpr std::size_t kCombinations = 12, kParameters = 5;
+  for (std::size_t c = 0; c < std::min(kCombinations, data.unobservable.size()); ++c) {
+    const auto& combination = data.unobservable[c];
+    html += "<li>";
+    for (std::size_t i = 0; i < std::min(kParameters, combination.size()); ++i) {
+      html += fmt::format("{:+.3g}&nbsp;<code>{}</code> ", combination[i].second,
+                          html_text(combination[i].first));
+    }
+    html += combination.size() > kParameters ? "&hellip;</li>" : "</li>";
+  }
+  html += "</ul>";
+  if (!data.hold.empty()) {
+    std::string hold = "--hold";
+    for (const std::string& name : data.hold) hold += " " + name;
+    html += "<p>Hold these to determine the others: <code>" + html_text(hold) +
+            "</code>. Poses that move the joints between them apart, or another target, determine "
+            "them as well.</p>";
+  }
+  return html + "</div>\n";
+}
+
+[[nodiscard]] inline std::string parameter_figures(const ReportData& data) {
+  std::vector<std::vector<std::string>> rows = {
+      {"parameter", "unit", "calibrated", "±", "from", ""}};
+  for (const ReportedParameter& parameter : data.parameters) {
+    const auto [value, unit] = for_people(parameter.value, parameter.unit);
+    rows.push_back({parameter.name, unit, value,
+                    parameter.sigma ? for_people(*parameter.sigma, parameter.unit).first : "-",
+                    for_people(parameter.initial, parameter.unit).first, parameter.note});
+  }
+  return unobservable_text(data) + "<p>With one standard deviation.</p>\n" + html_table(rows, 2);
+}
+
+[[nodiscard]] inline std::string step_figures(const ReportData& data) {
+  std::vector<std::vector<std::string>> rows = {
+      {"step", "ended", "parameters", "residuals", "cost before", "after", "iterations"}};
+  for (const StepResult& step : data.steps) {
+    rows.push_back({step.name, step.termination, fmt::format("{}", step.num_parameters),
+                    fmt::format("{}", step.num_residuals), fmt::format("{:.6g}", step.initial_cost),
+                    fmt::format("{:.6g}", step.final_cost), fmt::format("{}", step.iterations)});
+  }
+  std::string html = html_table(rows, 2);
+  for (const StepResult& step : data.steps) {
+    if (step.starts.searched()) html += "<p>" + html_text(to_string(step.starts)) + "</p>\n";
+  }
+  return html;
+}
+
+/// What was read, how to repeat it, the report as text.
+[[nodiscard]] inline std::string inputs_section(const ReportData& data) {
+  std::vector<std::vector<std::string>> rows = {{"input", "file", "SHA-256", "bytes"}};
+  for (const InputFile& input : data.inputs) {
+    rows.push_back({input.role, input.name, input.sha256, fmt::format("{}", input.bytes)});
+  }
+  return fmt::format(
+      "<section id=\"inputs\"><h2>Inputs</h2>\n{}<p>{}, repeated by</p>\n"
+      "<pre class=\"command\"><code>{}</code></pre>\n"
+      "<details><summary>The report as text</summary><pre>{}</pre></details></section>\n",
+      html_table(rows, 3), html_text(data.version), html_text(data.command),
+      html_text(data.summary));
+}
+
+}  // namespace kinecal::detail

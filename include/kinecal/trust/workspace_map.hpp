@@ -1,0 +1,35 @@
+// How well the pose in question is known over the robot's workspace: where the gripper will be off, as
+// a camera sees it, also where no sample was taken.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/trust/assess.hpp"
+
+namespace kinecal {
+
+/// A position of a frame and how well it is known.
+struct KnownPoint {
+  std::array<double, 3> p_base{};  ///< of its origin in the base, metres
+  double deviation = 0.0;          ///< standard deviation of the position, metres: sqrt(trace)
+};
+
+/// The uncertainty of the position of an assessed step's pose at poses spread evenly over the limits
+/// of the joints that move it; a joint without limits, or with wider ones, takes a turn or a metre.
+/// @param values  of all parameters of the table: the solution
+/// @param poses   how many
+/// @returns       empty if the step has no pose in question, or if some joint drives nothing known
+/// Source: Halton, On the efficiency of certain quasi-random sequences of points, 1960, for the poses.
+[[nodiscard]] std::vector<KnownPoint> workspace_map(const AnyProblem& problem,
+                                                    const Assessment& step,
+                                                    std::span<const double> values, int poses);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/workspace_map.ipp"
+#endif
