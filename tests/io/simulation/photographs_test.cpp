@@ -10,8 +10,7 @@ namespace {
 
 SimulationPlan panda(const std::string& target = "checkerboard") {
   Diagnostics diagnostics;
-  const Robot robot =
-      read_urdf(std::string(KINECAL_SOURCE_DIR) + "/examples/robots/panda/panda.urdf");
+  const Robot robot = read_urdf(KINECAL_SOURCE_DIR "/examples/robots/panda/panda.urdf");
   SimulationPlan plan = read_simulation(robot, "", target, 1, diagnostics);
   plan.poses = 2;
   return plan;
