@@ -17,4 +17,7 @@ build/demo/bin/generate_example_samples "$robot/mobile_manipulator.urdf" "$out"
 build/demo/bin/kinecal inspect "$out/samples.yaml"
 echo "== kinecal calibrate"
 build/demo/bin/kinecal calibrate --urdf "$robot/mobile_manipulator.urdf" \
-  --config "$robot/calibrate.yaml" --samples "$out/samples.yaml" --output "$out/calibrated" --force
+  --config "$robot/calibrate.yaml" --samples "$out/samples.yaml" --output "$out/calibrated" --force \
+  --report "$out/report.html"
+echo
+echo "Look at it in a browser: $out/report.html"
