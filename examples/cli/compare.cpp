@@ -239,8 +239,8 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
   }
   const std::string title = a.result.folder + " and " + b.result.folder;
   std::string body = fmt::format(
-      "<header class=\"verdict {}\">\n<button type=\"button\" id=\"theme\">Dark or light</button>\n"
-      "<h1>{}</h1>\n<p class=\"grade\">{} of {} moved</p>\n<p class=\"note\">{}: "
+      "<header class=\"verdict {}\">\n"
+      "<h1>{}: <strong>{} of {} moved</strong></h1>\n<p class=\"note\">{}: "
       "{}</p>\n</header>\n"
       "<main>\n<section id=\"parameters\"><h2>Differences</h2>\n",
       all.moved.empty() ? "good" : "care", detail::html_text(a.result.robot.name()),
@@ -248,7 +248,7 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
       detail::html_text(title),
       fmt::format("by more than {} standard deviations of the difference", kMoved));
   for (const Chart& chart : charts(data)) body += detail::html_figure(chart);
-  body += detail::html_table(rows, 2) + "<details><summary>As text</summary><pre>" +
+  body += detail::html_table(rows, "ttnnnnn") + "<details><summary>As text</summary><pre>" +
           detail::html_text(text_of(a, b, all)) + "</pre></details></section>\n</main>\n";
   return html_file({title, version(), body, ""});
 }

@@ -31,12 +31,16 @@ struct HtmlPage {
 
 namespace detail {
 
+/// Plain text as HTML: escaped; what is not UTF-8, or not allowed in HTML, is replaced.
+[[nodiscard]] std::string html_text(std::string_view text);
+
 /// A chart with its caption.
 [[nodiscard]] std::string html_figure(const Chart& chart);
 
-/// A table whose first columns are text and whose others are numbers; cells are plain text.
+/// A table; cells are plain text, the first row is the header.
+/// @param columns  what is in each column: 't' short text, 'l' long text, 'n' a number
 [[nodiscard]] std::string html_table(const std::vector<std::vector<std::string>>& rows,
-                                     std::size_t text_columns);
+                                     std::string_view columns);
 
 }  // namespace detail
 

@@ -46,7 +46,7 @@ KINECAL_INLINE std::string html_file(const HtmlPage& page) {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
       "<meta name=\"generator\" content=\"{}\"/>\n<title>{}</title>\n",
-      policy, html_text(page.version), html_text(page.title));
+      policy, detail::html_text(page.version), detail::html_text(page.title));
   text += "<style>" + style + "</style>\n</head>\n<body>\n" + page.body;
   if (!page.scene.empty()) {
     text += "<script type=\"application/json\" id=\"scene\">" + page.scene + "</script>\n";

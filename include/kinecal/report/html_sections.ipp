@@ -15,18 +15,24 @@
 
 namespace kinecal::detail {
 
+KINECAL_INLINE std::string html_text(std::string_view text) {
+  return escape(text);
+}
+
 KINECAL_INLINE std::string html_figure(const Chart& chart) {
   return fmt::format("<figure><h3>{}</h3>{}<figcaption>{}</figcaption></figure>\n",
                      html_text(chart.title), chart.svg, html_text(chart.caption));
 }
 
 KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>>& rows,
-                                      std::size_t text_columns) {
+                                      std::string_view columns) {
   std::string html = "<div class=\"scroll\"><table class=\"numbers\">";
   for (std::size_t r = 0; r < rows.size(); ++r) {
     html += r == 0 ? "<thead><tr>" : "<tr>";
     for (std::size_t c = 0; c < rows[r].size(); ++c) {
-      const char* kind = c < text_columns ? " class=\"text\"" : "";
+      const char* kind = columns[c] == 't'   ? " class=\"text\""
+                         : columns[c] == 'l' ? " class=\"long\""
+                                             : "";
       html += r == 0 ? fmt::format("<th scope=\"col\"{}>{}</th>", kind, html_text(rows[r][c]))
                      : fmt::format("<td{}>{}</td>", kind, html_text(rows[r][c]));
     }
@@ -80,7 +86,7 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
                          html_text(for_people(*parameter->sigma, parameter->unit).first));
   }
   if (items.empty()) return "";
-  return "<div><h2>Largest corrections</h2><ul>" + items + "</ul></div>\n";
+  return "<div><h3>Largest corrections</h3><ul>" + items + "</ul></div>\n";
 }
 
 /// Samples that do not fit, in a list.
@@ -94,9 +100,9 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
         fmt::format("<li><a href=\"#sample={0}\" data-sample=\"{0}\">sample {0}</a> {1}: {2}</li>",
                     sample.number, html_text(sample.source), html_text(sample.why));
   }
-  if (items.empty()) return "<div><h2>Bad captures</h2><p>none</p></div>\n";
+  if (items.empty()) return "<div><h3>Bad captures</h3><p>none</p></div>\n";
   if (bad > kListed) items += fmt::format("<li>and {} more</li>", bad - kListed);
-  return "<div><h2>Bad captures</h2><ul>" + items + "</ul></div>\n";
+  return "<div><h3>Bad captures</h3><ul>" + items + "</ul></div>\n";
 }
 
 /// "hand_eye 34.1 -> 0.9 mm"
@@ -107,7 +113,7 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
                          html_text(block.name), in_reading_unit(block.rms_before, block.unit),
                          in_reading_unit(block.rms_after, block.unit), reading_unit(block.unit));
   }
-  std::string html = "<div><h2>Fit</h2><ul>" + items + "</ul>";
+  std::string html = "<div><h3>Fit, before and after</h3><ul>" + items + "</ul>";
   if (data.pose) {
     html +=
         fmt::format("<p><code>{}</code> in <code>{}</code> is known to <strong>{}</strong>, {}</p>",
@@ -128,20 +134,27 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
   if (!data.recorded.empty()) about += ", recorded " + data.recorded;
   if (!data.date.empty()) about += ", calibrated " + data.date;
   return fmt::format(
-      "<header class=\"verdict {}\">\n<button type=\"button\" id=\"theme\">Dark or light</button>\n"
-      "<h1>{}</h1>\n<p class=\"grade\">{}</p>\n<p class=\"note\">{}</p>\n{}"
-      "<div class=\"cards\">{}{}{}</div>\n</header>\n",
+      "<header class=\"verdict {}\">\n"
+      "<h1>{}: <strong>{}</strong></h1>\n<p class=\"note\">{}</p>\n{}"
+      "<div class=\"facts\">{}{}{}</div>\n</header>\n",
       class_of(data.verdict), html_text(data.robot), to_string(data.verdict), html_text(about),
       reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n", fit_sentence(data),
       what_was_wrong(data), bad_samples(data));
 }
 
 [[nodiscard]] inline std::string html_navigation(bool has_scene) {
-  return fmt::format(
-      "<nav class=\"toc\" aria-label=\"Sections\"><a href=\"#errors\">Errors</a> "
-      "<a href=\"#samples\">Samples</a> {}<a href=\"#parameters\">Parameters</a> "
-      "<a href=\"#convergence\">Convergence</a> <a href=\"#inputs\">Inputs</a></nav>\n",
-      has_scene ? "<a href=\"#robot\">Robot</a> " : "");
+  std::string items;
+  for (const auto& [id, title] :
+       std::initializer_list<std::pair<const char*, const char*>>{{"errors", "Errors"},
+                                                                  {"samples", "Samples"},
+                                                                  {"robot", "Robot"},
+                                                                  {"parameters", "Parameters"},
+                                                                  {"convergence", "Convergence"},
+                                                                  {"inputs", "Inputs"}}) {
+    if (std::string_view(id) == "robot" && !has_scene) continue;
+    items += fmt::format("<li><a href=\"#{}\">{}</a></li>", id, title);
+  }
+  return "<nav class=\"toc\" aria-label=\"Sections\"><ul>" + items + "</ul></nav>\n";
 }
 
 }  // namespace kinecal::detail

@@ -26,7 +26,7 @@ namespace kinecal::detail {
                     block.sigma_given > 0.0 ? text(block.sigma_given) : "-"});
   }
   return "<p>Distances of features, root of the mean square; noise of a coordinate.</p>\n" +
-         html_table(rows, 2);
+         html_table(rows, "ttnnnnnn");
 }
 
 /// Samples that do not fit, and the worst of the others.
@@ -42,12 +42,12 @@ namespace kinecal::detail {
   std::string html =
       "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th scope=\"col\">sample</th>"
       "<th scope=\"col\" class=\"text\">recorded at</th><th scope=\"col\">times the noise</th>"
-      "<th scope=\"col\" class=\"text\">remark</th></tr></thead><tbody>";
+      "<th scope=\"col\" class=\"long\">remark</th></tr></thead><tbody>";
   for (std::size_t i = 0; i < std::min(kListed, worst.size()); ++i) {
     const ReportedSample& sample = *worst[i];
     html += fmt::format(
         "<tr{}><td><a href=\"#sample={}\" data-sample=\"{}\">{}</a></td><td class=\"text\">{}</td>"
-        "<td>{}</td><td class=\"text\">{}{}</td></tr>\n",
+        "<td>{}</td><td class=\"long\">{}{}</td></tr>\n",
         sample.bad ? " class=\"bad\"" : "", sample.number, sample.number, sample.number,
         html_text(sample.source), sample.times > 0.0 ? fmt::format("{:.1f}", sample.times) : "-",
         sample.left_out ? "left out: " : "", html_text(sample.why));
@@ -98,7 +98,8 @@ namespace kinecal::detail {
                     parameter.sigma ? for_people(*parameter.sigma, parameter.unit).first : "-",
                     for_people(parameter.initial, parameter.unit).first, parameter.note});
   }
-  return unobservable_text(data) + "<p>With one standard deviation.</p>\n" + html_table(rows, 2);
+  return unobservable_text(data) + "<p>With one standard deviation.</p>\n" +
+         html_table(rows, "ttnnnt");
 }
 
 [[nodiscard]] inline std::string step_figures(const ReportData& data) {
@@ -109,7 +110,7 @@ namespace kinecal::detail {
                     fmt::format("{}", step.num_residuals), fmt::format("{:.6g}", step.initial_cost),
                     fmt::format("{:.6g}", step.final_cost), fmt::format("{}", step.iterations)});
   }
-  std::string html = html_table(rows, 2);
+  std::string html = html_table(rows, "tlnnnnn");
   for (const StepResult& step : data.steps) {
     if (step.starts.searched()) html += "<p>" + html_text(to_string(step.starts)) + "</p>\n";
   }
@@ -126,7 +127,7 @@ namespace kinecal::detail {
       "<section id=\"inputs\"><h2>Inputs</h2>\n{}<p>{}, repeated by</p>\n"
       "<pre class=\"command\"><code>{}</code></pre>\n"
       "<details><summary>The report as text</summary><pre>{}</pre></details></section>\n",
-      html_table(rows, 3), html_text(data.version), html_text(data.command),
+      html_table(rows, "tttn"), html_text(data.version), html_text(data.command),
       html_text(data.summary));
 }
 
