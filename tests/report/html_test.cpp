@@ -76,6 +76,7 @@ TEST(Html, IsWellFormedWhateverNamesContain) {
     ASSERT_TRUE(parsed) << parsed.description() << " with " << name.substr(0, 40);
     EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
     EXPECT_THAT(page, Not(HasSubstr("<img")));
+    EXPECT_EQ(page.find_first_of("\x01\xff\xfe"), std::string::npos);
     EXPECT_TRUE(document.select_node("//header[@class='verdict good']"));
     EXPECT_FALSE(document.select_node("//@onerror | //@onclick | //@style"));
   }

@@ -9,12 +9,12 @@ namespace {
 
 /// The scene's robot, whose joints can only be where a sample has them.
 Robot held_robot(const Sample& at) {
-  const Robot free = mobile_manipulator();
+  const Robot free = test::mobile_manipulator();
   std::vector<Joint> joints = free.joints();
   for (Joint& joint : joints) {
     if (const auto position = at.position(joint.name)) joint.limits = {*position, *position};
   }
-  return {free.name(), joints};
+  return {free.name(), std::move(joints)};
 }
 
 TEST(WorkspaceMap, IsTheUncertaintyOfThePoseAtOneSample) {
