@@ -523,7 +523,11 @@ function listen() {
     if (wanted) selectNumber(Number(wanted));
   });
   addEventListener("hashchange", fromHash);
-  addEventListener("beforeprint", () => draw());
+  addEventListener("beforeprint", drawOnPaper);
+  addEventListener("afterprint", () => {
+    paper.remove();
+    resize();
+  });
   document.addEventListener("kinecal:theme", redraw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
@@ -543,6 +547,16 @@ function resize() {
   if (canvas.width === width && canvas.height === height) return;
   [canvas.width, canvas.height] = [width, height];
   draw();  // at once: a canvas is empty when its size has changed
+}
+
+/// Browsers print the last picture that was on the screen, which may be dark or coarse; this one is a copy.
+const paper = element("img", { class: "paper", alt: "", decoding: "sync" });
+function drawOnPaper() {
+  const finer = Math.max(1, 2000 / canvas.width);
+  [canvas.width, canvas.height] = [canvas.width, canvas.height].map((v) => Math.round(v * finer));
+  draw();
+  paper.src = canvas.toDataURL();
+  canvas.after(paper);
 }
 
 function begin() {
