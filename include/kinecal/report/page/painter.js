@@ -76,7 +76,7 @@ const SOLID = [`#version 300 es
     vec3 n = normalize(dot(across, across) > 0.0 ? across : facet), to_eye = normalize(eye - world);
     if (dot(n, to_eye) < 0.0) n = -n;
     float facing = dot(n, to_eye);
-    float alpha = mix(0.75, 0.16, smoothstep(0.0, 0.8, facing));
+    float alpha = mix(0.6, 0.16, smoothstep(0.0, 0.6, facing));
     float light = 0.38 + 0.34 * max(dot(n, normalize(vec3(0.3, -0.5, 0.8))), 0.0) + 0.3 * facing;
     pixel = ghost ? vec4(color * alpha, alpha) : vec4(color * light, 1.0);
   }`];

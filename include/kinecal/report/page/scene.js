@@ -163,5 +163,5 @@ function readScene() {
 }
 
 return { IDENTITY, numbers, number, vector, poseOf, add, subtract, times, dot, cross, norm, rotate, at,
-  compose, alongZ, matrix, words, list, linkPoses, readScene };
+  compose, alongZ, matrix, words, list, parts, linkPoses, readScene };
 })();

@@ -16,7 +16,7 @@
 (() => {
 "use strict";
 const { IDENTITY, numbers, number, vector, poseOf, add, subtract, times, dot, cross, norm, rotate, at,
-  compose, alongZ, words, list, linkPoses, readScene } = kinecalScene;
+  compose, alongZ, words, list, parts, linkPoses, readScene } = kinecalScene;
 const { Painter } = kinecalPainter;
 
 const figure = document.getElementById("view3d");
@@ -65,7 +65,8 @@ function scaleColour(share) {
 
 // What is drawn.
 /// The visuals and bones of a robot: [{shape, pose, scale, color}].
-function solidsOf(poses, own) {
+/// @param plain  colour of what has none of its own
+function solidsOf(poses, plain) {
   const solids = [], { shapes, meshes } = painter;
   scene.links.forEach((link, i) => {
     if (!poses[i]) return;
@@ -75,11 +76,13 @@ function solidsOf(poses, own) {
       const shape = v.kind === "mesh" ? meshes[v.mesh] : shapes[v.kind], scale = scales[v.kind];
       if (!shape || !numbers(scale, 3) || scale.some((s) => s === 0)) continue;
       solids.push({ shape, pose: compose(poses[i], poseOf(v.pose)), scale,
-        color: own && numbers(v.color, 3) ? v.color.slice(0, 3) : null });
+        color: numbers(v.color, 3) ? v.color.slice(0, 3) : plain });
     }
   });
-  return [...solids, ...bonesOf(poses)].map((s) => ({ ...s, color: s.color ?? own ?? [0, 0, 0] }));
+  return [...solids, ...bonesOf(poses).map((bone) => ({ ...bone, color: plain }))];
 }
+const tinted = (solids, color, share) =>
+  solids.map((s) => ({ ...s, color: add(times(s.color, 1 - share), times(color, share)) }));
 /// Rods between the joints of links that have no visuals, and a ball at each of these joints.
 function bonesOf(poses) {
   const bones = [], { shapes } = painter, thick = 0.018 * scene.size;
@@ -103,12 +106,16 @@ const dotAt = (points, place, color, alpha, size) =>
   points.push(...place, ...color, alpha, size * ratio());
 const ratio = () => canvas.width / Math.max(1, canvas.clientWidth);
 
-/// Lines of 0.1, 1, 10 m and so on under the robot.
+/// Distance of the lines of the grid: 0.1, 0.2, 0.5, 1 m and so on.
+function gridStep() {
+  const power = 10 ** Math.floor(Math.log10(scene.size / 3)), rest = scene.size / 3 / power;
+  return power * (rest < 1.5 ? 1 : rest < 3.5 ? 2 : 5);
+}
 function gridLines(color) {
-  const lines = [], step = 10 ** Math.floor(Math.log10(scene.size * 0.9)), count = 40;
+  const lines = [], step = gridStep(), count = 25;
   const [x, y] = [0, 1].map((i) => Math.round(scene.middle[i] / step) * step), z = scene.ground;
   for (let i = -count; i <= count; ++i) {
-    const a = i * step, far = count * step, width = i % 10 === 0 ? 1.6 : 1;
+    const a = i * step, far = count * step, width = i % 5 === 0 ? 1.8 : 1;
     line(lines, [x + a, y - far, z], [x + a, y + far, z], color, 1, width);
     line(lines, [x - far, y + a, z], [x + far, y + a, z], color, 1, width);
   }
@@ -118,7 +125,7 @@ function gridLines(color) {
 function frameLines(lines, poses, alpha, width) {
   const axes = [["axis-x", [1, 0, 0]], ["axis-y", [0, 1, 0]], ["axis-z", [0, 0, 1]]];
   for (const joint of scene.corrected) {
-    const pose = poses[joint.child], far = 0.13 * scene.size;
+    const pose = poses[joint.child], far = 0.1 * scene.size;
     for (const [name, axis] of axes) {
       line(lines, pose.slice(0, 3), at(pose, times(axis, far)), colour(name), alpha, width);
     }
@@ -127,7 +134,7 @@ function frameLines(lines, poses, alpha, width) {
 function cameraLines(lines, poses, color, alpha) {
   for (const camera of scene.cameras) {
     if (!poses[camera.link] || !(camera.fx > 0) || !(camera.fy > 0)) continue;
-    const pose = compose(poses[camera.link], poseOf(camera.pose)), depth = 0.25 * scene.size;
+    const pose = compose(poses[camera.link], poseOf(camera.pose)), depth = 0.17 * scene.size;
     const corner = (u, v) => at(pose, [(u - number(camera.cx)) / camera.fx * depth,
       (v - number(camera.cy)) / camera.fy * depth, depth]);
     const w = number(camera.width), h = number(camera.height);
@@ -145,8 +152,8 @@ function drawFeatures(which, color) {
     if (!feature[which]) continue;
     const [measured, predicted] = feature[which];
     line(lines, measured, predicted, color, 1, 2);
-    dotAt(points, measured, color, 1, 7);
-    dotAt(points, predicted, color, 1, -13);
+    dotAt(points, measured, color, 1, 9);
+    dotAt(points, predicted, color, 1, -14);
   }
   painter.throughSolids((strength) => {
     painter.lines(lines, { strength });
@@ -187,7 +194,7 @@ function draw() {
   painter.lines(gridLines(colour("grid")), { fade: [...scene.middle, 5 * scene.size] });
   painter.gl.depthMask(true);
   if (show.after) painter.solids(solidsOf(is, colour("robot")), false);
-  else if (show.before) painter.solids(solidsOf(was, null).map((s) => ({ ...s, color: before })));
+  else if (show.before) painter.solids(tinted(solidsOf(was, colour("robot")), before, 0.5), false);
   if (show.points && exact) {
     if (show.after) drawCloud(is, after);
     else if (show.before) drawCloud(was, ink);
@@ -202,7 +209,7 @@ function draw() {
   if (show.frames) frameLines(axes, show.after ? is : was, 1, 2.5);
   painter.throughSolids((strength) => painter.lines(axes, { strength }));
   if (show.after && show.before) {
-    painter.ghosts(solidsOf(was, null).map((s) => ({ ...s, color: before })));
+    painter.ghosts(tinted(solidsOf(was, before), before, 1));
   }
   if (show.points && exact) {
     if (show.before) drawFeatures("before", before);
@@ -214,9 +221,8 @@ function draw() {
 // The viewer: looks at `target` from `distance`, turned by yaw about z and lifted by pitch.
 const FIELD = 0.6;  // vertical field of view, radians
 const view = { yaw: -0.9, pitch: 0.35, distance: 3, target: [0, 0, 0] };
-function viewAxes() {
-  const [cy, sy, cp, sp] = [Math.cos(view.yaw), Math.sin(view.yaw), Math.cos(view.pitch),
-    Math.sin(view.pitch)];
+function viewAxes({ yaw, pitch } = view) {
+  const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
   return { right: [-sy, cy, 0], up: [-sp * cy, -sp * sy, cp], back: [cp * cy, cp * sy, sp] };
 }
 function cameraView() {
@@ -246,7 +252,7 @@ function ball(points) {
 function robotPoints() {
   const poses = linkPoses(scene, here().q, "after", 1);
   const points = poses.filter(Boolean).map((p) => p.slice(0, 3));
-  for (const { shape, pose, scale } of solidsOf(poses, null)) {
+  for (const { shape, pose, scale } of solidsOf(poses, [0, 0, 0])) {
     for (let k = 0; k < 8; ++k) {
       const corner = [0, 1, 2].map((i) => ((k >> i) & 1 ? shape.high : shape.low)[i] * scale[i]);
       points.push(at(pose, corner));
@@ -255,16 +261,26 @@ function robotPoints() {
   return points;
 }
 const featurePoints = () => here().features.flatMap((f) => f.after ?? []);
-function fitted(points) {
-  const { middle, radius } = ball(points), wide = Math.min(1, canvas.width / canvas.height);
-  return { target: middle, distance: (1.08 * radius) / Math.sin(FIELD / 2) / wide };
+/// The view from a direction that shows points as large as the picture allows.
+function fitted(points, yaw = view.yaw, pitch = view.pitch) {
+  const { right, up, back } = viewAxes({ yaw, pitch }), tangent = 0.9 * Math.tan(FIELD / 2);
+  const aspect = canvas.width / canvas.height;
+  const seen = points.map((p) => [dot(p, right), dot(p, up), dot(p, back)]);
+  const { middle: [x, y, z], radius } = ball(seen);
+  const distance = seen.reduce((most, p) => Math.max(most, p[2] - z +
+    Math.max(Math.abs(p[0] - x) / aspect, Math.abs(p[1] - y)) / tangent), 1.5 * radius);
+  return { yaw, pitch, distance, target: add(add(times(right, x), times(up, y)), times(back, z)) };
 }
+const shown = () => [...robotPoints(), ...featurePoints()];
 const VIEWS = {
-  Reset: () => ({ yaw: -0.9, pitch: 0.35, ...fitted([...robotPoints(), ...featurePoints()]) }),
-  Front: () => ({ yaw: 0, pitch: 0 }),
-  Side: () => ({ yaw: -Math.PI / 2, pitch: 0 }),
-  Top: () => ({ yaw: -Math.PI, pitch: Math.PI / 2 }),
-  Points: () => (featurePoints().length ? fitted(featurePoints()) : {}),
+  Reset: () => fitted(shown(), -0.9, 0.35),
+  Front: () => fitted(shown(), 0, 0),
+  Side: () => fitted(shown(), -Math.PI / 2, 0),
+  Top: () => fitted(shown(), -Math.PI, Math.PI / 2),
+  Points: () => {
+    const points = featurePoints(), view = fitted(points.length ? points : shown());
+    return { ...view, distance: 2 * view.distance };
+  },
 };
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 let flight = 0;
@@ -312,16 +328,25 @@ function zoom(factor) {
 }
 
 // Names of corrected frames over the picture; a name that would cover another one is left out.
+/// "1.15°", "7.8 mm, 1.54°": by how much the calibration moved a joint or frame.
+function correctionText(joint) {
+  const [a, b] = [parts(joint.before), parts(joint.after)], slides = joint.type === "prismatic";
+  const offset = Math.abs(b.offset - a.offset);
+  const metres = norm(subtract(b.t, a.t)) + (slides ? offset : 0);
+  const turned = norm(subtract(b.r, a.r)) + (slides ? 0 : offset);
+  return [metres > 0 ? `${(1000 * metres).toFixed(1)} mm` : "",
+    turned > 0 ? `${(turned * 180 / Math.PI).toFixed(2)}°` : ""].filter(Boolean).join(", ");
+}
 const labels = element("div", { class: "labels", "aria-hidden": "true" });
 function placeLabels(poses) {
   const { camera } = cameraView(), placed = [];
   const named = scene.corrected.filter((joint) => poses[joint.child]).map((joint) =>
-    ({ text: joint.name ?? "", place: poses[joint.child] }));
+    ({ text: `${joint.name ?? ""} ${correctionText(joint)}`, place: poses[joint.child] }));
   labels.replaceChildren(...named.flatMap(({ text, place }) => {
     const [x, y, w] = [0, 1, 3].map((i) =>
       camera[i] * place[0] + camera[4 + i] * place[1] + camera[8 + i] * place[2] + camera[12 + i]);
     const left = (0.5 + x / w / 2) * canvas.clientWidth, top = (0.5 - y / w / 2) * canvas.clientHeight;
-    const width = 7 * Math.min(text.length, 30) + 16;
+    const width = 7 * Math.min(text.length, 34) + 16;
     const covers = placed.some(([l, t, s]) =>
       left < l + s && l < left + width && Math.abs(top - t) < 17);
     if (w <= 0 || left < 0 || top < 10 || left + width > canvas.clientWidth || covers ||
@@ -348,7 +373,7 @@ function describe(sample) {
   const { worst } = sample;
   if (worst) {
     const name = [scene.blocks[worst.block], worst.name].filter(Boolean).join(", ");
-    text += `. Largest error${name ? `, ${name}` : ""}${worst.error ? `: ${worst.error}` : ""}`;
+    text += `. Largest error: ${[name, worst.error].filter(Boolean).join(", ")}`;
   }
   return `${text.replace(/[.]$/, "")}.`;
 }
@@ -434,7 +459,8 @@ function legend() {
   const entry = (kind, text) =>
     element("span", { class: kind }, element("i", { class: "sign", "aria-hidden": "true" }), text);
   const made = element("div", { class: "legend" }, entry("before", "before"), entry("after", "after"),
-    entry("measured", "measured"), entry("predicted", "predicted"));
+    entry("measured", "measured"), entry("predicted", "predicted"),
+    element("span", { class: "grid" }, `grid ${Number(gridStep().toPrecision(1))} m`));
   const errors = scene.workspacePoints.map((p) => p[3]);
   scene.errors = errors.reduce(([a, b], e) => [Math.min(a, e), Math.max(b, e)], [Infinity, -Infinity]);
   if (errors.length) {
@@ -497,7 +523,11 @@ function listen() {
     if (wanted) selectNumber(Number(wanted));
   });
   addEventListener("hashchange", fromHash);
-  addEventListener("beforeprint", () => draw());
+  addEventListener("beforeprint", drawOnPaper);
+  addEventListener("afterprint", () => {
+    paper.remove();
+    resize();
+  });
   document.addEventListener("kinecal:theme", redraw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
@@ -519,10 +549,20 @@ function resize() {
   draw();  // at once: a canvas is empty when its size has changed
 }
 
+/// Browsers print the last picture that was on the screen, which may be dark or coarse; this one is a copy.
+const paper = element("img", { class: "paper", alt: "", decoding: "sync" });
+function drawOnPaper() {
+  const finer = Math.max(1, 2000 / canvas.width);
+  [canvas.width, canvas.height] = [canvas.width, canvas.height].map((v) => Math.round(v * finer));
+  draw();
+  paper.src = canvas.toDataURL();
+  canvas.after(paper);
+}
+
 function begin() {
   const stage = element("div", { class: "stage" });
   canvas.replaceWith(stage);
-  stage.append(canvas, labels, legend());
+  stage.append(canvas, labels);
   panel.before(status);
   for (const [name, value] of Object.entries({ tabindex: 0, role: "application",
     "aria-roledescription": "3-D view", "aria-describedby": "view3d-status view3d-hint" })) {
@@ -534,6 +574,7 @@ function begin() {
   const { middle, low } = ball(robotPoints());
   scene.ground = Math.min(0, low[2]);
   scene.middle = [middle[0], middle[1], scene.ground];
+  stage.append(legend());
   fillPanel();
   panel.append(element("p", { class: "hint", id: "view3d-hint" }, "Drag or arrow keys turn, Shift moves, ",
     "+ and − zoom, Page Up and Page Down change the sample. Points are drawn at 1× only."));
