@@ -10,4 +10,6 @@
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/report/report_data.hpp"
 #include "kinecal/report/residuals_csv.hpp"
+#include "kinecal/report/robot_scene.hpp"
+#include "kinecal/report/scene_json.hpp"
 #include "kinecal/report/text.hpp"

@@ -1,0 +1,52 @@
+// The scene of a calibration as JSON, for the viewer in the HTML report.
+//
+// Lengths are metres, angles radians; a pose is [x, y, z, qx, qy, qz, qw].
+//
+//   { "base": 0,                  index of the link in which points are given
+//     "links":  [{"name", "visuals": [{"kind": "box", "size": [3], "pose": [7], "color": [r, g, b]},
+//                                     {"kind": "cylinder", "radius", "length", ...},
+//                                     {"kind": "sphere", "radius", ...},
+//                                     {"kind": "mesh", "mesh": 0, "scale": [3], ...}]}],
+//     "joints": [{"name", "type", "parent": 0, "child": 1, "origin": [7], "axis": [3],
+//                 "drive": [index into q or -1, multiplier, offset],
+//                 "before": {"t": [3], "r": [3], "offset"}, "after": ..., "virtual": true}],
+//     "meshes": [{"vertices": base64 of float32 x y z, "triangles": base64 of uint32 a b c}],
+//     "names": [joint of q[0], ...],
+//     "samples": [{"number": 1, "source", "bad": false, "note", "q": [...],
+//                  "features": [{"block": 0, "name", "before": [[3], [3]], "after": ..., "error"}]}],
+//     "blocks": [names], "thinned": "200 of 10000 samples",
+//     "cameras": [{"name", "link", "pose": [7], "width", "height", "fx", "fy", "cx", "cy"}],
+//     "workspace": {"unit": "mm", "points": [[x, y, z, error], ...]} }
+//
+// What does not exist is left out: a correction, a note, a point behind a camera.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/report/robot_scene.hpp"
+
+namespace kinecal {
+
+/// The scene as JSON in the form above.  It may stand in an HTML <script>: it has no <, > and &, and is
+/// UTF-8 whatever the names are.
+[[nodiscard]] std::string scene_json(const RobotScene& scene);
+
+namespace detail {
+
+/// A string as JSON that may stand in HTML: <, >, & and line separators are escaped, and bytes that are
+/// not UTF-8 become U+FFFD.
+[[nodiscard]] std::string html_json_string(std::string_view text);
+
+/// A number with some digits behind the point, without zeros at its end; "0" if it is not finite.
+[[nodiscard]] std::string short_number(double value, int digits);
+
+}  // namespace detail
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/scene_json.ipp"
+#endif

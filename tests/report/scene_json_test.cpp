@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/report/scene_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cstring>
+#include <limits>
+
+namespace kinecal {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The value of a base64 digit.
+unsigned digit(char c) {
+  const std::string all = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  return static_cast<unsigned>(all.find(c));
+}
+
+template <class T>
+std::vector<T> numbers_of(const std::string& base64) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 3 < base64.size(); i += 4) {
+    unsigned bits = 0, padding = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool pad = base64[i + k] == '=';
+      padding += pad ? 1 : 0;
+      bits = bits << 6 | (pad ? 0 : digit(base64[i + k]));
+    }
+    for (unsigned k = 0; k < 3 - padding; ++k) {
+      bytes += static_cast<char>(bits >> (16 - 8 * k) & 255);
+    }
+  }
+  std::vector<T> numbers(bytes.size() / sizeof(T));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(T));
+  return numbers;
+}
+
+/// A scene with one of everything.
+RobotScene one_of_everything() {
+  RobotScene scene;
+  scene.links = {{"base"}, {"arm"}, {"board"}};
+  Visual box;
+  box.size = {0.1, 0.2, 0.3};
+  Visual mesh;
+  mesh.shape = VisualShape::mesh;
+  mesh.scale = {0.001, 0.001, -0.001};
+  scene.links[0].visuals = {{box}, {mesh, 0}, {mesh}};
+  SceneJoint joint;
+  joint.name = "elbow";
+  joint.type = JointType::revolute;
+  joint.child = 1;
+  joint.origin.translation = Vector3<double>(0.1, 0.0, -0.25);
+  joint.drive = 0;
+  joint.multiplier = -2.0;
+  joint.before.emplace();
+  joint.after = SceneCorrection{.t = {1e-3, 0.0, 0.0}, .offset = 0.0123456};
+  SceneJoint board;
+  board.name = "board";
+  board.parent = 1;
+  board.child = 2;
+  board.is_virtual = true;
+  scene.joints = {joint, board};
+  scene.meshes = {{{0.0F, 0.5F, -1.25F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F}, {0, 1, 2, 2, 1, 0}}};
+  scene.names = {"elbow"};
+  scene.blocks = {"points"};
+  SceneFeature feature;
+  feature.name = "feature 1";
+  feature.after = {{{1.0, 2.0, 3.0}, {1.0, 2.0, 3.00123456}}};
+  feature.error = "1.23 mm";
+  SceneSample sample;
+  sample.number = 7;
+  sample.source = "s.yaml:12";
+  sample.bad = true;
+  sample.note = "5 mm off";
+  sample.q = {0.25};
+  sample.features = {feature};
+  scene.samples = {sample};
+  scene.cameras = {{"camera", 1, 640, 480, 525.5, 525, 320, 240}};
+  scene.workspace = {{0.5, 0.0, 0.25, 0.0015}};
+  scene.thinned = "1 of 10 samples";
+  return scene;
+}
+
+TEST(SceneJson, HasOneOfEverything) {
+  const std::string text = scene_json(one_of_everything());
+  const YAML::Node json = YAML::Load(text);  // JSON is YAML
+  EXPECT_EQ(json["base"].as<int>(), 0);
+  EXPECT_EQ(json["links"].size(), 3U);
+  EXPECT_EQ(json["links"][0]["visuals"].size(), 2U) << "a mesh that was not found is left out";
+  EXPECT_EQ(json["links"][0]["visuals"][0]["size"][2].as<double>(), 0.3);
+  EXPECT_EQ(json["links"][0]["visuals"][1]["scale"][2].as<double>(), -0.001);
+  EXPECT_FALSE(json["links"][1]["visuals"]);
+  const YAML::Node elbow = json["joints"][0];
+  EXPECT_EQ(elbow["type"].as<std::string>(), "revolute");
+  EXPECT_EQ(elbow["origin"].as<std::vector<double>>(),
+            (std::vector<double>{0.1, 0.0, -0.25, 0.0, 0.0, 0.0, 1.0}));
+  EXPECT_EQ(elbow["drive"].as<std::vector<double>>(), (std::vector<double>{0.0, -2.0, 0.0}));
+  EXPECT_EQ(elbow["after"]["offset"].as<double>(), 0.012346);
+  EXPECT_EQ(elbow["before"]["t"][0].as<double>(), 0.0);
+  EXPECT_FALSE(json["joints"][1]["after"]);
+  EXPECT_TRUE(json["joints"][1]["virtual"].as<bool>());
+  const YAML::Node sample = json["samples"][0];
+  EXPECT_EQ(sample["number"].as<int>(), 7);
+  EXPECT_EQ(sample["note"].as<std::string>(), "5 mm off");
+  EXPECT_FALSE(sample["features"][0]["before"]);
+  EXPECT_EQ(sample["features"][0]["after"][1][2].as<double>(), 3.00123);
+  EXPECT_EQ(json["cameras"][0]["fx"].as<double>(), 525.5);
+  EXPECT_EQ(json["workspace"]["points"][0][3].as<double>(), 1.5);
+  EXPECT_EQ(json["thinned"].as<std::string>(), "1 of 10 samples");
+}
+
+TEST(SceneJson, MeshesReadBackBitForBit) {
+  const RobotScene scene = one_of_everything();
+  const YAML::Node mesh = YAML::Load(scene_json(scene))["meshes"][0];
+  EXPECT_EQ(numbers_of<float>(mesh["vertices"].as<std::string>()), scene.meshes[0].vertices);
+  EXPECT_EQ(numbers_of<std::uint32_t>(mesh["triangles"].as<std::string>()),
+            scene.meshes[0].triangles);
+}
+
+TEST(SceneJson, NamesCannotEndAScriptNorBreakTheText) {
+  RobotScene scene = one_of_everything();
+  const std::string evil =
+      "</script><img src=x onerror=\"alert('1')\">&\\\n\xE2\x80\xA8\xE2\x80\xA9";
+  scene.links[1].name = evil;
+  scene.names[0] = "\xF0\x9F\xA6\xBE \xD7\xA2";
+  scene.samples[0].source = "bad \xFF\xC0\xAF\xED\xA0\x80 bytes\xF0\x9F";
+  scene.samples[0].note = std::string(5000, 'x');
+  const std::string text = scene_json(scene);
+  for (const char* forbidden : {"<", ">", "&", "\n", "\xE2\x80\xA8", "\xE2\x80\xA9", "\xFF"}) {
+    EXPECT_THAT(text, Not(HasSubstr(forbidden)));
+  }
+  const YAML::Node json = YAML::Load(text);
+  EXPECT_EQ(json["links"][1]["name"].as<std::string>(), evil);
+  EXPECT_EQ(json["names"][0].as<std::string>(), scene.names[0]);
+  const std::string r = "\xEF\xBF\xBD";
+  EXPECT_EQ(json["samples"][0]["source"].as<std::string>(),
+            "bad " + r + r + r + r + r + r + " bytes" + r + r);
+}
+
+TEST(SceneJson, NumbersAreShortAndAlwaysNumbers) {
+  EXPECT_EQ(detail::short_number(0.1234567, 5), "0.12346");
+  EXPECT_EQ(detail::short_number(-0.000001, 5), "0");
+  EXPECT_EQ(detail::short_number(100.0, 5), "100");
+  EXPECT_EQ(detail::short_number(1500.0, 0), "1500");
+  EXPECT_EQ(detail::short_number(kNaN, 5), "0");
+  EXPECT_EQ(detail::short_number(std::numeric_limits<double>::infinity(), 5), "0");
+  RobotScene scene = one_of_everything();
+  scene.joints[0].origin.translation.setConstant(kNaN);
+  scene.samples[0].q[0] = kNaN;
+  EXPECT_EQ(YAML::Load(scene_json(scene))["samples"][0]["q"][0].as<double>(), 0.0);
+}
+
+TEST(SceneJson, AnEmptySceneIsAnObject) {
+  const YAML::Node json = YAML::Load(scene_json({}));
+  EXPECT_EQ(json["samples"].size(), 0U);
+  EXPECT_FALSE(json["workspace"]);
+}
+
+}  // namespace
+}  // namespace kinecal
