@@ -13,6 +13,7 @@
 #include "kinecal/report/checksum.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
+#include "kinecal/report/scene_json.hpp"
 #include "kinecal/trust/workspace_map.hpp"
 #include "output_file.hpp"
 
@@ -101,7 +102,13 @@ std::string page(const CalibrateOptions& options, const Input& input, const Fit&
     data.workspace = workspace_map(*fitted.calibration.steps[step].problem,
                                    findings.assessments.back(), values, kPoses);
   }
-  return html_report(data, "");
+  RobotScene scene = robot_scene(fitted.calibration, findings, fitted.samples);
+  for (const KnownPoint& point : data.workspace) {
+    const auto& [x, y, z] = point.p_base;
+    scene.workspace.push_back({x, y, z, point.deviation});
+  }
+  add_points(scene, data);
+  return html_report(data, scene_json(scene));
 }
 
 }  // namespace

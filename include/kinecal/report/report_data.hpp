@@ -16,6 +16,7 @@
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/report/findings.hpp"
+#include "kinecal/report/robot_scene.hpp"
 #include "kinecal/trust/workspace_map.hpp"
 
 namespace kinecal {
@@ -110,6 +111,9 @@ struct ReportData {
 /// @param samples      those of its problems, in their order
 [[nodiscard]] ReportData report_data(const Calibration& calibration, const Findings& findings,
                                      std::span<const Sample> samples);
+
+/// Adds where the features of planes are in the base, of those that a scene of the same calibration has.
+void add_points(const RobotScene& scene, ReportData& data);
 
 }  // namespace kinecal
 

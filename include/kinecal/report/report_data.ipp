@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include "kinecal/report/json_state.ipp"
 #include "kinecal/report/report_data.hpp"
@@ -25,8 +26,7 @@ namespace detail {
   for (const Parameter& parameter : calibration.table) initial.push_back(parameter.value);
   for (std::size_t s = findings.result.steps.size(); s-- > 0;) {
     const AnyProblem& problem = *calibration.steps[s].problem;
-    std::vector<ReportedBlock> of_step =
-        reported_blocks(problem, initial, findings, samples);
+    std::vector<ReportedBlock> of_step = reported_blocks(problem, initial, findings, samples);
     std::erase_if(of_step, [&](const ReportedBlock& block) { return seen.contains(block.name); });
     for (const ReportedBlock& block : of_step) seen.insert(block.name);
     blocks.insert(blocks.begin(), std::move_iterator(of_step.begin()),
@@ -125,6 +125,25 @@ KINECAL_INLINE ReportData report_data(const Calibration& calibration, const Find
   for (const int parameter : last.observability.hold) data.hold.push_back(name(parameter));
   data.pose = last.pose;
   return data;
+}
+
+KINECAL_INLINE void add_points(const RobotScene& scene, ReportData& data) {
+  std::map<std::tuple<std::string, int, std::string>, std::array<double, 3>> measured;
+  for (const SceneSample& sample : scene.samples) {
+    for (const SceneFeature& feature : sample.features) {
+      if (!feature.after) continue;
+      const std::string& block = scene.blocks[static_cast<std::size_t>(feature.block)];
+      measured.emplace(std::tuple(block, sample.number, feature.name), (*feature.after)[0]);
+    }
+  }
+  for (ReportedBlock& block : data.blocks) {
+    if (!block.is_plane) continue;
+    for (ReportedFeature& feature : block.features) {
+      const int number = data.samples[static_cast<std::size_t>(feature.sample)].number;
+      const auto found = measured.find({block.name, number, feature.feature.text()});
+      if (found != measured.end()) feature.point = found->second;
+    }
+  }
 }
 
 }  // namespace kinecal

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinecal/report/checksum.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/report/scene_json.hpp"
@@ -110,27 +111,15 @@ template <class Items, class Write>
 template <class T>
 [[nodiscard]] std::string base64_of(const std::vector<T>& numbers) {
   static_assert(sizeof(T) == 4, "base64_of() writes float and uint32_t");
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  std::uint32_t bits = 0;
-  int bytes = 0;
-  const auto flush = [&](int filled) {
-    for (int digit = 0; digit < 4; ++digit) {
-      text += digit <= filled ? kDigits[(bits >> (18 - 6 * digit)) & 63U] : '=';
-    }
-    bits = 0;
-    bytes = 0;
-  };
+  std::string bytes;
+  bytes.reserve(4 * numbers.size());
   for (const T number : numbers) {
     const auto word = std::bit_cast<std::uint32_t>(number);
-    for (int byte = 0; byte < 4; ++byte) {
-      bits |= ((word >> (8 * byte)) & 255U) << (16 - 8 * bytes);
-      if (++bytes == 3) flush(3);
+    for (unsigned byte = 0; byte < 4; ++byte) {
+      bytes += static_cast<char>((word >> (8 * byte)) & 255U);
     }
   }
-  if (bytes > 0) flush(bytes);
-  return text;
+  return base64(bytes);
 }
 
 }  // namespace kinecal::detail
