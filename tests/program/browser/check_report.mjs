@@ -47,11 +47,14 @@ class Check {
 }
 
 /// Sets a slider as a user does: its value, then the event.
-const slide = (page, selector, value) => page.evaluate(`(() => {
-  const slider = document.querySelector(${JSON.stringify(selector)});
-  slider.value = ${value};
-  slider.dispatchEvent(new Event("input", { bubbles: true }));
-})()`);
+async function slide(page, selector, value) {
+  await page.evaluate(`(() => {
+    const slider = document.querySelector(${JSON.stringify(selector)});
+    slider.value = ${value};
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  })()`);
+  await page.settle();
+}
 
 async function checkText(check, page) {
   const facts = await page.evaluate(`({
@@ -255,7 +258,7 @@ async function checkReport(browser, file, folder) {
       });
     }
   }
-  return check.mistakes;
+  return new Set(check.mistakes);
 }
 
 const given = process.argv.slice(2), option = given.indexOf("--pictures");

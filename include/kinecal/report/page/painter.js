@@ -155,8 +155,9 @@ function program(gl, [vertex, fragment], attributes) {
   }
   attributes.forEach((name, i) => gl.bindAttribLocation(linked, i, name));
   gl.linkProgram(linked);
+  if (!gl.getProgramParameter(linked, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(linked));
   const uniforms = {};
-  const count = gl.getProgramParameter(linked, gl.ACTIVE_UNIFORMS) ?? 0;
+  const count = gl.getProgramParameter(linked, gl.ACTIVE_UNIFORMS);
   for (let i = 0; i < count; ++i) {
     const { name } = gl.getActiveUniform(linked, i);
     uniforms[name] = gl.getUniformLocation(linked, name);

@@ -35,15 +35,18 @@ function element(tag, attributes = {}, ...children) {
 }
 
 const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
-if (!gl) {
+const scene = readScene();
+const { samples } = scene;
+let painter;
+try {
+  painter = gl && new Painter(gl, scene.meshes);
+} catch { /* its shaders do not run here */ }
+if (!painter) {
   panel.append(element("p", { class: "note" },
-    "This browser does not offer WebGL 2; the picture does not move."));
+    "This browser cannot draw in 3-D (WebGL 2); the picture does not move."));
   return;
 }
 
-const scene = readScene();
-const { samples } = scene;
-let painter = new Painter(gl, scene.meshes);
 const state = { sample: 0, factor: 1, ranked: -1,
   show: { after: true, before: true, points: true, frames: true, cameras: true, workspace: false } };
 const here = () => samples[state.sample] ?? { q: [], features: [] };
@@ -365,15 +368,17 @@ const slider = element("input", { type: "range", min: 0, max: Math.max(0, sample
 const factor = element("input", { type: "range", min: 1, max: 50, step: 1, value: 1, id: "view3d-factor" });
 const factorText = element("output", { for: "view3d-factor" }, "1×");
 
+/// Text of a file inside a sentence: letters that run from right to left do not turn the rest of it.
+const quoted = (text) => (/^[ -~]*$/.test(text) ? text : `\u2068${text}\u2069`);
 function describe(sample) {
   let text = `Sample ${sample.number ?? state.sample + 1}`;
-  if (sample.source) text += `, ${sample.source}`;
-  if (sample.bad) text += `, bad${sample.note ? `: ${sample.note}` : ""}`;
-  else if (sample.note) text += `: ${sample.note}`;
+  if (sample.source) text += `, ${quoted(sample.source)}`;
+  if (sample.bad) text += ", bad";
+  if (sample.note) text += `: ${quoted(sample.note)}`;
   const { worst } = sample;
   if (worst) {
-    const name = [scene.blocks[worst.block], worst.name].filter(Boolean).join(", ");
-    text += `. Largest error: ${[name, worst.error].filter(Boolean).join(", ")}`;
+    const parts = [scene.blocks[worst.block], worst.name, worst.error].filter(Boolean);
+    text += `. Largest error: ${parts.map(quoted).join(", ")}`;
   }
   return `${text.replace(/[.]$/, "")}.`;
 }
@@ -576,8 +581,11 @@ function begin() {
   scene.middle = [middle[0], middle[1], scene.ground];
   stage.append(legend());
   fillPanel();
-  panel.append(element("p", { class: "hint", id: "view3d-hint" }, "Drag or arrow keys turn, Shift moves, ",
-    "+ and − zoom, Page Up and Page Down change the sample. Points are drawn at 1× only."));
+  panel.append(element("p", { class: "hint", id: "view3d-hint" },
+    element("span", { class: "for-mouse" }, "Click the picture first: drag or arrow keys turn, with Shift move; ",
+      "wheel, + and − zoom; Page Up and Page Down change the sample. "),
+    element("span", { class: "for-fingers" }, "One finger turns, two move and zoom. "),
+    "Measured and predicted points are drawn at 1× only."));
   figure.classList.add("live");
   resize();
   Object.assign(view, VIEWS.Reset());
