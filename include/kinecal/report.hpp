@@ -2,7 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/report/charts.hpp"
+#include "kinecal/report/chart_style.hpp"
+#include "kinecal/report/charts/chart.hpp"
+#include "kinecal/report/charts/charts.hpp"
+#include "kinecal/report/charts/density.hpp"
+#include "kinecal/report/charts/distance_axis.hpp"
+#include "kinecal/report/charts/errors.hpp"
+#include "kinecal/report/charts/features.hpp"
+#include "kinecal/report/charts/held_out.hpp"
+#include "kinecal/report/charts/parameters.hpp"
+#include "kinecal/report/charts/samples.hpp"
 #include "kinecal/report/checksum.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/html.hpp"
@@ -12,4 +21,8 @@
 #include "kinecal/report/residuals_csv.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/report/scene_json.hpp"
+#include "kinecal/report/svg.hpp"
+#include "kinecal/report/svg_axis.hpp"
+#include "kinecal/report/svg_legend.hpp"
+#include "kinecal/report/svg_text.hpp"
 #include "kinecal/report/text.hpp"

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "kinecal/linkage.hpp"
-#include "kinecal/report/charts.hpp"
+#include "kinecal/report/charts/charts.hpp"
 #include "kinecal/report/report_data.hpp"
 
 namespace kinecal {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "kinecal/report/chart_style.hpp"
 #include "kinecal/report/checksum.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/html_sections.ipp"
@@ -23,13 +24,12 @@ namespace detail {
 }
 
 /// The 3-D view, with a sentence for readers without script.
-[[nodiscard]] inline std::string view_section() {
-  return "<section id=\"robot\"><h2>The robot</h2>\n"
-         "<figure id=\"view3d\" class=\"view3d\"><canvas aria-label=\"The robot in 3-D, before and "
+[[nodiscard]] inline std::string view_figure() {
+  return "<figure id=\"view3d\" class=\"view3d\"><canvas aria-label=\"The robot in 3-D, before and "
          "after the calibration\"></canvas><div class=\"controls\"></div>"
-         "<figcaption>Before (ghost) and after. Lines lead from measured to predicted points. "
-         "Drag to turn, scroll to zoom; a click on a sample in a chart or table shows it here."
-         "</figcaption></figure></section>\n";
+         "<noscript><p class=\"note\">The robot is drawn by a script; this page has it, but the "
+         "browser does not run it.</p></noscript><figcaption>Lines lead from measured to predicted "
+         "points. A click on a sample in a chart or table shows it here.</figcaption></figure>\n";
 }
 
 }  // namespace detail
@@ -57,11 +57,11 @@ KINECAL_INLINE std::string html_file(const HtmlPage& page) {
 KINECAL_INLINE std::string html_report(const ReportData& data, const std::string& scene) {
   const std::vector<Chart> all = charts(data);
   std::string body = detail::html_top(data);
-  body += detail::html_navigation(!scene.empty());
+  body += detail::html_navigation(!scene.empty() || !data.workspace.empty());
   body += "<main>\n";
   body += detail::section("errors", "Errors", detail::fit_figures(data), all);
   body += detail::section("samples", "Samples", detail::worst_samples(data), all);
-  if (!scene.empty()) body += detail::view_section();
+  body += detail::section("robot", "Robot", scene.empty() ? "" : detail::view_figure(), all);
   body += detail::section("parameters", "Parameters", detail::parameter_figures(data), all);
   body += detail::section("convergence", "Convergence", detail::step_figures(data), all);
   body += detail::inputs_section(data);

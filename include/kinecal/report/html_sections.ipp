@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "kinecal/report/html.hpp"
-#include "kinecal/report/svg.hpp"
+#include "kinecal/report/svg_text.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/trust/reading.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
@@ -41,15 +41,24 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
   return html + "</tbody></table></div>\n";
 }
 
-/// A section: its figures, then its charts.
+/// The section of the page in which a chart stands: its own, if the page has it.
+[[nodiscard]] inline std::string_view section_of(const Chart& chart) {
+  if (chart.section == "residuals") return "samples";
+  if (chart.section == "workspace") return "robot";
+  const bool has_own = chart.section == "parameters" || chart.section == "convergence";
+  return has_own ? std::string_view(chart.section) : "errors";
+}
+
+/// A section: its figures, then its charts; empty without any.
 [[nodiscard]] inline std::string section(std::string_view id, std::string_view title,
                                          const std::string& figures,
                                          const std::vector<Chart>& charts) {
-  std::string html = fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}", id, title, figures);
+  std::string html = figures;
   for (const Chart& chart : charts) {
-    if (chart.section == id) html += html_figure(chart);
+    if (section_of(chart) == id) html += html_figure(chart);
   }
-  return html + "</section>\n";
+  if (html.empty()) return "";
+  return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, title, html);
 }
 
 /// How a grade is called as a class.

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "kinecal/report/html.hpp"
-#include "kinecal/report/svg.hpp"
 #include "kinecal/report/text.hpp"
 
 namespace kinecal::detail {

@@ -1,0 +1,25 @@
+// The look of the charts: one style sheet for a page, or for a chart as a file of its own.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// CSS rules for everything in an svg of class "chart".  Colours are the page's variables --before,
+/// --after, --ink, --faint, --grid, --bad, --good, --sigma and --care; without them, those of a light
+/// page.
+[[nodiscard]] std::string chart_style();
+
+/// A chart as a file: the svg with a declaration, this style and a white background.
+/// @param svg  that of a Chart
+[[nodiscard]] std::string stand_alone(std::string_view svg);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/chart_style.ipp"
+#endif

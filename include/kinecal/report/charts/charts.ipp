@@ -1,0 +1,27 @@
+// Collecting the charts of a report.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iterator>
+#include <utility>
+
+#include "kinecal/report/charts/charts.hpp"
+#include "kinecal/report/charts/errors.hpp"
+#include "kinecal/report/charts/features.hpp"
+#include "kinecal/report/charts/held_out.hpp"
+#include "kinecal/report/charts/parameters.hpp"
+#include "kinecal/report/charts/samples.hpp"
+
+namespace kinecal {
+
+KINECAL_INLINE std::vector<Chart> charts(const ReportData& data) {
+  std::vector<Chart> all;
+  for (const auto draw :
+       {error_charts, held_out_charts, sample_charts, feature_charts, parameter_charts}) {
+    std::vector<Chart> some = draw(data);
+    std::move(some.begin(), some.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,29 @@
+// The axis of distances, and what noise makes one expect on it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/report/charts/chart.hpp"
+#include "kinecal/report/svg.hpp"
+
+namespace kinecal::detail {
+
+/// Distances of a block's features at the result, in the unit for people; some may not be finite.
+[[nodiscard]] std::vector<double> distances_of(const ReportedBlock& block);
+
+/// An axis for these distances: linear from zero, or logarithmic if some are so far off that all others
+/// would lie flat on it.
+/// @param sorted  finite distances, ascending
+[[nodiscard]] Axis distance_axis(const ReportedBlock& block, const std::vector<double>& sorted,
+                                 double bottom, double top);
+
+/// Lines at once and three times the distance that noise makes one expect.
+void draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,
+                      const ReportedBlock& block);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/charts/distance_axis.ipp"
+#endif

@@ -1,0 +1,46 @@
+// Axes of distances.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/report/charts/distance_axis.hpp"
+
+namespace kinecal::detail {
+
+KINECAL_INLINE std::vector<double> distances_of(const ReportedBlock& block) {
+  std::vector<double> distances;
+  distances.reserve(block.features.size());
+  for (const ReportedFeature& feature : block.features) {
+    distances.push_back(people_factor(block.unit) * std::abs(feature.after));
+  }
+  return distances;
+}
+
+KINECAL_INLINE Axis distance_axis(const ReportedBlock& block, const std::vector<double>& sorted,
+                                  double bottom, double top) {
+  const double factor = people_factor(block.unit);
+  const double noise = factor * expected_distance(block, std::max(0.0, block.sigma));
+  const double most = std::max(sorted.empty() ? 0.0 : sorted.back(), 1.1 * noise);
+  const double median = quantile(sorted, 0.5);
+  constexpr double kFarOff = 15.0;  // the others would lie flat on the axis
+  if (median > 0.0 && most > kFarOff * median) {
+    const double least = std::max(quantile(sorted, 0.02), 1e-2 * median);
+    return Axis::logarithmic(0.8 * least, 1.2 * most, bottom, top);
+  }
+  return Axis::linear(0.0, most, bottom, top);
+}
+
+KINECAL_INLINE void draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,
+                                     const ReportedBlock& block) {
+  const double noise = people_factor(block.unit) * expected_distance(block, block.sigma);
+  if (!(noise > 0.0) || !std::isfinite(noise)) return;
+  for (const double times : {1.0, 3.0}) {
+    if (times * noise > y.high() || times * noise < y.low()) continue;
+    const double at = y.at(times * noise);
+    drawing.line({area.left, at}, {area.right, at}, times == 1.0 ? "sigma" : "given");
+  }
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,19 @@
+// How samples fit that were held out of the calibration.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/report/charts/chart.hpp"
+
+namespace kinecal {
+
+/// Bars for each block: root of the mean squared distance before, of the samples in the fit, and of
+/// samples held out of it.
+[[nodiscard]] std::vector<Chart> held_out_charts(const ReportData& data);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/charts/held_out.ipp"
+#endif

@@ -1,0 +1,20 @@
+// Residuals of samples in the order of capture.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/report/charts/chart.hpp"
+
+namespace kinecal {
+
+/// For each block: distance of each feature over the number of its sample.  The worst feature of a
+/// sample stands out, samples that do not fit are red, those left out grey.  Marks have data-sample,
+/// the sample's number.  Lines: once and three times the distance that noise makes one expect.
+[[nodiscard]] std::vector<Chart> sample_charts(const ReportData& data);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/charts/samples.ipp"
+#endif

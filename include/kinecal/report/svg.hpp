@@ -1,0 +1,92 @@
+// Writing a chart as SVG: marks, texts, axes, with one title and one description for screen readers.
+//
+// Colours are classes only (chart_style.hpp), so a chart is light or dark as its page is.  Coordinates
+// are those of the viewBox, y downwards.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/report/svg_axis.hpp"
+
+namespace kinecal::detail {
+
+/// Width of every chart: on a phone a text of 13 is then one of 10.
+inline constexpr double kChartWidth = 480.0;
+/// Of texts, and of those of the classes "small" and "tick".
+inline constexpr double kFontSize = 13.0, kSmallFont = 12.0;
+
+/// Coordinates of a place in a chart.
+using Place = std::array<double, 2>;
+
+/// Where a text stands beside its place.
+enum class Anchor { start, middle, end };
+
+/// The part of a chart between its axes.
+struct PlotArea {
+  double left = 46.0, top = 24.0, right = kChartWidth - 10.0, bottom = 260.0;
+};
+
+/// A chart that is being drawn.
+class Drawing {
+ public:
+  /// @param name    data-chart of the svg, and the beginning of its ids
+  /// @param title   plain text
+  Drawing(std::string name, std::string_view title, double height, double width = kChartWidth);
+
+  void line(Place a, Place b, const char* classes);
+  void rectangle(Place corner, double width, double height, const char* classes,
+                 std::string_view title = {});
+  void circle(Place center, double radius, const char* classes, int sample = 0,
+              std::string_view title = {});
+  /// A line through places; a new piece begins where a place is not finite.
+  void curve(std::span<const Place> places, const char* classes);
+  /// A filled shape.
+  void area(std::span<const Place> places, const char* classes);
+  /// Anything that a path can be.
+  /// @param sample  number of the sample that a click selects; 0: none
+  void path(std::string_view data, const char* classes, int sample = 0,
+            std::string_view title = {});
+  /// @param title  shown when pointed at, such as the full name; empty: none
+  void text(Place place, std::string_view text, const char* classes = "",
+            Anchor anchor = Anchor::start, std::string_view title = {}, double turned = 0.0);
+  /// A name that is shortened to a width, with the full name as its title.
+  void name(Place place, std::string_view name, double width, const char* classes = "",
+            Anchor anchor = Anchor::start, double turned = 0.0);
+  void open_group(const char* classes);
+  void close_group();
+  /// Hatching, once in a chart; shapes of class "hatched" that come after are filled with it.
+  void hatching(Place corner, double width, double height, std::string_view title);
+
+  /// Grid, ticks and names of both axes; the name of y is above the axis.
+  void axes(const PlotArea& area, const Axis& x, const Axis& y, std::string_view x_name,
+            std::string_view y_name);
+  /// Grid, ticks and name of the axis x alone.
+  void axis_x(const PlotArea& area, const Axis& x, std::string_view name);
+  void axis_y(const PlotArea& area, const Axis& y, std::string_view name);
+
+  /// The whole svg.
+  /// @param description  a sentence or two with the main figures, plain text
+  [[nodiscard]] std::string str(std::string_view description) const;
+
+ private:
+  void close(int sample, std::string_view title, const char* tag);
+
+  std::string name_, title_, marks_;
+  double width_, height_;
+  bool has_hatching_ = false;
+};
+
+/// Marks of a sample as one path: dots where its features are.
+void append_dot(std::string& data, Place place);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/svg.ipp"
+#endif

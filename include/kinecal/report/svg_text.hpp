@@ -1,0 +1,42 @@
+// Texts and numbers in charts: safe in XML, short, and the same on every machine.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "kinecal/linkage.hpp"
+
+namespace kinecal::detail {
+
+/// A text between tags or in an attribute of XML.  Bytes that are not UTF-8, control characters and
+/// those that turn the direction of writing become U+FFFD.
+[[nodiscard]] std::string svg_escaped(std::string_view text);
+
+/// A name of at most `most` characters, shortened in the middle: "left_shou…r_pan_joint".  What is
+/// written from right to left is isolated, so that figures beside it keep their places.  Not escaped.
+[[nodiscard]] std::string shortened(std::string_view name, std::size_t most);
+
+/// A name as part of a file's name and of an id: small letters, digits, '_' and '-'.
+[[nodiscard]] std::string slug_of(std::string_view name);
+
+/// Width of a text in a common sans serif font, in units of the font size.  An estimate.
+[[nodiscard]] double text_width(std::string_view text);
+
+/// Appends a coordinate with one digit behind the point; what is not finite becomes 0.
+void append_coordinate(std::string& text, double value);
+/// The same as a text.
+[[nodiscard]] std::string coordinate(double value);
+
+/// A figure for people: three digits, "0.0123", "12.3", "12 345", "1.2e-7"; "–" if it is not finite.
+[[nodiscard]] std::string figure(double value, int digits = 3);
+
+/// Number of something: "200 000".
+[[nodiscard]] std::string count_text(std::size_t number);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/svg_text.ipp"
+#endif
