@@ -16,7 +16,7 @@
 namespace kinecal::detail {
 
 KINECAL_INLINE std::string html_text(std::string_view text) {
-  return escape(text);
+  return svg_escaped(text);
 }
 
 KINECAL_INLINE std::string html_figure(const Chart& chart) {
