@@ -9,6 +9,7 @@
 //     <figcaption>...</figcaption>
 //   </figure>
 //   a script element of type "application/json" and id "scene": see scene.js
+// Its policy needs img-src data: (for printing).
 // and anywhere elements with data-sample="12" (number, from 1): a click on one selects sample 12 and shows
 // the view; <a href="#sample=12" data-sample="12"> can also be reached by keyboard.
 // (No file of this folder may hold an opening or closing tag of a script: they are inlined as they are.)
@@ -98,6 +99,7 @@ function bonesOf(poses) {
       bones.push({ shape: shapes.cylinder, scale: [thick, thick, far],
         pose: [...times(add(from, to), 0.5), ...alongZ(along)] });
     }
+    if (far <= 1e-3 && joint.type === "fixed") continue;
     bones.push({ shape: shapes.sphere, scale: [1.7 * thick, 1.7 * thick, 1.7 * thick],
       pose: [...to, 0, 0, 0, 1] });
   }
@@ -525,7 +527,7 @@ function listen() {
   });
   document.addEventListener("click", (event) => {
     const wanted = event.target.closest?.("[data-sample]")?.getAttribute("data-sample");
-    if (wanted) selectNumber(Number(wanted));
+    if (wanted && getSelection().isCollapsed) selectNumber(Number(wanted));  // not while copying text
   });
   addEventListener("hashchange", fromHash);
   addEventListener("beforeprint", drawOnPaper);
@@ -582,8 +584,8 @@ function begin() {
   stage.append(legend());
   fillPanel();
   panel.append(element("p", { class: "hint", id: "view3d-hint" },
-    element("span", { class: "for-mouse" }, "Click the picture first: drag or arrow keys turn, with Shift move; ",
-      "wheel, + and − zoom; Page Up and Page Down change the sample. "),
+    element("span", { class: "for-mouse" }, "Drag to turn, with Shift to move. After a click the wheel zooms ",
+      "and keys work: arrows, + and −, Page Up and Page Down for samples. "),
     element("span", { class: "for-fingers" }, "One finger turns, two move and zoom. "),
     "Measured and predicted points are drawn at 1× only."));
   figure.classList.add("live");
