@@ -200,7 +200,7 @@ async function checkSampleLinks(check, page) {
   const numbers = await page.evaluate(`(() => {
     const known = JSON.parse(document.querySelector("#scene")?.textContent ?? "{}").samples ?? [];
     const linked = new Set([...document.querySelectorAll("[data-sample]")].map((e) => +e.dataset.sample));
-    return known.map((s) => s.number).filter((n) => linked.has(n));
+    return known.map((s) => s?.number).filter((n) => linked.has(n));
   })()`);
   if (!numbers.length || !await page.evaluate(`!!document.querySelector("#view3d.live")`)) return;
   const wanted = numbers[numbers.length - 1], status = `document.querySelector("#view3d-status").textContent`;

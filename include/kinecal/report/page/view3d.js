@@ -16,8 +16,8 @@
 // When a sample was selected, `document` gets the event "kinecal:sample" with detail {number}.
 (() => {
 "use strict";
-const { IDENTITY, numbers, number, vector, poseOf, add, subtract, times, dot, cross, norm, rotate, at,
-  compose, alongZ, words, list, parts, linkPoses, readScene } = kinecalScene;
+const { numbers, number, poseOf, add, subtract, times, dot, norm, at, ball, compose, alongZ, words, list,
+  correctionText, linkPoses, readScene } = kinecalScene;
 const { Painter } = kinecalPainter;
 
 const figure = document.getElementById("view3d");
@@ -138,7 +138,7 @@ function frameLines(lines, poses, alpha, width) {
 }
 function cameraLines(lines, poses, color, alpha) {
   for (const camera of scene.cameras) {
-    if (!poses[camera.link] || !(camera.fx > 0) || !(camera.fy > 0)) continue;
+    if (!poses[camera.link] || !(camera.fx > 0 && camera.fy > 0)) continue;
     const pose = compose(poses[camera.link], poseOf(camera.pose)), depth = 0.17 * scene.size;
     const corner = (u, v) => at(pose, [(u - number(camera.cx)) / camera.fx * depth,
       (v - number(camera.cy)) / camera.fy * depth, depth]);
@@ -241,19 +241,6 @@ function cameraView() {
   rows.forEach((row, i) => row.forEach((v, j) => { camera[4 * j + i] = v; }));
   return { camera, eye, viewport: [canvas.width, canvas.height] };
 }
-/// Centre and radius of points.
-function ball(points) {
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (const p of points) {
-    p.forEach((v, i) => {
-      low[i] = Math.min(low[i], v);
-      high[i] = Math.max(high[i], v);
-    });
-  }
-  if (!(low[0] <= high[0])) return { middle: [0, 0, 0.5], radius: 0.5, low: [0, 0, 0] };
-  return { middle: times(add(low, high), 0.5), radius: Math.max(norm(subtract(high, low)) / 2, 1e-3),
-    low };
-}
 function robotPoints() {
   const poses = linkPoses(scene, here().q, "after", 1);
   const points = poses.filter(Boolean).map((p) => p.slice(0, 3));
@@ -333,15 +320,6 @@ function zoom(factor) {
 }
 
 // Names of corrected frames over the picture; a name that would cover another one is left out.
-/// "1.15°", "7.8 mm, 1.54°": by how much the calibration moved a joint or frame.
-function correctionText(joint) {
-  const [a, b] = [parts(joint.before), parts(joint.after)], slides = joint.type === "prismatic";
-  const offset = Math.abs(b.offset - a.offset);
-  const metres = norm(subtract(b.t, a.t)) + (slides ? offset : 0);
-  const turned = norm(subtract(b.r, a.r)) + (slides ? 0 : offset);
-  return [metres > 0 ? `${(1000 * metres).toFixed(1)} mm` : "",
-    turned > 0 ? `${(turned * 180 / Math.PI).toFixed(2)}°` : ""].filter(Boolean).join(", ");
-}
 const labels = element("div", { class: "labels", "aria-hidden": "true" });
 function placeLabels(poses) {
   const { camera } = cameraView(), placed = [];
@@ -371,7 +349,10 @@ const factor = element("input", { type: "range", min: 1, max: 50, step: 1, value
 const factorText = element("output", { for: "view3d-factor" }, "1×");
 
 /// Text of a file inside a sentence: letters that run from right to left do not turn the rest of it.
-const quoted = (text) => (/^[ -~]*$/.test(text) ? text : `\u2068${text}\u2069`);
+function quoted(text) {
+  const short = text.length > 300 ? `${text.slice(0, 300)}…` : text;
+  return /^[ -~]*$/.test(short) ? short : `\u2068${short}\u2069`;
+}
 function describe(sample) {
   let text = `Sample ${sample.number ?? state.sample + 1}`;
   if (sample.source) text += `, ${quoted(sample.source)}`;
@@ -448,7 +429,7 @@ function fillPanel() {
     panel.append(row(label("view3d-factor", "Exaggeration"), factor, factorText));
   }
   const has = { points: samples.some((s) => s.features.length || s.cloud),
-    frames: scene.corrected.length, cameras: scene.cameras.length,
+    frames: scene.corrected.length, cameras: scene.cameras.some((c) => c.fx > 0 && c.fy > 0),
     workspace: scene.workspacePoints.length };
   const names = { after: "After", before: "Before", points: "Points", frames: "Frames",
     cameras: "Cameras", workspace: "Workspace" };
