@@ -87,12 +87,14 @@ function solidsOf(poses, plain) {
 }
 const tinted = (solids, color, share) =>
   solids.map((s) => ({ ...s, color: add(times(s.color, 1 - share), times(color, share)) }));
-/// Rods between the joints of links that have no visuals, and a ball at each of these joints.
+/// Rods between the joints of links that have no visuals, and a ball at each of these joints; thinner ones
+/// to frames that do not move.
 function bonesOf(poses) {
-  const bones = [], { shapes } = painter, thick = 0.018 * scene.size;
+  const bones = [], { shapes } = painter;
   for (const { joint } of scene.order) {
     const parent = scene.links[joint.parent];
     if (joint.virtual || list(parent.visuals).length) continue;
+    const thick = scene.size * (joint.type === "fixed" ? 0.007 : 0.018);
     const from = poses[joint.parent].slice(0, 3), to = poses[joint.child].slice(0, 3);
     const along = subtract(to, from), far = norm(along);
     if (far > 1e-3) {
@@ -136,16 +138,21 @@ function frameLines(lines, poses, alpha, width) {
     }
   }
 }
-function cameraLines(lines, poses, color, alpha) {
-  for (const camera of scene.cameras) {
-    if (!poses[camera.link] || !(camera.fx > 0 && camera.fy > 0)) continue;
+/// Of each camera its place and the corners of its picture in some distance.
+function frusta(poses) {
+  const drawable = (c) => poses[c.link] && c.fx > 0 && c.fy > 0;
+  return scene.cameras.filter(drawable).map((camera) => {
     const pose = compose(poses[camera.link], poseOf(camera.pose)), depth = 0.17 * scene.size;
     const corner = (u, v) => at(pose, [(u - number(camera.cx)) / camera.fx * depth,
       (v - number(camera.cy)) / camera.fy * depth, depth]);
     const w = number(camera.width), h = number(camera.height);
-    const corners = [corner(0, 0), corner(w, 0), corner(w, h), corner(0, h)];
+    return { eye: pose.slice(0, 3), corners: [corner(0, 0), corner(w, 0), corner(w, h), corner(0, h)] };
+  });
+}
+function cameraLines(lines, poses, color, alpha) {
+  for (const { eye, corners } of frusta(poses)) {
     corners.forEach((c, i) => {
-      line(lines, pose.slice(0, 3), c, color, alpha, 1.5);
+      line(lines, eye, c, color, alpha, 1.5);
       line(lines, c, corners[(i + 1) % 4], color, alpha, i === 0 ? 3 : 1.5);  // thick: the image's top
     });
   }
@@ -239,7 +246,7 @@ function cameraView() {
   rows[2][3] -= (2 * far * near) / (far - near);
   const camera = new Float32Array(16);
   rows.forEach((row, i) => row.forEach((v, j) => { camera[4 * j + i] = v; }));
-  return { camera, eye, viewport: [canvas.width, canvas.height] };
+  return { camera, eye, near, viewport: [canvas.width, canvas.height] };
 }
 function robotPoints() {
   const poses = linkPoses(scene, here().q, "after", 1);
@@ -263,7 +270,10 @@ function fitted(points, yaw = view.yaw, pitch = view.pitch) {
     Math.max(Math.abs(p[0] - x) / aspect, Math.abs(p[1] - y)) / tangent), 1.5 * radius);
   return { yaw, pitch, distance, target: add(add(times(right, x), times(up, y)), times(back, z)) };
 }
-const shown = () => [...robotPoints(), ...featurePoints()];
+function shown() {
+  const cameras = frusta(linkPoses(scene, here().q, "after", 1)).flatMap((f) => f.corners);
+  return [...robotPoints(), ...featurePoints(), ...cameras];
+}
 const VIEWS = {
   Reset: () => fitted(shown(), -0.9, 0.35),
   Front: () => fitted(shown(), 0, 0),
