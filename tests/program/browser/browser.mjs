@@ -212,6 +212,16 @@ export class Page {
     await this.settle();
   }
 
+  /// Two fingers, left and right of a point, move to another distance of each other.
+  async pinch([x, y], distance, to_distance) {
+    const touch = (type, d) => this.#send("Input.dispatchTouchEvent", { type,
+      touchPoints: d ? [{ x: x - d / 2, y, id: 0 }, { x: x + d / 2, y, id: 1 }] : [] });
+    await touch("touchStart", distance);
+    await touch("touchMove", to_distance);
+    await touch("touchEnd", 0);
+    await this.settle();
+  }
+
   /// Presses a key: "ArrowLeft", "Enter", "+".
   async press(key) {
     const codes = { ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Enter: 13, Home: 36,

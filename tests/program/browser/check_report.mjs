@@ -4,7 +4,7 @@
 // It prints a sentence for each mistake, and ends with 1 if there was one.  With --pictures it also writes
 // each report in light and dark, 1600 and 400 pixels wide, and as PDF.
 // SPDX-License-Identifier: Apache-2.0
-import { mkdirSync } from "node:fs";
+import { existsSync, mkdirSync } from "node:fs";
 import { basename, join } from "node:path";
 import { Browser } from "./browser.mjs";
 
@@ -112,8 +112,11 @@ async function checkTheme(check, page) {
   const background = "getComputedStyle(document.body).backgroundColor";
   if (!check.expect(await page.evaluate(`!!document.querySelector("button.theme")`),
     "there is no button for the theme")) return;
+  const drawn = await page.evaluate(`document.querySelector("#view3d.live") && ${CANVAS}`);
   await check.changes(page, background, () => page.click("button.theme"),
     "the theme button does not change the background");
+  check.expect(!drawn || drawn !== await page.evaluate(CANVAS),
+    "the theme button does not change the 3-D view");
   await checkContrast(check, page);
   await check.changes(page, background, () => page.click("button.theme"),
     "the theme button does not change the background back");
@@ -183,13 +186,21 @@ async function checkView(check, page) {
   })()`);
   await changes(() => page.drag(box, [box[0] + 60, box[1] + 20]),
     "dragging does not change the picture");
+  await changes(() => page.pinch(box, 60, 120), "two fingers do not change the picture");
+  const frames = await page.evaluate(`new Promise((done) => {
+    const request = window.requestAnimationFrame;
+    let count = 0;
+    window.requestAnimationFrame = (draw) => { ++count; return request(draw); };
+    setTimeout(() => { window.requestAnimationFrame = request; done(count); }, 300);
+  })`);
+  check.expect(frames === 0, `the view is drawn ${frames} times while nothing happens`);
 }
 
 async function checkSampleLinks(check, page) {
   const numbers = await page.evaluate(`(() => {
     const known = JSON.parse(document.querySelector("#scene")?.textContent ?? "{}").samples ?? [];
     const linked = new Set([...document.querySelectorAll("[data-sample]")].map((e) => +e.dataset.sample));
-    return known.map((s) => s.number).filter((n) => linked.has(n));
+    return known.map((s) => s?.number).filter((n) => linked.has(n));
   })()`);
   if (!numbers.length || !await page.evaluate(`!!document.querySelector("#view3d.live")`)) return;
   const wanted = numbers[numbers.length - 1], status = `document.querySelector("#view3d-status").textContent`;
@@ -265,6 +276,11 @@ const given = process.argv.slice(2), option = given.indexOf("--pictures");
 const folder = option < 0 ? undefined : given.splice(option, 2)[1];
 if (!given.length || (option >= 0 && !folder)) {
   console.error("usage: node check_report.mjs FILE... [--pictures FOLDER]");
+  process.exit(2);
+}
+const missing = given.filter((file) => !existsSync(file));
+if (missing.length) {
+  console.error(`no such file: ${missing.join(", ")}`);
   process.exit(2);
 }
 if (folder) mkdirSync(folder, { recursive: true });

@@ -87,19 +87,20 @@ const LINES = [`#version 300 es
   in float width;
   uniform mat4 camera;
   uniform vec2 viewport;
+  uniform float near;
   out vec4 shade;
   out vec3 world;
   void main() {
     vec4 p = camera * vec4(from, 1.0), q = camera * vec4(to, 1.0);
-    float near = 1e-3;
     shade = color;
-    world = mix(from, to, corner.x);
-    if (p.w < near && q.w < near) {
-      gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-      return;
-    }
-    if (p.w < near) p = mix(p, q, (near - p.w) / (q.w - p.w));
-    if (q.w < near) q = mix(q, p, (near - q.w) / (p.w - q.w));
+    // The part of the line before the eye, from share a to share b.
+    float a = p.w < near ? (near - p.w) / (q.w - p.w) : 0.0;
+    float b = q.w < near ? (near - p.w) / (q.w - p.w) : 1.0;
+    if (p.w < near && q.w < near) a = b = 0.0;
+    vec4 whole = q - p;
+    q = p + b * whole;
+    p = p + a * whole;
+    world = mix(from, to, mix(a, b, corner.x));
     vec2 d = (q.xy / q.w - p.xy / p.w) * viewport;
     vec2 side = length(d) > 1e-6 ? normalize(vec2(-d.y, d.x)) : vec2(0.0, 1.0);
     vec4 end = mix(p, q, corner.x);
@@ -204,7 +205,7 @@ class Painter {
       triangles: triangles && this.#buffer(triangles, this.gl.ELEMENT_ARRAY_BUFFER),
       count: triangles ? triangles.length - (triangles.length % 3) : positions.length / 3 };
   }
-  /// A pass for one picture.  @param view  {camera: matrix, eye, viewport}
+  /// A pass for one picture.  @param view  {camera: matrix, eye, near, viewport}
   begin(view, background) {
     const { gl } = this;
     this.view = view;
@@ -278,6 +279,7 @@ class Painter {
     if (!data.length) return;
     const { gl } = this, uniforms = this.#use(this.line, 1, [2, 3, 3, 4, 1]);
     gl.uniform2fv(uniforms.viewport, this.view.viewport);
+    gl.uniform1f(uniforms.near, this.view.near);
     gl.uniform4fv(uniforms.fade, fade);
     gl.uniform1f(uniforms.strength, strength);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);

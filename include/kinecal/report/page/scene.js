@@ -60,6 +60,19 @@ function alongZ(direction) {
   const s = norm(axis), angle = Math.acos(Math.max(-1, Math.min(1, c)));
   return moved([0, 0, 0], s > 1e-12 * n ? times(axis, angle / s) : [angle, 0, 0]).slice(3);
 }
+/// Centre and radius of points.
+function ball(points) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (const p of points) {
+    p.forEach((v, i) => {
+      low[i] = Math.min(low[i], v);
+      high[i] = Math.max(high[i], v);
+    });
+  }
+  if (!(low[0] <= high[0])) return { middle: [0, 0, 0.5], radius: 0.5, low: [0, 0, 0] };
+  return { middle: times(add(low, high), 0.5), radius: Math.max(norm(subtract(high, low)) / 2, 1e-3),
+    low };
+}
 /// 4x4 matrix by columns.
 function matrix(pose, scale = [1, 1, 1]) {
   const x = rotate(pose, [scale[0], 0, 0]), y = rotate(pose, [0, scale[1], 0]);
@@ -92,6 +105,15 @@ function correction(joint, which, factor) {
 function isCorrected(joint) {
   const a = parts(joint.before), b = parts(joint.after);
   return norm(subtract(a.t, b.t)) + norm(subtract(a.r, b.r)) + Math.abs(a.offset - b.offset) > 0;
+}
+/// "1.15°", "7.8 mm, 1.54°": by how much the calibration moved a joint or frame.
+function correctionText(joint) {
+  const [a, b] = [parts(joint.before), parts(joint.after)], slides = joint.type === "prismatic";
+  const offset = Math.abs(b.offset - a.offset);
+  const metres = norm(subtract(b.t, a.t)) + (slides ? offset : 0);
+  const turned = norm(subtract(b.r, a.r)) + (slides ? 0 : offset);
+  return [metres > 0 ? `${(1000 * metres).toFixed(1)} mm` : "",
+    turned > 0 ? `${(turned * 180 / Math.PI).toFixed(2)}°` : ""].filter(Boolean).join(", ");
 }
 /// Pose of the child in the parent.
 function jointPose(joint, q, which, factor) {
@@ -133,7 +155,7 @@ function linkPoses(scene, q, which, factor) {
 }
 
 // The scene as it is used.
-const list = (value) => (Array.isArray(value) ? value : []);
+const list = (value) => (Array.isArray(value) ? value.map((v) => v ?? {}) : []);
 function pairOf(pair) {
   return numbers(pair?.[0], 3) && numbers(pair?.[1], 3) ? [vector(pair[0]), vector(pair[1])] : null;
 }
@@ -162,6 +184,6 @@ function readScene() {
   return scene;
 }
 
-return { IDENTITY, numbers, number, vector, poseOf, add, subtract, times, dot, cross, norm, rotate, at,
-  compose, alongZ, matrix, words, list, parts, linkPoses, readScene };
+return { IDENTITY, numbers, number, poseOf, add, subtract, times, dot, norm, at, ball, compose, alongZ, matrix,
+  words, list, correctionText, linkPoses, readScene };
 })();

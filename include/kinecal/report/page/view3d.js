@@ -9,14 +9,15 @@
 //     <figcaption>...</figcaption>
 //   </figure>
 //   a script element of type "application/json" and id "scene": see scene.js
+// Its policy needs img-src data: (for printing).
 // and anywhere elements with data-sample="12" (number, from 1): a click on one selects sample 12 and shows
 // the view; <a href="#sample=12" data-sample="12"> can also be reached by keyboard.
 // (No file of this folder may hold an opening or closing tag of a script: they are inlined as they are.)
 // When a sample was selected, `document` gets the event "kinecal:sample" with detail {number}.
 (() => {
 "use strict";
-const { IDENTITY, numbers, number, vector, poseOf, add, subtract, times, dot, cross, norm, rotate, at,
-  compose, alongZ, words, list, parts, linkPoses, readScene } = kinecalScene;
+const { numbers, number, poseOf, add, subtract, times, dot, norm, at, ball, compose, alongZ, words, list,
+  correctionText, linkPoses, readScene } = kinecalScene;
 const { Painter } = kinecalPainter;
 
 const figure = document.getElementById("view3d");
@@ -86,18 +87,21 @@ function solidsOf(poses, plain) {
 }
 const tinted = (solids, color, share) =>
   solids.map((s) => ({ ...s, color: add(times(s.color, 1 - share), times(color, share)) }));
-/// Rods between the joints of links that have no visuals, and a ball at each of these joints.
+/// Rods between the joints of links that have no visuals, and a ball at each of these joints; thinner ones
+/// to frames that do not move.
 function bonesOf(poses) {
-  const bones = [], { shapes } = painter, thick = 0.018 * scene.size;
+  const bones = [], { shapes } = painter;
   for (const { joint } of scene.order) {
     const parent = scene.links[joint.parent];
     if (joint.virtual || list(parent.visuals).length) continue;
+    const thick = scene.size * (joint.type === "fixed" ? 0.007 : 0.018);
     const from = poses[joint.parent].slice(0, 3), to = poses[joint.child].slice(0, 3);
     const along = subtract(to, from), far = norm(along);
     if (far > 1e-3) {
       bones.push({ shape: shapes.cylinder, scale: [thick, thick, far],
         pose: [...times(add(from, to), 0.5), ...alongZ(along)] });
     }
+    if (far <= 1e-3 && joint.type === "fixed") continue;
     bones.push({ shape: shapes.sphere, scale: [1.7 * thick, 1.7 * thick, 1.7 * thick],
       pose: [...to, 0, 0, 0, 1] });
   }
@@ -134,16 +138,21 @@ function frameLines(lines, poses, alpha, width) {
     }
   }
 }
-function cameraLines(lines, poses, color, alpha) {
-  for (const camera of scene.cameras) {
-    if (!poses[camera.link] || !(camera.fx > 0) || !(camera.fy > 0)) continue;
+/// Of each camera its place and the corners of its picture in some distance.
+function frusta(poses) {
+  const drawable = (c) => poses[c.link] && c.fx > 0 && c.fy > 0;
+  return scene.cameras.filter(drawable).map((camera) => {
     const pose = compose(poses[camera.link], poseOf(camera.pose)), depth = 0.17 * scene.size;
     const corner = (u, v) => at(pose, [(u - number(camera.cx)) / camera.fx * depth,
       (v - number(camera.cy)) / camera.fy * depth, depth]);
     const w = number(camera.width), h = number(camera.height);
-    const corners = [corner(0, 0), corner(w, 0), corner(w, h), corner(0, h)];
+    return { eye: pose.slice(0, 3), corners: [corner(0, 0), corner(w, 0), corner(w, h), corner(0, h)] };
+  });
+}
+function cameraLines(lines, poses, color, alpha) {
+  for (const { eye, corners } of frusta(poses)) {
     corners.forEach((c, i) => {
-      line(lines, pose.slice(0, 3), c, color, alpha, 1.5);
+      line(lines, eye, c, color, alpha, 1.5);
       line(lines, c, corners[(i + 1) % 4], color, alpha, i === 0 ? 3 : 1.5);  // thick: the image's top
     });
   }
@@ -237,20 +246,7 @@ function cameraView() {
   rows[2][3] -= (2 * far * near) / (far - near);
   const camera = new Float32Array(16);
   rows.forEach((row, i) => row.forEach((v, j) => { camera[4 * j + i] = v; }));
-  return { camera, eye, viewport: [canvas.width, canvas.height] };
-}
-/// Centre and radius of points.
-function ball(points) {
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (const p of points) {
-    p.forEach((v, i) => {
-      low[i] = Math.min(low[i], v);
-      high[i] = Math.max(high[i], v);
-    });
-  }
-  if (!(low[0] <= high[0])) return { middle: [0, 0, 0.5], radius: 0.5, low: [0, 0, 0] };
-  return { middle: times(add(low, high), 0.5), radius: Math.max(norm(subtract(high, low)) / 2, 1e-3),
-    low };
+  return { camera, eye, near, viewport: [canvas.width, canvas.height] };
 }
 function robotPoints() {
   const poses = linkPoses(scene, here().q, "after", 1);
@@ -274,7 +270,10 @@ function fitted(points, yaw = view.yaw, pitch = view.pitch) {
     Math.max(Math.abs(p[0] - x) / aspect, Math.abs(p[1] - y)) / tangent), 1.5 * radius);
   return { yaw, pitch, distance, target: add(add(times(right, x), times(up, y)), times(back, z)) };
 }
-const shown = () => [...robotPoints(), ...featurePoints()];
+function shown() {
+  const cameras = frusta(linkPoses(scene, here().q, "after", 1)).flatMap((f) => f.corners);
+  return [...robotPoints(), ...featurePoints(), ...cameras];
+}
 const VIEWS = {
   Reset: () => fitted(shown(), -0.9, 0.35),
   Front: () => fitted(shown(), 0, 0),
@@ -331,15 +330,6 @@ function zoom(factor) {
 }
 
 // Names of corrected frames over the picture; a name that would cover another one is left out.
-/// "1.15°", "7.8 mm, 1.54°": by how much the calibration moved a joint or frame.
-function correctionText(joint) {
-  const [a, b] = [parts(joint.before), parts(joint.after)], slides = joint.type === "prismatic";
-  const offset = Math.abs(b.offset - a.offset);
-  const metres = norm(subtract(b.t, a.t)) + (slides ? offset : 0);
-  const turned = norm(subtract(b.r, a.r)) + (slides ? 0 : offset);
-  return [metres > 0 ? `${(1000 * metres).toFixed(1)} mm` : "",
-    turned > 0 ? `${(turned * 180 / Math.PI).toFixed(2)}°` : ""].filter(Boolean).join(", ");
-}
 const labels = element("div", { class: "labels", "aria-hidden": "true" });
 function placeLabels(poses) {
   const { camera } = cameraView(), placed = [];
@@ -369,7 +359,10 @@ const factor = element("input", { type: "range", min: 1, max: 50, step: 1, value
 const factorText = element("output", { for: "view3d-factor" }, "1×");
 
 /// Text of a file inside a sentence: letters that run from right to left do not turn the rest of it.
-const quoted = (text) => (/^[ -~]*$/.test(text) ? text : `\u2068${text}\u2069`);
+function quoted(text) {
+  const short = text.length > 300 ? `${text.slice(0, 300)}…` : text;
+  return /^[ -~]*$/.test(short) ? short : `\u2068${short}\u2069`;
+}
 function describe(sample) {
   let text = `Sample ${sample.number ?? state.sample + 1}`;
   if (sample.source) text += `, ${quoted(sample.source)}`;
@@ -446,7 +439,7 @@ function fillPanel() {
     panel.append(row(label("view3d-factor", "Exaggeration"), factor, factorText));
   }
   const has = { points: samples.some((s) => s.features.length || s.cloud),
-    frames: scene.corrected.length, cameras: scene.cameras.length,
+    frames: scene.corrected.length, cameras: scene.cameras.some((c) => c.fx > 0 && c.fy > 0),
     workspace: scene.workspacePoints.length };
   const names = { after: "After", before: "Before", points: "Points", frames: "Frames",
     cameras: "Cameras", workspace: "Workspace" };
@@ -525,7 +518,7 @@ function listen() {
   });
   document.addEventListener("click", (event) => {
     const wanted = event.target.closest?.("[data-sample]")?.getAttribute("data-sample");
-    if (wanted) selectNumber(Number(wanted));
+    if (wanted && getSelection().isCollapsed) selectNumber(Number(wanted));  // not while copying text
   });
   addEventListener("hashchange", fromHash);
   addEventListener("beforeprint", drawOnPaper);
@@ -582,8 +575,8 @@ function begin() {
   stage.append(legend());
   fillPanel();
   panel.append(element("p", { class: "hint", id: "view3d-hint" },
-    element("span", { class: "for-mouse" }, "Click the picture first: drag or arrow keys turn, with Shift move; ",
-      "wheel, + and − zoom; Page Up and Page Down change the sample. "),
+    element("span", { class: "for-mouse" }, "Drag to turn, with Shift to move. After a click the wheel zooms ",
+      "and keys work: arrows, + and −, Page Up and Page Down for samples. "),
     element("span", { class: "for-fingers" }, "One finger turns, two move and zoom. "),
     "Measured and predicted points are drawn at 1× only."));
   figure.classList.add("live");
