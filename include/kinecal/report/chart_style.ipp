@@ -29,6 +29,7 @@ KINECAL_INLINE std::string chart_style() {
 .chart path.bad { stroke: var(--bad, #c0262d); }
 .chart path.faint { stroke: var(--faint, #667080); }
 .chart path.thick { stroke-width: 2.2; }
+.chart path.median { stroke: var(--ink, #1f2328); stroke-width: 2; stroke-linejoin: round; }
 .chart path.area { fill-opacity: .3; stroke-width: 1.4; }
 .chart path.area.before, .chart rect.before, .chart circle.before { fill: var(--before, #b0651d); }
 .chart path.area.after, .chart rect.after, .chart circle.after { fill: var(--after, #1c62b9); }
