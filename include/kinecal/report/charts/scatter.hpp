@@ -21,8 +21,7 @@ struct ScatterPoint {
 /// Medians of x and y in groups of equally many neighbours along x; none of less than ten points.
 [[nodiscard]] std::vector<Place> running_median(std::vector<ScatterPoint> points);
 
-/// From the lowest to the highest but for one in a hundred, which are drawn at the edge; zero is in
-/// the middle.
+/// Zero is in the middle.  Values beyond two and a half times what 95 % are below are drawn at the edge.
 [[nodiscard]] Axis signed_axis(const std::vector<ScatterPoint>& points, double bottom, double top);
 
 /// Dots, thinned, and the running median of all.

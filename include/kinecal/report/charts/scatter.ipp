@@ -36,7 +36,7 @@ KINECAL_INLINE Axis signed_axis(const std::vector<ScatterPoint>& points, double 
   std::vector<double> sizes;
   for (const ScatterPoint& point : points) sizes.push_back(std::abs(point.y));
   const std::vector<double> sorted = sorted_finite(sizes);
-  constexpr double kNearlyAll = 0.99, kRoom = 1.3;
+  constexpr double kNearlyAll = 0.95, kRoom = 2.5;
   const double usual = kRoom * quantile(sorted, kNearlyAll);
   const double most = sorted.empty() ? 0.0 : std::min(sorted.back(), usual);
   return Axis::linear(-most, most, bottom, top);
