@@ -10,11 +10,11 @@
 namespace kinecal {
 
 /// CSS rules for everything in an svg of class "chart".  Colours are the page's variables --before,
-/// --after, --ink, --faint, --grid, --bad, --good, --sigma and --care; without them, those of a light
-/// page.
+/// --after, --ink, --faint, --grid, --bad, --good, --sigma, --care, --minus and --plus; without them,
+/// those of a light page.
 [[nodiscard]] std::string chart_style();
 
-/// A chart as a file: the svg with a declaration, this style and a white background.
+/// A chart as a file: the svg with a declaration, this style, its colours as such, and a white background.
 /// @param svg  that of a Chart
 [[nodiscard]] std::string stand_alone(std::string_view svg);
 

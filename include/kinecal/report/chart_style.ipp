@@ -29,6 +29,7 @@ KINECAL_INLINE std::string chart_style() {
 .chart path.bad { stroke: var(--bad, #c0262d); }
 .chart path.faint { stroke: var(--faint, #667080); }
 .chart path.thick { stroke-width: 2.2; }
+.chart path.median { stroke: var(--ink, #1f2328); stroke-width: 2; stroke-linejoin: round; }
 .chart path.area { fill-opacity: .3; stroke-width: 1.4; }
 .chart path.area.before, .chart rect.before, .chart circle.before { fill: var(--before, #b0651d); }
 .chart path.area.after, .chart rect.after, .chart circle.after { fill: var(--after, #1c62b9); }
@@ -44,8 +45,8 @@ KINECAL_INLINE std::string chart_style() {
 .chart .dots.bad path { stroke: var(--bad, #c0262d); stroke-width: 5.5; stroke-opacity: .9; }
 .chart .dots.out path { stroke: var(--faint, #667080); stroke-opacity: .7; }
 .chart .dots.small path { stroke-width: 3; }
-.chart .arrows path { stroke: var(--after, #1c62b9); stroke-width: 1.1; }
-.chart .arrows.bad path { stroke: var(--bad, #c0262d); stroke-width: 1.6; }
+.chart .arrows path { stroke: var(--after, #1c62b9); stroke-width: 1; stroke-opacity: .6; }
+.chart .arrows.bad path { stroke: var(--bad, #c0262d); stroke-width: 1.6; stroke-opacity: .9; }
 .chart [data-sample] { cursor: pointer; }
 .chart .hatch { stroke: var(--care, #a86a00); stroke-width: 1.2; stroke-opacity: .55; }
 .chart .care { fill: var(--care, #a86a00); }
@@ -66,12 +67,30 @@ KINECAL_INLINE std::string chart_style() {
 )";
 }
 
+namespace detail {
+
+/// The style with the colours of a light page in place of variables, which most programs for drawings
+/// do not know.
+[[nodiscard]] inline std::string style_without_variables() {
+  const std::string style = chart_style();
+  std::string plain;
+  std::size_t at = 0;
+  for (std::size_t use; (use = style.find("var(", at)) != std::string::npos;) {
+    const std::size_t value = style.find(", ", use) + 2, end = style.find(')', use);
+    plain += style.substr(at, use - at) + style.substr(value, end - value);
+    at = end + 1;
+  }
+  return plain + style.substr(at);
+}
+
+}  // namespace detail
+
 KINECAL_INLINE std::string stand_alone(std::string_view svg) {
   const std::size_t tag = svg.find('>');
   if (tag == std::string_view::npos) return {};
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   text += svg.substr(0, tag + 1);
-  text += "\n<style>\n" + chart_style() + "</style>\n";
+  text += "\n<style>\n" + detail::style_without_variables() + "</style>\n";
   text += R"(<rect width="100%" height="100%" fill="white"/>)";
   text += svg.substr(tag + 1);
   return text;

@@ -53,11 +53,13 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
 [[nodiscard]] inline std::string section(std::string_view id, std::string_view title,
                                          const std::string& figures,
                                          const std::vector<Chart>& charts) {
-  std::string html = figures;
+  std::string drawn;
   for (const Chart& chart : charts) {
-    if (section_of(chart) == id) html += html_figure(chart);
+    if (section_of(chart) == id) drawn += html_figure(chart);
   }
-  if (html.empty()) return "";
+  if (figures.empty() && drawn.empty()) return "";
+  const std::string html =
+      figures + (drawn.empty() ? "" : "<div class=\"pair\">" + drawn + "</div>\n");
   return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, title, html);
 }
 

@@ -78,6 +78,16 @@ KINECAL_INLINE double Axis::value(double coordinate) const {
   return logarithmic_ ? low_ * std::pow(high_ / low_, share) : low_ + share * (high_ - low_);
 }
 
+/// "0.02", "500", "10⁴", "2·10⁻⁵".
+[[nodiscard]] inline std::string decade_label(int digit, int decade) {
+  if (decade >= -3 && decade < 4) return figure(digit * std::pow(10.0, decade));
+  static constexpr const char* kSmall[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string label = digit == 1 ? "10" : std::to_string(digit) + "·10";
+  if (decade < 0) label += "⁻";
+  for (const char c : std::to_string(std::abs(decade))) label += kSmall[c - '0'];
+  return label;
+}
+
 KINECAL_INLINE std::vector<Tick> Axis::ticks(int most) const {
   std::vector<Tick> ticks;
   if (!logarithmic_) {
@@ -98,7 +108,8 @@ KINECAL_INLINE std::vector<Tick> Axis::ticks(int most) const {
       if (value < low_ * (1.0 - 1e-9) || value > high_ * (1.0 + 1e-9)) continue;
       const bool named = decades < 1.7 ? digit == 1 || digit == 2 || digit == 5
                                        : digit == 1 && decade % static_cast<int>(every) == 0;
-      if (named || decades < 5.0) ticks.push_back({value, named ? figure(value) : ""});
+      if (named || decades < 5.0)
+        ticks.push_back({value, named ? decade_label(digit, decade) : ""});
     }
   }
   return ticks;

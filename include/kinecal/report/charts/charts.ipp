@@ -6,18 +6,28 @@
 #include <utility>
 
 #include "kinecal/report/charts/charts.hpp"
+#include "kinecal/report/charts/convergence.hpp"
+#include "kinecal/report/charts/correlation.hpp"
+#include "kinecal/report/charts/depth.hpp"
 #include "kinecal/report/charts/errors.hpp"
 #include "kinecal/report/charts/features.hpp"
 #include "kinecal/report/charts/held_out.hpp"
 #include "kinecal/report/charts/parameters.hpp"
+#include "kinecal/report/charts/pixels.hpp"
+#include "kinecal/report/charts/planes.hpp"
+#include "kinecal/report/charts/radial.hpp"
 #include "kinecal/report/charts/samples.hpp"
+#include "kinecal/report/charts/unobservable.hpp"
+#include "kinecal/report/charts/workspace.hpp"
 
 namespace kinecal {
 
 KINECAL_INLINE std::vector<Chart> charts(const ReportData& data) {
   std::vector<Chart> all;
   for (const auto draw :
-       {error_charts, held_out_charts, sample_charts, feature_charts, parameter_charts}) {
+       {error_charts, held_out_charts, sample_charts, feature_charts, pixel_charts, radial_charts,
+        depth_charts, plane_charts, workspace_charts, parameter_charts, correlation_charts,
+        unobservable_charts, convergence_charts, start_charts}) {
     std::vector<Chart> some = draw(data);
     std::move(some.begin(), some.end(), std::back_inserter(all));
   }

@@ -94,8 +94,7 @@ inline void number_worst(Drawing& drawing, const SampleMarks& marks, const Axis&
 }
 
 /// Crosses at the top for samples that were left out and of which the block has no feature.
-/// @returns  whether there are any
-inline bool draw_left_out(Drawing& drawing, const ReportData& data, const SampleMarks& marks,
+inline void draw_left_out(Drawing& drawing, const ReportData& data, const SampleMarks& marks,
                           const Axis& x, double top) {
   Dots crosses;
   for (const ReportedSample& sample : data.samples) {
@@ -109,7 +108,6 @@ inline bool draw_left_out(Drawing& drawing, const ReportData& data, const Sample
   for (const auto& [number, path] : crosses) {
     drawing.path(path, "faint thick", number, fmt::format("sample {}: left out", number));
   }
-  return !crosses.empty();
 }
 
 [[nodiscard]] inline std::string samples_description(const ReportData& data,
@@ -140,16 +138,31 @@ inline bool draw_left_out(Drawing& drawing, const ReportData& data, const Sample
   return Axis::exact(first - room, last + room, area.left, area.right);
 }
 
+[[nodiscard]] inline std::vector<LegendEntry> samples_legend(const ReportData& data,
+                                                             const ReportedBlock& block) {
+  std::vector<LegendEntry> legend = {{Swatch::dot, "after", "worst of a sample"}};
+  const auto any = [&](bool ReportedSample::*flag) {
+    return std::any_of(data.samples.begin(), data.samples.end(),
+                       [&](const ReportedSample& sample) { return sample.*flag; });
+  };
+  if (any(&ReportedSample::bad)) legend.push_back({Swatch::dot, "bad", "does not fit"});
+  if (any(&ReportedSample::left_out)) legend.push_back({Swatch::dot, "faint", "left out"});
+  if (block.sigma > 0.0) legend.push_back({Swatch::line, "sigma", "noise"});
+  return legend;
+}
+
 [[nodiscard]] inline Chart sample_chart(const ReportData& data, const ReportedBlock& block,
                                         const std::string& slug) {
   const std::vector<double> distances = distances_of(block), sorted = sorted_finite(distances);
   const auto chosen = chosen_marks(distances);
   Chart chart{"residuals", "samples-" + slug, "Residuals in capture order: " + block.name,
-              "Each dot is a feature, the dark ones are the worst of their samples." +
+              "Each dot is a feature, the dark ones are the worst of their samples. Lines: what "
+              "noise makes one expect, and three times that." +
                   chosen_text(chosen.size(), sorted.size(), "features"),
               ""};
   const PlotArea area{46.0, 46.0, kChartWidth - 10.0, 270.0};
   Drawing drawing(chart.name, chart.title, area.bottom + 38.0);
+  draw_legend(drawing, samples_legend(data, block), 0.0);
   const Axis x = samples_axis(data, block, area);
   const Axis y = distance_axis(block, sorted, area.bottom, area.top + 14.0);
   drawing.axes(area, x, y, "sample", axis_name("distance", block.unit));
@@ -159,13 +172,8 @@ inline bool draw_left_out(Drawing& drawing, const ReportData& data, const Sample
   draw_dots(drawing, data, block, marks, marks.left_out, "dots out");
   draw_dots(drawing, data, block, marks, marks.worst, "dots worst");
   draw_dots(drawing, data, block, marks, marks.bad, "dots bad");
-  const bool crosses = draw_left_out(drawing, data, marks, x, area.top);
+  draw_left_out(drawing, data, marks, x, area.top);
   number_worst(drawing, marks, x, y);
-  std::vector<LegendEntry> legend = {{Swatch::dot, "after", "worst of a sample"}};
-  if (!marks.bad.empty()) legend.push_back({Swatch::dot, "bad", "does not fit"});
-  if (!marks.left_out.empty() || crosses) legend.push_back({Swatch::dot, "faint", "left out"});
-  if (block.sigma > 0.0) legend.push_back({Swatch::line, "sigma", "noise, and 3 times"});
-  draw_legend(drawing, legend, 0.0);
   chart.svg = drawing.str(samples_description(data, block, distances, sorted));
   return chart;
 }

@@ -1,0 +1,22 @@
+// How the solver got to the result.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/report/charts/chart.hpp"
+
+namespace kinecal {
+
+/// Cost after each iteration, logarithmic, all steps in one chart.  A curve that begins anew is another
+/// run: with another loss, or the next step.
+[[nodiscard]] std::vector<Chart> convergence_charts(const ReportData& data);
+
+/// For each step with several starts: how many solves ended at each minimum, and which one was taken.
+[[nodiscard]] std::vector<Chart> start_charts(const ReportData& data);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/charts/convergence.ipp"
+#endif

@@ -1,0 +1,19 @@
+// Residuals in a camera's image, where lens errors show as a pattern.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/report/charts/chart.hpp"
+
+namespace kinecal {
+
+/// For each block in pixels: an arrow for each feature from where it was seen towards where the result
+/// predicts it, enlarged by a factor that the legend states.
+[[nodiscard]] std::vector<Chart> pixel_charts(const ReportData& data);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/charts/pixels.ipp"
+#endif

@@ -1,0 +1,18 @@
+// Combinations of parameters that no sample shows.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/report/charts/chart.hpp"
+
+namespace kinecal {
+
+/// Combinations of parameters that change no residual: a bar with its sign for each factor.
+[[nodiscard]] std::vector<Chart> unobservable_charts(const ReportData& data);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/charts/unobservable.ipp"
+#endif

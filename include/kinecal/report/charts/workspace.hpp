@@ -1,0 +1,18 @@
+// How well the position in question is known over the workspace.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/report/charts/chart.hpp"
+
+namespace kinecal {
+
+/// Standard deviation of the position over the workspace, from above and from the side.
+[[nodiscard]] std::vector<Chart> workspace_charts(const ReportData& data);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/charts/workspace.ipp"
+#endif
