@@ -10,8 +10,9 @@
 //               "before": {"t": [3], "r": [3], "offset": 0}, "after": ...  corrections; absent: none}],
 //   "meshes": [{"vertices": float32 xyz, "triangles": uint32 abc}],       base64, little-endian
 //   "samples": [{"number": 1, "source": "a.yaml:12", "bad": false, "note", "q": [...],
-//                "times": 3.2   of sigma, its worst feature; ranks samples; absent: by distance in metres
-//                "cloud": base64 float32 xyz, "cloud_link": 3,
+//                "times": 3.2   of sigma, its worst feature: ranks samples (all have it, or none: then by
+//                               the largest distance of "after")
+//                "cloud": base64 float32 xyz in the frame of link "cloud_link": 3,
 //                "features": [{"block": 0, "name", "error": "3.2 mm",
 //                              "before": [measured, predicted], "after": ...}]}],   points in the base
 //   "blocks": [name], "cameras": [{"name", "link", "pose", "width", "height", "fx", "fy", "cx", "cy"}],

@@ -9,11 +9,11 @@
 //     <figcaption>...</figcaption>
 //   </figure>
 //   a script element of type "application/json" and id "scene": see scene.js
-// Its policy needs img-src data: (for printing).
 // and anywhere elements with data-sample="12" (number, from 1): a click on one selects sample 12 and shows
-// the view; <a href="#sample=12" data-sample="12"> can also be reached by keyboard.
-// (No file of this folder may hold an opening or closing tag of a script: they are inlined as they are.)
-// When a sample was selected, `document` gets the event "kinecal:sample" with detail {number}.
+// the view; <a href="#sample=12"> does the same by keyboard, and in the address of the page.
+// When the user has selected a sample, `document` gets the event "kinecal:sample" with detail {number}.
+// The page's policy needs img-src data:, for printing.  Scripts are inlined as they are, in the order scene,
+// painter, report, view3d; so none of them may hold an opening or closing tag of a script.
 (() => {
 "use strict";
 const { numbers, number, poseOf, add, subtract, times, dot, norm, at, ball, compose, alongZ, words, list,
