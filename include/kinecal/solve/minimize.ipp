@@ -38,7 +38,7 @@ class ProgressCallback final : public ceres::IterationCallback {
 
 [[nodiscard]] inline ceres::Solver::Options ceres_options(const SolveOptions& options) {
   ceres::Solver::Options ceres_options;
-  ceres_options.linear_solver_type = ceres::DENSE_QR;
+  ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   ceres_options.max_num_iterations = options.max_num_iterations;
   ceres_options.function_tolerance = options.function_tolerance;
   ceres_options.gradient_tolerance = 1e-16;
