@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kinecal/report/charts/arrows.hpp"
+#include "kinecal/report/svg_text.hpp"
 
 namespace kinecal::detail {
 
