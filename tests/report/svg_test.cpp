@@ -42,6 +42,9 @@ TEST(SvgText, ShortensNamesInTheMiddleByCharacters) {
   EXPECT_EQ(shortened("wrist_roll_joint", 9), "wris…oint");
   EXPECT_EQ(shortened("🤖🤖🤖🤖🤖🤖", 5), "🤖🤖…🤖🤖");
   EXPECT_EQ(shortened(std::string(5000, 'a'), 9), "aaaa…aaaa");
+  std::string robots;
+  for (int i = 0; i < 1000; ++i) robots += "🤖";
+  EXPECT_EQ(shortened("a" + robots + "b", 5), "a🤖…🤖b") << "never cut within a character";
 }
 
 TEST(SvgText, IsolatesWhatIsWrittenFromRightToLeft) {
