@@ -190,6 +190,17 @@ struct InstallOptions {
 /// Installs a result on the robot, restores the previous one, or prints the date of the current one.
 int install(const InstallOptions& options);
 
+struct PlotOptions {
+  std::string report;              ///< HTML that calibrate wrote
+  std::vector<std::string> names;  ///< of charts; empty: all
+  std::string output;              ///< folder
+  bool list = false;               ///< print their names
+  bool force = false;              ///< replace files
+};
+
+/// Writes the charts of a report as SVG files.
+int plot(const PlotOptions& options);
+
 struct RpyOptions {
   std::vector<std::string> numbers;  ///< three, radians
   bool to_vector = false;            ///< they are roll, pitch, yaw

@@ -473,6 +473,18 @@ void add_compare(CLI::App& command, CompareOptions& options) {
       ->type_name("FILE");
 }
 
+void add_plot(CLI::App& command, PlotOptions& options) {
+  command.add_option("report", options.report, "HTML that 'calibrate --report' wrote")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("names", options.names, "charts to write, default: all")->type_name("NAME");
+  CLI::Option* list = command.add_flag("--list", options.list, "print the names of the charts");
+  command.add_option("-o,--output", options.output, "folder for NAME.svg")
+      ->type_name("DIR")
+      ->excludes(list);
+  command.add_flag("--force", options.force, "replace files that are in the folder");
+}
+
 void add_rpy(CLI::App& command, RpyOptions& options) {
   command.add_option("numbers", options.numbers, "A B C, or R P Y; radians")
       ->required()
@@ -626,6 +638,8 @@ void add_commands(Commands& commands, const std::string& line) {
                                convert);
   commands.add<CameraOptions>("camera", "show a camera file, and write it as camera_info",
                               add_camera, camera);
+  commands.add<PlotOptions>("plot", "write the charts of a report as SVG files, for papers",
+                            add_plot, plot);
   commands.add<RpyOptions>(
       "rpy",
       "convert a rotation vector (a b c of a free frame) to roll, pitch, yaw (a URDF's), or back",

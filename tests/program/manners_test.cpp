@@ -128,7 +128,7 @@ std::set<std::string> words_of(const std::string& help, const std::string& patte
 TEST_F(Manners, ManualAndCompletionHaveAllCommandsAndOptions) {
   const std::string help = kinecal("help").out;
   const auto commands = words_of(help.substr(help.find("Subcommands:")), "\n  ([a-z_]+) ");
-  ASSERT_EQ(commands.size(), 16u);
+  ASSERT_EQ(commands.size(), 17u);
   const std::string man = kinecal("describe man").out, bash = kinecal("describe bash").out,
                     zsh = kinecal("describe zsh").out;
   for (const std::string& command : commands) {
@@ -185,7 +185,8 @@ TEST_F(Manners, APipeWithoutAWriterNeverBlocks) {
        {"check --urdf pipe --config calibrate.yaml", "check --urdf ur5e.urdf --config pipe",
         "check --urdf ur5e.urdf --config calibrate.yaml --samples pipe", "inspect pipe",
         "convert pipe a.yaml", "convert pipe a.bag", "convert pipe a.yaml --columns columns.yaml",
-        "convert tracker.csv a.yaml --columns pipe", "camera pipe", "init --urdf pipe --force"}) {
+        "convert tracker.csv a.yaml --columns pipe", "camera pipe", "plot pipe --list",
+        "init --urdf pipe --force"}) {
     const Outcome outcome = kinecal(call);
     EXPECT_EQ(outcome.code, 1) << call;  // 124: it had to be stopped
     EXPECT_THAT(outcome.err, HasSubstr("pipe: is a pipe, not a file; write")) << call;

@@ -13,7 +13,9 @@ namespace kinecal::test {
 /// Numbers that do not depend on the standard library.
 class Chance {
  public:
-  double uniform(double low, double high) { return low + (high - low) * engine_() / 4294967296.0; }
+  double uniform(double low, double high) {
+    return low + (high - low) * double(engine_()) / 4294967296.0;
+  }
   /// Of variance one: the sum of twelve uniform ones.
   double normal() {
     double sum = -6.0;

@@ -48,7 +48,13 @@ KINECAL_INLINE std::string svg_escaped(std::string_view text) {
 }
 
 KINECAL_INLINE std::string shortened(std::string_view name, std::size_t most) {
-  std::vector<char32_t> all = characters_of(name);
+  const std::size_t bytes = 4 * most;  // that surely hold so many characters
+  const bool is_long = name.size() > 2 * bytes + 16;
+  std::vector<char32_t> all = characters_of(is_long ? name.substr(0, bytes) : name);
+  if (is_long) {
+    const std::vector<char32_t> end = characters_of(name.substr(name.size() - bytes));
+    all.insert(all.end(), end.begin(), end.end());
+  }
   const bool isolate = std::any_of(all.begin(), all.end(), is_right_to_left);
   if (all.size() > most && most > 2) {
     const std::size_t head = most / 2, tail = most - head - 1;
