@@ -17,6 +17,7 @@
 #include "output.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
+#include "scene.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -101,6 +102,13 @@ void check_first_targets(const CalibrateOptions& options) {
   check_targets(options, options.output, files);
 }
 
+/// The scene must not replace an input, and another file only on demand.
+void check_scene(const CalibrateOptions& options) {
+  std::vector<std::string> inputs = options.samples;
+  inputs.insert(inputs.end(), {options.urdf, options.config, options.report});
+  check_output(options.scene, inputs, options.force);
+}
+
 SolveOptions solve_options(const CalibrateOptions& options) {
   SolveOptions solving;
   solving.threads = options.threads;
@@ -116,6 +124,7 @@ int calibrate(const CalibrateOptions& options) {
     throw InputError("--output is required (or --dry-run)");
   }
   if (!options.dry_run) check_first_targets(options);
+  if (!options.scene.empty()) check_scene(options);
   const Clock::time_point start = Clock::now();
   const Input input = read_input(options);
   print(input.diagnostics);
@@ -142,6 +151,7 @@ int calibrate(const CalibrateOptions& options) {
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   if (!options.report.empty()) write_file(options.report, json_report(findings));
+  if (!options.scene.empty()) write_scene_file(options.scene, input, fitted, options.mesh_paths);
   if (findings.judgement.verdict == Grade::do_not_use) {
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
                result.steps.empty() ? "" : result.steps.back().name,

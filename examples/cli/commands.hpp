@@ -27,9 +27,11 @@ struct InputOptions {
 struct CalibrateOptions : InputOptions {
   std::string output;
   std::string offsets = "rising";
-  std::string report;          ///< report.json is written there, too, whatever the verdict
-  std::vector<int> exclude;    ///< samples to leave out, from 1
-  bool keep_outliers = false;  ///< use samples that do not fit the others
+  std::string report;                   ///< report.json is written there, too, whatever the verdict
+  std::string scene;                    ///< MCAP for viewers; the same
+  std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
+  std::vector<int> exclude;             ///< samples to leave out, from 1
+  bool keep_outliers = false;           ///< use samples that do not fit the others
   bool upstream_names = false;
   bool dry_run = false;
   bool force = false;  ///< replace results

@@ -9,4 +9,6 @@
 #include "kinecal/report/residuals_csv.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/report/scene_json.hpp"
+#include "kinecal/report/scene_mcap.hpp"
+#include "kinecal/report/scene_meshes.hpp"
 #include "kinecal/report/text.hpp"
