@@ -15,8 +15,10 @@
 #include "input.hpp"
 #include "kinecal/report.hpp"
 #include "output.hpp"
+#include "output_file.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "scene.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -105,6 +107,14 @@ void check_results(const CalibrateOptions& options) {
 
 namespace {
 
+/// The scene must not replace an input or a report, and another file only on demand.
+void check_scene(const CalibrateOptions& options) {
+  std::vector<std::string> inputs = options.samples;
+  inputs.insert(inputs.end(), {options.urdf, options.config});
+  inputs.insert(inputs.end(), options.reports.begin(), options.reports.end());
+  check_output(options.scene, inputs, options.force);
+}
+
 SolveOptions solve_options(const CalibrateOptions& options) {
   SolveOptions solving;
   solving.threads = options.threads;
@@ -121,6 +131,7 @@ int calibrate(const CalibrateOptions& options) {
   }
   if (!options.dry_run) check_results(options);
   check_reports(options);
+  if (!options.scene.empty()) check_scene(options);
   const Clock::time_point start = Clock::now();
   const Input input = read_input(options);
   print(input.diagnostics);
@@ -147,6 +158,7 @@ int calibrate(const CalibrateOptions& options) {
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   write_reports(options, input, fitted);
+  if (!options.scene.empty()) write_scene_file(options.scene, input, fitted, options.mesh_paths);
   if (findings.judgement.verdict == Grade::do_not_use) {
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
                result.steps.empty() ? "" : result.steps.back().name,

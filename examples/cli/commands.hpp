@@ -30,8 +30,10 @@ struct CalibrateOptions : InputOptions {
   std::vector<std::string>
       reports;               ///< files: a page if it ends in .html, else JSON; whatever the verdict
   std::string command = {};  ///< as the user typed it, for the report
-  std::vector<int> exclude;  ///< samples to leave out, from 1
-  bool keep_outliers = false;  ///< use samples that do not fit the others
+  std::string scene;         ///< MCAP for viewers; whatever the verdict
+  std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
+  std::vector<int> exclude;             ///< samples to leave out, from 1
+  bool keep_outliers = false;           ///< use samples that do not fit the others
   bool upstream_names = false;
   bool dry_run = false;
   bool force = false;  ///< replace results

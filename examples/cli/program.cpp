@@ -88,6 +88,16 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   command
+      .add_option("--scene", options.scene,
+                  "write the robot before and after, and what was measured, for Foxglove and "
+                  "Lichtblick (.mcap), whatever the verdict")
+      ->type_name("FILE");
+  command
+      .add_option("--mesh-path", options.mesh_paths,
+                  "folder of the URDF's packages, or of one of them, in which meshes are; beside "
+                  "ROS_PACKAGE_PATH, AMENT_PREFIX_PATH and the folders above the URDF")
+      ->type_name("DIR");
+  command
       .add_option("--exclude", options.exclude,
                   "leave out these samples: numbers from 1, in the order of the files")
       ->delimiter(',')

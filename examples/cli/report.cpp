@@ -16,6 +16,7 @@
 #include "kinecal/report/scene_json.hpp"
 #include "kinecal/trust/workspace_map.hpp"
 #include "output_file.hpp"
+#include "scene.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -102,7 +103,7 @@ std::string page(const CalibrateOptions& options, const Input& input, const Fit&
     data.workspace = workspace_map(*fitted.calibration.steps[step].problem,
                                    findings.assessments.back(), values, kPoses);
   }
-  RobotScene scene = robot_scene(fitted.calibration, findings, fitted.samples);
+  RobotScene scene = scene_of(input, fitted, options.mesh_paths, {});
   for (const KnownPoint& point : data.workspace) {
     const auto& [x, y, z] = point.p_base;
     scene.workspace.push_back({x, y, z, point.deviation});

@@ -32,6 +32,8 @@
 #include "kinecal/report/residuals_csv.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/report/scene_json.hpp"
+#include "kinecal/report/scene_mcap.hpp"
+#include "kinecal/report/scene_meshes.hpp"
 #include "kinecal/report/svg.hpp"
 #include "kinecal/report/svg_axis.hpp"
 #include "kinecal/report/svg_legend.hpp"

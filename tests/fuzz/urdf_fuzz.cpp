@@ -1,4 +1,4 @@
-// Feeds parse_urdf() and patch_urdf() with text that is not a URDF.  A patched URDF must be a URDF
+// Feeds parse_urdf(), patch_urdf() and visuals() with text that is not a URDF.  A patched URDF must be a URDF
 // again, with the same joints.
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +8,7 @@
 
 #include "kinecal/io/urdf/patch_urdf.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/io/urdf/visuals.hpp"
 
 namespace {
 
@@ -33,6 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::string patched;
     Robot robot;
     try {
+      Diagnostics diagnostics;
+      (void)visuals(text, "fuzz.urdf", diagnostics);
       robot = parse_urdf(text, "fuzz.urdf");
       patched = patch_urdf(text, "fuzz.urdf", robot, patches_for(robot), style);
     } catch (const InputError&) {  // what is expected of most

@@ -1,4 +1,4 @@
-// Writes MCAP files as ROS 2 does: profile ros2, schemas ros2msg, messages in CDR.
+// Writes MCAP files as ROS 2 does: profile ros2, schemas ros2msg, messages in CDR; or of JSON.
 //
 // The same calls write the same bytes.  The index and the summary at the end list what the chunks
 // hold, so that readers go straight to what they want.
@@ -25,6 +25,8 @@ struct McapOptions {
   Compression compression = Compression::none;     ///< of chunks
   std::size_t chunk_bytes = std::size_t{1} << 20;  ///< after which a chunk ends; 0: no chunks
   bool index = true;                               ///< of messages and chunks, and the summary
+  /// Messages are JSON and definitions JSON schemas, as viewers take them, and there is no profile.
+  bool json = false;
 };
 
 /// zstd if this kinecal was built with it, or else none.
@@ -47,7 +49,7 @@ class McapWriter {
 
   /// @param topic  from add_topic()
   /// @param time   of recording, nanoseconds, not negative
-  /// @param data   CDR with the four bytes that stand before it
+  /// @param data   CDR with the four bytes that stand before it; or JSON
   /// @throws std::out_of_range      if there is no such topic
   /// @throws std::invalid_argument  if the time is negative, or the message larger than half a GiB
   void write(std::uint16_t topic, std::int64_t time, Bytes data);

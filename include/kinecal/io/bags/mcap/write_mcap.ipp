@@ -31,11 +31,11 @@ class McapFile {
  public:
   McapFile(std::ostream& out, McapOptions options) : out_(out), options_(options) {
     put(kMcapMagic);
-    put(McapContent().text("ros2").text("kinecal").record(McapOp::header));
+    put(McapContent().text(options_.json ? "" : "ros2").text("kinecal").record(McapOp::header));
   }
 
   [[nodiscard]] std::uint16_t add_topic(const BagTopic& topic) {
-    if (topic.encoding != Encoding::cdr) {
+    if (topic.encoding != Encoding::cdr && !options_.json) {
       throw std::invalid_argument(fmt::format(
           "topic '{}' is in the encoding of ROS 1; an MCAP file of ROS 2 needs CDR", topic.name));
     }
@@ -48,7 +48,7 @@ class McapFile {
     const auto id = static_cast<std::uint16_t>(counts_.size());
     McapContent channel;
     channel.number(id).number(schema).text("/" + plain_topic(topic.name));
-    channel.text("cdr").text("");  // no metadata
+    channel.text(options_.json ? "json" : "cdr").text("");  // no metadata
     channels_ += add(channel.record(McapOp::channel));
     return id;
   }
@@ -108,7 +108,8 @@ class McapFile {
     const auto id = static_cast<std::uint16_t>(schema->second);
     if (is_new) {
       McapContent content;
-      content.number(id).text(ros2_type(topic.type)).text("ros2msg");
+      content.number(id).text(options_.json ? topic.type : ros2_type(topic.type));
+      content.text(options_.json ? "jsonschema" : "ros2msg");
       schemas_ += add(content.text(topic.definition).record(McapOp::schema));
     }
     return id;

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene.hpp"
+
+#include <fmt/core.h>
+
+#include <sstream>
+
+#include "kinecal/io/bags/mcap/write_mcap.hpp"
+#include "kinecal/io/urdf/visuals.hpp"
+#include "kinecal/report/scene_mcap.hpp"
+#include "kinecal/report/scene_meshes.hpp"
+#include "output_file.hpp"
+
+namespace kinecal::cli {
+
+RobotScene scene_of(const Input& input, const Fit& fitted,
+                    const std::vector<std::string>& mesh_paths, const SceneLimits& limits) {
+  RobotScene scene = robot_scene(fitted.calibration, fitted.findings, fitted.samples, limits);
+  Diagnostics diagnostics;
+  add_visuals(visuals(input.urdf_text, input.urdf, diagnostics),
+              mesh_places(input.urdf, mesh_paths), input.urdf, scene, diagnostics);
+  print(diagnostics);
+  return scene;
+}
+
+void write_scene_file(const std::string& file, const Input& input, const Fit& fitted,
+                      const std::vector<std::string>& mesh_paths) {
+  // Each sample takes 10 to 100 kB.
+  const RobotScene scene =
+      scene_of(input, fitted, mesh_paths, {.samples = 1000, .features = 100000});
+  std::ostringstream bytes;
+  write_scene(scene, bytes, best_mcap_compression());
+  write_file(file, bytes.str());
+  fmt::print("wrote {}{}\n", file, scene.thinned.empty() ? "" : ": " + scene.thinned);
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,25 @@
+// Pictures of a calibration: the robot, its samples, and what was measured.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit.hpp"
+#include "input.hpp"
+#include "kinecal/report/robot_scene.hpp"
+
+namespace kinecal::cli {
+
+/// The scene of a calibration, with the meshes that were found; prints warnings about the others.
+/// @param mesh_paths  where packages may be, beside the environment and the URDF's folder
+[[nodiscard]] RobotScene scene_of(const Input& input, const Fit& fitted,
+                                  const std::vector<std::string>& mesh_paths,
+                                  const SceneLimits& limits = {});
+
+/// Writes the scene for Foxglove and Lichtblick: MCAP.
+/// @throws OutputError  naming the file
+void write_scene_file(const std::string& file, const Input& input, const Fit& fitted,
+                      const std::vector<std::string>& mesh_paths);
+
+}  // namespace kinecal::cli

@@ -1,0 +1,30 @@
+// The scene of a calibration as an MCAP file that Foxglove and Lichtblick open.
+//
+//   /transforms    foxglove.FrameTransforms: all joints of each sample, corrected; and uncorrected, in
+//                  frames "before/<link>" that hang on the base link
+//   /robot         foxglove.SceneUpdate: what the links look like
+//   /robot_before  the same before the calibration, transparent
+//   /errors        measured (green) and predicted (orange) points of each sample, lines between them, its
+//                  number and its worst error
+//   /errors_before the same before the calibration, grey
+//
+// Messages are JSON with their schemas.  They have the stamps of the samples, or are one second apart.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+
+#include "kinecal/io/bags/codec/compression.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/report/robot_scene.hpp"
+
+namespace kinecal {
+
+/// Writes the file; then ask the stream whether everything was written.
+void write_scene(const RobotScene& scene, std::ostream& out, Compression compression);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/scene_mcap.ipp"
+#endif

@@ -1,0 +1,30 @@
+// What the links of a scene look like: the visuals of the URDF with their meshes.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "kinecal/io/meshes/find_mesh.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/report/robot_scene.hpp"
+
+namespace kinecal {
+
+/// How much all meshes of a scene may hold together; above it, they are thinned.
+struct MeshBudget {
+  std::size_t triangles = 60000;
+  std::size_t bytes = 900000;  ///< of vertices and triangles; base64 adds a third
+};
+
+/// Adds visuals to the links of a scene, and reads their meshes.  Those that cannot be drawn are left
+/// out with a warning.
+/// @param name  of the URDF in warnings
+void add_visuals(std::span<const Visual> visuals, const MeshPlaces& places, const std::string& name,
+                 RobotScene& scene, Diagnostics& diagnostics, const MeshBudget& budget = {});
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/report/scene_meshes.ipp"
+#endif
