@@ -274,6 +274,15 @@ function shown() {
   const cameras = frusta(linkPoses(scene, here().q, "after", 1)).flatMap((f) => f.corners);
   return [...robotPoints(), ...featurePoints(), ...cameras];
 }
+/// Whether a point is not in the picture.
+function leaves(points) {
+  const { right, up, back } = viewAxes(), eye = add(view.target, times(back, view.distance));
+  const tangent = Math.tan(FIELD / 2), aspect = canvas.width / canvas.height;
+  return points.some((p) => {
+    const ray = subtract(p, eye), depth = -dot(ray, back);
+    return !(Math.abs(dot(ray, up)) < depth * tangent && Math.abs(dot(ray, right)) < depth * tangent * aspect);
+  });
+}
 const VIEWS = {
   Reset: () => fitted(shown(), -0.9, 0.35),
   Front: () => fitted(shown(), 0, 0),
@@ -391,6 +400,8 @@ function show(index, ranked = -1) {
   status.textContent = ranked < 0 ? text : `${text} Number ${ranked + 1} of the worst.`;
   status.classList.toggle("bad", sample.bad === true);
   redraw();
+  const points = featurePoints();
+  if (leaves(points.length ? points : robotPoints())) look(fitted(shown()));
 }
 function selectWorst(step) {
   const count = samples.length;
