@@ -54,8 +54,11 @@ struct ForestRow {
   const std::string unit = parameter_unit(row.parameter->unit).second;
   const std::string behind = (unit == "°" ? "" : " ") + unit;
   if (!std::isfinite(row.change)) return "–";
-  if (!(row.half > 0.0))
-    return figure(row.change) + behind + (row.parameter->note.empty() ? "" : " *");
+  const bool at_bound = row.parameter->note == "at its bound";
+  constexpr double kSmallest = 1e-6, kLargest = 1e6;  // others have too many digits
+  if (!(row.half > kSmallest && row.half < kLargest)) {
+    return figure(row.change) + behind + (at_bound ? " (bound)" : "");
+  }
   // As many digits as the uncertainty has.
   const double size = std::floor(std::log10(row.half));
   const int digits = static_cast<int>(std::clamp(1.0 - size, 0.0, 6.0));

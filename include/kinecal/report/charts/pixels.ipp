@@ -103,7 +103,7 @@ inline void draw_arrow_key(Drawing& drawing, const ImageScale& scale, bool has_m
     sizes.push_back(std::hypot(f->residual[0], f->residual[1]));
   const std::vector<double> sorted = sorted_finite(sizes);
   const std::vector<std::size_t> chosen = chosen_marks(sizes, kMostArrows);
-  Chart chart{"pixels", "pixels-" + slug, "Residuals in the image: " + block.name,
+  Chart chart{"pixels", "pixels-" + slug, "Residuals in the image: " + shortened(block.name, 60),
               "From observed to predicted. Arrows that point the same way in a region show a lens "
               "error; red: samples that do not fit." +
                   chosen_text(chosen.size(), features.size(), "features"),

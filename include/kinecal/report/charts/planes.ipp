@@ -63,7 +63,7 @@ struct FloorPoint {
   const std::vector<double> sorted = sorted_finite(sizes);
   const double usual = quantile(sorted, 0.95);
   const double most = usual > 0.0 ? round_step(usual, 1) : 1.0;
-  Chart chart{"planes", "planes-" + slug, "Error over the plane: " + block.name,
+  Chart chart{"planes", "planes-" + slug, "Error over the plane: " + shortened(block.name, 60),
               "Seen from above, in the base. Regions of one colour are an error that the "
               "calibration has not removed." +
                   chosen_text(chosen.size(), points.size(), "points"),
