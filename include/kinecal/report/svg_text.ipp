@@ -144,7 +144,8 @@ KINECAL_INLINE std::string figure(double value, int digits) {
   const int whole = static_cast<int>(std::floor(std::log10(size))) + 1;
   const int behind = std::max(0, digits - whole);
   std::string text = fmt::format("{:.{}f}", size, behind);
-  if (behind == 0 && size >= 9999.5) return sign + count_text(static_cast<std::size_t>(size + 0.5));
+  if (behind == 0 && size >= 9999.5)
+    return sign + count_text(static_cast<std::size_t>(std::llround(size)));
   if (text.find('.') != std::string::npos) {
     text.erase(text.find_last_not_of('0') + 1);
     if (text.back() == '.') text.pop_back();

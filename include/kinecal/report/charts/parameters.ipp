@@ -53,10 +53,9 @@ struct ForestRow {
   if (!row.determined) return "not determined";
   const std::string unit = parameter_unit(row.parameter->unit).second;
   const std::string behind = (unit == "°" ? "" : " ") + unit;
-  if (!std::isfinite(row.change)) return "–";
   const bool at_bound = row.parameter->note == "at its bound";
-  constexpr double kSmallest = 1e-6, kLargest = 1e6;  // others have too many digits
-  if (!(row.half > kSmallest && row.half < kLargest)) {
+  const bool usual = row.half > 1e-6 && row.half < 1e6;  // others have too many digits
+  if (!usual || !(std::abs(row.change) < 1e9)) {
     return figure(row.change) + behind + (at_bound ? " (bound)" : "");
   }
   // As many digits as the uncertainty has.

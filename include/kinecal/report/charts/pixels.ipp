@@ -62,8 +62,9 @@ inline bool draw_mean_arrows(Drawing& drawing, const std::vector<const ReportedF
   for (int i = 0; i < kColumns * kRows; ++i) {
     const Cell& cell = cells[static_cast<std::size_t>(i)];
     if (cell.u.size() < kInCell) continue;
-    const double x = std::lerp(frame.low[0], frame.high[0], (i % kColumns + 0.5) / kColumns);
-    const double y = std::lerp(frame.low[1], frame.high[1], (i / kColumns + 0.5) / kRows);
+    const int row = i / kColumns, column = i % kColumns;
+    const double x = std::lerp(frame.low[0], frame.high[0], (column + 0.5) / kColumns);
+    const double y = std::lerp(frame.low[1], frame.high[1], (row + 0.5) / kRows);
     const double u = quantile(sorted_finite(cell.u), 0.5), v = quantile(sorted_finite(cell.v), 0.5);
     append_arrow(path, scale.at(x, y), scale.at(x + scale.times * u, y + scale.times * v));
   }
