@@ -58,7 +58,6 @@ struct ForestRow {
   if (!usual || !(std::abs(row.change) < 1e9)) {
     return figure(row.change) + behind + (at_bound ? " (bound)" : "");
   }
-  // As many digits as the uncertainty has.
   const double size = std::floor(std::log10(row.half));
   const int digits = static_cast<int>(std::clamp(1.0 - size, 0.0, 6.0));
   std::string value = fmt::format("{:.{}f}", row.change, digits);
@@ -70,7 +69,8 @@ struct ForestRow {
 [[nodiscard]] inline Axis forest_axis(const std::vector<ForestRow>& rows, double from, double to) {
   std::vector<double> reaches;
   for (const ForestRow& row : rows) {
-    if (row.determined) reaches.push_back(row.reach());
+    const bool known = row.determined && row.parameter->note != "hardly determined";
+    if (known) reaches.push_back(row.reach());
   }
   reaches = sorted_finite(reaches);
   constexpr double kFarther = 8.0;
