@@ -66,8 +66,9 @@ class Drawing {
   /// Grid, ticks and names of both axes; the name of y is above the axis.
   void axes(const PlotArea& area, const Axis& x, const Axis& y, std::string_view x_name,
             std::string_view y_name);
-  /// Grid, ticks and name of the axis x alone.
-  void axis_x(const PlotArea& area, const Axis& x, std::string_view name);
+  /// Grid, ticks and name of one axis.
+  /// @param whole  ticks at whole numbers only
+  void axis_x(const PlotArea& area, const Axis& x, std::string_view name, bool whole = false);
   void axis_y(const PlotArea& area, const Axis& y, std::string_view name);
 
   /// The whole svg.

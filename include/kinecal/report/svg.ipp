@@ -107,8 +107,9 @@ KINECAL_INLINE void Drawing::name(Place place, std::string_view name, double wid
                                   const char* classes, Anchor anchor, double turned) {
   constexpr std::size_t kLongest = 60;
   const double font = std::string_view(classes).starts_with("small") ? kSmallFont : kFontSize;
+  const double bold = std::string_view(classes).starts_with("strong") ? 1.1 : 1.0;
   std::string shown = shortened(name, kLongest);
-  for (std::size_t most = kLongest; most > 4 && font * text_width(shown) > width;) {
+  for (std::size_t most = kLongest; most > 4 && bold * font * text_width(shown) > width;) {
     shown = shortened(name, --most);
   }
   const bool whole = shown.find("…") == std::string::npos;
@@ -132,9 +133,11 @@ KINECAL_INLINE void Drawing::hatching(Place corner, double width, double height,
   close(0, title, "rect");
 }
 
-KINECAL_INLINE void Drawing::axis_x(const PlotArea& area, const Axis& x, std::string_view name) {
+KINECAL_INLINE void Drawing::axis_x(const PlotArea& area, const Axis& x, std::string_view name,
+                                    bool whole) {
   constexpr double kBelow = 16.0;
   for (const Tick& tick : x.ticks()) {
+    if (whole && std::abs(tick.value - std::round(tick.value)) > 1e-6) continue;
     const double at = x.at(tick.value);
     line({at, area.top}, {at, area.bottom}, tick.label.empty() ? "grid minor" : "grid");
     if (!tick.label.empty()) text({at, area.bottom + kBelow}, tick.label, "tick", Anchor::middle);

@@ -93,8 +93,9 @@ KINECAL_INLINE std::vector<Tick> Axis::ticks(int most) const {
   if (!logarithmic_) {
     const double step = round_step(high_ - low_, most);
     const double first = std::ceil(low_ / step - 1e-6), last = std::floor(high_ / step + 1e-6);
-    for (double i = first; i <= last; i += 1.0) {
-      ticks.push_back({i * step, figure(i * step, 6)});
+    for (int i = 0; i <= static_cast<int>(last - first); ++i) {
+      const double value = (first + i) * step;
+      ticks.push_back({value, figure(value, 6)});
     }
     return ticks;
   }

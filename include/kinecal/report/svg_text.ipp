@@ -92,8 +92,8 @@ KINECAL_INLINE double text_width(std::string_view text) {
         c < 0x80 &&
         std::string_view(" .,:;'|!iljtf()[]").find(static_cast<char>(c)) != std::string_view::npos;
     const bool wide = (c >= 0x1100 && c < 0x1200) || (c >= 0x2E80 && c < 0xD800) || c >= 0x1F000 ||
-                      c == 'm' || c == 'w' || c == 'M' || c == 'W' || c == '%';
-    width += c == kIsolate || c == kEndOfIsolate ? 0.0 : narrow ? 0.38 : wide ? 0.96 : 0.62;
+                      c == 'm' || c == 'w' || c == 'M' || c == 'W' || c == '%' || c == '@';
+    width += c == kIsolate || c == kEndOfIsolate ? 0.0 : narrow ? 0.38 : wide ? 1.0 : 0.62;
   }
   return width;
 }
@@ -144,7 +144,8 @@ KINECAL_INLINE std::string figure(double value, int digits) {
   const int whole = static_cast<int>(std::floor(std::log10(size))) + 1;
   const int behind = std::max(0, digits - whole);
   std::string text = fmt::format("{:.{}f}", size, behind);
-  if (behind == 0 && size >= 9999.5) return sign + count_text(static_cast<std::size_t>(size + 0.5));
+  if (behind == 0 && size >= 9999.5)
+    return sign + count_text(static_cast<std::size_t>(std::llround(size)));
   if (text.find('.') != std::string::npos) {
     text.erase(text.find_last_not_of('0') + 1);
     if (text.back() == '.') text.pop_back();

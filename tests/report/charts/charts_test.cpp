@@ -167,7 +167,7 @@ TEST(Charts, TheWorstMarksAndAnEvenChoiceAreTaken) {
   EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
   const auto in_second_half =
       std::count_if(chosen.begin(), chosen.end(), [](std::size_t i) { return i >= 500; });
-  EXPECT_NEAR(static_cast<double>(in_second_half), 0.5 * 75, 5.0) << "but for the worst 25";
+  EXPECT_NEAR(static_cast<double>(in_second_half), 0.5 * 90, 5.0) << "but for the worst ten";
 }
 
 }  // namespace

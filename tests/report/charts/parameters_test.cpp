@@ -67,6 +67,15 @@ TEST(ParameterCharts, AParameterFarBeyondTheOthersDoesNotHideThem) {
   EXPECT_EQ(chart.all("//text[.='1250.00 ± 0.20 mm']").size(), 1u);
 }
 
+TEST(ParameterCharts, AParameterThatIsHardlyDeterminedDoesNotSetTheAxis) {
+  const test::SvgChart chart(
+      parameter_charts(with({{"pan", "pan", "rad", 0.01, 0.0, 0.5, "hardly determined"},
+                             {"tilt", "tilt", "rad", 0.01, 0.0, 1e-3, ""}}))[0]);
+  const auto ticks = chart.all("//text[@class='tick']");
+  EXPECT_STREQ(ticks.back().text().get(), "0.5") << "degrees: tilt is 0.57";
+  EXPECT_EQ(chart.all("//path[@class='faint']").size(), 3u) << "an interval with two arrows";
+}
+
 TEST(ParameterCharts, RelativeOnesAreInPerCentAndAnglesInDegrees) {
   const std::vector<Chart> all = parameter_charts(test::report_data());
   ASSERT_EQ(all.size(), 3u);

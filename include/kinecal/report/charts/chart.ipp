@@ -88,7 +88,7 @@ KINECAL_INLINE std::vector<std::size_t> chosen_marks(std::span<const double> siz
     if (std::isfinite(sizes[i])) all.push_back(i);
   }
   if (all.size() <= most) return all;
-  const std::size_t worst = most / 4, others = most - worst;
+  const std::size_t worst = most / 10, others = most - worst;
   const auto end_of_worst = all.begin() + static_cast<std::ptrdiff_t>(worst);
   std::nth_element(all.begin(), end_of_worst, all.end(), [&](std::size_t a, std::size_t b) {
     return sizes[a] != sizes[b] ? sizes[a] > sizes[b] : a < b;

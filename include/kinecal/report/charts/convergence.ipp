@@ -135,7 +135,8 @@ KINECAL_INLINE std::vector<Chart> start_charts(const ReportData& data) {
     const std::size_t all = starts.minima.size(), shown = std::min(all, kMost);
     if (all == 0) continue;
     Chart chart{"convergence", fmt::format("starts-{}", i + 1),
-                "Minima of several starts: " + detail::step_name(data.steps[i], i + 1),
+                "Minima of several starts: " +
+                    detail::shortened(detail::step_name(data.steps[i], i + 1), 60),
                 "How many solves ended at each minimum.", ""};
     if (starts.failed > 0) chart.caption += fmt::format(" {} ended at none.", starts.failed);
     if (shown < all) chart.caption += fmt::format(" The lowest {} of {} are shown.", shown, all);

@@ -54,7 +54,7 @@ namespace detail {
                          std::all_of(block.features.begin(), block.features.end(),
                                      [](const ReportedFeature& f) { return !f.residual.empty(); });
   const std::vector<ScatterPoint> points = depth_points(data, block, is_signed);
-  Chart chart{"depth", "depth-" + slug, "Error against depth: " + block.name,
+  Chart chart{"depth", "depth-" + slug, "Error against depth: " + shortened(block.name, 60),
               "An error that grows with the depth points to the camera's depth scale, or to its "
               "orientation.",
               ""};

@@ -1,4 +1,4 @@
-// The axis of distances, and what noise makes one expect on it.
+// The axes of distances and of samples, and what noise makes one expect.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,6 +17,10 @@ namespace kinecal::detail {
 /// @param sorted  finite distances, ascending
 [[nodiscard]] Axis distance_axis(const ReportedBlock& block, const std::vector<double>& sorted,
                                  double bottom, double top);
+
+/// The numbers of all samples, and some room at both ends.
+[[nodiscard]] Axis samples_axis(const ReportData& data, const ReportedBlock& block,
+                                const PlotArea& area);
 
 /// Lines at once and three times the distance that noise makes one expect.
 void draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kinecal/report/charts/distance_axis.hpp"
 
@@ -30,6 +31,20 @@ KINECAL_INLINE Axis distance_axis(const ReportedBlock& block, const std::vector<
     return Axis::logarithmic(0.8 * least, 1.2 * most, bottom, top);
   }
   return Axis::linear(0.0, most, bottom, top);
+}
+
+KINECAL_INLINE Axis samples_axis(const ReportData& data, const ReportedBlock& block,
+                                 const PlotArea& area) {
+  int first = std::numeric_limits<int>::max(), last = 0;
+  const auto include = [&](int number) {
+    if (number <= 0) return;
+    first = std::min(first, number);
+    last = std::max(last, number);
+  };
+  for (const ReportedSample& sample : data.samples) include(sample.number);
+  for (const ReportedFeature& feature : block.features) include(sample_number(data, feature));
+  const double room = std::max(0.6, 0.012 * (last - first));
+  return Axis::exact(first - room, last + room, area.left, area.right);
 }
 
 KINECAL_INLINE void draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,

@@ -101,7 +101,8 @@ inline void draw_strip(Drawing& drawing, const ReportData& data, const ReportedB
                                          const std::string& slug,
                                          const std::vector<double>& distances,
                                          const std::vector<FeatureBox>& boxes, std::size_t all) {
-  Chart chart{"residuals", "features-" + slug, "Residuals of each feature: " + block.name,
+  Chart chart{"residuals", "features-" + slug,
+              "Residuals of each feature: " + shortened(block.name, 60),
               "Boxes hold the middle half, with the median; dots are samples.", ""};
   if (boxes.size() < all) {
     chart.caption += fmt::format(" Of {} features, the {} with the largest medians are shown.",

@@ -53,10 +53,11 @@ struct ForestRow {
   if (!row.determined) return "not determined";
   const std::string unit = parameter_unit(row.parameter->unit).second;
   const std::string behind = (unit == "°" ? "" : " ") + unit;
-  if (!std::isfinite(row.change)) return "–";
-  if (!(row.half > 0.0))
-    return figure(row.change) + behind + (row.parameter->note.empty() ? "" : " *");
-  // As many digits as the uncertainty has.
+  const bool at_bound = row.parameter->note == "at its bound";
+  const bool usual = row.half > 1e-6 && row.half < 1e6;  // others have too many digits
+  if (!usual || !(std::abs(row.change) < 1e9)) {
+    return figure(row.change) + behind + (at_bound ? " (bound)" : "");
+  }
   const double size = std::floor(std::log10(row.half));
   const int digits = static_cast<int>(std::clamp(1.0 - size, 0.0, 6.0));
   std::string value = fmt::format("{:.{}f}", row.change, digits);
@@ -68,7 +69,8 @@ struct ForestRow {
 [[nodiscard]] inline Axis forest_axis(const std::vector<ForestRow>& rows, double from, double to) {
   std::vector<double> reaches;
   for (const ForestRow& row : rows) {
-    if (row.determined) reaches.push_back(row.reach());
+    const bool known = row.determined && row.parameter->note != "hardly determined";
+    if (known) reaches.push_back(row.reach());
   }
   reaches = sorted_finite(reaches);
   constexpr double kFarther = 8.0;

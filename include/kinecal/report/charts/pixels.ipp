@@ -62,8 +62,9 @@ inline bool draw_mean_arrows(Drawing& drawing, const std::vector<const ReportedF
   for (int i = 0; i < kColumns * kRows; ++i) {
     const Cell& cell = cells[static_cast<std::size_t>(i)];
     if (cell.u.size() < kInCell) continue;
-    const double x = std::lerp(frame.low[0], frame.high[0], (i % kColumns + 0.5) / kColumns);
-    const double y = std::lerp(frame.low[1], frame.high[1], (i / kColumns + 0.5) / kRows);
+    const int row = i / kColumns, column = i % kColumns;
+    const double x = std::lerp(frame.low[0], frame.high[0], (column + 0.5) / kColumns);
+    const double y = std::lerp(frame.low[1], frame.high[1], (row + 0.5) / kRows);
     const double u = quantile(sorted_finite(cell.u), 0.5), v = quantile(sorted_finite(cell.v), 0.5);
     append_arrow(path, scale.at(x, y), scale.at(x + scale.times * u, y + scale.times * v));
   }
@@ -103,7 +104,7 @@ inline void draw_arrow_key(Drawing& drawing, const ImageScale& scale, bool has_m
     sizes.push_back(std::hypot(f->residual[0], f->residual[1]));
   const std::vector<double> sorted = sorted_finite(sizes);
   const std::vector<std::size_t> chosen = chosen_marks(sizes, kMostArrows);
-  Chart chart{"pixels", "pixels-" + slug, "Residuals in the image: " + block.name,
+  Chart chart{"pixels", "pixels-" + slug, "Residuals in the image: " + shortened(block.name, 60),
               "From observed to predicted. Arrows that point the same way in a region show a lens "
               "error; red: samples that do not fit." +
                   chosen_text(chosen.size(), features.size(), "features"),

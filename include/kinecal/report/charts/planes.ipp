@@ -47,6 +47,15 @@ struct FloorPoint {
   return (error < 0.0 ? "minus" : "plus") + std::string(level);
 }
 
+[[nodiscard]] inline std::vector<LegendEntry> error_legend(double most, const std::string& unit) {
+  const std::string end = figure(most), half = figure(0.5 * most);
+  return {{Swatch::dot, "minus", "−" + end + " and less"},
+          {Swatch::dot, "minus l3", "−" + half},
+          {Swatch::dot, "none", "0"},
+          {Swatch::dot, "plus l3", half},
+          {Swatch::dot, "plus", end + " " + unit + " and more"}};
+}
+
 [[nodiscard]] inline Chart plane_chart(const ReportedBlock& block, const std::string& slug,
                                        const std::vector<FloorPoint>& points) {
   constexpr std::size_t kMostPoints = 1000;
@@ -63,21 +72,15 @@ struct FloorPoint {
   const std::vector<double> sorted = sorted_finite(sizes);
   const double usual = quantile(sorted, 0.95);
   const double most = usual > 0.0 ? round_step(usual, 1) : 1.0;
-  Chart chart{"planes", "planes-" + slug, "Error over the plane: " + block.name,
+  Chart chart{"planes", "planes-" + slug, "Error over the plane: " + shortened(block.name, 60),
               "Seen from above, in the base. Regions of one colour are an error that the "
               "calibration has not removed." +
                   chosen_text(chosen.size(), points.size(), "points"),
               ""};
   const MapAxes map = map_axes(low, high, 46.0, 360.0);
   Drawing drawing(chart.name, chart.title, map.area.bottom + 38.0);
-  const std::string unit = people_unit(block.unit), end = figure(most), half = figure(0.5 * most);
-  draw_legend(drawing,
-              {{Swatch::dot, "minus", "−" + end + " and less"},
-               {Swatch::dot, "minus l3", "−" + half},
-               {Swatch::dot, "none", "0"},
-               {Swatch::dot, "plus l3", half},
-               {Swatch::dot, "plus", end + " " + unit + " and more"}},
-              0.0);
+  const std::string unit = people_unit(block.unit);
+  draw_legend(drawing, error_legend(most, unit), 0.0);
   drawing.axes(map.area, map.x, map.y, "x, m", "y, m");
   for (const std::size_t i : chosen) {
     const FloorPoint& point = points[i];

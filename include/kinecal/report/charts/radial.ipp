@@ -56,7 +56,7 @@ inline std::size_t draw_part(Drawing& drawing, const std::vector<ScatterPoint>& 
 [[nodiscard]] inline Chart radial_chart(const RadialPoints& points, const ReportedBlock& block,
                                         const std::string& slug) {
   Chart chart{
-      "pixels", "radial-" + slug, "Radial profile: " + block.name,
+      "pixels", "radial-" + slug, "Radial profile: " + shortened(block.name, 60),
       "A radial median that leaves zero towards the rim is a lens error that the model does "
       "not have.",
       ""};

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -45,14 +44,18 @@ struct SampleMarks {
     WorstMark& worst = marks.worst_of.try_emplace(number, WorstMark{i, distances[i]}).first->second;
     if (distances[i] > worst.distance) worst = {i, distances[i]};
   }
+  constexpr std::size_t kFew = 400;  // of more samples, most dots would be dark
+  const double dark =
+      marks.worst_of.size() <= kFew ? 0.0 : quantile(sorted_finite(distances), 0.998);
   for (const std::size_t i : chosen) {
     const int number = sample_number(data, block.features[i]);
     const ReportedSample& sample = sample_of(data, block.features[i]);
     const bool is_worst = marks.worst_of[number].feature == i;
-    Dots& dots = sample.left_out ? marks.left_out
-                 : !is_worst     ? marks.others
-                 : sample.bad    ? marks.bad
-                                 : marks.worst;
+    Dots& dots = sample.left_out       ? marks.left_out
+                 : !is_worst           ? marks.others
+                 : sample.bad          ? marks.bad
+                 : distances[i] < dark ? marks.others
+                                       : marks.worst;
     append_dot(dots[number], {x.at(number), y.at(distances[i])});
   }
   return marks;
@@ -123,21 +126,6 @@ inline void draw_left_out(Drawing& drawing, const ReportData& data, const Sample
                      people_unit(block.unit), feature_text(data, block, feature));
 }
 
-/// The numbers of all samples, and some room.
-[[nodiscard]] inline Axis samples_axis(const ReportData& data, const ReportedBlock& block,
-                                       const PlotArea& area) {
-  int first = std::numeric_limits<int>::max(), last = 0;
-  const auto include = [&](int number) {
-    if (number <= 0) return;
-    first = std::min(first, number);
-    last = std::max(last, number);
-  };
-  for (const ReportedSample& sample : data.samples) include(sample.number);
-  for (const ReportedFeature& feature : block.features) include(sample_number(data, feature));
-  const double room = std::max(0.6, 0.012 * (last - first));
-  return Axis::exact(first - room, last + room, area.left, area.right);
-}
-
 [[nodiscard]] inline std::vector<LegendEntry> samples_legend(const ReportData& data,
                                                              const ReportedBlock& block) {
   std::vector<LegendEntry> legend = {{Swatch::dot, "after", "worst of a sample"}};
@@ -155,17 +143,19 @@ inline void draw_left_out(Drawing& drawing, const ReportData& data, const Sample
                                         const std::string& slug) {
   const std::vector<double> distances = distances_of(block), sorted = sorted_finite(distances);
   const auto chosen = chosen_marks(distances);
-  Chart chart{"residuals", "samples-" + slug, "Residuals in capture order: " + block.name,
+  Chart chart{"residuals", "samples-" + slug,
+              "Residuals in capture order: " + shortened(block.name, 60),
               "Each dot is a feature, the dark ones are the worst of their samples. Lines: what "
               "noise makes one expect, and three times that." +
                   chosen_text(chosen.size(), sorted.size(), "features"),
               ""};
-  const PlotArea area{46.0, 46.0, kChartWidth - 10.0, 270.0};
+  const PlotArea area{46.0, 46.0, kChartWidth - 20.0, 270.0};
   Drawing drawing(chart.name, chart.title, area.bottom + 38.0);
   draw_legend(drawing, samples_legend(data, block), 0.0);
   const Axis x = samples_axis(data, block, area);
   const Axis y = distance_axis(block, sorted, area.bottom, area.top + 14.0);
-  drawing.axes(area, x, y, "sample", axis_name("distance", block.unit));
+  drawing.axis_y(area, y, axis_name("distance", block.unit));
+  drawing.axis_x(area, x, "sample", true);
   draw_noise_lines(drawing, area, y, block);
   const SampleMarks marks = sample_marks(data, block, distances, chosen, x, y);
   draw_dots(drawing, data, block, marks, marks.others, "dots");

@@ -53,7 +53,8 @@ KINECAL_INLINE std::size_t draw_scatter(Drawing& drawing, const std::vector<Scat
   for (const std::size_t i : chosen) {
     append_dot(dots[points[i].sample], {x.at(points[i].x), y.at(points[i].y)});
   }
-  drawing.open_group("dots small");
+  constexpr std::size_t kFew = 100;
+  drawing.open_group(chosen.size() <= kFew ? "dots" : "dots small");
   for (const auto& [sample, path] : dots) drawing.path(path, "", sample);
   drawing.close_group();
   std::vector<Place> medians = running_median(points);
