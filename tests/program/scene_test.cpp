@@ -46,16 +46,15 @@ class SceneFile : public test::ProgramTest {
   }
 };
 
-TEST_F(SceneFile, IsAWholeMcapFileThatInspectReads) {
+TEST_F(SceneFile, IsAWholeMcapFileAndTheSameEachTime) {
   const Outcome done = calibrate("--scene s.mcap");
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("wrote s.mcap"));
   const std::string bytes = read("s.mcap");
   EXPECT_EQ(bytes.substr(0, 8), kMagic);
   EXPECT_EQ(bytes.substr(bytes.size() - 8), kMagic);
-  const std::string again = bytes;
   EXPECT_EQ(calibrate("--scene s.mcap --force").code, 0);
-  EXPECT_EQ(read("s.mcap"), again) << "the same input, the same bytes";
+  EXPECT_EQ(read("s.mcap"), bytes);
 }
 
 TEST_F(SceneFile, ReplacesAFileOnlyIfForcedAndAnInputNever) {
@@ -84,16 +83,10 @@ TEST_F(SceneFile, LeavesNothingWhereItCannotBeWritten) {
 }
 
 TEST_F(SceneFile, IsWrittenWhateverTheVerdict) {
-  // The first reflector of the first samples is somewhere else: nothing fits.
-  replace("calibrate.yaml", "error_blocks:", "max_num_iterations: 1\nerror_blocks:");
-  std::string text = read("samples.yaml");
-  for (std::size_t at = 0, n = 0; (at = text.find("x: 0.", at)) != std::string::npos; ++n) {
-    text.replace(at, 5, n % 2 == 0 ? "x: 9." : "x: 0.");
-    at += 5;
-  }
-  write("samples.yaml", text);
+  replace("calibrate.yaml", "max_num_iterations: 1000", "max_num_iterations: 1");
   const Outcome bad = calibrate("--scene s.mcap");
   EXPECT_EQ(bad.code, 2) << bad.out << bad.err;
+  EXPECT_THAT(bad.err, HasSubstr("nothing written"));
   EXPECT_EQ(read("s.mcap").substr(0, 8), kMagic);
 }
 
