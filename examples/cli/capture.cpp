@@ -24,7 +24,6 @@
 #include "kinecal/io/detect/detect.hpp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/write_recording.hpp"
-#include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/io/urdf/velocity_limits.hpp"
 #include "output_file.hpp"
@@ -207,17 +206,6 @@ void check_robot(const std::vector<Sample>& samples, const std::vector<CapturePo
   }
 }
 
-/// The calibration that `--result` asks for.
-CalibrateOptions calibration_of(const CaptureOptions& options) {
-  CalibrateOptions calibrating;
-  calibrating.urdf = options.urdf;
-  calibrating.config = options.calibrate;
-  calibrating.samples = {options.output};
-  calibrating.output = options.result;
-  calibrating.force = options.force;
-  return calibrating;
-}
-
 void check_options(const CaptureOptions& options) {
   (void)output_encoding(options.output);
   std::vector<std::string> inputs = {options.config, options.urdf, options.poses,
@@ -227,11 +215,7 @@ void check_options(const CaptureOptions& options) {
   }
   check_output(options.output, inputs, options.force || options.resume);
   inputs.push_back(options.output);
-  if (!options.sheet.empty()) {
-    check_output(options.sheet, inputs, options.force);
-    const OutputFolder folder(folder_of(options.sheet));  // it can be written to
-  }
-  if (!options.result.empty()) check_results(calibration_of(options));
+  if (!options.sheet.empty()) check_output(options.sheet, inputs, options.force);
   if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
   if (options.manual == options.poses.empty()) return;
   throw InputError(options.manual ? "--manual: a person moves the robot, so --poses has no use"
@@ -330,6 +314,17 @@ void print_session(const Session& session, std::size_t before) {
   std::fflush(stdout);
 }
 
+/// The result folder of `--result`.
+int calibrate_samples(const CaptureOptions& options) {
+  CalibrateOptions calibrating;
+  calibrating.urdf = options.urdf;
+  calibrating.config = options.calibrate;
+  calibrating.samples = {options.output};
+  calibrating.output = options.result;
+  calibrating.force = options.force;
+  return calibrate(calibrating);
+}
+
 }  // namespace
 
 int capture(const CaptureOptions& options) {
@@ -340,11 +335,9 @@ int capture(const CaptureOptions& options) {
   if (!diagnostics.errors.empty()) return kBadInput;
   Session session{options, read_urdf_text(options.urdf), {}, {}, earlier_samples(options), {}};
   session.robot = parse_urdf(session.urdf, options.urdf);
-  check_chains(options.config, config, session.robot);
   const std::size_t before = session.samples.size();
   if (!options.manual) {
     const std::vector<CapturePose> all = read_poses(options.poses, config);
-    check_poses(options.poses, all, {session.robot, finder_names(config)});
     check_robot(session.samples, all);
     session.poses = poses_left(all, session.samples);
   }
@@ -371,7 +364,7 @@ int capture(const CaptureOptions& options) {
     fmt::print(stderr, "error: nothing was found in any pose\n");
     return kBadInput;
   }
-  const int code = options.result.empty() ? kDone : calibrate(calibration_of(options));
+  const int code = options.result.empty() ? kDone : calibrate_samples(options);
   if (session.follower && options.robot.starts_with(kSimulated)) {
     const std::string scene = options.robot.substr(kSimulated.size());
     fmt::print("{}", truth_text(session.robot, scene, session.follower->fit_all()));

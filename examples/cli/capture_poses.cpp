@@ -62,7 +62,7 @@ class PoseRecorder {
         robot_(robot),
         file_(std::move(file)),
         poses_(std::move(poses)) {
-    known_ = finder_names(config_);
+    for (const CaptureFinder& finder : config_.finders) known_.push_back(finder.name);
   }
 
   [[nodiscard]] const std::vector<CapturePose>& poses() const { return poses_; }
@@ -128,24 +128,11 @@ class PoseRecorder {
         pose.positions.push_back(*position);
       }
     }
-    if (config_.chains.empty()) add_known(joints, pose);
+    if (config_.chains.empty()) pose = {joints.names, joints.positions, features_};
     for (std::size_t i = 0; i < pose.positions.size(); ++i) {
       pose.positions[i] = within_limits(robot_, pose.joint_names[i], pose.positions[i]);
     }
     return pose;
-  }
-
-  /// Adds the joints of the URDF; a robot may report others, such as fingers.
-  void add_known(const MeasuredJoints& joints, CapturePose& pose) const {
-    for (std::size_t i = 0; i < joints.names.size(); ++i) {
-      if (!robot_.has_joint(joints.names[i])) continue;
-      pose.joint_names.push_back(joints.names[i]);
-      pose.positions.push_back(joints.positions[i]);
-    }
-    if (!pose.joint_names.empty()) return;
-    throw PoseError("the robot measures '" + (joints.names.empty() ? "" : joints.names.front()) +
-                    "' and others, none of which is in the URDF of '" + robot_.name() +
-                    "'; is it that robot's?");
   }
 
   AnyArm arm_;
@@ -193,11 +180,9 @@ int capture_poses(const CapturePosesOptions& options) {
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
   const Robot robot = read_urdf(options.urdf);
-  check_chains(options.config, config, robot);
   std::vector<CapturePose> before;
   if (options.resume && std::filesystem::exists(options.output)) {
     before = read_pose_file(options.output);
-    check_poses(options.output, before, {robot, finder_names(config)});
     fmt::print("{}: {} from before\n", options.output, counted(before.size(), "pose"));
   }
   CaptureConfig joints_only = config;

@@ -43,11 +43,6 @@ struct CalibrateOptions : InputOptions {
   std::string cost = "compressed";
 };
 
-/// Checks what can be known of the results before the work: that they replace no input, nothing else without
-/// --force, and that their folder can be written to.
-/// @throws OutputError  if not
-void check_results(const CalibrateOptions& options);
-
 /// Calibrates the robot and writes the results, all or none.
 int calibrate(const CalibrateOptions& options);
 

@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -46,14 +45,6 @@ void check_options(const DetectOptions& options) {
   if (!options.images.empty() && options.frame.empty()) {
     throw InputError("photographs need the name of the camera's frame: --frame");
   }
-  for (std::size_t i = 0; i < options.bags.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      std::error_code missing;
-      if (!std::filesystem::equivalent(options.bags[i], options.bags[j], missing)) continue;
-      throw InputError("--bag: " + options.bags[i] +
-                       " is given twice; its samples would count twice");
-    }
-  }
   const bool has_links = !options.board_link.empty() || !options.camera_link.empty();
   if (has_links && options.urdf.empty()) {
     throw InputError("--board-link and --camera-link need the robot: --urdf");
@@ -69,18 +60,6 @@ void check_links(const DetectOptions& options, const Robot& robot, Diagnostics& 
     for (const Joint& joint : robot.joints()) links.push_back(joint.child);
     diagnostics.errors.push_back(std::string(option) + ": the robot has no link '" + link + "'" +
                                  did_you_mean(link, links));
-  }
-}
-
-/// Errors of columns of the table that are no joints of the robot.
-void check_joints(const std::vector<PosedImage>& images, const Robot& robot,
-                  Diagnostics& diagnostics) {
-  if (images.empty()) return;
-  for (const std::string& joint : images.front().joints.names) {
-    if (robot.has_joint(joint)) continue;
-    diagnostics.errors.push_back(images.front().source + ": the robot has no joint '" + joint +
-                                 "'" + did_you_mean(joint, robot.joint_names()) +
-                                 "; correct the column's name, or leave it out with --columns");
   }
 }
 
@@ -130,7 +109,6 @@ Task read_task(const DetectOptions& options, Diagnostics& diagnostics) {
   if (!options.images.empty()) {
     task.images =
         list_images({options.images, options.poses, options.columns, options.depth}, diagnostics);
-    if (task.robot) check_joints(task.images, *task.robot, diagnostics);
   }
   if (diagnostics.errors.empty()) read_recordings(options, task, diagnostics);
   return task;

@@ -332,11 +332,6 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       .add_option("--until", options.until,
                   "end when the pose is known as well as this, one sigma: \"gripper 1 mm\", "
                   "\"tool0 0.1 deg\"")
-      ->check(
-          [](const std::string& text) {
-            return text.empty() ? "--until is empty; write \"gripper 1 mm\"" : "";
-          },
-          "")
       ->needs(calibrate)
       ->type_name("ACCURACY");
   command.add_option("--result", options.result, "calibrate at the end, into this folder")

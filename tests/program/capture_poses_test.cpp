@@ -121,15 +121,6 @@ TEST_F(CapturePoses, ResumesAndWritesBags) {
   EXPECT_EQ(all[2].positions, (std::vector<double>{-0.25, 0.3}));
 }
 
-TEST_F(CapturePoses, GoesOnWithPosesOfTheSameRobotOnly) {
-  write("poses.yaml", "- {joints: [elbow_flex_jiont], positions: [0.5], features: [leds]}\n");
-  const Outcome refused = poses("0.3", "\nq\n", "-o poses.yaml --resume");
-  EXPECT_EQ(refused.code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("poses.yaml: pose 1: the robot has no joint "
-                                     "'elbow_flex_jiont'; did you mean 'elbow_flex_joint'?"));
-  ASSERT_EQ(written().size(), 1u);
-}
-
 TEST_F(CapturePoses, KeepsWhatIsRecordedIfTheRobotIsLost) {
   write("ends.sh",
         "for i in 1 2 3 4; do read line; echo \"{\\\"stamp\\\": ${i}00000000, "

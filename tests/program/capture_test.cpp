@@ -126,43 +126,8 @@ TEST_F(CaptureProgram, SaysWhatIsWrongBeforeTheRobotMoves) {
           .err,
       HasSubstr("the name must end in .yaml, .bag or .mcap"));
   EXPECT_THAT(capture("--velocity nan").err, HasSubstr("--velocity"));
-  EXPECT_THAT(capture("--calibrate sim/calibrate.yaml --until ''").err,
-              HasSubstr("--until is empty"));
-  std::ofstream(folder_ / "file") << "x";
-  for (const std::string output :
-       {"--calibrate sim/calibrate.yaml --result file", "--contact-sheet file/views.png"}) {
-    const Outcome refused = capture(output);
-    EXPECT_EQ(refused.code, 1) << output;
-    EXPECT_THAT(refused.out, Not(HasSubstr("pose 1"))) << output;
-  }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "samples.yaml"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.yaml"));
-}
-
-TEST_F(CaptureProgram, ChecksAllPosesBeforeTheRobotMoves) {
-  simulate(3);
-  std::ofstream(folder_ / "sim/poses.yaml")
-      << "- {joints: [elbow_flex_jiont, head_pan_joint], positions: [0.1, 0.2]}\n"
-         "- {joints: [elbow_flex_joint], positions: [9.5], features: [led_findr]}\n"
-         "- {joints: [elbow_flex_jiont], positions: [0.1]}\n";
-  std::ofstream(folder_ / "sim/capture.yaml")
-      << "features:\n  led_finder: {type: robot_calibration/PlaneFinder, topic: /points}\n";
-  const Outcome refused = capture("");
-  EXPECT_EQ(refused.code, 1);
-  EXPECT_THAT(
-      refused.err,
-      AllOf(HasSubstr("error: sim/poses.yaml: pose 1: the robot has no joint "
-                      "'elbow_flex_jiont'; did you mean 'elbow_flex_joint'?; and in 1 more pose\n"),
-            HasSubstr("error: sim/poses.yaml: pose 2: asks for finder 'led_findr', which the "
-                      "configuration does not have; did you mean 'led_finder'?\n"),
-            HasSubstr("warning: sim/poses.yaml: pose 2: joint 'elbow_flex_joint' is beyond "
-                      "its limits of ")));
-  EXPECT_THAT(refused.out, Not(HasSubstr("pose 1")));
-  std::ofstream(folder_ / "sim/capture.yaml")
-      << "chains:\n- {name: arm, topic: /arm, joints: [elbow]}\n"
-         "features:\n  led_finder: {type: robot_calibration/PlaneFinder, topic: /points}\n";
-  EXPECT_THAT(capture("").err,
-              HasSubstr("sim/capture.yaml: chain 'arm': the robot has no joint 'elbow'"));
 }
 
 TEST_F(CaptureProgram, ReplacesNoInputAndNoSecondOutput) {

@@ -86,17 +86,6 @@ TEST_F(Detect, ABoardThatLooksTheSameWhenTurnedIsAWarning) {
   EXPECT_THAT(detect().err, testing::Not(HasSubstr("looks the same")));
 }
 
-TEST_F(Detect, ColumnsOfTheTableAreJointsOfTheRobot) {
-  std::string table = read("photos/poses.csv");
-  const std::size_t joint = table.find("panda_joint3");
-  ASSERT_NE(joint, std::string::npos);
-  write("photos/poses.csv", table.replace(joint, 12, "panda_jiont3"));
-  const Outcome failed = detect("--urdf panda.urdf");
-  EXPECT_EQ(failed.code, 1);
-  EXPECT_THAT(failed.err,
-              HasSubstr("the robot has no joint 'panda_jiont3'; did you mean 'panda_joint3'?"));
-}
-
 TEST_F(Detect, ATableWithFewerRowsThanImagesNamesTheImages) {
   write("photos/poses.csv", read("photos/poses.csv").substr(0, 200));
   std::string table = read("photos/poses.csv");

@@ -41,10 +41,6 @@ class TopicChoice {
 
   [[nodiscard]] ViewTopics choose() {
     ViewTopics topics;
-    if (!wishes_.depth.empty() && find(wishes_.depth) == nullptr) {
-      no_such_depth();
-      return topics;
-    }
     const RecordedTopic* main = find(finder_.topic);
     if (main == nullptr || kind_of(*main) == TopicKind::camera_info) main = only_main();
     if (main == nullptr) return topics;
@@ -132,19 +128,13 @@ class TopicChoice {
                             : "name one as the finder's topic, which is " + named);
   }
 
-  /// Error: --depth names a topic that is not recorded.
-  void no_such_depth() {
-    std::string others;
-    for (const RecordedTopic* topic : candidates(TopicKind::depth)) {
-      others += (others.empty() ? "; it has depth on '" : "', '") + printable(topic->name);
-    }
-    diagnostics_.error({wishes_.file, 0}, "has no topic '" + printable(plain_topic(wishes_.depth)) +
-                                              "' of --depth" +
-                                              (others.empty() ? ", and no depth" : others + "'"));
-  }
-
   [[nodiscard]] std::string depth_topic(const RecordedTopic& image) {
-    if (!wishes_.depth.empty()) return find(wishes_.depth)->name;  // choose() has checked it
+    if (!wishes_.depth.empty()) {
+      if (const RecordedTopic* depth = find(wishes_.depth)) return depth->name;
+      diagnostics_.error({wishes_.file, 0},
+                         "has no topic '" + printable(plain_topic(wishes_.depth)) + "' of depth");
+      return {};
+    }
     const auto* depth = only(candidates(TopicKind::depth), "depth for '" + image.name + "'",
                              "name one with --depth, or use a finder of pixels (2d)");
     return depth == nullptr ? "" : depth->name;

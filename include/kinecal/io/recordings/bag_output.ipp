@@ -73,13 +73,7 @@ class BagFile {
           writer_);
     });
     file_.close();
-    if (!file_) {
-      std::error_code unknown;
-      const auto space = std::filesystem::space(staging_.path(), unknown);
-      const bool is_full = !unknown && space.available < kLittle;
-      throw OutputError(path_.string() + ": cannot be written to its end" +
-                        (is_full ? ": no space left on device" : ""));
-    }
+    if (!file_) throw OutputError(path_.string() + ": cannot be written to its end");
     rename_file(staging_.path() / path_.filename(), path_);
   }
 
@@ -113,8 +107,6 @@ class BagFile {
       throw OutputError(path_.string() + ": " + error.what());
     }
   }
-
-  static constexpr std::uintmax_t kLittle = 1U << 20U;  ///< bytes: a full disk has a few left
 
   std::filesystem::path path_;
   Encoding encoding_;
