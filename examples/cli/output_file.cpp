@@ -18,6 +18,9 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
       throw OutputError(output + ": would replace an input; choose another name");
     }
   }
+  if (std::filesystem::is_directory(output))
+    throw OutputError(output + ": is a folder, not a file");
+  const OutputFolder can_be_written(folder_of(output));
   if (force || !std::filesystem::exists(std::filesystem::symlink_status(output))) return;
   throw OutputError(output + ": exists; use --force to replace it, or choose another name");
 }
