@@ -121,5 +121,10 @@ TEST_F(ImageFolderTest, DepthOfAnotherSizeIsAnErrorThatNamesBoth) {
 }
 #endif
 
+TEST_F(ImageFolderTest, ATableWithoutRowsIsOneError) {
+  EXPECT_TRUE(list("image,q1\n").empty());
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("poses.csv: the table has no rows")));
+}
+
 }  // namespace
 }  // namespace kinecal

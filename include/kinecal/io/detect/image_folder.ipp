@@ -139,6 +139,7 @@ KINECAL_INLINE std::vector<PosedImage> list_images(const ImageFolder& folder,
   mapping.observations.clear();  // they are in the images
   if (!diagnostics.errors.empty()) return {};
   const std::vector<Sample> samples = csv_samples(text, mapping, folder.table, diagnostics);
+  if (rows.size() < (header ? 2U : 1U)) return {};  // an error: no image has a row
   const auto images = detail::images_of_rows(rows, header, image, folder, names, diagnostics);
   std::vector<PosedImage> result;
   for (const Sample& sample : samples) {
