@@ -225,7 +225,7 @@ void check_options(const CaptureOptions& options) {
   }
   check_output(options.output, inputs, options.force || options.resume);
   inputs.push_back(options.output);
-  if (!options.sheet.empty()) check_output(options.sheet, inputs, options.force);
+  if (!options.sheet.empty()) check_picture(options.sheet, inputs, options.force);
   if (!options.result.empty()) check_results(calibration_of(options));
   if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
   if (options.manual == options.poses.empty()) return;
@@ -268,9 +268,10 @@ struct Session {
     }
   }
 
-  /// "; 6 min left": the poses that are left take the mean time of those so far.
+  /// "; 6 min left": the poses that are left take the mean time of those so far.  The first one alone
+  /// is no measure: the robot may have been near it.
   [[nodiscard]] std::string time_left() const {
-    if (timed == 0 || done >= poses.size()) return {};
+    if (timed < 2 || done >= poses.size()) return {};
     const double mean = std::chrono::duration<double>(spent).count() / static_cast<double>(timed);
     const double seconds = mean * static_cast<double>(poses.size() - done);
     constexpr double kMinute = 60.0, kLong = 90.0;

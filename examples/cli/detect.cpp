@@ -248,7 +248,7 @@ int detect(const DetectOptions& options) {
   check_output(options.output, inputs, options.force);
   (void)output_encoding(options.output);
   inputs.push_back(options.output);
-  if (!options.sheet.empty()) check_output(options.sheet, inputs, options.force);
+  if (!options.sheet.empty()) check_picture(options.sheet, inputs, options.force);
   check_recordings(options.bags);
   Diagnostics diagnostics;
   const Task task = read_task(options, diagnostics);

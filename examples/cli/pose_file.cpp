@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "input.hpp"
 #include "kinecal/io/recordings/pose_messages.hpp"
@@ -39,39 +40,50 @@ std::vector<std::string> joints_of(const Robot& robot) {
   return names;
 }
 
-/// What is wrong with a position; empty if nothing is.
-std::string beyond_limits(const Robot& robot, const std::string& joint, double position) {
+/// What is wrong with a pose.
+struct PoseFault {
+  std::string what;     ///< the same for poses with the same fault
+  std::string details;  ///< of this pose
+  bool is_error = true;
+};
+
+/// Adds that a position is beyond the limits of its joint.
+void check_limits(const Robot& robot, const std::string& joint, double position,
+                  std::vector<PoseFault>& faults) {
   const auto& limits = robot.joint(joint).limits;
-  const double nearest = within_limits(robot, joint, position);
-  if (!limits || !(limits->lower < limits->upper)) return {};
-  if (nearest >= limits->lower && nearest <= limits->upper) return {};
-  return fmt::format("joint '{}' at {:.4g} is beyond its limits, {:.4g} to {:.4g}", joint, position,
-                     limits->lower, limits->upper);
+  if (!limits || !(limits->lower < limits->upper)) return;
+  const double beyond = std::max(limits->lower - position, position - limits->upper);
+  if (beyond <= kSamePosition) return;
+  // Where a person has put a robot, it may read a few degrees more, and its controllers decide.
+  constexpr double kReadable = 0.1;
+  const bool is_error = beyond > kReadable;
+  faults.push_back(
+      {fmt::format("joint '{}' is {}beyond its limits, {:.4g} to {:.4g}", joint,
+                   is_error ? "" : "a little ", limits->lower, limits->upper),
+       fmt::format(": at {:.4g}{}", position, is_error ? "" : "; the robot may skip the pose"),
+       is_error});
 }
 
-/// What is wrong with a pose.
-std::vector<std::string> faults_of(const CapturePose& pose, const CaptureConfig& config,
-                                   const Robot& robot) {
-  std::vector<std::string> faults;
+std::vector<PoseFault> faults_of(const CapturePose& pose, const CaptureConfig& config,
+                                 const Robot& robot) {
+  std::vector<PoseFault> faults;
   const std::set<std::string> moved = moved_joints(config);
   for (std::size_t i = 0; i < pose.joint_names.size(); ++i) {
     const std::string& joint = pose.joint_names[i];
     const bool is_left_out = !moved.empty() && !moved.contains(joint);
     if (robot.has_joint(joint)) {
-      if (is_left_out) continue;
-      const std::string beyond = beyond_limits(robot, joint, pose.positions[i]);
-      if (!beyond.empty()) faults.push_back(beyond);
+      if (!is_left_out) check_limits(robot, joint, pose.positions[i], faults);
     } else if (!is_left_out || nearest_name(joint, moved)) {
-      faults.push_back("the robot has no joint '" + joint + "'" +
-                       did_you_mean(joint, joints_of(robot)));
+      faults.push_back(
+          {"the robot has no joint '" + joint + "'", did_you_mean(joint, joints_of(robot))});
     }
   }
   std::vector<std::string> finders;
   for (const CaptureFinder& finder : config.finders) finders.push_back(finder.name);
   for (const std::string& name : pose.features) {
     if (std::find(finders.begin(), finders.end(), name) != finders.end()) continue;
-    faults.push_back("the configuration has no finder '" + name + "'" +
-                     did_you_mean(name, finders));
+    faults.push_back(
+        {"the configuration has no finder '" + name + "'", did_you_mean(name, finders)});
   }
   return faults;
 }
@@ -100,19 +112,19 @@ void check_chains(const std::string& file, const CaptureConfig& config, const Ro
 
 void check_poses(const std::vector<CapturePose>& poses, const CaptureConfig& config,
                  const Robot& robot) {
-  std::vector<std::pair<std::string, std::string>> first;  // fault and where it is first
+  std::vector<std::pair<PoseFault, std::string>> first;  // and where it is
   std::map<std::string, std::size_t> count;
   for (const CapturePose& pose : poses) {
-    for (const std::string& fault : faults_of(pose, config, robot)) {
-      if (++count[fault] == 1) first.emplace_back(fault, pose.source);
+    for (const PoseFault& fault : faults_of(pose, config, robot)) {
+      if (++count[fault.what] == 1) first.emplace_back(fault, pose.source);
     }
   }
   Diagnostics diagnostics;
   for (const auto& [fault, source] : first) {
-    const std::size_t others = count[fault] - 1;
-    diagnostics.errors.push_back(
-        source + ": " + fault +
-        (others > 0 ? " (and in " + counted(others, "other pose") + ")" : std::string()));
+    const std::size_t others = count[fault.what] - 1;
+    (fault.is_error ? diagnostics.errors : diagnostics.warnings)
+        .push_back(source + ": " + fault.what + fault.details +
+                   (others > 0 ? " (and " + counted(others, "other pose") + ")" : std::string()));
   }
   print_or_throw(diagnostics);
 }
@@ -120,6 +132,10 @@ void check_poses(const std::vector<CapturePose>& poses, const CaptureConfig& con
 std::vector<CapturePose> read_pose_file(const std::string& path) {
   std::error_code unknown;
   if (std::filesystem::file_size(path, unknown) == 0) throw InputError(path + ": is empty");
+  const bool is_yaml = path.ends_with(".yaml") || path.ends_with(".yml");
+  if (is_yaml && std::filesystem::is_regular_file(path, unknown) && !is_poses_yaml(path)) {
+    throw InputError(path + ": is not a list of poses, {joints: [], positions: []}");
+  }
   Diagnostics diagnostics;
   std::vector<CapturePose> poses =
       is_poses_yaml(path) ? read_poses_yaml(path, diagnostics) : read_bag_poses(path, diagnostics);

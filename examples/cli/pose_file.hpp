@@ -22,7 +22,7 @@ inline constexpr double kSamePosition = 0.005;
 void check_chains(const std::string& file, const CaptureConfig& config, const Robot& robot);
 
 /// Checks poses as a whole, before a robot moves: joints that it does not have, positions beyond
-/// their limits, finders that the configuration does not have.
+/// their limits, finders that the configuration does not have.  A little beyond is a warning.
 /// @throws InputError  with one of them; the others are printed
 void check_poses(const std::vector<CapturePose>& poses, const CaptureConfig& config,
                  const Robot& robot);

@@ -144,7 +144,7 @@ TEST_F(CapturePoses, PosesOfAnotherRobotAreNamed) {
   const Outcome other = poses("0.5", "\nq\n", "-o poses.yaml --resume");
   EXPECT_EQ(other.code, 1);
   EXPECT_THAT(other.err, HasSubstr("poses.yaml:1: the robot has no joint 'elbow_flex_jont'; did "
-                                   "you mean 'elbow_flex_joint'? (and in 1 other pose)"));
+                                   "you mean 'elbow_flex_joint'? (and 1 other pose)"));
   EXPECT_EQ(read("poses.yaml"), before);
   write("poses.yaml", "- {joints: [head_pan_joint], positions: [0.1]}\n");
   EXPECT_THAT(poses("0.5", "\nq\n", "-o poses.yaml --resume").err,

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "kinecal/io/urdf/read_urdf.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal::test {
@@ -56,7 +57,8 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
   EXPECT_THAT(session.out,
               AllOf(HasSubstr("led_finder: 4 features"), HasSubstr("'gripper 5 mm' is reached"),
                     HasSubstr("next, move"), HasSubstr("truth: '"), HasSubstr("by the URDF, "),
-                    ContainsRegex("pose 1 of 40: .*; at most [0-9]+ min left\n")));
+                    ContainsRegex("pose 1 of 40: .*features\n"),
+                    ContainsRegex("pose 2 of 40: .*; at most [0-9]+ min left\n")));
   EXPECT_LT(samples(), 40);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "views.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "calibrated/calibrated.urdf"));
@@ -79,7 +81,7 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
   const Outcome rest = capture("--resume");
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.out, AllOf(HasSubstr("(" + std::to_string(before) + " from before)"),
-                              ContainsRegex("pose 1 of [0-9]: .*; [0-9]+ s left\n"),
+                              ContainsRegex("pose 2 of [0-9]: .*; [0-9]+ s left\n"),
                               ContainsRegex("features\n")))
       << "nothing is left after the last pose";
   EXPECT_EQ(samples(), 6);
@@ -129,6 +131,16 @@ TEST_F(CaptureProgram, SaysWhatIsWrongBeforeTheRobotMoves) {
                      "--robot simulated:sim/scene.yaml -o s.txt")
           .err,
       HasSubstr("the name must end in .yaml, .bag or .mcap"));
+  EXPECT_THAT(
+      run(kProgram + " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/truth.yaml "
+                     "--robot simulated:sim/scene.yaml -o s.yaml")
+          .err,
+      HasSubstr("sim/truth.yaml: is not a list of poses"));
+  EXPECT_THAT(
+      run(kProgram + " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
+                     "--robot pipe: -o s.yaml")
+          .err,
+      HasSubstr("--robot: 'pipe:' has no command"));
   EXPECT_THAT(capture("--velocity nan").err, HasSubstr("--velocity"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "samples.yaml"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.yaml"));
@@ -209,10 +221,27 @@ TEST_F(CaptureProgram, AllPosesAreCheckedBeforeTheRobotMoves) {
   EXPECT_THAT(refused.err,
               AllOf(HasSubstr("sim/poses.yaml:1: the robot has no joint 'elbow_flex_jont'; did "
                               "you mean 'elbow_flex_joint'?"),
-                    ContainsRegex("sim/poses.yaml:2: joint 'head_pan_joint' at 7.5 is beyond its "
-                                  "limits, .* \\(and in 1 other pose\\)"),
+                    ContainsRegex("sim/poses.yaml:2: joint 'head_pan_joint' is beyond its "
+                                  "limits, .*: at 7.5 \\(and 1 other pose\\)"),
                     HasSubstr("sim/poses.yaml:2: the configuration has no finder 'led_findr'; did "
                               "you mean 'led_finder'?")));
+}
+
+TEST_F(CaptureProgram, PosesALittleBeyondLimitsAreTheRobotsToRefuse) {
+  simulate(2);
+  const Robot robot = read_urdf(kUrdf);
+  const double upper = robot.joint("head_tilt_joint").limits.value().upper;
+  std::ofstream(folder_ / "sim/poses.yaml")
+      << "- {joints: [head_tilt_joint], positions: [" << upper + 0.05 << "]}\n"
+      << "- {joints: [head_tilt_joint], positions: [" << upper + 0.004 << "]}\n"
+      << "- {joints: [head_tilt_joint], positions: [" << upper + 0.06 << "]}\n";
+  const Outcome session = capture("");
+  EXPECT_THAT(session.err,
+              ContainsRegex("warning: sim/poses.yaml:1: joint 'head_tilt_joint' is a little beyond "
+                            "its limits, .*; the robot may skip the pose \\(and 1 other pose\\)"));
+  EXPECT_THAT(session.out,
+              AllOf(ContainsRegex("pose 1 of 3: skipped: .*head_tilt_joint"),
+                    Not(HasSubstr("pose 2 of 3: skipped")), HasSubstr("pose 3 of 3: skipped")));
 }
 
 TEST_F(CaptureProgram, OutputsAreCheckedBeforeTheRobotMoves) {
@@ -226,6 +255,7 @@ TEST_F(CaptureProgram, OutputsAreCheckedBeforeTheRobotMoves) {
        {std::pair<std::string, std::string>(calibrate + "file", "file: is not a folder"),
         {calibrate + "file/result", "file/result: cannot be created"},
         {calibrate + "old", "old/calibrated.urdf: exists; use --force"},
+        {"--contact-sheet sheet.jpg", "sheet.jpg: is written as PNG"},
         {"--contact-sheet folder --force", "folder: is a folder, not a file"},
         {"--contact-sheet file/sheet.png", "file: is not a folder"}}) {
     const Outcome refused = capture(options);
