@@ -88,6 +88,9 @@ AnyRobot connect(const std::string& address, const CaptureConfig& config, const 
   const auto after = [&](std::string_view scheme) { return address.substr(scheme.size()); };
   if (address.starts_with("ws://")) return behind_bridge(address, config, limits, mover);
   if (address.starts_with("pipe:")) {
+    if (after("pipe:").find_first_not_of(' ') == std::string::npos) {
+      throw InputError("--robot: '" + address + "' has no command; write pipe:COMMAND");
+    }
     return whole_robot(
         std::make_shared<PipeRobot>(PipeOptions{
             .command = after("pipe:"), .interrupted = [] { return Interruption::is_asked(); }}),

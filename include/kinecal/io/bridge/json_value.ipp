@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -38,9 +39,13 @@ KINECAL_INLINE JsonValue JsonValue::parse(std::string_view text) {
     tree->json = nlohmann::json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
     constexpr std::size_t kShown = 60;
-    const std::string shown = "'" + printable(text.substr(0, kShown)) +
-                              (text.size() > kShown ? "...' is not JSON" : "' is not JSON");
     if (text.empty()) throw JsonError("it is an empty line");
+    const std::size_t end =
+        std::min(std::max(error.byte, kShown), text.size());  // of what is shown
+    const std::size_t begin = end > kShown ? end - kShown : 0;
+    const std::string shown = (begin > 0 ? "'..." : "'") +
+                              printable(text.substr(begin, end - begin)) +
+                              (end < text.size() ? "...' is not JSON" : "' is not JSON");
     throw JsonError(shown + (error.byte > text.size()
                                  ? ": it ends too early"
                                  : ", from character " + std::to_string(error.byte) + " on"));
