@@ -94,14 +94,18 @@ void check_targets(const CalibrateOptions& options, const std::filesystem::path&
   }
 }
 
-/// What can be known of the results before the work.
-void check_first_targets(const CalibrateOptions& options) {
+}  // namespace
+
+void check_results(const CalibrateOptions& options) {
   std::vector<OutputFile> files = copies(options, {});
   files.push_back({"report.json", ""});
   if (!options.upstream_names)
     files.insert(files.end(), {{"calibrated.urdf", ""}, {"calibration.yaml", ""}});
   check_targets(options, options.output, files);
+  const OutputFolder can_be_written(options.output);
 }
+
+namespace {
 
 /// The scene must not replace an input or a report, and another file only on demand.
 void check_scene(const CalibrateOptions& options) {
@@ -125,7 +129,7 @@ int calibrate(const CalibrateOptions& options) {
   if (options.output.empty() && !options.dry_run) {
     throw InputError("--output is required (or --dry-run)");
   }
-  if (!options.dry_run) check_first_targets(options);
+  if (!options.dry_run) check_results(options);
   check_reports(options);
   if (!options.scene.empty()) check_scene(options);
   const Clock::time_point start = Clock::now();

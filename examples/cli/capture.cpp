@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -15,6 +14,7 @@
 #include "commands.hpp"
 #include "fit.hpp"
 #include "input.hpp"
+#include "interruption.hpp"
 #include "kinecal/capture/find_leds.hpp"
 #include "kinecal/capture/session.hpp"
 #include "kinecal/io/assemble.hpp"
@@ -24,6 +24,7 @@
 #include "kinecal/io/detect/detect.hpp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/write_recording.hpp"
+#include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/io/urdf/velocity_limits.hpp"
 #include "output_file.hpp"
@@ -37,30 +38,26 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-volatile std::sig_atomic_t stop_asked = 0;
-
-extern "C" void ask_to_stop(int) {
-  stop_asked = 1;
-  std::signal(SIGINT, SIG_DFL);  // a second one ends the program
-}
-
 /// Poses of a file, with the joints that the robot's chains move.
-std::vector<CapturePose> read_poses(const std::string& path, const CaptureConfig& config) {
+/// @throws InputError  if the robot cannot take them all
+std::vector<CapturePose> read_poses(const std::string& path, const CaptureConfig& config,
+                                    const Robot& robot) {
   std::vector<CapturePose> poses = read_pose_file(path);
+  check_poses(poses, config, robot);
   std::set<std::string> moved;
   for (const CaptureChain& chain : config.chains) {
     moved.insert(chain.joints.begin(), chain.joints.end());
   }
-  if (moved.empty()) return poses;
   for (CapturePose& pose : poses) {
-    CapturePose kept{{}, {}, pose.features};
+    CapturePose kept{{}, {}, pose.features, pose.source};
     for (std::size_t i = 0; i < pose.joint_names.size(); ++i) {
-      if (!moved.contains(pose.joint_names[i])) continue;
-      kept.joint_names.push_back(pose.joint_names[i]);
-      kept.positions.push_back(pose.positions[i]);
+      const std::string& joint = pose.joint_names[i];
+      if (!moved.empty() && !moved.contains(joint)) continue;
+      kept.joint_names.push_back(joint);
+      kept.positions.push_back(within_limits(robot, joint, pose.positions[i]));
     }
-    if (kept.joint_names.empty()) {
-      throw InputError(path + ": a pose has none of the joints of the chains");
+    if (kept.joint_names.empty() && !moved.empty()) {
+      throw InputError(pose.source + ": the pose has none of the joints of the chains");
     }
     pose = std::move(kept);
   }
@@ -189,7 +186,9 @@ NextPose next_pose(const CaptureOptions& options, const std::vector<CapturePose>
 std::vector<Sample> earlier_samples(const CaptureOptions& options) {
   if (!options.resume || !std::filesystem::exists(options.output)) return {};
   Diagnostics diagnostics;
-  std::vector<Sample> samples = read_recordings({options.output}, diagnostics).samples;
+  std::vector<Sample> samples = output_encoding(options.output)
+                                    ? read_recordings({options.output}, diagnostics).samples
+                                    : read_complete_samples(options.output, diagnostics);
   print_or_throw(diagnostics);
   return samples;
 }
@@ -206,6 +205,17 @@ void check_robot(const std::vector<Sample>& samples, const std::vector<CapturePo
   }
 }
 
+/// The calibration of `--result`.
+CalibrateOptions calibration_of(const CaptureOptions& options) {
+  CalibrateOptions calibrating;
+  calibrating.urdf = options.urdf;
+  calibrating.config = options.calibrate;
+  calibrating.samples = {options.output};
+  calibrating.output = options.result;
+  calibrating.force = options.force;
+  return calibrating;
+}
+
 void check_options(const CaptureOptions& options) {
   (void)output_encoding(options.output);
   std::vector<std::string> inputs = {options.config, options.urdf, options.poses,
@@ -215,7 +225,8 @@ void check_options(const CaptureOptions& options) {
   }
   check_output(options.output, inputs, options.force || options.resume);
   inputs.push_back(options.output);
-  if (!options.sheet.empty()) check_output(options.sheet, inputs, options.force);
+  if (!options.sheet.empty()) check_picture(options.sheet, inputs, options.force);
+  if (!options.result.empty()) check_results(calibration_of(options));
   if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
   if (options.manual == options.poses.empty()) return;
   throw InputError(options.manual ? "--manual: a person moves the robot, so --poses has no use"
@@ -236,7 +247,14 @@ struct Session {
   std::vector<Thumbnail> thumbnails = {};  ///< of what finders looked at
 
   /// Prints, writes and follows what came of a pose.
-  void take(const CapturedPose& captured) {
+  void take(CapturedPose captured) {
+    if (options.manual && has_not_moved(captured)) {
+      captured.samples.clear();
+      captured.failure = fmt::format(
+          "nothing has moved since the last sample; move a joint by more than {} rad ({:.1f} deg) "
+          "or {:.0f} mm",
+          kSamePosition, kSamePosition / kDegree, 1e3 * kSamePosition);
+    }
     spent += captured.duration;
     timed += captured.duration > Stamp::zero() ? 1 : 0;
     ++done;
@@ -250,15 +268,27 @@ struct Session {
     }
   }
 
-  /// "; 6 min left": the poses that are left take the mean time of those so far.
+  /// "; 6 min left": the poses that are left take the mean time of those so far.  The first one alone
+  /// is no measure: the robot may have been near it.
   [[nodiscard]] std::string time_left() const {
-    if (timed == 0 || done >= poses.size()) return {};
+    if (timed < 2 || done >= poses.size()) return {};
     const double mean = std::chrono::duration<double>(spent).count() / static_cast<double>(timed);
     const double seconds = mean * static_cast<double>(poses.size() - done);
     constexpr double kMinute = 60.0, kLong = 90.0;
     return fmt::format("; {}{:.0f} {} left", options.until.empty() ? "" : "at most ",
                        seconds < kLong ? seconds : seconds / kMinute,
                        seconds < kLong ? "s" : "min");
+  }
+
+  /// Whether the robot stands where it stood in the last sample.
+  [[nodiscard]] bool has_not_moved(const CapturedPose& captured) const {
+    if (samples.empty() || captured.samples.empty()) return false;
+    const Sample& now = captured.samples.front();
+    for (std::size_t i = 0; i < now.joint_names.size(); ++i) {
+      const std::optional<double> before = samples.back().position(now.joint_names[i]);
+      if (!before || std::abs(*before - now.joint_positions[i]) > kSamePosition) return false;
+    }
+    return true;
   }
 
   void add_thumbnails(const CapturedPose& captured) {
@@ -274,6 +304,7 @@ struct Session {
   /// Runs until the last pose, Ctrl-C or the accuracy.
   /// @returns  why the robot cannot be reached any more; empty if it can
   [[nodiscard]] std::string run(const CaptureConfig& config) {
+    const Interruption interruption;
     AnyRobot hardware = connect(options.robot, config, robot, velocity_limits(urdf, options.urdf),
                                 options.manual ? MovedBy::person : MovedBy::controllers);
     std::vector<SessionFinder> finders;
@@ -282,13 +313,11 @@ struct Session {
     }
     const NextPose from_list = next_pose(options, poses);
     const NextPose next = [&]() -> std::optional<CapturePose> {
-      if (stop_asked != 0 || (follower && follower->enough())) return std::nullopt;
+      if (Interruption::is_asked() || (follower && follower->enough())) return std::nullopt;
       return from_list();
     };
     SessionOptions session;
     session.velocity_factor = options.velocity;
-    stop_asked = 0;
-    std::signal(SIGINT, ask_to_stop);
     std::string lost;
     try {
       run_session(
@@ -296,7 +325,6 @@ struct Session {
     } catch (const ConnectionError& error) {
       lost = error.what();
     }
-    std::signal(SIGINT, SIG_DFL);
     return lost;
   }
 };
@@ -314,17 +342,6 @@ void print_session(const Session& session, std::size_t before) {
   std::fflush(stdout);
 }
 
-/// The result folder of `--result`.
-int calibrate_samples(const CaptureOptions& options) {
-  CalibrateOptions calibrating;
-  calibrating.urdf = options.urdf;
-  calibrating.config = options.calibrate;
-  calibrating.samples = {options.output};
-  calibrating.output = options.result;
-  calibrating.force = options.force;
-  return calibrate(calibrating);
-}
-
 }  // namespace
 
 int capture(const CaptureOptions& options) {
@@ -336,35 +353,41 @@ int capture(const CaptureOptions& options) {
   Session session{options, read_urdf_text(options.urdf), {}, {}, earlier_samples(options), {}};
   session.robot = parse_urdf(session.urdf, options.urdf);
   const std::size_t before = session.samples.size();
+  check_chains(options.config, config, session.robot);
+  bool is_complete = false;
   if (!options.manual) {
-    const std::vector<CapturePose> all = read_poses(options.poses, config);
+    const std::vector<CapturePose> all = read_poses(options.poses, config, session.robot);
     check_robot(session.samples, all);
     session.poses = poses_left(all, session.samples);
+    is_complete = session.poses.empty();
   }
   if (!options.calibrate.empty()) {
     session.follower.emplace(options, session.robot);
     for (const Sample& sample : session.samples) session.follower->add(sample);
   }
-  const std::string lost = session.run(config);
+  const std::string lost = is_complete ? "" : session.run(config);
   if (!session.thumbnails.empty()) {
     write_file(options.sheet, contact_sheet(session.thumbnails));
     fmt::print("{}: what was found in {}\n", options.sheet,
                counted(session.thumbnails.size(), "view"));
   }
-  print_session(session, before);
-  if (!lost.empty()) {
-    fmt::print(stderr, "error: {}; --resume goes on from here\n", printable(lost));
-    return kBadInput;
+  if (is_complete) {
+    fmt::print("{}: {} from before; all poses of {} are captured\n", options.output,
+               counted(before, "sample"), options.poses);
+  } else if (session.done > 0) {
+    print_session(session, before);
   }
-  if (stop_asked != 0) {
-    fmt::print(stderr, "error: interrupted; --resume goes on from here\n");
-    return kInterrupted;
+  const bool is_interrupted = !is_complete && Interruption::is_asked();
+  if (is_interrupted || !lost.empty()) {
+    fmt::print(stderr, "error: {}{}\n", is_interrupted ? "interrupted" : printable(lost),
+               session.samples.empty() ? "" : "; --resume goes on from here");
+    return is_interrupted ? kInterrupted : kBadInput;
   }
   if (session.samples.empty()) {
     fmt::print(stderr, "error: nothing was found in any pose\n");
     return kBadInput;
   }
-  const int code = options.result.empty() ? kDone : calibrate_samples(options);
+  const int code = options.result.empty() ? kDone : calibrate(calibration_of(options));
   if (session.follower && options.robot.starts_with(kSimulated)) {
     const std::string scene = options.robot.substr(kSimulated.size());
     fmt::print("{}", truth_text(session.robot, scene, session.follower->fit_all()));

@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "interruption.hpp"
 #include "kinecal/capture/settling.hpp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/io/recordings/write_recording.hpp"
@@ -32,21 +33,31 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-/// By which readings of a joint that nobody has moved differ, radians or metres.
-constexpr double kSame = 0.005;
+std::vector<std::string> joint_names(const Robot& robot) {
+  std::vector<std::string> names;
+  for (const Joint& joint : robot.joints()) names.push_back(joint.name);
+  return names;
+}
 
-/// A position to which a joint can be sent: encoders may read a little beyond its limits.
-double within_limits(const Robot& robot, const std::string& joint, double position) {
-  if (!robot.has_joint(joint)) return position;
-  const auto& limits = robot.joint(joint).limits;
-  if (!limits || !(limits->lower < limits->upper)) return position;
-  const double nearest = std::clamp(position, limits->lower, limits->upper);
-  return std::abs(nearest - position) <= kSame ? nearest : position;
+/// @throws InputError  if poses from before are of another robot
+void check_before(const std::vector<CapturePose>& poses, const CaptureConfig& config,
+                  const Robot& robot) {
+  check_poses(poses, config, robot);
+  for (const CapturePose& pose : poses) {
+    for (const CaptureChain& chain : config.chains) {
+      for (const std::string& joint : chain.joints) {
+        const auto& names = pose.joint_names;
+        if (std::find(names.begin(), names.end(), joint) != names.end()) continue;
+        throw InputError(pose.source + ": has no joint '" + joint + "' of chain '" + chain.name +
+                         "'; --resume goes on with the same robot" + did_you_mean(joint, names));
+      }
+    }
+  }
 }
 
 /// Whether two poses capture the same at the same positions.
 bool is_same(const CapturePose& a, const CapturePose& b) {
-  const auto near = [](double p, double q) { return std::abs(p - q) <= kSame; };
+  const auto near = [](double p, double q) { return std::abs(p - q) <= kSamePosition; };
   return a.joint_names == b.joint_names && a.features == b.features &&
          std::equal(a.positions.begin(), a.positions.end(), b.positions.begin(), b.positions.end(),
                     near);
@@ -129,10 +140,21 @@ class PoseRecorder {
       }
     }
     if (config_.chains.empty()) pose = {joints.names, joints.positions, features_};
+    check(pose);
     for (std::size_t i = 0; i < pose.positions.size(); ++i) {
       pose.positions[i] = within_limits(robot_, pose.joint_names[i], pose.positions[i]);
     }
     return pose;
+  }
+
+  /// @throws PoseError  if the URDF is not that of the robot
+  void check(const CapturePose& pose) const {
+    for (const std::string& joint : pose.joint_names) {
+      if (robot_.has_joint(joint)) continue;
+      throw PoseError("the URDF has no joint '" + joint + "', which the robot measures" +
+                      did_you_mean(joint, joint_names(robot_)) +
+                      "; name the joints that are wanted in chains of the configuration");
+    }
   }
 
   AnyArm arm_;
@@ -174,19 +196,22 @@ void record_poses(PoseRecorder& recorder) {
 
 int capture_poses(const CapturePosesOptions& options) {
   (void)output_encoding(options.output);
-  if (!options.resume) check_output(options.output, {options.config, options.urdf}, options.force);
+  check_output(options.output, {options.config, options.urdf}, options.force || options.resume);
   Diagnostics diagnostics;
   CaptureConfig config = read_capture_config(options.config, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
   const Robot robot = read_urdf(options.urdf);
+  check_chains(options.config, config, robot);
   std::vector<CapturePose> before;
   if (options.resume && std::filesystem::exists(options.output)) {
     before = read_pose_file(options.output);
+    check_before(before, config, robot);
     fmt::print("{}: {} from before\n", options.output, counted(before.size(), "pose"));
   }
   CaptureConfig joints_only = config;
   joints_only.finders.clear();
+  const Interruption interruption;
   AnyRobot hardware = connect(options.robot, joints_only, robot, {}, MovedBy::person);
   PoseRecorder recorder(hardware.arm, config, robot, options.output, std::move(before));
   std::string lost;
@@ -198,8 +223,13 @@ int capture_poses(const CapturePosesOptions& options) {
   const std::size_t count = recorder.poses().size();
   if (count > 0) fmt::print("{}: {}\n", options.output, counted(count, "pose"));
   std::fflush(stdout);
+  if (Interruption::is_asked()) {
+    fmt::print(stderr, "error: interrupted{}\n", count > 0 ? "; --resume goes on from here" : "");
+    return kInterrupted;
+  }
   if (!lost.empty()) {
-    fmt::print(stderr, "error: {}; --resume goes on from here\n", printable(lost));
+    fmt::print(stderr, "error: {}{}\n", printable(lost),
+               count > 0 ? "; --resume goes on from here" : "");
   } else if (count == 0) {
     fmt::print(stderr, "error: no pose was recorded\n");
   }

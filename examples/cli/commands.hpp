@@ -46,6 +46,10 @@ struct CalibrateOptions : InputOptions {
 /// Calibrates the robot and writes the results, all or none.
 int calibrate(const CalibrateOptions& options);
 
+/// Checks what can be known of the results before the work.
+/// @throws OutputError  if the folder cannot be written to, or has files that may not be replaced
+void check_results(const CalibrateOptions& options);
+
 /// Lists every error in the input and what the samples cannot determine, without calibrating.
 int check(const InputOptions& options);
 

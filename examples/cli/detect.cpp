@@ -4,7 +4,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -63,6 +67,71 @@ void check_links(const DetectOptions& options, const Robot& robot, Diagnostics& 
   }
 }
 
+/// Errors of joints of the photographs that the robot does not have.
+void check_joints(const DetectOptions& options, const Task& task, Diagnostics& diagnostics) {
+  if (task.images.empty() || !task.robot) return;
+  std::vector<std::string> joints;
+  for (const Joint& joint : task.robot->joints()) joints.push_back(joint.name);
+  const bool has_columns = !options.columns.empty();
+  for (const std::string& name : task.images.front().joints.names) {
+    if (task.robot->has_joint(name)) continue;
+    const std::string nearest = did_you_mean(name, joints);
+    diagnostics.errors.push_back(
+        (has_columns ? options.columns + ": joint '" : options.poses + ":1: column '") +
+        printable(name) + "' is not a joint of " + options.urdf +
+        (nearest.empty() && !has_columns ? "; --columns says what each column is" : nearest));
+  }
+}
+
+/// The files of a recording: those of its folder, or itself.
+std::vector<std::filesystem::path> recording_files(const std::string& recording) {
+  std::error_code failed;
+  if (!std::filesystem::is_directory(recording, failed)) return {recording};
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(recording, failed)) {
+    if (entry.path().extension() == ".db3" || entry.path().extension() == ".mcap") {
+      files.push_back(entry.path());
+    }
+  }
+  return files;
+}
+
+/// Whether two files are one, or have the same content.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code missing;
+  if (std::filesystem::equivalent(a, b, missing)) return true;
+  const auto size = std::filesystem::file_size(a, missing);
+  if (missing || size == 0 || size != std::filesystem::file_size(b, missing) || missing) {
+    return false;
+  }
+  std::ifstream one(a, std::ios::binary), other(b, std::ios::binary);
+  std::vector<char> of_one(std::size_t{1} << 20), of_other(of_one.size());
+  while (one && other) {
+    one.read(of_one.data(), static_cast<std::streamsize>(of_one.size()));
+    other.read(of_other.data(), static_cast<std::streamsize>(of_other.size()));
+    if (one.gcount() != other.gcount() ||
+        !std::equal(of_one.begin(), of_one.begin() + one.gcount(), of_other.begin())) {
+      return false;
+    }
+  }
+  return one.eof() && other.eof();
+}
+
+/// @throws InputError  if a recording is given twice: its samples would count twice
+void check_recordings(const std::vector<std::string>& bags) {
+  for (std::size_t i = 0; i < bags.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      for (const auto& file : recording_files(bags[i])) {
+        for (const auto& other : recording_files(bags[j])) {
+          if (!is_same_file(file, other)) continue;
+          throw InputError("--bag: " + bags[i] + " is the same recording as " + bags[j] +
+                           "; give it once, else its samples count twice");
+        }
+      }
+    }
+  }
+}
+
 /// The finders of a configuration.
 /// @param errors  receives those that cannot work
 std::vector<ViewFinder> make_finders(const Task& task, std::vector<std::string>& errors) {
@@ -110,6 +179,7 @@ Task read_task(const DetectOptions& options, Diagnostics& diagnostics) {
     task.images =
         list_images({options.images, options.poses, options.columns, options.depth}, diagnostics);
   }
+  check_joints(options, task, diagnostics);
   if (diagnostics.errors.empty()) read_recordings(options, task, diagnostics);
   return task;
 }
@@ -136,10 +206,17 @@ std::vector<Look> look_at_all(const Task& task, const DetectOptions& options) {
 std::pair<std::size_t, std::size_t> collect(std::vector<Look> looks, std::vector<Sample>& samples,
                                             std::vector<Thumbnail>& thumbnails) {
   std::size_t features = 0, used = 0, single = 0;
+  std::map<std::string, std::size_t> refusals;  // how often, if not yet printed
+  for (const Look& look : looks) {
+    for (const std::string& refused : look.refused) ++refusals[refused];
+  }
   for (Look& look : looks) {
     if (!look.samples.empty() && !look.compared) ++single;
     for (const std::string& refused : look.refused) {
-      fmt::print(stderr, "warning: {}\n", printable(look.source + ": " + refused));
+      const std::size_t others = std::exchange(refusals[refused], 0);
+      if (others == 0) continue;
+      fmt::print(stderr, "warning: {}{}\n", printable(look.source + ": " + refused),
+                 others > 1 ? " (and in " + counted(others - 1, "other view") + ")" : "");
     }
     features += look.features;
     if (!look.samples.empty()) ++used;
@@ -171,7 +248,8 @@ int detect(const DetectOptions& options) {
   check_output(options.output, inputs, options.force);
   (void)output_encoding(options.output);
   inputs.push_back(options.output);
-  if (!options.sheet.empty()) check_output(options.sheet, inputs, options.force);
+  if (!options.sheet.empty()) check_picture(options.sheet, inputs, options.force);
+  check_recordings(options.bags);
   Diagnostics diagnostics;
   const Task task = read_task(options, diagnostics);
   print(diagnostics);

@@ -18,8 +18,18 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
       throw OutputError(output + ": would replace an input; choose another name");
     }
   }
+  if (std::filesystem::is_directory(output))
+    throw OutputError(output + ": is a folder, not a file");
+  const OutputFolder can_be_written(folder_of(output));
   if (force || !std::filesystem::exists(std::filesystem::symlink_status(output))) return;
   throw OutputError(output + ": exists; use --force to replace it, or choose another name");
+}
+
+void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force) {
+  check_output(output, inputs, force);
+  const std::string ending = std::filesystem::path(output).extension().string();
+  if (ending == ".png" || ending == ".PNG") return;
+  throw OutputError(output + ": is written as PNG; let the name end in .png");
 }
 
 std::filesystem::path folder_of(const std::string& output) {

@@ -8,9 +8,12 @@
 
 namespace kinecal::cli {
 
-/// Checks that an output is not an input, and that it does not exist or may be replaced.
+/// Checks that an output can be written, is not an input, and does not exist or may be replaced.
 /// @throws OutputError  if not
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force);
+
+/// The same of a picture, which is PNG.
+void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
 /// The folder of an output.
 [[nodiscard]] std::filesystem::path folder_of(const std::string& output);

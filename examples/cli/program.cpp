@@ -308,9 +308,15 @@ void add_capture_poses(CLI::App& command, CapturePosesOptions& options) {
   command.add_flag("--force", options.force, "replace the file that is there");
 }
 
+/// An option that a script fills in with nothing is a mistake.
+const CLI::Validator kNotEmpty(
+    [](const std::string& text) { return text.empty() ? "must not be empty" : std::string(); }, "");
+
 void add_capture(CLI::App& command, CaptureOptions& options) {
   add_robot(command, options);
-  command.add_option("--poses", options.poses, "poses in YAML or in a bag")->type_name("FILE");
+  command.add_option("--poses", options.poses, "poses in YAML or in a bag")
+      ->check(kNotEmpty)
+      ->type_name("FILE");
   command.add_flag("--manual", options.manual,
                    "record wherever a person has put the robot, at each Enter");
   command
@@ -327,19 +333,23 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
           .add_option(
               "--calibrate", options.calibrate,
               "configuration: calibrate after each pose, and say how well the gripper is known")
+          ->check(kNotEmpty)
           ->type_name("FILE");
   command
       .add_option("--until", options.until,
                   "end when the pose is known as well as this, one sigma: \"gripper 1 mm\", "
                   "\"tool0 0.1 deg\"")
       ->needs(calibrate)
+      ->check(kNotEmpty)
       ->type_name("ACCURACY");
   command.add_option("--result", options.result, "calibrate at the end, into this folder")
       ->needs(calibrate)
+      ->check(kNotEmpty)
       ->type_name("DIR");
   command
       .add_option("--contact-sheet", options.sheet,
                   "a PNG of all views with what was found in them")
+      ->check(kNotEmpty)
       ->type_name("FILE");
   command.add_flag("--force", options.force, "replace files that are there");
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "input.hpp"
+#include "interruption.hpp"
 #include "kinecal/io/bridge/pipe_robot.hpp"
 #include "kinecal/io/bridge/ros_robot.hpp"
 #include "kinecal/io/simulation/simulation_plan.hpp"
@@ -48,8 +49,8 @@ struct RosParts {
   std::vector<std::unique_ptr<RosLamp>> lamps = {};
 };
 
-AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, const Robot& robot,
-                       const Limits& limits, MovedBy mover) {
+AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, const Limits& limits,
+                       MovedBy mover) {
   auto parts = std::make_shared<RosParts>(url);
   RosArmOptions arm;
   arm.duration = config.duration;
@@ -62,10 +63,6 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
       arm.controllers.push_back({chain.topic, chain.joints});
     } else {
       arm.measured.insert(arm.measured.end(), chain.joints.begin(), chain.joints.end());
-    }
-    for (const std::string& joint : chain.joints) {
-      if (robot.has_joint(joint)) continue;
-      throw InputError("chain '" + chain.name + "': the robot has no joint '" + joint + "'");
     }
   }
   parts->arm = std::make_unique<RosArm>(parts->bridge, arm);
@@ -89,9 +86,15 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
 AnyRobot connect(const std::string& address, const CaptureConfig& config, const Robot& robot,
                  const Limits& limits, MovedBy mover) {
   const auto after = [&](std::string_view scheme) { return address.substr(scheme.size()); };
-  if (address.starts_with("ws://")) return behind_bridge(address, config, robot, limits, mover);
+  if (address.starts_with("ws://")) return behind_bridge(address, config, limits, mover);
   if (address.starts_with("pipe:")) {
-    return whole_robot(std::make_shared<PipeRobot>(PipeOptions{.command = after("pipe:")}), config);
+    if (after("pipe:").find_first_not_of(' ') == std::string::npos) {
+      throw InputError("--robot: '" + address + "' has no command; write pipe:COMMAND");
+    }
+    return whole_robot(
+        std::make_shared<PipeRobot>(PipeOptions{
+            .command = after("pipe:"), .interrupted = [] { return Interruption::is_asked(); }}),
+        config);
   }
   if (address.starts_with(kSimulated)) return simulated(after(kSimulated), config, robot, limits);
   throw InputError("--robot: '" + address +

@@ -136,5 +136,44 @@ TEST_F(CapturePoses, KeepsWhatIsRecordedIfTheRobotIsLost) {
   EXPECT_EQ(written().size(), 1u);
 }
 
+TEST_F(CapturePoses, PosesOfAnotherRobotAreNamed) {
+  write("poses.yaml",
+        "- {joints: [head_pan_joint, elbow_flex_jont], positions: [0.1, 0.2]}\n"
+        "- {joints: [head_pan_joint, elbow_flex_jont], positions: [0.1, 0.3]}\n");
+  const std::string before = read("poses.yaml");
+  const Outcome other = poses("0.5", "\nq\n", "-o poses.yaml --resume");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_THAT(other.err, HasSubstr("poses.yaml:1: the robot has no joint 'elbow_flex_jont'; did "
+                                   "you mean 'elbow_flex_joint'? (and 1 other pose)"));
+  EXPECT_EQ(read("poses.yaml"), before);
+  write("poses.yaml", "- {joints: [head_pan_joint], positions: [0.1]}\n");
+  EXPECT_THAT(poses("0.5", "\nq\n", "-o poses.yaml --resume").err,
+              HasSubstr("poses.yaml:1: has no joint 'elbow_flex_joint' of chain 'arm'"));
+}
+
+TEST_F(CapturePoses, JointsThatTheUrdfLacksAreNamed) {
+  const std::string urdf =
+      " --urdf " KINECAL_SOURCE_DIR "/examples/mobile_manipulator/mobile_manipulator.urdf ";
+  write("robot.py", kRobot);
+  write("free.yaml", "features:\n  ground: {type: robot_calibration/PlaneFinder, topic: /p}\n");
+  write("wrong.yaml",
+        "chains:\n- {name: arm, topic: /a, joints: [elbow_flx_joint, wheel]}\n"
+        "features:\n  ground: {type: robot_calibration/PlaneFinder, topic: /p}\n");
+  const auto session = [&](const std::string& config) {
+    return run("printf '\\nq\\n' | " KINECAL_PROGRAM " capture_poses " + config + urdf +
+               "-o p.yaml --robot 'pipe:python3 robot.py 0.5'");
+  };
+  const Outcome measured = session("free.yaml");
+  EXPECT_EQ(measured.code, 1);
+  EXPECT_THAT(measured.out, HasSubstr("nothing is recorded: the URDF has no joint 'wheel', which "
+                                      "the robot measures"));
+  const Outcome named = session("wrong.yaml");
+  EXPECT_EQ(named.code, 1);
+  EXPECT_THAT(named.err, AllOf(HasSubstr("wrong.yaml: chain 'arm': the robot has no joint "
+                                         "'elbow_flx_joint'; did you mean 'elbow_flex_joint'?"),
+                               HasSubstr("the robot has no joint 'wheel'")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "p.yaml"));
+}
+
 }  // namespace
 }  // namespace kinecal::test

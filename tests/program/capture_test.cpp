@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
+#include "kinecal/io/urdf/read_urdf.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal::test {
@@ -55,7 +57,8 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
   EXPECT_THAT(session.out,
               AllOf(HasSubstr("led_finder: 4 features"), HasSubstr("'gripper 5 mm' is reached"),
                     HasSubstr("next, move"), HasSubstr("truth: '"), HasSubstr("by the URDF, "),
-                    ContainsRegex("pose 1 of 40: .*; at most [0-9]+ min left\n")));
+                    ContainsRegex("pose 1 of 40: .*features\n"),
+                    ContainsRegex("pose 2 of 40: .*; at most [0-9]+ min left\n")));
   EXPECT_LT(samples(), 40);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "views.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "calibrated/calibrated.urdf"));
@@ -78,11 +81,12 @@ TEST_F(CaptureProgram, ResumesWhereItEnded) {
   const Outcome rest = capture("--resume");
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_THAT(rest.out, AllOf(HasSubstr("(" + std::to_string(before) + " from before)"),
-                              ContainsRegex("pose 1 of [0-9]: .*; [0-9]+ s left\n"),
+                              ContainsRegex("pose 2 of [0-9]: .*; [0-9]+ s left\n"),
                               ContainsRegex("features\n")))
       << "nothing is left after the last pose";
   EXPECT_EQ(samples(), 6);
-  EXPECT_THAT(capture("--resume").out, HasSubstr("6 samples of 0 poses"));
+  EXPECT_EQ(capture("--resume").out,
+            "samples.yaml: 6 samples from before; all poses of sim/poses.yaml are captured\n");
 }
 
 TEST_F(CaptureProgram, EndsWithADeadCamera) {
@@ -119,12 +123,24 @@ TEST_F(CaptureProgram, SaysWhatIsWrongBeforeTheRobotMoves) {
   EXPECT_THAT(capture("--calibrate sim/calibrate.yaml --until '1 mm'").err,
               HasSubstr("'1 mm' is not an accuracy"));
   EXPECT_THAT(capture("--calibrate sim/calibrate.yaml --until 'grippr 1 mm'").err,
-              HasSubstr("the robot has no link 'grippr'"));
+              HasSubstr("the robot has no link 'grippr'; did you mean 'gripper'?"));
+  EXPECT_THAT(capture("--calibrate sim/calibrate.yaml --until ''").err,
+              HasSubstr("--until: must not be empty"));
   EXPECT_THAT(
       run(kProgram + " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
                      "--robot simulated:sim/scene.yaml -o s.txt")
           .err,
       HasSubstr("the name must end in .yaml, .bag or .mcap"));
+  EXPECT_THAT(
+      run(kProgram + " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/truth.yaml "
+                     "--robot simulated:sim/scene.yaml -o s.yaml")
+          .err,
+      HasSubstr("sim/truth.yaml: is not a list of poses"));
+  EXPECT_THAT(
+      run(kProgram + " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
+                     "--robot pipe: -o s.yaml")
+          .err,
+      HasSubstr("--robot: 'pipe:' has no command"));
   EXPECT_THAT(capture("--velocity nan").err, HasSubstr("--velocity"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "samples.yaml"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.yaml"));
@@ -172,7 +188,10 @@ TEST_F(CaptureProgram, RecordsWhereAPersonHasPutTheRobot) {
                               " capture sim/capture.yaml --urdf sim/robot.urdf --manual "
                               "--robot simulated:sim/scene.yaml -o manual.bag < keys.txt");
   EXPECT_THAT(session.out,
-              AllOf(HasSubstr("press Enter"), HasSubstr("pose 2:"), Not(HasSubstr("pose 3:"))));
+              AllOf(HasSubstr("press Enter"),
+                    HasSubstr("pose 2: skipped: nothing has moved since the last sample; move a "
+                              "joint by more than 0.005 rad (0.3 deg) or 5 mm"),
+                    HasSubstr("manual.bag: 1 sample of 2 poses"), Not(HasSubstr("pose 3:"))));
 }
 
 TEST_F(CaptureProgram, CapturesThePosesThatAPersonHasRecorded) {
@@ -187,6 +206,129 @@ TEST_F(CaptureProgram, CapturesThePosesThatAPersonHasRecorded) {
         run(kProgram + " capture" + robot + "--poses " + poses + " -o s-" + poses);
     EXPECT_THAT(session.out, HasSubstr("pose 1 of 1: led_finder: "));
   }
+}
+
+TEST_F(CaptureProgram, AllPosesAreCheckedBeforeTheRobotMoves) {
+  simulate(2);
+  std::ofstream(folder_ / "sim/poses.yaml")
+      << "- {joints: [elbow_flex_jont, head_pan_joint], positions: [0.1, 0.2]}\n"
+         "- {joints: [head_pan_joint], positions: [7.5], features: [led_findr]}\n"
+         "- {joints: [head_pan_joint], positions: [0.1]}\n"
+         "- {joints: [head_pan_joint], positions: [7.5]}\n";
+  const Outcome refused = capture("");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("sim/poses.yaml:1: the robot has no joint 'elbow_flex_jont'; did "
+                              "you mean 'elbow_flex_joint'?"),
+                    ContainsRegex("sim/poses.yaml:2: joint 'head_pan_joint' is beyond its "
+                                  "limits, .*: at 7.5 \\(and 1 other pose\\)"),
+                    HasSubstr("sim/poses.yaml:2: the configuration has no finder 'led_findr'; did "
+                              "you mean 'led_finder'?")));
+}
+
+TEST_F(CaptureProgram, PosesALittleBeyondLimitsAreTheRobotsToRefuse) {
+  simulate(2);
+  const Robot robot = read_urdf(kUrdf);
+  const double upper = robot.joint("head_tilt_joint").limits.value().upper;
+  std::ofstream(folder_ / "sim/poses.yaml")
+      << "- {joints: [head_tilt_joint], positions: [" << upper + 0.05 << "]}\n"
+      << "- {joints: [head_tilt_joint], positions: [" << upper + 0.004 << "]}\n"
+      << "- {joints: [head_tilt_joint], positions: [" << upper + 0.06 << "]}\n";
+  const Outcome session = capture("");
+  EXPECT_THAT(session.err,
+              ContainsRegex("warning: sim/poses.yaml:1: joint 'head_tilt_joint' is a little beyond "
+                            "its limits, .*; the robot may skip the pose \\(and 1 other pose\\)"));
+  EXPECT_THAT(session.out,
+              AllOf(ContainsRegex("pose 1 of 3: skipped: .*head_tilt_joint"),
+                    Not(HasSubstr("pose 2 of 3: skipped")), HasSubstr("pose 3 of 3: skipped")));
+}
+
+TEST_F(CaptureProgram, OutputsAreCheckedBeforeTheRobotMoves) {
+  simulate(2);
+  std::filesystem::create_directory(folder_ / "folder");
+  std::filesystem::create_directory(folder_ / "old");
+  std::ofstream(folder_ / "old/calibrated.urdf") << "mine";
+  std::ofstream(folder_ / "file") << "mine";
+  const std::string calibrate = "--calibrate sim/calibrate.yaml --result ";
+  for (const auto& [options, why] :
+       {std::pair<std::string, std::string>(calibrate + "file", "file: is not a folder"),
+        {calibrate + "file/result", "file/result: cannot be created"},
+        {calibrate + "old", "old/calibrated.urdf: exists; use --force"},
+        {"--contact-sheet sheet.jpg", "sheet.jpg: is written as PNG"},
+        {"--contact-sheet folder --force", "folder: is a folder, not a file"},
+        {"--contact-sheet file/sheet.png", "file: is not a folder"}}) {
+    const Outcome refused = capture(options);
+    EXPECT_EQ(refused.code, 1) << options;
+    EXPECT_THAT(refused.err, HasSubstr(why)) << options;
+    EXPECT_EQ(refused.out, "") << options;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "samples.yaml"));
+}
+
+TEST_F(CaptureProgram, ResumesAFileThatWasCutOff) {
+  simulate(4);
+  ASSERT_EQ(capture("").code, 0);
+  const std::string all = read("samples.yaml");
+  const std::size_t last = all.rfind("---\n", all.size() - 5) + 4;
+  const int line = 1 + static_cast<int>(std::count(all.begin(), all.begin() + long(last), '\n'));
+  for (const std::size_t size : {last + 1, last + (all.size() - last) / 2, all.size() - 4}) {
+    std::ofstream(folder_ / "samples.yaml") << all.substr(0, size);
+    const Outcome rest = capture("--resume");
+    EXPECT_EQ(rest.code, 0) << rest.err;
+    EXPECT_THAT(rest.err, HasSubstr("samples.yaml:" + std::to_string(line) +
+                                    ": the last sample has no '---' after it"));
+    EXPECT_THAT(rest.out, HasSubstr("4 samples of 1 pose"));
+    EXPECT_EQ(read("samples.yaml").substr(0, last), all.substr(0, last));
+  }
+  std::ofstream(folder_ / "samples.yaml") << all.substr(0, 20);
+  EXPECT_THAT(capture("--resume").out, HasSubstr("4 samples of 4 poses"));
+}
+
+TEST_F(CaptureProgram, CtrlCEndsARobotThatHangs) {
+  simulate(2);
+  std::ofstream(folder_ / "hang.sh") << "echo $$ > child; while true; do sleep 1; done\n";
+  const auto start = std::chrono::steady_clock::now();
+  const Outcome ended =
+      run("bash -c 'set -m; " + kProgram +
+          " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
+          "--robot \"pipe:exec sh hang.sh\" -o s.yaml & "
+          "for i in $(seq 100); do test -s child && break; sleep 0.1; done; "
+          "sleep 0.2; kill -INT $!; wait $!'");
+  EXPECT_EQ(ended.code, 130) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("error: interrupted\n"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(15));
+  EXPECT_NE(run("kill -0 $(cat child)").code, 0) << "the child is still there";
+}
+
+TEST_F(CaptureProgram, CtrlCEndsWaitingForAPerson) {
+  simulate(2);
+  const Outcome ended = run("bash -c 'set -m; sleep 20 | " + kProgram +
+                            " capture sim/capture.yaml --urdf sim/robot.urdf --manual "
+                            "--robot simulated:sim/scene.yaml -o s.yaml > said & "
+                            "for i in $(seq 100); do grep -q Enter said && break; sleep 0.1; done; "
+                            "sleep 0.2; kill -INT -- -$!; wait $!'");
+  EXPECT_EQ(ended.code, 130) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("error: interrupted\n"));
+}
+
+TEST_F(CaptureProgram, ARobotThatOnlySendsGarbageEndsTheSession) {
+  simulate(6);
+  const auto session = [&](const std::string& robot) {
+    return run(kProgram +
+               " capture sim/capture.yaml --urdf sim/robot.urdf --poses sim/poses.yaml "
+               "-o s.yaml --robot 'pipe:" +
+               robot + "'");
+  };
+  const Outcome garbage = session("while read l; do echo garbage; done");
+  EXPECT_EQ(garbage.code, 1);
+  EXPECT_THAT(garbage.err, AllOf(HasSubstr("3 answers in a row cannot be read; the last one: "
+                                           "'garbage' is not JSON, from character 1 on"),
+                                 Not(HasSubstr("--resume")), Not(HasSubstr("exception"))));
+  EXPECT_THAT(garbage.out, Not(HasSubstr("pose 3")));
+  const Outcome none = session("false");
+  EXPECT_EQ(none.err, "error: 'false' ended with exit code 1\n");
+  EXPECT_EQ(none.out, "");
 }
 
 }  // namespace

@@ -77,6 +77,7 @@ TEST_F(Convert, AFullDiskIsReportedWithTheNameOfTheOutput) {
         run("bash -c \"trap '' XFSZ; ulimit -f 2; " KINECAL_PROGRAM " convert tracker.csv " +
             output + " --columns columns.yaml 2>&1 | cat\"");
     EXPECT_THAT(made.out, HasSubstr(output + ": "));
+    EXPECT_THAT(made.out, HasSubstr(": File too large"));
     EXPECT_THAT(made.out, testing::Not(HasSubstr(".kinecal-")));
     EXPECT_FALSE(fs::exists(folder_ / output));
   }

@@ -187,5 +187,39 @@ TEST_F(DetectRecording, WhatIsMissingIsNamed) {
               HasSubstr("--urdf"));
 }
 
+TEST_F(DetectRecording, ARecordingGivenTwiceIsRefused) {
+  write("capture.yaml",
+        "features:\n  board:\n    type: robot_calibration/CheckerboardFinder2d\n    topic: /eye\n");
+  Recorder to((folder_ / "one.mcap").string(), Encoding::cdr);
+  to.image("eye", test::kTourStart, GrayImage(8, 8));
+  to.finish();
+  fs::copy(folder_ / "one.mcap", folder_ / "copy.mcap");
+  fs::create_symlink("one.mcap", folder_ / "link.mcap");
+  fs::create_directory(folder_ / "folder");
+  fs::copy(folder_ / "one.mcap", folder_ / "folder/0.mcap");
+  for (const std::string other : {"one.mcap", "./one.mcap", "copy.mcap", "link.mcap", "folder"}) {
+    const Outcome twice = kinecal("detect capture.yaml -o s.yaml --bag one.mcap --bag " + other);
+    EXPECT_EQ(twice.code, 1) << other;
+    EXPECT_THAT(twice.err, HasSubstr("--bag: " + other + " is the same recording as one.mcap"));
+  }
+  std::string changed = read("copy.mcap");
+  changed.back() = static_cast<char>(~changed.back());
+  write("copy.mcap", changed);
+  EXPECT_THAT(kinecal("detect capture.yaml -o s.yaml --bag one.mcap --bag copy.mcap").err,
+              testing::Not(HasSubstr("is the same recording")));
+}
+
+TEST_F(DetectRecording, DepthThatIsNotRecordedIsAnError) {
+  write("capture.yaml",
+        "features:\n  board:\n    type: robot_calibration/CheckerboardFinder2d\n    topic: /eye\n");
+  Recorder to((folder_ / "eye.mcap").string(), Encoding::cdr);
+  to.image("eye", test::kTourStart, GrayImage(8, 8));
+  to.finish();
+  const Outcome failed = kinecal("detect capture.yaml -o s.yaml --bag eye.mcap --depth /eye/depth");
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.err,
+              HasSubstr("eye.mcap: --depth: has no topic 'eye/depth' of depth; it has none"));
+}
+
 }  // namespace
 }  // namespace kinecal

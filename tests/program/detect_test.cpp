@@ -95,5 +95,17 @@ TEST_F(Detect, ATableWithFewerRowsThanImagesNamesTheImages) {
   EXPECT_THAT(failed.err, HasSubstr("has no row for image 0012.png"));
 }
 
+TEST_F(Detect, ColumnsThatAreNotJointsOfTheRobotAreNamed) {
+  std::string table = read("photos/poses.csv");
+  const std::size_t joint = table.find("panda_joint3");
+  ASSERT_NE(joint, std::string::npos);
+  write("photos/poses.csv", table.replace(joint, 12, "panda_jiont3"));
+  const Outcome failed = detect("--urdf panda.urdf");
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.err, HasSubstr("photos/poses.csv:1: column 'panda_jiont3' is not a joint of "
+                                    "panda.urdf; did you mean 'panda_joint3'?"));
+  EXPECT_FALSE(fs::exists(folder_ / "samples.yaml"));
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -13,9 +13,12 @@ struct CapturePose {
       joint_names;                    ///< the joints that move there; none: wherever the robot is
   std::vector<double> positions;      ///< radians or metres, in the order of the names
   std::vector<std::string> features;  ///< names of the finders; none: all
+  std::string source = {};            ///< "poses.yaml:3", for messages; empty if it has no file
 
-  /// Equal names, positions and features.
-  friend bool operator==(const CapturePose&, const CapturePose&) = default;
+  /// Equal names, positions and features, from wherever.
+  friend bool operator==(const CapturePose& a, const CapturePose& b) {
+    return a.joint_names == b.joint_names && a.positions == b.positions && a.features == b.features;
+  }
 };
 
 }  // namespace kinecal

@@ -17,6 +17,8 @@ namespace kinecal {
 
 namespace detail {
 
+inline constexpr std::size_t kMostOfTitle = 120;  ///< characters
+
 /// "'sha256-...'", as a content security policy names a text.
 [[nodiscard]] inline std::string policy_source(std::string_view text) {
   const auto digest = sha256(text);
@@ -45,8 +47,10 @@ KINECAL_INLINE std::string html_file(const HtmlPage& page) {
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-      "<meta name=\"generator\" content=\"{}\"/>\n<title>{}</title>\n",
-      policy, detail::html_text(page.version), detail::html_text(page.title));
+      "<meta name=\"generator\" content=\"{}\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n"
+      "<title>{}</title>\n",
+      policy, detail::html_text(page.version),
+      detail::html_text(detail::shortened(page.title, detail::kMostOfTitle)));
   text += "<style>" + style + "</style>\n</head>\n<body>\n" + page.body;
   if (!page.scene.empty()) {
     text += "<script type=\"application/json\" id=\"scene\">" + page.scene + "</script>\n";

@@ -24,9 +24,15 @@ KINECAL_INLINE std::string html_figure(const Chart& chart) {
                      html_text(chart.title), chart.svg, html_text(chart.caption));
 }
 
+/// What a table stands in: it scrolls by itself, also with the keyboard.
+[[nodiscard]] inline std::string scroll_region(const std::string& name) {
+  return fmt::format(R"(<div class="scroll" tabindex="0" role="region" aria-label="{}">)",
+                     html_text(name));
+}
+
 KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>>& rows,
                                       std::string_view columns) {
-  std::string html = "<div class=\"scroll\"><table class=\"numbers\">";
+  std::string html = scroll_region(rows.front().front() + " table") + "<table class=\"numbers\">";
   for (std::size_t r = 0; r < rows.size(); ++r) {
     html += r == 0 ? "<thead><tr>" : "<tr>";
     for (std::size_t c = 0; c < rows[r].size(); ++c) {
@@ -148,9 +154,9 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
       "<header class=\"verdict {}\">\n"
       "<h1>{}: <strong>{}</strong></h1>\n<p class=\"note\">{}</p>\n{}"
       "<div class=\"facts\">{}{}{}</div>\n</header>\n",
-      class_of(data.verdict), html_text(data.robot), to_string(data.verdict), html_text(about),
-      reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n", fit_sentence(data),
-      what_was_wrong(data), bad_samples(data));
+      class_of(data.verdict), html_text(shortened(data.robot, 80)), to_string(data.verdict),
+      html_text(about), reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n",
+      fit_sentence(data), what_was_wrong(data), bad_samples(data));
 }
 
 [[nodiscard]] inline std::string html_navigation(bool has_scene) {

@@ -39,7 +39,8 @@ namespace kinecal::detail {
   });
   constexpr std::size_t kListed = 20;
   std::string html =
-      "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th scope=\"col\">sample</th>"
+      scroll_region("samples") +
+      "<table class=\"numbers\"><thead><tr><th scope=\"col\">sample</th>"
       "<th scope=\"col\" class=\"text\">recorded at</th><th scope=\"col\">times the noise</th>"
       "<th scope=\"col\" class=\"long\">remark</th></tr></thead><tbody>";
   for (std::size_t i = 0; i < std::min(kListed, worst.size()); ++i) {

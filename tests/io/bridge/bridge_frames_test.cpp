@@ -45,9 +45,9 @@ TEST(BridgeFrames, AWrongFieldIsNamedWithItsPlace) {
   const auto error = [](const char* text) {
     return error_of([&] { (void)parse_text_frame(text); });
   };
-  EXPECT_THAT(error(R"({"op": 3})"), HasSubstr("field 'op' is number; expected a text"));
+  EXPECT_THAT(error(R"({"op": 3})"), HasSubstr("field 'op' is 3; expected a text"));
   EXPECT_THAT(error(R"({"op": "advertise", "channels": [{"id": 1.5}]})"),
-              HasSubstr("field 'channels[0].id' is number; expected a whole number"));
+              HasSubstr("field 'channels[0].id' is 1.5; expected a whole number"));
   EXPECT_THAT(error(R"({"op": "advertise", "channels": [{"id": 4294967296}]})"),
               HasSubstr("expected a number from 0 to 2^32 - 1"));
   EXPECT_THAT(error(R"({"op": "advertise"})"), HasSubstr("it has no field 'channels'"));

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "support/error_of.hpp"
 
@@ -72,6 +73,10 @@ TEST(PipeRobot, AnAnswerThatCannotBeReadIsNamed) {
   EXPECT_THAT(joints("garbage"),
               AllOf(HasSubstr("pose: "), HasSubstr("joints: the answer cannot be "
                                                    "read: 'garbage' is not JSON")));
+  EXPECT_THAT(joints(std::string(200, ' ') + "{] " + std::string(200, ' ')),
+              HasSubstr("  {]...' is not JSON, from character 202 on"));
+  EXPECT_THAT(joints("{"), HasSubstr("'{' is not JSON: it ends too early"));
+  EXPECT_THAT(joints(R"({"stamp": 1e999})"), HasSubstr("it has a number that is too large"));
   EXPECT_THAT(joints("{}"), HasSubstr("it has no field 'stamp'"));
   EXPECT_THAT(joints(R"({"stamp": "now"})"), HasSubstr("field 'stamp' is string"));
   EXPECT_THAT(joints(R"({"stamp": 5})"), HasSubstr("its stamp, 5, is not after 5 ns"));
@@ -79,6 +84,29 @@ TEST(PipeRobot, AnAnswerThatCannotBeReadIsNamed) {
               HasSubstr("there are 1 names and 0 positions"));
   EXPECT_THAT(joints(R"({"stamp": 6, "names": ["a"], "positions": ["b"]})"),
               HasSubstr("field 'positions[0]' is string; expected a number"));
+}
+
+TEST(PipeRobot, TheThirdUnreadableAnswerInARowEndsTheSession) {
+  const auto ask = [](PipeRobot& robot) { return error_of([&] { (void)robot.light(1); }); };
+  PipeRobot garbage = answering("garbage");
+  EXPECT_THAT(ask(garbage), HasSubstr("pose: "));
+  EXPECT_THAT(ask(garbage), HasSubstr("pose: "));
+  EXPECT_THAT(ask(garbage), AllOf(HasSubstr("connection: "), HasSubstr("3 answers in a row")));
+  PipeRobot other({"while read a; do echo x; read b; echo x; read c; echo '{\"stamp\": 1}'; done"});
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_THAT(ask(other), HasSubstr("pose: "));
+    EXPECT_THAT(ask(other), HasSubstr("pose: "));
+    EXPECT_EQ(other.light(1), Stamp(1));
+  }
+}
+
+TEST(PipeRobot, WaitingCanBeInterrupted) {
+  bool interrupted = false;
+  PipeRobot robot(
+      {"sleep 60", std::chrono::seconds(30), [&] { return std::exchange(interrupted, true); }});
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THAT(error_of([&] { (void)robot.light(1); }), HasSubstr("connection: interrupted"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST(PipeRobot, AViewThatCannotBeReadIsNamed) {

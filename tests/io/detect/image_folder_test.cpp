@@ -121,5 +121,19 @@ TEST_F(ImageFolderTest, DepthOfAnotherSizeIsAnErrorThatNamesBoth) {
 }
 #endif
 
+TEST_F(ImageFolderTest, AMissingFolderOfDepthIsOneError) {
+  write("poses.csv", "q1\n1\n2\n");
+  EXPECT_THAT(
+      error_of([&] {
+        (void)list_images({path("images"), path("poses.csv"), "", path("none")}, diagnostics_);
+      }),
+      HasSubstr("none: is not a folder with images of depth"));
+}
+
+TEST_F(ImageFolderTest, ATableWithoutRowsIsOneError) {
+  EXPECT_TRUE(list("image,q1\n").empty());
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("poses.csv: the table has no rows")));
+}
+
 }  // namespace
 }  // namespace kinecal

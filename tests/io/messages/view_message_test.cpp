@@ -139,5 +139,13 @@ TEST(ViewMessage, CompressedDepthOfMetresIsAnInverse) {
 }
 #endif
 
+TEST(ViewMessage, VideoIsNamed) {
+  const auto video = [] {
+    (void)gray_image(fields("format", std::string_view("h264"), "data",
+                            as_bytes(std::string_view("\0\0\0\1", 4))));
+  };
+  EXPECT_THAT(test::error_of(video), testing::HasSubstr("its images are video, 'h264'"));
+}
+
 }  // namespace
 }  // namespace kinecal::detail

@@ -42,7 +42,8 @@ namespace kinecal::detail {
   return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, 1'000'000));
 }
 
-KINECAL_INLINE ChildProcess::ChildProcess(std::string command) : command_(std::move(command)) {
+KINECAL_INLINE ChildProcess::ChildProcess(std::string command, std::function<bool()> interrupted)
+    : command_(std::move(command)), interrupted_(std::move(interrupted)) {
   const auto [input, its_input] = socket_pair();
   const auto [output, its_output] = socket_pair();
   input_ = input;
@@ -103,13 +104,26 @@ KINECAL_INLINE void ChildProcess::fail_ended() {
   throw ConnectionError("'" + command_ + "' " + how);
 }
 
+/// Waits in short steps: a signal that another thread receives does not end a wait.
+/// @returns  false if the deadline has passed
+KINECAL_INLINE bool ChildProcess::wait_until_ready(
+    int socket, short event, std::chrono::steady_clock::time_point deadline) const {
+  constexpr int kStep = 100;  // milliseconds
+  while (true) {
+    if (interrupted_ && interrupted_()) throw ConnectionError("interrupted");
+    const int left = milliseconds_left(deadline);
+    pollfd ready{socket, event, 0};
+    if (poll(&ready, 1, interrupted_ ? std::min(left, kStep) : left) > 0) return true;
+    if (left == 0) return false;
+  }
+}
+
 KINECAL_INLINE void ChildProcess::write_line(const std::string& line,
                                              std::chrono::milliseconds time_limit) {
   const auto deadline = std::chrono::steady_clock::now() + time_limit;
   const std::string bytes = line + "\n";
   for (std::size_t sent = 0; sent < bytes.size();) {
-    pollfd ready{input_, POLLOUT, 0};
-    if (poll(&ready, 1, milliseconds_left(deadline)) == 0) {
+    if (!wait_until_ready(input_, POLLOUT, deadline)) {
       throw ConnectionError("'" + command_ + "' does not read what is sent to it");
     }
     const ssize_t n =
@@ -138,8 +152,7 @@ KINECAL_INLINE std::optional<std::string> ChildProcess::read_line(
       throw ConnectionError("'" + command_ + "' sent a line of more than " +
                             std::to_string(kMostOfALine >> 20) + " MiB, the limit");
     }
-    pollfd ready{output_, POLLIN, 0};
-    if (poll(&ready, 1, milliseconds_left(deadline)) == 0) return std::nullopt;
+    if (!wait_until_ready(output_, POLLIN, deadline)) return std::nullopt;
     std::array<char, std::size_t{1} << 16> bytes;
     const ssize_t n = ::recv(output_, bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (n > 0) {

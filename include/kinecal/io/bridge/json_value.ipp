@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -36,11 +37,20 @@ KINECAL_INLINE JsonValue JsonValue::parse(std::string_view text) {
   auto tree = std::make_shared<Tree>();
   try {
     tree->json = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const nlohmann::json::parse_error& error) {
     constexpr std::size_t kShown = 60;
-    throw JsonError("'" + printable(text.substr(0, kShown)) +
-                    (text.size() > kShown ? "...' is not JSON: " : "' is not JSON: ") +
-                    printable(error.what()));
+    if (text.empty()) throw JsonError("it is an empty line");
+    const std::size_t end =
+        std::min(std::max(error.byte, kShown), text.size());  // of what is shown
+    const std::size_t begin = end > kShown ? end - kShown : 0;
+    const std::string shown = (begin > 0 ? "'..." : "'") +
+                              printable(text.substr(begin, end - begin)) +
+                              (end < text.size() ? "...' is not JSON" : "' is not JSON");
+    throw JsonError(shown + (error.byte > text.size()
+                                 ? ": it ends too early"
+                                 : ", from character " + std::to_string(error.byte) + " on"));
+  } catch (const nlohmann::json::exception&) {  // 1e999
+    throw JsonError("it has a number that is too large");
   }
   const void* root = &tree->json;
   return {std::move(tree), root, {}};
@@ -91,8 +101,10 @@ KINECAL_INLINE std::vector<JsonValue> JsonValue::as_list() const {
 }
 
 KINECAL_INLINE void JsonValue::fail(const std::string& expected) const {
-  throw JsonError((place_.empty() ? "it" : "field '" + printable(place_) + "'") + " is " +
-                  json_at(node_).type_name() + "; expected " + expected);
+  throw JsonError(
+      (place_.empty() ? "it" : "field '" + printable(place_) + "'") + " is " +
+      (json_at(node_).is_number() ? json_at(node_).dump() : json_at(node_).type_name()) +
+      "; expected " + expected);
 }
 
 KINECAL_INLINE std::string json_text(const std::string& text) {

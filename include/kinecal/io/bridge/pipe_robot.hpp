@@ -22,6 +22,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -33,13 +34,15 @@ namespace kinecal {
 struct PipeOptions {
   std::string command;                          ///< for /bin/sh, such as "python3 robot.py"
   std::chrono::milliseconds time_limit{30000};  ///< for each answer
+  std::function<bool()> interrupted = {};       ///< true ends waiting for an answer
 };
 
 /// An arm, a camera and a lamp: see above.  The functions throw
 ///   PoseError        for an error that the program reports, and for an answer that cannot be read:
 ///                    what is wrong with it
 ///   SilenceError     for an answer that it does not give in time
-///   ConnectionError  once the program has ended: how
+///   ConnectionError  once the program has ended: how; for the third answer in a row that cannot be
+///                    read, and where waiting is interrupted
 class PipeRobot {
  public:
   /// Starts the program; it is ended with this object.

@@ -25,7 +25,7 @@ namespace kinecal {
 class PipeRobot::Pipe {
  public:
   explicit Pipe(const PipeOptions& options)
-      : process_(options.command), time_limit_(options.time_limit) {}
+      : process_(options.command, options.interrupted), time_limit_(options.time_limit) {}
 
   /// Sends a request and gives the answer to what reads it.
   /// @param what  the request in messages: "view"
@@ -52,16 +52,29 @@ class PipeRobot::Pipe {
       if (answer.find("stamp")) newest_ = Stamp(answer.integer("stamp"));
       answered_[what] = newest_;
       const std::string error = answer.text_or("error", {});
-      if (!error.empty()) throw PoseError(who + printable(error));
-      return read(answer);
+      if (error.empty()) {
+        auto value = read(answer);
+        unreadable_ = 0;
+        return value;
+      }
+      unreadable_ = 0;
+      throw PoseError(who + printable(error));
     } catch (const PoseError&) {
       throw;
     } catch (const std::runtime_error& error) {
-      throw PoseError(who + "the answer cannot be read: " + error.what());
+      fail_unreadable(who, error.what());
     }
   }
 
  private:
+  /// Skips a pose for an answer that cannot be read; a program that sends nothing else is not a robot.
+  [[noreturn]] void fail_unreadable(const std::string& who, const std::string& why) {
+    constexpr int kMost = 3;
+    if (++unreadable_ < kMost) throw PoseError(who + "the answer cannot be read: " + why);
+    throw ConnectionError(who + std::to_string(kMost) +
+                          " answers in a row cannot be read; the last one: " + why);
+  }
+
   [[nodiscard]] static std::string limit_text(std::chrono::milliseconds time) {
     return detail::stamp_text(std::chrono::duration_cast<Stamp>(time));
   }
@@ -69,6 +82,7 @@ class PipeRobot::Pipe {
   detail::ChildProcess process_;
   std::chrono::milliseconds time_limit_;
   int late_ = 0;                                          ///< answers that were given up
+  int unreadable_ = 0;                                    ///< answers in a row
   std::string unanswered_;                                ///< the request for the last of them
   Stamp newest_{};                                        ///< of all answers
   std::map<std::string, std::optional<Stamp>> answered_;  ///< newest stamp then, by request
@@ -119,7 +133,7 @@ KINECAL_INLINE void PipeRobot::move(const JointTarget& target) {
       "{\"names\": " + detail::json_list(target.names, detail::json_text) +
       ", \"positions\": " + detail::json_list(target.positions, detail::json_decimal) +
       ", \"velocity_factor\": " + detail::json_decimal(target.velocity_factor) + "}";
-  pipe_->ask("move", request, [](const detail::JsonValue&) {});
+  (void)pipe_->ask("move", request, [](const detail::JsonValue&) { return true; });
 }
 
 KINECAL_INLINE MeasuredJoints PipeRobot::next_joints(Stamp after) {

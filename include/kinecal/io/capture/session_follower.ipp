@@ -22,9 +22,9 @@ KINECAL_INLINE SessionFollower::SessionFollower(Config config, Robot robot,
   table_ = assemble(config_, robot_, {}, diagnostics).table;
   diagnostics.throw_if_errors();
   if (frame.empty() || robot_.has_link(frame)) return;
-  std::vector<std::string> links;
-  for (const Joint& joint : robot_.joints()) links.push_back(joint.child);
-  throw InputError("the robot has no link '" + frame + "'" + did_you_mean(frame, links));
+  std::vector<std::string> names = robot_.link_names();
+  names.emplace_back("gripper");  // see parse_accuracy()
+  throw InputError("the robot has no link '" + frame + "'" + did_you_mean(frame, names));
 }
 
 /// @throws SampleError  if a sample does not suit the configuration

@@ -125,6 +125,9 @@ namespace detail {
 KINECAL_INLINE std::vector<PosedImage> list_images(const ImageFolder& folder,
                                                    Diagnostics& diagnostics) {
   const std::vector<std::string> names = detail::image_names(folder.images);
+  if (!folder.depth.empty() && !std::filesystem::is_directory(folder.depth)) {
+    throw InputError(folder.depth + ": is not a folder with images of depth");
+  }
   const std::string text = detail::read_text_file(folder.table);
   CsvMapping mapping;
   if (!folder.columns.empty()) mapping = read_csv_mapping(folder.columns, diagnostics);
@@ -139,6 +142,7 @@ KINECAL_INLINE std::vector<PosedImage> list_images(const ImageFolder& folder,
   mapping.observations.clear();  // they are in the images
   if (!diagnostics.errors.empty()) return {};
   const std::vector<Sample> samples = csv_samples(text, mapping, folder.table, diagnostics);
+  if (rows.size() < (header ? 2U : 1U)) return {};  // an error: no image has a row
   const auto images = detail::images_of_rows(rows, header, image, folder, names, diagnostics);
   std::vector<PosedImage> result;
   for (const Sample& sample : samples) {

@@ -9,6 +9,7 @@
 #include "kinecal/io/detect/view_topics.hpp"
 #include "kinecal/io/messages/view_message.hpp"
 #include "kinecal/io/printable.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
 
 namespace kinecal {
 namespace detail {
@@ -38,6 +39,23 @@ class TopicChoice {
   TopicChoice(const std::vector<RecordedTopic>& recorded, const CaptureFinder& finder,
               const ViewWishes& wishes, Diagnostics& diagnostics)
       : recorded_(recorded), finder_(finder), wishes_(wishes), diagnostics_(diagnostics) {}
+
+  /// An error if the recording does not have the depth that is asked for.
+  void check_depth() const {
+    if (wishes_.depth.empty()) return;
+    const RecordedTopic* named = find(wishes_.depth);
+    if (named != nullptr && kind_of(*named) == TopicKind::depth) return;
+    std::string there;
+    std::vector<std::string> names;
+    for (const RecordedTopic* topic : candidates(TopicKind::depth)) {
+      there += (there.empty() ? "it has '" : ", '") + printable(topic->name) + "'";
+      names.push_back(topic->name);
+    }
+    const std::string plain = plain_topic(wishes_.depth);
+    diagnostics_.error({wishes_.file, 0},
+                       "--depth: has no topic '" + printable(plain) + "' of depth; " +
+                           (there.empty() ? "it has none" : there) + did_you_mean(plain, names));
+  }
 
   [[nodiscard]] ViewTopics choose() {
     ViewTopics topics;
@@ -130,10 +148,8 @@ class TopicChoice {
 
   [[nodiscard]] std::string depth_topic(const RecordedTopic& image) {
     if (!wishes_.depth.empty()) {
-      if (const RecordedTopic* depth = find(wishes_.depth)) return depth->name;
-      diagnostics_.error({wishes_.file, 0},
-                         "has no topic '" + printable(plain_topic(wishes_.depth)) + "' of depth");
-      return {};
+      const RecordedTopic* depth = find(wishes_.depth);
+      return depth == nullptr ? "" : depth->name;  // check_depth() reports it
     }
     const auto* depth = only(candidates(TopicKind::depth), "depth for '" + image.name + "'",
                              "name one with --depth, or use a finder of pixels (2d)");
@@ -169,6 +185,9 @@ KINECAL_INLINE std::vector<ViewTopics> choose_topics(const std::vector<RecordedT
                                                      const ViewWishes& wishes,
                                                      Diagnostics& diagnostics) {
   std::vector<ViewTopics> all;
+  if (!finders.empty()) {
+    detail::TopicChoice(recorded, finders.front(), wishes, diagnostics).check_depth();
+  }
   for (const CaptureFinder& finder : finders) {
     all.push_back(detail::TopicChoice(recorded, finder, wishes, diagnostics).choose());
   }

@@ -118,7 +118,17 @@ inline constexpr std::array<std::string_view, 4> kBayer = {"bayer_rggb", "bayer_
 }
 
 KINECAL_INLINE GrayImage gray_image(const MessageFields& message) {
-  if (const auto file = compressed(message)) return decode_image(*file, "the image");
+  if (const auto file = compressed(message)) {
+    const std::string_view format = text_at(message, "format");
+    const bool is_video = format.find("264") != std::string_view::npos ||
+                          format.find("265") != std::string_view::npos ||
+                          format.find("hevc") != std::string_view::npos;
+    if (is_video) {
+      throw std::runtime_error("its images are video, '" + printable(format) +
+                               "', which is not read; record image_raw or JPEG instead");
+    }
+    return decode_image(*file, "the image");
+  }
   const std::string_view encoding = text_at(message, "encoding");
   const PixelForm form = pixel_form(encoding);
   Image<std::uint16_t> values = values_of(rows_of(message, "step", form.values * form.bytes), form);

@@ -106,6 +106,7 @@ KINECAL_INLINE std::vector<CapturePose> read_poses_yaml(const std::string& path,
     }
     detail::ConfigMap map(element, place, subject, diagnostics);
     poses.push_back(detail::read_pose(map));
+    poses.back().source = place.str();
   }
   return poses;
 }

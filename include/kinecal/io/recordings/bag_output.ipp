@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -72,8 +74,9 @@ class BagFile {
           },
           writer_);
     });
+    errno = 0;
     file_.close();
-    if (!file_) throw OutputError(path_.string() + ": cannot be written to its end");
+    if (!file_) throw OutputError(path_.string() + ": cannot be written to its end" + reason());
     rename_file(staging_.path() / path_.filename(), path_);
   }
 
@@ -98,14 +101,21 @@ class BagFile {
     return is_poses ? name : "/" + name;
   }
 
-  /// Calls `act`; adds the path to the message of what it throws.
+  /// Calls `act`; adds the path and why to the message of what it throws.
   template <class Act>
   void with_path(const Act& act) const {
+    errno = 0;
     try {
       act();
     } catch (const std::runtime_error& error) {
-      throw OutputError(path_.string() + ": " + error.what());
+      throw OutputError(path_.string() + ": " + error.what() + (file_ ? "" : reason()));
     }
+    if (!file_) throw OutputError(path_.string() + ": cannot be written" + reason());
+  }
+
+  /// ": No space left on device"; nothing if the system does not say.
+  [[nodiscard]] static std::string reason() {
+    return errno == 0 ? std::string() : std::string(": ") + std::strerror(errno);
   }
 
   std::filesystem::path path_;

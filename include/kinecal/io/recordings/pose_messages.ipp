@@ -48,8 +48,8 @@ namespace detail {
   const MessageValue* joints = message.find("joint_states");  // JointState is all of it
   const auto* state = joints == nullptr ? &message : joints->as<MessageFields>();
   if (state == nullptr) return std::nullopt;
-  CapturePose pose{texts_in(*state, "name"), numbers_in(*state, "position"),
-                   texts_in(message, "features")};
+  CapturePose pose{
+      texts_in(*state, "name"), numbers_in(*state, "position"), texts_in(message, "features"), {}};
   if (pose.joint_names.size() != pose.positions.size()) return std::nullopt;
   return pose;
 }
@@ -66,6 +66,7 @@ KINECAL_INLINE std::vector<CapturePose> read_bag_poses(const std::string& path,
     const auto content = decoder.decode(message, ++number);
     if (!content) return;
     if (auto pose = detail::pose_of(*content)) {
+      pose->source = SourceLocation{path, number}.str();
       poses.push_back(std::move(*pose));
     } else {
       diagnostics.error({path, number}, "names and positions of the joints differ in number");

@@ -32,6 +32,11 @@ namespace kinecal {
                                                unsigned threads = 0,
                                                const ProgressMeter& meter = {});
 
+/// The samples of a file that was cut off while it was written: those with `---` after them.
+/// @param diagnostics  as for read_samples(); a warning if the last sample is left out
+[[nodiscard]] std::vector<Sample> read_complete_samples(const std::string& path,
+                                                        Diagnostics& diagnostics);
+
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -46,6 +47,30 @@ KINECAL_INLINE std::vector<Sample> read_samples(const std::string& path, Diagnos
     diagnostics.error({path, 0}, "cannot be read to its end");
     return {};
   }
+  return file.take(diagnostics);
+}
+
+KINECAL_INLINE std::vector<Sample> read_complete_samples(const std::string& path,
+                                                         Diagnostics& diagnostics) {
+  std::string text = detail::read_text_file(path);
+  std::size_t end = 0;  // of the last line that is ---
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t next = std::min(text.find('\n', at), text.size());
+    const std::string line = text.substr(at, next - at);
+    at = next + 1;
+    if (line == "---" || line == "---\r") end = std::min(at, text.size());
+  }
+  if (text.find_first_not_of(" \t\r\n", end) != std::string::npos) {
+    const auto line =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+    diagnostics.warning({path, static_cast<int>(line) + 1},
+                        "the last sample has no '---' after it: it is cut off, and left out");
+  }
+  text.resize(end);
+  if (end == 0) return {};
+  std::istringstream complete(text);
+  detail::SampleFile file(complete, path);
+  file.read(1);
   return file.take(diagnostics);
 }
 

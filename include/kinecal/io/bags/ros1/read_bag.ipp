@@ -54,6 +54,7 @@ class Ros1BagReading {
     has_index_ = not_whole.empty();
     end_ = has_index_ ? header_.index_place : file_.size();
     file_.go_to(first);
+    read_to_ = first;
     walk();
     if (!has_index_) warn_of_no_index(not_whole);
   }

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "interruption.hpp"
+
+#include <csignal>
+
+namespace kinecal::cli {
+namespace {
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+extern "C" void ask_to_stop(int) {
+  stop_asked = 1;
+  std::signal(SIGINT, SIG_DFL);
+}
+
+}  // namespace
+
+Interruption::Interruption() {
+  stop_asked = 0;
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;  // without SA_RESTART: reading a line ends, too
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+}
+
+Interruption::~Interruption() {
+  std::signal(SIGINT, SIG_DFL);
+}
+
+bool Interruption::is_asked() {
+  return stop_asked != 0;
+}
+
+}  // namespace kinecal::cli
