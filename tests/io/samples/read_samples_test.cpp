@@ -72,6 +72,29 @@ void expect_error(const std::string& text, int line, const std::vector<std::stri
   EXPECT_THROW(reading.diagnostics.throw_if_errors(), InputError);
 }
 
+TEST(ReadSamples, OfAFileThatWasCutOffTheCompleteSamplesAreRead) {
+  const std::string path = ::testing::TempDir() + "read_samples_cut_off.yaml";
+  const std::string two = kSample + kSample;
+  for (std::size_t size = 0; size <= two.size(); ++size) {
+    std::ofstream(path, std::ios::binary) << two.substr(0, size);
+    Diagnostics diagnostics;
+    const std::vector<Sample> samples = read_complete_samples(path, diagnostics);
+    // The line break after the last --- may be missing.
+    const std::size_t complete = (size + 1 >= kSample.size()) + (size + 1 >= two.size());
+    ASSERT_EQ(samples.size(), complete) << size;
+    EXPECT_THAT(diagnostics.errors, IsEmpty());
+    const bool is_whole =
+        size == 0 || size + 1 == kSample.size() || size == kSample.size() || size + 1 >= two.size();
+    if (is_whole) {
+      EXPECT_THAT(diagnostics.warnings, IsEmpty()) << size;
+    } else {
+      const std::string line = size < kSample.size() ? ":1: " : ":6: ";
+      EXPECT_THAT(diagnostics.warnings, ElementsAre(HasSubstr(line + "the last sample"))) << size;
+    }
+  }
+  std::filesystem::remove(path);
+}
+
 TEST(ReadSamples, EachDocumentIsASampleThatKnowsItsLine) {
   const Reading reading = read_text(kSample + "# a comment\n" + kSample);
   EXPECT_THAT(reading.diagnostics.errors, IsEmpty());
