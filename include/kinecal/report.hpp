@@ -11,4 +11,5 @@
 #include "kinecal/report/scene_json.hpp"
 #include "kinecal/report/scene_mcap.hpp"
 #include "kinecal/report/scene_meshes.hpp"
+#include "kinecal/report/scene_text.hpp"
 #include "kinecal/report/text.hpp"
