@@ -34,6 +34,7 @@
 #include "kinecal/report/scene_json.hpp"
 #include "kinecal/report/scene_mcap.hpp"
 #include "kinecal/report/scene_meshes.hpp"
+#include "kinecal/report/scene_text.hpp"
 #include "kinecal/report/svg.hpp"
 #include "kinecal/report/svg_axis.hpp"
 #include "kinecal/report/svg_legend.hpp"

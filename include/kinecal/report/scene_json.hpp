@@ -18,12 +18,13 @@
 //     "cameras": [{"name", "link", "pose": [7], "width", "height", "fx", "fy", "cx", "cy"}],
 //     "workspace": {"unit": "mm", "points": [[x, y, z, error], ...]} }
 //
+// A joint is at  multiplier * (q + change) + offset + correction's offset;  `change` is zero but where a
+// correction has "model": [g, s, c]:  g q + s sin(q) + c (cos(q) - 1),  see kinematics/joint_model.hpp.
 // What does not exist is left out: a correction, a note, a point behind a camera.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/report/robot_scene.hpp"
@@ -33,17 +34,6 @@ namespace kinecal {
 /// The scene as JSON in the form above.  It may stand in an HTML <script>: it has no <, > and &, and is
 /// UTF-8 whatever the names are.
 [[nodiscard]] std::string scene_json(const RobotScene& scene);
-
-namespace detail {
-
-/// A string as JSON that may stand in HTML: <, >, & and line separators are escaped, and bytes that are
-/// not UTF-8 become U+FFFD.
-[[nodiscard]] std::string html_json_string(std::string_view text);
-
-/// A number with some digits behind the point, without zeros at its end; "0" if it is not finite.
-[[nodiscard]] std::string short_number(double value, int digits);
-
-}  // namespace detail
 
 }  // namespace kinecal
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -51,9 +52,12 @@ namespace detail {
 [[nodiscard]] inline std::string scene_json(const char* key,
                                             const std::optional<SceneCorrection>& of) {
   if (!of) return {};
-  return fmt::format(R"(,"{}":{{"t":{},"r":{},"offset":{}}})", key,
+  const bool models =
+      std::any_of(of->model.begin(), of->model.end(), [](double value) { return value != 0.0; });
+  return fmt::format(R"(,"{}":{{"t":{},"r":{},"offset":{}{}}})", key,
                      numbers_json(of->t, kAngleDigits), numbers_json(of->r, kAngleDigits),
-                     short_number(of->offset, kAngleDigits));
+                     short_number(of->offset, kAngleDigits),
+                     models ? R"(,"model":)" + numbers_json(of->model, kAngleDigits) : "");
 }
 
 [[nodiscard]] inline std::string scene_json(const SceneJoint& joint) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -15,7 +16,7 @@
 #include "kinecal/report/checksum.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/robot_scene.hpp"
-#include "kinecal/report/scene_json.hpp"
+#include "kinecal/report/scene_text.hpp"
 
 namespace kinecal::detail {
 

@@ -91,6 +91,13 @@ TEST_F(FindMesh, NothingOutsideOfThePackageIsRead) {
   EXPECT_THAT(found("package://fetch_description/meshes/link.stl", places), HasSubstr("outside"));
 }
 
+TEST_F(FindMesh, APackageOfLinksIsPassedOverForThePackageItself) {
+  fs::create_directories(folder_ / "install/share/fetch_description/meshes");
+  fs::create_symlink(mesh(), folder_ / "install/share/fetch_description/meshes/base.stl");
+  EXPECT_THAT(found(kName, {.prefixes = {folder_ / "install"}}), HasSubstr("outside"));
+  EXPECT_EQ(found(kName, {.urdf = folder_ / "ws", .prefixes = {folder_ / "install"}}), mesh());
+}
+
 TEST_F(FindMesh, NothingIsFetched) {
   for (const std::string name : {"http://a.b/c.stl", "https://a.b/c.stl", "model://x/y.stl"}) {
     EXPECT_THAT(found(name, {.urdf = folder_}), HasSubstr("nothing is fetched"));

@@ -68,14 +68,12 @@ namespace fs = std::filesystem;
 [[nodiscard]] inline std::vector<fs::path> with_parents(const fs::path& folder) {
   std::vector<fs::path> all;
   const auto canonical = canonical_path(folder.empty() ? "." : folder);
-  for (fs::path up = canonical.value_or(fs::path()); up.has_relative_path();
-       up = up.parent_path()) {
-    all.push_back(up);
-  }
+  fs::path up = canonical.value_or(fs::path());
+  for (; up.has_relative_path(); up = up.parent_path()) all.push_back(up);
   return all;
 }
 
-/// Folders in which a package may be, in the order in which they are tried.
+/// Folders of a package, in the order in which they are tried.
 [[nodiscard]] inline std::vector<fs::path> package_folders(const std::string& package,
                                                            const MeshPlaces& places) {
   std::vector<fs::path> all;
@@ -154,10 +152,15 @@ namespace fs = std::filesystem;
   }
   const fs::path inside = fs::path(rest.substr(std::min(package.size() + 1, rest.size())));
   if (inside.is_absolute()) throw MeshError("names no file of its package");
+  std::string why = "is not in " + printable(folders.front().string());
   for (const fs::path& folder : folders) {
-    if (const auto file = file_inside(folder / inside, {folder})) return *file;
+    try {
+      if (const auto file = file_inside(folder / inside, {folder})) return *file;
+    } catch (const MeshError& e) {  // another folder may have the file itself, not a link to it
+      why = e.what();
+    }
   }
-  throw MeshError("is not in " + printable(folders.front().string()));
+  throw MeshError(why);
 }
 
 }  // namespace detail
