@@ -13,6 +13,7 @@
 #include "kinecal/report/checksum.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
+#include "kinecal/report/scene_clouds.hpp"
 #include "kinecal/report/scene_json.hpp"
 #include "kinecal/trust/workspace_map.hpp"
 #include "output_file.hpp"
@@ -108,6 +109,7 @@ std::string page(const CalibrateOptions& options, const Input& input, const Fit&
     const auto& [x, y, z] = point.p_base;
     scene.workspace.push_back({x, y, z, point.deviation});
   }
+  add_clouds(options.samples, scene);
   add_points(scene, data);
   return html_report(data, scene_json(scene));
 }

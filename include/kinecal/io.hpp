@@ -80,6 +80,7 @@
 #include "kinecal/io/recordings/pose_messages.hpp"
 #include "kinecal/io/recordings/read_bag.hpp"
 #include "kinecal/io/recordings/read_recording.hpp"
+#include "kinecal/io/recordings/recorded_clouds.hpp"
 #include "kinecal/io/recordings/write_recording.hpp"
 #include "kinecal/io/register.hpp"
 #include "kinecal/io/registry.hpp"

@@ -31,6 +31,7 @@
 #include "kinecal/report/report_data.hpp"
 #include "kinecal/report/residuals_csv.hpp"
 #include "kinecal/report/robot_scene.hpp"
+#include "kinecal/report/scene_clouds.hpp"
 #include "kinecal/report/scene_json.hpp"
 #include "kinecal/report/scene_mcap.hpp"
 #include "kinecal/report/scene_meshes.hpp"

@@ -78,6 +78,8 @@ struct SceneSample {
   std::vector<double> q;  ///< positions of RobotScene::names; zero if not measured
   std::vector<SceneFeature> features;
   std::optional<std::chrono::nanoseconds> stamp = {};  ///< see Sample::stamp
+  std::vector<float> cloud = {};  ///< x y z ..., metres, in `cloud_link`; see add_clouds()
+  int cloud_link = -1;            ///< link
 };
 
 /// A camera; its optical frame is that of its link, z forward.

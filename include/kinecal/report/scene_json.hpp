@@ -13,6 +13,7 @@
 //     "meshes": [{"vertices": base64 of float32 x y z, "triangles": base64 of uint32 a b c}],
 //     "names": [joint of q[0], ...],
 //     "samples": [{"number": 1, "source", "bad": false, "note", "q": [...],
+//                  "cloud": base64 of float32 x y z, "cloud_link": 3,
 //                  "features": [{"block": 0, "name", "before": [[3], [3]], "after": ..., "error"}]}],
 //     "blocks": [names], "thinned": "200 of 10000 samples",
 //     "cameras": [{"name", "link", "pose": [7], "width", "height", "fx", "fy", "cx", "cy"}],

@@ -90,10 +90,13 @@ namespace detail {
 
 [[nodiscard]] inline std::string scene_json(const SceneSample& sample) {
   return fmt::format(
-      R"({{"number":{},"source":{},"bad":{}{},"q":{},"features":{}}})", sample.number,
+      R"({{"number":{},"source":{},"bad":{}{},"q":{}{},"features":{}}})", sample.number,
       html_json_string(sample.source), sample.bad,
       sample.note.empty() ? "" : R"(,"note":)" + html_json_string(sample.note),
       numbers_json(sample.q, kAngleDigits),
+      sample.cloud.empty() ? ""
+                           : fmt::format(R"(,"cloud":"{}","cloud_link":{})",
+                                         base64_of(sample.cloud), sample.cloud_link),
       compact_list(sample.features, [](const SceneFeature& of) { return scene_json(of); }));
 }
 
