@@ -53,6 +53,23 @@ TEST(WorkspaceMap, ReachesBeyondTheSamples) {
   EXPECT_LT(most, 0.1);
 }
 
+TEST(WorkspaceMap, FollowsTheCameraIfTheOtherFrameStands) {
+  test::NoisyScene scene(20);
+  Assessment found = scene.solve_and_assess();
+  found.pose->frame = found.pose->link = "base_link";  // in the camera's frame
+  const Eigen::VectorXd values = scene.values();
+  const auto map = workspace_map(scene.solved(), found, test::NoisyScene::span(values), 50);
+  ASSERT_EQ(map.size(), 50u);
+  double farthest = 0.0;
+  for (const KnownPoint& point : map) {
+    for (int k = 0; k < 3; ++k) {
+      farthest = std::max(farthest, std::abs(point.p_base[static_cast<std::size_t>(k)] -
+                                             map.front().p_base[static_cast<std::size_t>(k)]));
+    }
+  }
+  EXPECT_GT(farthest, 0.01) << "the head turns the camera";
+}
+
 TEST(WorkspaceMap, IsEmptyWithoutAPoseInQuestion) {
   test::NoisyScene scene(20);
   Assessment found = scene.solve_and_assess();

@@ -10,7 +10,7 @@ KINECAL_INLINE std::string chart_style() {
   return R"(.chart { display: block; width: 100%; max-width: 42rem; height: auto; font: 13px system-ui, "DejaVu Sans", sans-serif; }
 .chart text { fill: var(--ink, #1f2328); }
 .chart text.tick, .chart text.small { font-size: 12px; }
-.chart text.tick, .chart text.name, .chart text.quiet { fill: var(--faint, #667080); }
+.chart text.tick, .chart text.name, .chart text.quiet { fill: var(--muted, #55616c); }
 .chart text.strong { font-weight: 600; }
 .chart text.figure { font-variant-numeric: tabular-nums; }
 .chart text.before { fill: var(--before, #b0651d); }

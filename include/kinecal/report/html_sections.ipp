@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/svg_text.hpp"
@@ -77,7 +78,12 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
 /// Significant changes, those first that matter most: against the deviation that is of use.
 [[nodiscard]] inline std::vector<const ReportedParameter*> largest_changes(const ReportData& data) {
   std::vector<const ReportedParameter*> all;
+  std::set<std::string> unknown;  // a pose that nobody knew is not corrected
+  for (const StepResult& step : data.steps) {
+    unknown.insert(step.starts.frames.begin(), step.starts.frames.end());
+  }
   for (const ReportedParameter& parameter : data.parameters) {
+    if (unknown.contains(parameter.owner)) continue;
     if (parameter.note.empty() && parameter.sigma && parameter.value != parameter.initial) {
       all.push_back(&parameter);
     }

@@ -34,7 +34,8 @@ class TextTable {
   std::size_t left_columns_;
 };
 
-/// A residual in the unit that people read: millimetres for "m".
+/// A residual in the unit that people read: millimetres for "m"; "-" if it is not defined, as behind a
+/// camera.
 [[nodiscard]] std::string in_reading_unit(double value, const std::string& unit);
 /// The name of that unit; "-" for a residual without unit.
 [[nodiscard]] std::string reading_unit(const std::string& unit);

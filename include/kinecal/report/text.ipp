@@ -32,6 +32,7 @@ KINECAL_INLINE std::string TextTable::str() const {
 }
 
 KINECAL_INLINE std::string in_reading_unit(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return "-";
   return unit == "m" ? fmt::format("{:.3f}", 1e3 * value) : fmt::format("{:.4g}", value);
 }
 

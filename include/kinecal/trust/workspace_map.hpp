@@ -12,10 +12,12 @@
 
 namespace kinecal {
 
-/// A position of a frame and how well it is known.
+/// A place in the workspace, and how well a position is known when the robot is there.
 struct KnownPoint {
-  std::array<double, 3> p_base{};  ///< of its origin in the base, metres
-  double deviation = 0.0;          ///< standard deviation of the position, metres: sqrt(trace)
+  std::array<double, 3>
+      p_base{};            ///< of the frame in question, in the base, metres; of the one in which
+                           ///< it is given, if only that one moves: a camera that sees a board
+  double deviation = 0.0;  ///< standard deviation of the position, metres: sqrt(trace)
 };
 
 /// The uncertainty of the position of an assessed step's pose at poses spread evenly over the limits

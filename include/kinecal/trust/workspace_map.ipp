@@ -83,6 +83,8 @@ KINECAL_INLINE std::vector<KnownPoint> workspace_map(const AnyProblem& problem,
   detail::TipDerivative of_frame(problem, free, values, to_frame),
       of_in(problem, free, values, to_in);
   const Eigen::MatrixXd covariance = step.uncertainty.covariance.matrix();
+  const bool frame_moves = std::any_of(to_frame.joints.begin(), to_frame.joints.end(),
+                                       [](const ChainJoint& joint) { return moves(joint.type); });
   std::vector<KnownPoint> map;
   for (const Sample& sample : detail::spread_poses(problem.robot(), {&to_frame, &to_in}, poses)) {
     const Vector3<double> p_base = of_frame.tip(sample);
@@ -90,8 +92,9 @@ KINECAL_INLINE std::vector<KnownPoint> workspace_map(const AnyProblem& problem,
       return Eigen::MatrixXd(of.at(sample, p_base).topRows<3>());
     };
     const Eigen::MatrixXd jacobian = position(of_frame) - position(of_in);
+    const Vector3<double> place = frame_moves ? p_base : of_in.tip(sample);
     const double variance = (jacobian * covariance).cwiseProduct(jacobian).sum();
-    map.push_back({{p_base.x(), p_base.y(), p_base.z()}, std::sqrt(std::max(0.0, variance))});
+    map.push_back({{place.x(), place.y(), place.z()}, std::sqrt(std::max(0.0, variance))});
   }
   return map;
 }

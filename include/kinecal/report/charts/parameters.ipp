@@ -75,11 +75,8 @@ struct ForestRow {
   reaches = sorted_finite(reaches);
   constexpr double kFarther = 8.0;
   const double usual = quantile(reaches, 0.75);
-  double most = 0.0;
-  for (const double reach : reaches) {
-    if (!(usual > 0.0) || reach <= kFarther * usual) most = std::max(most, reach);
-  }
-  const double end = most > 0.0 ? 1.06 * most : 1.0;
+  while (usual > 0.0 && reaches.back() > kFarther * usual) reaches.pop_back();
+  const double end = !reaches.empty() && reaches.back() > 0.0 ? 1.06 * reaches.back() : 1.0;
   return Axis::exact(-end, end, from, to);
 }
 
@@ -156,7 +153,10 @@ inline void draw_forest_row(Drawing& drawing, const ForestRow& row, const PlotAr
     const bool other = i > 0 && rows[i].parameter->owner != rows[i - 1].parameter->owner;
     height += kRow + (other ? kGap : 0.0);
   }
-  const PlotArea area{158.0, 26.0, kChartWidth - 118.0, height};
+  constexpr double kFont = 12.0, kSpace = 14.0;  // of the figures beside the plot
+  double widest = 0.0;
+  for (const ForestRow& row : rows) widest = std::max(widest, text_width(forest_figure(row)));
+  const PlotArea area{158.0, 26.0, kChartWidth - kFont * widest - kSpace, height};
   Drawing drawing(chart.name, chart.title, area.bottom + 38.0);
   const Axis x = forest_axis(rows, area.left, area.right);
   drawing.axis_x(area, x, axis_name("change", unit == "1" ? "%" : unit));
