@@ -138,10 +138,11 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
   }
   std::string html = "<div><h3>Fit, before and after</h3><ul>" + items + "</ul>";
   if (data.pose) {
-    html +=
-        fmt::format("<p><code>{}</code> in <code>{}</code> is known to <strong>{}</strong>, {}</p>",
-                    html_text(data.pose->frame), html_text(data.pose->in),
-                    reading(data.pose->position, "m"), reading(data.pose->rotation, "rad"));
+    constexpr double kKnown = 0.35;  // radians; of a point the orientation means nothing
+    html += fmt::format(
+        "<p><code>{}</code> in <code>{}</code> is known to <strong>{}</strong>{}</p>",
+        html_text(data.pose->frame), html_text(data.pose->in), reading(data.pose->position, "m"),
+        data.pose->rotation < kKnown ? ", " + reading(data.pose->rotation, "rad") : "");
   }
   return html + "</div>\n";
 }
