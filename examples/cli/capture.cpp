@@ -29,6 +29,7 @@
 #include "kinecal/io/urdf/velocity_limits.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"
+#include "report.hpp"
 #include "robot_link.hpp"
 #include "truth.hpp"
 #include "words.hpp"
@@ -213,6 +214,10 @@ CalibrateOptions calibration_of(const CaptureOptions& options) {
   calibrating.samples = {options.output};
   calibrating.output = options.result;
   calibrating.force = options.force;
+  if (!options.report.empty()) calibrating.reports = {options.report};
+  calibrating.command =
+      fmt::format("kinecal calibrate --urdf {} --config {} --samples {} --output {}", options.urdf,
+                  options.calibrate, options.output, options.result);
   return calibrating;
 }
 
@@ -227,6 +232,7 @@ void check_options(const CaptureOptions& options) {
   inputs.push_back(options.output);
   if (!options.sheet.empty()) check_picture(options.sheet, inputs, options.force);
   if (!options.result.empty()) check_results(calibration_of(options));
+  check_reports(calibration_of(options));
   if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
   if (options.manual == options.poses.empty()) return;
   throw InputError(options.manual ? "--manual: a person moves the robot, so --poses has no use"

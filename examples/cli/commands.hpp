@@ -159,6 +159,7 @@ struct CaptureOptions {
   std::string calibrate;    ///< configuration of a calibration that follows; empty: none
   std::string until;        ///< "gripper 1 mm"; empty: all poses
   std::string result;       ///< folder of that calibration
+  std::string report;       ///< of that calibration: a page or JSON; empty: none
   std::string sheet;        ///< PNG of all views; empty: none
   double velocity = 1.0;    ///< factor
   bool manual = false;      ///< a person moves the robot

@@ -342,10 +342,18 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       ->needs(calibrate)
       ->check(kNotEmpty)
       ->type_name("ACCURACY");
-  command.add_option("--result", options.result, "calibrate at the end, into this folder")
-      ->needs(calibrate)
+  CLI::Option* result =
+      command.add_option("--result", options.result, "calibrate at the end, into this folder")
+          ->needs(calibrate)
+          ->check(kNotEmpty)
+          ->type_name("DIR");
+  command
+      .add_option(
+          "--report", options.report,
+          "a report of that calibration: a page to look at if the name ends in .html, else JSON")
+      ->needs(result)
       ->check(kNotEmpty)
-      ->type_name("DIR");
+      ->type_name("FILE");
   command
       .add_option("--contact-sheet", options.sheet,
                   "a PNG of all views with what was found in them")

@@ -52,7 +52,7 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
   simulate(40);
   const Outcome session = capture(
       "--calibrate sim/calibrate.yaml --until 'gripper 5 mm' --result calibrated "
-      "--contact-sheet views.png");
+      "--contact-sheet views.png --report report.html");
   EXPECT_EQ(session.code, 0) << session.out << session.err;
   EXPECT_THAT(session.out,
               AllOf(HasSubstr("led_finder: 4 features"), HasSubstr("'gripper 5 mm' is reached"),
@@ -61,6 +61,7 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
                     ContainsRegex("pose 2 of 40: .*; at most [0-9]+ min left\n")));
   EXPECT_LT(samples(), 40);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "views.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "report.html"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "calibrated/calibrated.urdf"));
 }
 
