@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "kinecal/report/html.hpp"
+#include "kinecal/report/html_sections.ipp"
 #include "kinecal/report/text.hpp"
 
 namespace kinecal::detail {
