@@ -11,7 +11,7 @@
 namespace kinecal::test {
 
 /// Numbers that do not depend on the standard library.
-class Chance {
+class ReportChance {
  public:
   double uniform(double low, double high) {
     return low + (high - low) * double(engine_()) / 4294967296.0;
@@ -28,8 +28,8 @@ class Chance {
 };
 
 /// Adds a feature with errors of all directions.
-inline ReportedFeature& add_feature(ReportedBlock& block, Chance& chance, int sample, int place,
-                                    double before, double after) {
+inline ReportedFeature& add_feature(ReportedBlock& block, ReportChance& chance, int sample,
+                                    int place, double before, double after) {
   ReportedFeature feature;
   feature.sample = sample;
   feature.feature.place = place;
@@ -45,7 +45,7 @@ inline ReportedFeature& add_feature(ReportedBlock& block, Chance& chance, int sa
 }
 
 inline void add_blocks(ReportData& data, int samples, int features) {
-  Chance chance;
+  ReportChance chance;
   ReportedBlock points{"hand_eye", "chain3d_to_chain3d", "m", false, 3, 4.6e-4, 1e-3};
   ReportedBlock pixels{"wrist_camera", "chain3d_to_camera2d", "px", false, 2, 0.34, 0.5};
   pixels.image = {1280.0, 720.0};
@@ -84,7 +84,7 @@ inline void add_blocks(ReportData& data, int samples, int features) {
 }
 
 inline void add_parameters(ReportData& data) {
-  Chance chance;
+  ReportChance chance;
   const auto add = [&](const std::string& name, const std::string& owner, const std::string& unit,
                        double size, double sigma) {
     ReportedParameter parameter{name, owner, unit, size * chance.normal(), 0.0, sigma, ""};
