@@ -72,7 +72,7 @@ int link_of(const RobotScene& scene, const std::string& name) {
 Pose<double> pose_of(const RobotScene& scene, int link, const std::vector<double>& q, bool after) {
   for (const SceneJoint& joint : scene.joints) {
     if (joint.child != link) continue;
-    return pose_of(scene, joint.parent, q, after) * parent_T_child(joint, q, after);
+    return pose_of(scene, joint.parent, q, after) * child_in_parent(joint, q, after);
   }
   return {};
 }

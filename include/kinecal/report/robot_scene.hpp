@@ -122,8 +122,8 @@ struct SceneLimits {
 /// The pose of a joint's child link in its parent link.
 /// @param q          of RobotScene::names
 /// @param corrected  with the corrections after the calibration, or else with those before it
-[[nodiscard]] Pose<double> parent_T_child(const SceneJoint& joint, std::span<const double> q,
-                                          bool corrected);
+[[nodiscard]] Pose<double> child_in_parent(const SceneJoint& joint, std::span<const double> q,
+                                           bool corrected);
 
 }  // namespace kinecal
 

@@ -102,8 +102,8 @@ KINECAL_INLINE RobotScene robot_scene(const Calibration& calibration, const Find
   return scene;
 }
 
-KINECAL_INLINE Pose<double> parent_T_child(const SceneJoint& joint, std::span<const double> q,
-                                           bool corrected) {
+KINECAL_INLINE Pose<double> child_in_parent(const SceneJoint& joint, std::span<const double> q,
+                                            bool corrected) {
   Pose<double> pose = joint.origin;
   const std::optional<SceneCorrection>& correction = corrected ? joint.after : joint.before;
   if (correction) {

@@ -46,13 +46,13 @@ class SceneMessages {
     for (const bool after : {true, false}) {
       for (const SceneJoint& joint : scene_.joints) {
         add_transform(frame(joint.parent, after), frame(joint.child, after),
-                      parent_T_child(joint, q, after), times_[sample], all);
+                      child_in_parent(joint, q, after), times_[sample], all);
       }
     }
     Pose<double> root_T_base;
     for (auto j = up_.rbegin(); j != up_.rend(); ++j) {
       const SceneJoint& joint = scene_.joints[static_cast<std::size_t>(*j)];
-      root_T_base = root_T_base * parent_T_child(joint, q, false);
+      root_T_base = root_T_base * child_in_parent(joint, q, false);
     }
     add_transform(frame(scene_.base, true), frame(root_, false), root_T_base.inverse(),
                   times_[sample], all);

@@ -124,7 +124,7 @@ class ScenePoints {
     return all;
   }
 
-  [[nodiscard]] Pose<double> base_T_frame(int s, std::size_t chain, const Sample& sample) const {
+  [[nodiscard]] Pose<double> frame_in_base(int s, std::size_t chain, const Sample& sample) const {
     const RuntimeChain& way = sensor(s).chains()[chain];
     const auto position = [&](const std::string& joint) {
       return sample.position(joint).value_or(0.0);
@@ -161,7 +161,7 @@ class ScenePoints {
         for (std::size_t c = 1; c < of.chains().size(); ++c) {
           if (of.chains()[c].tip == feature.frame) chain = c;
         }
-        frame = frames.emplace(feature.frame, base_T_frame(s, chain, sample)).first;
+        frame = frames.emplace(feature.frame, frame_in_base(s, chain, sample)).first;
       }
       const Pose<double>& base_T_sensor = frame->second;
       const Vector3<double> p =
