@@ -134,7 +134,9 @@ KINECAL_INLINE std::vector<std::shared_ptr<detail::RawView>> RecordedViews::plan
   std::vector<std::shared_ptr<detail::RawView>> views;
   const auto& main = survey_->topics.at(topics.front());
   for (const detail::ViewStamp& stamp : detail::worth_a_look(main.views, time)) {
-    detail::RawView view{stamp.stamp, {{topics.front(), stamp.index}}};
+    detail::RawView view{stamp.stamp, {}};
+    view.parts.reserve(2);
+    view.parts.push_back({topics.front(), stamp.index});
     if (topics.size() > 1) {
       const auto* other = detail::companion(survey_->topics.at(topics[1]).views, stamp.stamp);
       if (other == nullptr) continue;
