@@ -151,6 +151,55 @@ struct SimulateOptions {
 /// Photographs a simulated robot that differs from its URDF by known errors.
 int simulate(const SimulateOptions& options);
 
+/// What a study, a selection or a plan is about.
+struct StudyFiles {
+  std::string urdf, config;          ///< files; without a configuration, a first one
+  std::vector<std::string> samples;  ///< recorded ones, whose features are simulated anew
+  std::string pose_file;             ///< poses; without them and samples, poses are generated
+  std::string have;                  ///< poses in which samples exist already
+  std::string scene;                 ///< file; empty: defaults
+  std::string target;                ///< empty: the scene's
+  int seed = 0;                      ///< zero: the scene's
+};
+
+struct StudyOptions : StudyFiles {
+  int robots = 3, repeats = 10;
+  std::vector<int> poses;  ///< samples of a calibration; empty: 100, 50, 25
+  double ruined = -1.0;    ///< share of ruined samples; below zero: the scene's
+  double limit = 3e-3;     ///< mean re-projection error beyond which a calibration failed
+  int threads = 0;         ///< zero: one per core
+  std::string output;      ///< folder; empty: only print
+  bool force = false;      ///< replace results, and forget a study that was interrupted
+};
+
+/// Calibrates simulated robots many times and prints how well that repeats.
+int study(const StudyOptions& options);
+
+struct SelectPosesOptions : StudyFiles {
+  int count = 25;
+  std::string criterion = "gripper";
+  int candidates = 200;          ///< poses that are generated
+  double least_distance = 0.02;  ///< of poses, share of the range of the joint that differs most
+  int failures = 0;              ///< poses that may fail
+  int random = 1000;             ///< random sets, for comparison
+  int trials = 100;              ///< simulated calibrations; 0: none
+  std::string output;            ///< file of poses; empty: only print
+  bool force = false;            ///< replace it
+};
+
+/// Chooses few poses of many, so that a calibration with them is as good as possible.
+int select_poses(const SelectPosesOptions& options);
+
+struct PlanOptions : StudyFiles {
+  std::string accuracy = "gripper 1 mm";
+  int candidates = 100;  ///< poses that are generated
+  std::string output;    ///< file of poses; empty: only print
+  bool force = false;    ///< replace it
+};
+
+/// How many poses an accuracy takes, which, how long that is, and what cannot be known that way.
+int plan(const PlanOptions& options);
+
 struct CaptureOptions {
   std::string config;       ///< capture.yaml
   std::string urdf, robot;  ///< file; address

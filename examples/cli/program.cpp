@@ -196,6 +196,132 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
   command.add_flag("--force", options.force, "replace the images that are in the folder");
 }
 
+/// The options that say what is studied.
+void add_study_files(CLI::App& command, StudyFiles& files) {
+  command.add_option("--urdf", files.urdf, "the robot's URDF")->required()->type_name("FILE");
+  command
+      .add_option("--config", files.config,
+                  "what is calibrated; default: a first configuration, as of `kinecal init`")
+      ->type_name("FILE");
+  CLI::Option* samples =
+      command
+          .add_option("--samples", files.samples,
+                      "recorded samples: their poses and targets; what was measured is simulated")
+          ->type_name("FILE");
+  command
+      .add_option("--pose-file", files.pose_file,
+                  "poses: YAML of robot_calibration, or a bag; default: they are generated")
+      ->excludes(samples)
+      ->type_name("FILE");
+  CLI::Option* scene =
+      command
+          .add_option("--scene", files.scene,
+                      "camera, target, errors and noise in YAML, as of `kinecal simulate`")
+          ->type_name("FILE");
+  command.add_option("--target", files.target, "checkerboard (default), apriltag or leds")
+      ->excludes(scene)
+      ->excludes(samples)
+      ->check(CLI::IsMember({"checkerboard", "apriltag", "leds"}));
+  command.add_option("--seed", files.seed, "another number: other robots and noise, default: 1")
+      ->check(CLI::Range(1, 1000000000))
+      ->type_name("N");
+}
+
+void add_study(CLI::App& command, StudyOptions& options) {
+  add_study_files(command, options);
+  command
+      .add_option("--poses", options.poses,
+                  "samples of a calibration, several numbers; default: 100,50,25")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  command.add_option("--repeat", options.repeats, "calibrations of each robot and number of poses")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->type_name("N");
+  command.add_option("--robots", options.robots, "simulated robots")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      .add_option(
+          "--ruined", options.ruined,
+          "share of samples of which a joint is elsewhere than it says; default: the scene's")
+      ->check(CLI::Range(0.0, 0.9))
+      ->type_name("SHARE");
+  command
+      .add_option("--limit", options.limit,
+                  "mean re-projection error beyond which a calibration failed, metres or pixels")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "number of threads, default: one per core")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("-o,--output", options.output,
+                  "folder for tables and trials; a study that was interrupted goes on there")
+      ->type_name("DIR");
+  command.add_flag("--force", options.force, "replace the study that is in the folder");
+}
+
+/// Options of poses that are chosen.
+void add_choice(CLI::App& command, StudyFiles& files, int& candidates, std::string& output,
+                bool& force) {
+  add_study_files(command, files);
+  command
+      .add_option("--have", files.have,
+                  "poses in which samples exist already; the chosen ones come in addition")
+      ->type_name("FILE");
+  command.add_option("--candidates", candidates, "poses that are generated without --pose-file")
+      ->check(CLI::Range(2, 5000))
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      .add_option("-o,--output", output,
+                  "file of the chosen poses: YAML of robot_calibration, or a bag by its name")
+      ->type_name("FILE");
+  command.add_flag("--force", force, "replace that file");
+}
+
+void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
+  add_choice(command, options, options.candidates, options.output, options.force);
+  command.add_option("--count", options.count, "poses to choose")
+      ->check(CLI::Range(1, 5000))
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      .add_option("--criterion", options.criterion,
+                  "gripper: variance of the gripper in the camera; a: mean variance of the "
+                  "parameters; d: volume of their uncertainty; e: the worst combination")
+      ->check(CLI::IsMember({"gripper", "a", "d", "e"}))
+      ->capture_default_str();
+  command
+      .add_option("--distance", options.least_distance,
+                  "poses of which no joint differs by this share of its range count as one")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--failures", options.failures, "poses that may fail")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str()
+      ->type_name("N");
+  command.add_option("--random", options.random, "random sets to compare with")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->type_name("N");
+  command.add_option("--simulate", options.trials, "simulated calibrations of each set")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+void add_plan(CLI::App& command, PlanOptions& options) {
+  add_choice(command, options, options.candidates, options.output, options.force);
+  command
+      .add_option("--accuracy", options.accuracy,
+                  "of the gripper in the camera, one standard deviation: \"gripper 0.5 mm\"")
+      ->capture_default_str()
+      ->type_name("TEXT");
+}
+
 void add_detect(CLI::App& command, DetectOptions& options) {
   command
       .add_option("config", options.config, "what to look for: robot_calibration's capture.yaml")
@@ -657,6 +783,14 @@ void add_commands(Commands& commands, const std::string& line) {
   commands.add<SimulateOptions>(
       "simulate", "photograph a simulated robot that differs from its URDF by known errors",
       add_simulate, simulate);
+  commands.add<StudyOptions>(
+      "study", "calibrate simulated robots many times: how well it repeats, with how many poses",
+      add_study, study);
+  commands.add<SelectPosesOptions>(
+      "select-poses", "choose few poses of many, so that a calibration is as good as possible",
+      add_select_poses, select_poses);
+  commands.add<PlanOptions>(
+      "plan", "say how many poses an accuracy takes, which, and how long that is", add_plan, plan);
   commands.add<ConvertOptions>("convert", "write samples or poses in another format", add_convert,
                                convert);
   commands.add<CameraOptions>("camera", "show a camera file, and write it as camera_info",

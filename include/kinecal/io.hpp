@@ -90,6 +90,7 @@
 #include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/simulation/photographs.hpp"
+#include "kinecal/io/simulation/pose_samples.hpp"
 #include "kinecal/io/simulation/simulation_plan.hpp"
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/io/urdf/patch_urdf.hpp"

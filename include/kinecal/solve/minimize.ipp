@@ -8,7 +8,6 @@
 #pragma once
 
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,52 +17,12 @@
 
 #include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/solve.hpp"
+#include "kinecal/solve/solver_steps.ipp"
 #include "kinecal/solve/stacked_cost.hpp"
 
 namespace kinecal {
 
 namespace detail {
-
-class ProgressCallback final : public ceres::IterationCallback {
- public:
-  explicit ProgressCallback(const SolveOptions& options) : options_(options) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (options_.progress) options_.progress(summary.iteration, summary.cost);
-    return ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const SolveOptions& options_;
-};
-
-[[nodiscard]] inline ceres::Solver::Options ceres_options(const SolveOptions& options) {
-  ceres::Solver::Options ceres_options;
-  ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  ceres_options.max_num_iterations = options.max_num_iterations;
-  ceres_options.function_tolerance = options.function_tolerance;
-  ceres_options.gradient_tolerance = 1e-16;
-  ceres_options.parameter_tolerance = 1e-12;
-  // Calibrations have directions that are barely observable, at the bottom of curved valleys: steps
-  // along them are long and sometimes lead uphill first.  On a robot with 51 parameters, 25 of them
-  // observable, this takes 30 to 130 iterations; monotonic steps from the default radius stop short
-  // of the minimum.
-  ceres_options.use_nonmonotonic_steps = true;
-  ceres_options.initial_trust_region_radius = 1e6;
-  ceres_options.logging_type = ceres::SILENT;
-  ceres_options.num_threads = 1;
-  return ceres_options;
-}
-
-/// The outcome of several runs of Ceres.
-struct Minimum {
-  bool usable = false, converged = false;
-  std::string message;             ///< of the last run
-  double cost = 0.0;               ///< at the end of the last run
-  std::vector<double> costs = {};  ///< of each iteration of all runs
-  int iterations = 0;              ///< of all runs
-  int evaluations = 0;             ///< of all samples, of all runs
-  double seconds = 0.0;
-};
 
 inline void set_bounds(ceres::Problem& problem, const ParameterTable& table, const FreeSet& free,
                        double* x) {
@@ -74,7 +33,7 @@ inline void set_bounds(ceres::Problem& problem, const ParameterTable& table, con
   }
 }
 
-/// One run of Ceres over the evaluator's free parameters.
+/// Minimizes over the evaluator's free parameters.
 /// @param values  in: where to start; out: where it ended, if that is usable
 inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const SolveOptions& options,
                       Losses losses, Minimum& minimum) {
@@ -95,21 +54,7 @@ inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const So
                                    x.data());
   }
   set_bounds(ceres_problem, problem.table(), free, x.data());
-  ceres::Solver::Options solver = ceres_options(options);
-  ProgressCallback progress(options);
-  solver.callbacks.push_back(&progress);
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &ceres_problem, &summary);
-  minimum.usable = summary.IsSolutionUsable();
-  minimum.converged = summary.termination_type == ceres::CONVERGENCE;
-  minimum.message = summary.message;
-  minimum.cost = summary.final_cost;
-  minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-  for (const ceres::IterationSummary& iteration : summary.iterations) {
-    minimum.costs.push_back(iteration.cost);
-  }
-  minimum.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
-  minimum.seconds += summary.total_time_in_seconds;
+  take_steps(ceres_problem, x, options, minimum);
   if (!minimum.usable) return;
   for (int c = 0; c < free.size(); ++c) {
     values(free.parameters()[static_cast<std::size_t>(c)]) = x[static_cast<std::size_t>(c)];

@@ -50,6 +50,16 @@ struct PoseUncertainty {
                                                std::span<const Sample> samples,
                                                const FrameOnRobot& frame, const FrameOnRobot& in);
 
+/// What an uncertainty of the parameters is worth for the position of a frame in another: the mean of
+/// J^T J over poses, J (3 x free) its derivative.  The mean variance of the position is trace(goal C).
+/// @param samples  poses; those that lack a joint of a chain are left out
+/// @returns  (free x free), square metres by the units of the parameters
+/// @throws RobotError  as pose_uncertainty()
+[[nodiscard]] PlainMatrix position_goal(const AnyProblem& problem, const FreeSet& free,
+                                        std::span<const double> values,
+                                        std::span<const Sample> samples, const FrameOnRobot& frame,
+                                        const FrameOnRobot& in);
+
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY

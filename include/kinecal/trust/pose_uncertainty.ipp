@@ -26,6 +26,15 @@ namespace detail {
   return features > 0 ? std::sqrt(squares / static_cast<double>(features)) : 0.0;
 }
 
+/// The derivative of the tip of a chain to a frame.
+[[nodiscard]] inline TipDerivative derivative_of(const AnyProblem& problem, const FreeSet& free,
+                                                 std::span<const double> values,
+                                                 const FrameOnRobot& to) {
+  RuntimeChain chain = make_chain(problem.robot(), problem.base(), to.link, problem.frames());
+  if (!to.frame.empty()) chain = with_virtual_frame(std::move(chain), to.frame);
+  return {problem, free, values, std::move(chain)};
+}
+
 }  // namespace detail
 
 KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const FreeSet& free,
@@ -35,12 +44,8 @@ KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const
                                                 const FrameOnRobot& frame, const FrameOnRobot& in) {
   PoseUncertainty result{
       .frame = frame.name(), .in = in.name(), .link = frame.link, .in_link = in.link};
-  const auto chain_to = [&](const FrameOnRobot& to) {
-    RuntimeChain chain = make_chain(problem.robot(), problem.base(), to.link, problem.frames());
-    if (!to.frame.empty()) chain = with_virtual_frame(std::move(chain), to.frame);
-    return detail::TipDerivative(problem, free, values, std::move(chain));
-  };
-  detail::TipDerivative of_frame = chain_to(frame), of_in = chain_to(in);
+  detail::TipDerivative of_frame = detail::derivative_of(problem, free, values, frame),
+                        of_in = detail::derivative_of(problem, free, values, in);
   const Eigen::MatrixXd covariance = known.covariance.matrix();
   const double off = detail::mean_distance(problem, fit);
   constexpr double kNear = 3.0;  // times it: where features are
@@ -65,6 +70,26 @@ KINECAL_INLINE PoseUncertainty pose_uncertainty(const AnyProblem& problem, const
   result.position = std::sqrt(std::max(0.0, positions / poses));
   result.rotation = std::sqrt(std::max(0.0, rotations / poses));
   return result;
+}
+
+KINECAL_INLINE PlainMatrix position_goal(const AnyProblem& problem, const FreeSet& free,
+                                         std::span<const double> values,
+                                         std::span<const Sample> samples, const FrameOnRobot& frame,
+                                         const FrameOnRobot& in) {
+  detail::TipDerivative of_frame = detail::derivative_of(problem, free, values, frame),
+                        of_in = detail::derivative_of(problem, free, values, in);
+  Eigen::MatrixXd goal = Eigen::MatrixXd::Zero(free.size(), free.size());
+  double poses = 0.0;
+  for (const Sample& sample : samples) {
+    if (!of_frame.has_joints(sample) || !of_in.has_joints(sample)) continue;
+    const Vector3<double> p_base = of_frame.tip(sample);
+    const Eigen::MatrixXd jacobian =
+        (of_frame.at(sample, p_base) - of_in.at(sample, p_base)).topRows<3>();
+    goal.noalias() += jacobian.transpose() * jacobian;
+    poses += 1.0;
+  }
+  if (poses > 0.0) goal /= poses;
+  return goal;
 }
 
 }  // namespace kinecal

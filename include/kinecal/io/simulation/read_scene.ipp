@@ -11,6 +11,7 @@
 //   errors:                         each between half of it and all of it, with either sign
 //     joint: 0.05, sliding: 0.01, position: 0.01, rotation: 0.02, intrinsics: 0.01, z_offset: 0.005,
 //     z_scaling: 0.01, values: {shoulder_pan_joint: 0.03}
+//   noise: {pixel: 0.3, point: 5e-5 (metres), rotation: 1e-4}
 //   motion: {speed: 1.0, encoder_noise: 2e-5, repeatability: 5e-5, backlash: 1e-4, image_rate: 15,
 //            image_latency: 0.06, exposure_time: 0.0 (seconds), late_stamps: 0.0, lamp_latency: 0.04}
 //   faults: {stuck_joint: NAME, joints_end: 60.0, views_end: 60.0, connection_ends: 60.0,
@@ -125,25 +126,34 @@ inline void read_plan_poses(ConfigMap& map, SimulationPlan& plan) {
   }
 }
 
+/// Noise of features follows from that of the camera and of the joints.
+inline void set_noise(SimulationPlan& plan) {
+  const SimulatedTiming& timing = plan.setup.timing;
+  plan.noise.depth = plan.setup.camera.depth_noise;
+  plan.noise.joint = std::hypot(timing.encoder_noise, timing.repeatability, 0.5 * timing.backlash);
+}
+
 /// Reads a scene file into a plan.
-inline SceneWords read_scene(const std::string& path, SimulationPlan& plan,
-                             Diagnostics& diagnostics) {
-  SceneWords words;
+/// @returns  errors that the file gives itself
+[[nodiscard]] inline ParameterTable read_scene(const std::string& path, SimulationPlan& plan,
+                                               Diagnostics& diagnostics) {
+  ParameterTable given;
   const YamlNode content = load_config(path, diagnostics);
   if (!content.is_map()) {
     diagnostics.error({path, 0}, "the scene is " + describe_config(content) + ", not a map");
-    return words;
+    return given;
   }
   ConfigMap map(content, {path, content.line}, "", diagnostics);
   plan.setup.seed = static_cast<std::uint64_t>(map.count("seed", 1));
   if (auto camera = map.map("camera", "camera")) read_camera(*camera, plan);
   if (auto target = map.map("target", "target")) read_target(*target, plan);
-  if (auto errors = map.map("errors", "errors")) read_errors(*errors, words);
+  if (auto errors = map.map("errors", "errors")) given = read_errors(*errors, plan.errors);
+  if (auto noise = map.map("noise", "noise")) read_noise(*noise, plan.noise);
   if (auto motion = map.map("motion", "motion")) read_motion(*motion, plan.setup);
   if (auto faults = map.map("faults", "faults")) read_faults(*faults, plan.setup.faults);
   read_plan_poses(map, plan);
   map.report_unknown();
-  return words;
+  return given;
 }
 
 }  // namespace kinecal::detail

@@ -9,14 +9,9 @@
 
 namespace kinecal::detail {
 
-/// What a scene file says beside the plan.
-struct SceneWords {
-  SimulatedErrors errors;
-  ParameterTable values;  ///< errors that the file gives itself
-};
-
-inline void read_errors(ConfigMap& map, SceneWords& words) {
-  SimulatedErrors& errors = words.errors;
+/// @returns  errors that the file gives itself
+[[nodiscard]] inline ParameterTable read_errors(ConfigMap& map, ErrorSizes& errors) {
+  ParameterTable given;
   for (const auto& [key, value] : {std::pair{"joint", &errors.joint},
                                    {"sliding", &errors.sliding},
                                    {"position", &errors.position},
@@ -28,8 +23,19 @@ inline void read_errors(ConfigMap& map, SceneWords& words) {
   }
   if (auto values = map.map("values", "values")) {
     for (const ConfigEntry& entry : values->entries()) {
-      words.values.add({.name = entry.key, .value = values->number(entry.key, 0.0)});
+      given.add({.name = entry.key, .value = values->number(entry.key, 0.0)});
     }
+  }
+  map.report_unknown();
+  return given;
+}
+
+/// Noise of features, and of joints as the motion makes it.
+inline void read_noise(ConfigMap& map, MeasurementNoise& noise) {
+  for (const auto& [key, value] :
+       {std::pair{"pixel", &noise.pixel}, {"point", &noise.point}, {"rotation", &noise.rotation}}) {
+    *value = map.number(key, *value);
+    if (*value < 0.0) map.error(map.find(key)->place, std::string(key) + " is below zero");
   }
   map.report_unknown();
 }

@@ -4,6 +4,7 @@
 //   camera: {frame: head_optical_frame, name: camera, type: camera3d, image: rectified, blur: 0.6}
 //   target: {type: leds, link: gripper_link, xyz: [0, 0, 0.05], rpy: [0, 0, 0]}
 //   errors: {joint: 0.05, position: 0.01, rotation: 0.02, intrinsics: 0.01}
+//   noise: {pixel: 0.3}             # of features in studies, which draw no pictures
 //   poses: 30                       # a number, or a file
 //
 // Whatever is left out follows from the URDF: the camera and the arm that `kinecal init` proposes, and a
@@ -17,8 +18,11 @@
 #include <vector>
 
 #include "kinecal/capture/pose_generation.hpp"
+#include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/linkage.hpp"
+#include "kinecal/study/error_sizes.hpp"
+#include "kinecal/study/measurement_noise.hpp"
 #include "kinecal/study/simulated_robot.hpp"
 
 namespace kinecal {
@@ -35,17 +39,6 @@ struct SimulatedTarget {
   std::vector<Vector3<double>> leds = {};  ///< metres, in the link; empty: four
 };
 
-/// Sizes of the errors of the true robot: each is drawn between half of it and all of it.
-struct SimulatedErrors {
-  double joint = 0.05;       ///< of joints that turn, radians
-  double sliding = 0.01;     ///< of other joints, metres
-  double position = 0.01;    ///< of frames, metres
-  double rotation = 0.02;    ///< of frames, radians
-  double intrinsics = 0.01;  ///< of focal lengths and principal point, relative
-  double z_offset = 0.005;   ///< of depth, metres
-  double z_scaling = 0.01;   ///< of depth, relative
-};
-
 /// A simulated robot, its surroundings, and what to do with it.
 struct SimulationPlan {
   SimulatedSetup setup;                 ///< makes a SimulatedRobot
@@ -54,6 +47,8 @@ struct SimulationPlan {
   std::string camera_type = {};         ///< camera3d or camera2d
   std::string chain_sensor = {};        ///< the sensor that holds the target
   std::string config = {};              ///< text of a first configuration: `kinecal init`
+  ErrorSizes errors = {};               ///< of the true robot
+  MeasurementNoise noise = {};          ///< of measured features and joints, for studies
   ViewGoal goal = {};                   ///< what a useful view is
   int poses = 30;                       ///< number of poses
   std::vector<JointTarget> given = {};  ///< poses of a file, in place of generated ones
@@ -64,10 +59,12 @@ struct SimulationPlan {
 /// @param target       leds, checkerboard, apriltag or ground; empty: what the scene says, or checkerboard
 /// @param seed         zero: what the scene says, or 1
 /// @param diagnostics  receives errors and warnings; with errors, the plan is incomplete
+/// @param config       whose camera and chain are simulated; nullptr: those of a first configuration
 /// @throws InputError  if a file cannot be read, or nothing can be calibrated with this target
 [[nodiscard]] SimulationPlan read_simulation(const Robot& robot, const std::string& path,
                                              const std::string& target, std::uint64_t seed,
-                                             Diagnostics& diagnostics);
+                                             Diagnostics& diagnostics,
+                                             const Config* config = nullptr);
 
 /// The poses of a plan: those of its file, or generated ones.
 /// @throws InputError  if there is no pose in which the camera sees the target

@@ -72,28 +72,32 @@ inline void complete(SimulatedTarget& target) {
 }
 
 /// Draws the errors of what a configuration calibrates.
-inline void draw_truth(const StepConfig& step, const SimulatedErrors& sizes, SimulationPlan& plan) {
+inline void draw_truth(const StepConfig& step, SimulationPlan& plan) {
   SeededRandom random(plan.setup.seed);
-  const auto add = [&](const std::string& name, double size) {
-    plan.setup.truth.add({.name = name, .value = random.either_sign(0.5 * size, size)});
-  };
   const Robot& robot = plan.setup.robot;
-  for (const FreeParamConfig& free : step.free_params) {
-    const std::string part = free.name.substr(free.name.find_last_of('_') + 1);
-    if (robot.has_joint(free.name)) {
-      add(free.name, turns(robot.joint(free.name).type) ? sizes.joint : sizes.sliding);
-    } else if (free.name.ends_with("_z_offset")) {
-      add(free.name, sizes.z_offset);
-    } else {
-      add(free.name, free.name.ends_with("_z_scaling") ? sizes.z_scaling : sizes.intrinsics);
-    }
+  for (const FreeParamConfig& free : free_parameters(step)) {
+    const std::string frame = free.name.substr(0, free.name.find_last_of('_'));
+    const bool is_of_frame = std::any_of(step.free_frames.begin(), step.free_frames.end(),
+                                         [&](const auto& of) { return of.name == frame; });
+    if (is_of_frame && !robot.has_joint(frame)) continue;  // the target's
+    if (is_of_frame) plan.setup.frames.insert(frame);
+    const double size = error_size(robot, free.name, plan.errors);
+    plan.setup.truth.add({.name = free.name, .value = random.either_sign(0.5 * size, size)});
   }
-  for (const FreeFrameConfig& frame : step.free_frames) {
-    if (!robot.has_joint(frame.name)) continue;  // the target's
-    plan.setup.frames.insert(frame.name);
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      if (!frame.axes[axis]) continue;
-      add(parameter_name(frame.name, kFrameAxes[axis]), axis < 3 ? sizes.position : sizes.rotation);
+}
+
+/// The camera and the link with the target that a configuration has, where the scene has none.
+inline void take_models(const Config& config, SimulationPlan& plan) {
+  const StepConfig& step = config.steps.back();
+  for (const ModelConfig& model : step.models) {
+    const bool is_camera = model.type.starts_with("camera");
+    std::string& camera = plan.setup.camera.frame;
+    if (is_camera && (camera.empty() || camera == model.frame)) {
+      camera = model.frame;
+      plan.setup.camera_name = model.name;
+      plan.camera_type = model.type;
+    } else if (!is_camera && plan.target.link.empty()) {
+      plan.target.link = model.frame;
     }
   }
 }
@@ -138,29 +142,31 @@ inline void add_target_frame(const StepConfig& step, SimulationPlan& plan) {
 
 KINECAL_INLINE SimulationPlan read_simulation(const Robot& robot, const std::string& path,
                                               const std::string& target, std::uint64_t seed,
-                                              Diagnostics& diagnostics) {
+                                              Diagnostics& diagnostics, const Config* config) {
   SimulationPlan plan;
   plan.setup.robot = robot;
   plan.setup.camera.frame.clear();
-  detail::SceneWords words;
-  if (!path.empty()) words = detail::read_scene(path, plan, diagnostics);
+  ParameterTable given;  // errors that the scene gives itself
+  if (!path.empty()) given = detail::read_scene(path, plan, diagnostics);
+  detail::set_noise(plan);
   if (!target.empty()) plan.target.type = target;
   if (seed != 0) plan.setup.seed = seed;
   if (!diagnostics.errors.empty()) return plan;
+  if (config != nullptr && !config->steps.empty()) detail::take_models(*config, plan);
   detail::complete(plan.target);
   const InitAnswers answers = detail::answers_of(robot, plan);
   plan.setup.base = answers.base;
   plan.target_frame = needs_target_frame(answers.target) ? answers.target_frame : plan.target.link;
   plan.setup.camera.has_depth = plan.camera_type == "camera3d";
   plan.config = initial_config(robot, answers);
-  const Config config = parse_config(plan.config, "calibrate.yaml", diagnostics);
+  const Config first = parse_config(plan.config, "calibrate.yaml", diagnostics);
   if (!diagnostics.errors.empty()) return plan;
-  const StepConfig& step = config.steps.front();
+  const StepConfig& step = first.steps.front();
   for (const ModelConfig& model : step.models) {
     if (model.name != plan.setup.camera_name) plan.chain_sensor = model.name;
   }
-  detail::draw_truth(step, words.errors, plan);
-  detail::take_values(words.values, path, plan, diagnostics);
+  detail::draw_truth(step, plan);
+  detail::take_values(given, path, plan, diagnostics);
   detail::place_target(plan);
   detail::furnish(plan);
   detail::add_target_frame(step, plan);

@@ -1,0 +1,52 @@
+// Poses to choose from, and what a calibration with some of them will be worth.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/study/motion_order.hpp"
+#include "kinecal/study/sample_design.hpp"
+#include "kinecal/study/select_poses.hpp"
+#include "study_input.hpp"
+
+namespace kinecal::cli {
+
+/// The poses of a study as candidates.
+struct PoseChoice {
+  std::vector<Sample> samples;      ///< exact ones
+  StudyDesign design;               ///< of these samples
+  PoseCandidates candidates;        ///< the same, to select from
+  std::vector<std::string> joints;  ///< that move what is observed
+  JointPlaces places;               ///< of these joints, radians or metres
+  std::vector<double> speeds;       ///< of these joints, radians or metres per second
+  std::vector<int> have = {};       ///< samples that exist already, the last ones: no candidates
+};
+
+[[nodiscard]] PoseChoice pose_choice(const StudyInput& input);
+
+/// Expected standard deviation of the pose that is judged with these samples and those that exist,
+/// metres; infinite if they determine less than all poses do.
+[[nodiscard]] double expected_position(const PoseChoice& choice, const std::vector<int>& chosen);
+
+/// Median of the same of random sets, metres.
+[[nodiscard]] double random_position(const PoseChoice& choice, int count);
+
+/// The least number of poses with which the median of random sets is as good, and that median; one more
+/// than all if there is none.
+[[nodiscard]] int random_poses_for(const PoseChoice& choice, double position);
+
+/// Seconds of a session with poses in this order: moves, and what each stop takes.
+[[nodiscard]] double session_seconds(const PoseChoice& choice, const std::vector<int>& order);
+
+/// "1 min 20 s".
+[[nodiscard]] std::string duration_text(double seconds);
+
+/// Poses in an order of short ways.
+[[nodiscard]] std::vector<int> short_order(const PoseChoice& choice, std::vector<int> chosen);
+
+/// The poses of a study, by index.
+[[nodiscard]] std::vector<CapturePose> poses_of_choice(const StudyInput& input,
+                                                       const std::vector<int>& chosen);
+
+}  // namespace kinecal::cli

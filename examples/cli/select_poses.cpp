@@ -1,0 +1,97 @@
+// kinecal select-poses: few poses of many, so that a calibration with them is as good as possible.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "commands.hpp"
+#include "kinecal/io/printable.hpp"
+#include "kinecal/study/study_summary.hpp"
+#include "output_file.hpp"
+#include "pose_choice.hpp"
+#include "pose_file.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// How much the pose varies in simulated calibrations with some samples, metres.
+double simulated_position(const StudyInput& input, const PoseChoice& choice,
+                          const std::vector<int>& chosen, int trials) {
+  StudySetup setup = input.setup;
+  setup.samples.clear();
+  for (const int i : chosen) setup.samples.push_back(choice.samples[static_cast<std::size_t>(i)]);
+  StudyRobot robot{0, setup.drawn, setup.samples};
+  std::vector<StudyTrial> done;
+  const int count = static_cast<int>(chosen.size());
+  for (int repeat = 0; repeat < trials; ++repeat) {
+    done.push_back(run_study_job(setup, robot, {0, count, repeat}));
+  }
+  std::vector<StudyGroup> groups = summarize(setup, {&robot, 1}, done, 1.0);
+  return std::sqrt(varied_variance(groups.at(0), done, choice.candidates.goal));
+}
+
+std::string millimetres(double metres) {
+  return std::isfinite(metres) ? fmt::format("{:.3f} mm", 1e3 * metres) : "not determined";
+}
+
+}  // namespace
+
+int select_poses(const SelectPosesOptions& options) {
+  std::vector<std::string> inputs = {options.urdf, options.config, options.pose_file,
+                                     options.scene};
+  if (!options.output.empty()) check_output(options.output, inputs, options.force);
+  const std::unique_ptr<StudyInput> input = read_study(options, options.candidates);
+  const PoseChoice choice = pose_choice(*input);
+  const std::map<std::string, PoseCriterion> criteria = {{"gripper", PoseCriterion::gripper},
+                                                         {"a", PoseCriterion::a},
+                                                         {"d", PoseCriterion::d},
+                                                         {"e", PoseCriterion::e}};
+  const int count = std::min(options.count, static_cast<int>(choice.candidates.information.size()));
+  const PoseSelection selection =
+      kinecal::select_poses(choice.candidates, {.count = count,
+                                                .criterion = criteria.at(options.criterion),
+                                                .least_distance = options.least_distance,
+                                                .failures = options.failures});
+  const int found = static_cast<int>(selection.chosen.size());
+  if (found < options.count) {
+    fmt::print(stderr, "warning: only {} of {} are further than {} of a joint's range apart\n",
+               found, counted(choice.candidates.information.size(), "pose"),
+               options.least_distance);
+  }
+  const RandomSets random =
+      random_sets(choice.candidates, found, options.random, PoseCriterion::gripper, 1);
+  const double selected = expected_position(choice, selection.chosen),
+               best = expected_position(choice, random.best);
+  std::vector<int> all(choice.candidates.information.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  const std::vector<int> order = short_order(choice, selection.chosen);
+  std::string text =
+      fmt::format("{} of {} selected: '{}' in '{}' will be known to {} (one standard deviation)\n",
+                  found, counted(choice.candidates.information.size(), "pose"),
+                  input->setup.frame.name(), input->setup.in.name(), millimetres(selected));
+  text += fmt::format("  best of {} random sets: {}; all poses: {}\n", options.random,
+                      millimetres(best), millimetres(expected_position(choice, all)));
+  const int equal = random_poses_for(choice, selected);
+  text += equal > static_cast<int>(all.size())
+              ? "  random sets are never as good\n"
+              : fmt::format("  random sets need {} for as much (median)\n",
+                            counted(static_cast<std::size_t>(equal), "pose"));
+  if (options.trials > 1) {
+    text += fmt::format(
+        "  simulated {} times: {}; best random set: {}\n", options.trials,
+        millimetres(simulated_position(*input, choice, selection.chosen, options.trials)),
+        millimetres(simulated_position(*input, choice, random.best, options.trials)));
+  }
+  text += fmt::format("  in this order: {} with the URDF's speeds and 3 s a stop\n",
+                      duration_text(session_seconds(choice, order)));
+  fmt::print("{}", printable(text));
+  if (options.output.empty()) return kDone;
+  write_pose_file(options.output, poses_of_choice(*input, order));
+  fmt::print("{}\n", options.output);
+  return kDone;
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study_input.hpp"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "input.hpp"
+#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/io/simulation/pose_samples.hpp"
+#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/trust/assess.hpp"
+#include "kinecal/trust/compared_frames.hpp"
+#include "kinecal/trust/ruined.hpp"
+#include "pose_file.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// Takes the poses of recorded samples.
+void take_recorded(const StudyFiles& files, StudyInput& input) {
+  Diagnostics diagnostics;
+  input.samples = read_recordings(files.samples, diagnostics).samples;
+  print_or_throw(diagnostics);
+  for (const Sample& sample : input.samples) {
+    input.poses.push_back({sample.joint_names, sample.joint_positions, {}, sample.source});
+  }
+}
+
+/// The poses of a file, each with a name for messages.
+std::vector<CapturePose> named_poses(const std::string& file) {
+  std::vector<CapturePose> poses = read_pose_file(file);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (poses[i].source.empty()) poses[i].source = fmt::format("{}: pose {}", file, i + 1);
+  }
+  return poses;
+}
+
+/// The poses of the file, those of the scene, or new ones.
+std::vector<CapturePose> poses_for(const StudyFiles& files, int count, StudyInput& input) {
+  if (!files.pose_file.empty()) return named_poses(files.pose_file);
+  if (input.plan.given.empty()) input.plan.poses = count;
+  std::vector<CapturePose> poses;
+  for (JointTarget& target : poses_of(input.plan)) {
+    poses.push_back({std::move(target.names),
+                     std::move(target.positions),
+                     {},
+                     fmt::format("generated pose {}", poses.size() + 1)});
+  }
+  return poses;
+}
+
+/// Takes poses without samples, in which a simulated target is seen.
+/// @returns  values by which the robot differs from the configuration
+ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input) {
+  std::vector<CapturePose> poses = poses_for(files, count, input);
+  const std::size_t candidates = poses.size();
+  if (!files.have.empty()) {
+    const std::vector<CapturePose> have = named_poses(files.have);
+    poses.insert(poses.end(), have.begin(), have.end());
+  }
+  PoseSamples made = pose_samples(input.plan, input.config, poses);
+  constexpr std::size_t kShown = 3;
+  for (std::size_t i = 0; i < made.skipped.size() && i < kShown; ++i) {
+    fmt::print(stderr, "warning: {}{}\n", made.skipped[i],
+               i + 1 == kShown && made.skipped.size() > kShown
+                   ? fmt::format(" (and {})", counted(made.skipped.size() - kShown, "other pose"))
+                   : "");
+  }
+  if (made.samples.empty()) throw InputError("the camera sees the target in none of the poses");
+  for (const std::size_t i : made.poses) {
+    input.poses.push_back(poses[i]);
+    input.have += i >= candidates ? 1 : 0;
+  }
+  if (input.have == made.poses.size()) {
+    throw InputError("the camera sees the target in none of the poses to choose from");
+  }
+  input.samples = std::move(made.samples);
+  return made.values;
+}
+
+/// The values of a robot without errors: of the configuration; or what recorded samples show.
+void set_drawn(const StudyFiles& files, const ParameterTable& places, StudyInput& input) {
+  ParameterTable table = input.calibration.table;
+  if (!files.samples.empty()) {
+    const CalibrationResult found = kinecal::calibrate(input.calibration);
+    if (!found.converged) {
+      throw InputError("the samples cannot be calibrated: " + found.termination +
+                       "; a study starts from their result");
+    }
+    table = found.table;
+  }
+  for (const CalibrationStep& step : input.calibration.steps) {
+    if (!files.samples.empty()) break;
+    for (const auto& [parameter, value] : step.assignments) table[parameter].value = value;
+  }
+  for (const Parameter& place : places) {
+    if (const int p = table.find(place.name); p >= 0) table[p].value = place.value;
+  }
+  const Eigen::VectorXd values = table.values();
+  input.setup.drawn.assign(values.begin(), values.end());
+}
+
+/// Calibrates samples of the study as `kinecal calibrate` does, but without its statements.
+StudyFit fit_study(const StudyInput& input, std::span<const Sample> all) {
+  StudyFit fit;
+  fit.solves = 0;
+  std::vector<Sample> samples(all.begin(), all.end());
+  struct Fitted {
+    Calibration calibration;
+    CalibrationResult result;
+    std::vector<Assessment> assessments = {};
+  };
+  SolveOptions solving;
+  solving.threads = 1;
+  const auto once = [&] {
+    Diagnostics ignored;
+    Fitted fitted{assemble(input.config, input.robot, samples, ignored), {}};
+    ignored.throw_if_errors();
+    fitted.result = kinecal::calibrate(fitted.calibration, {}, solving);
+    for (const StepResult& step : fitted.result.steps) fit.seconds += step.seconds;
+    ++fit.solves;
+    return fitted;
+  };
+  const auto last = [&](Fitted& fitted) -> const Assessment* {
+    if (input.keep_ruined || !fitted.result.converged) return nullptr;
+    AssessOptions options;
+    options.folds = 0;
+    fitted.assessments = assess(fitted.calibration, fitted.result, samples, options);
+    return &fitted.assessments.back();
+  };
+  int in_round = 0;
+  const auto leave_out = [&](const Fitted&, const CaptureError& error) {
+    samples.erase(samples.begin() + (error.sample - in_round));
+    ++in_round;
+    ++fit.left_out;
+  };
+  const auto again = [&] {
+    in_round = 0;
+    return once();
+  };
+  const Fitted fitted = fit_without_ruined(again, last, leave_out);
+  fit.converged = fitted.result.converged;
+  const Eigen::VectorXd values = fitted.result.table.values();
+  fit.values.assign(values.begin(), values.end());
+  return fit;
+}
+
+void set_up(const StudyFiles& files, StudyInput& input) {
+  StudySetup& setup = input.setup;
+  const CalibrationStep& step = input.calibration.steps.back();
+  setup.make = [&input] {
+    return empty_problem(input.config, input.config.steps.back(), input.robot,
+                         input.calibration.table, input.samples);
+  };
+  setup.free = step.free.parameters();
+  setup.samples = input.samples;
+  const auto frames = compared_frames(*step.problem, input.samples);
+  if (!frames) throw InputError(files.config + ": nothing is compared whose pose could be judged");
+  setup.frame = frames->first;
+  setup.in = frames->second;
+  setup.noise = input.plan.noise;
+  setup.errors = input.plan.errors;
+  setup.ruined = input.plan.setup.faults.outliers;
+  setup.ruined_by = input.plan.setup.faults.outlier_size;
+  setup.seed = input.plan.setup.seed;
+  setup.fit = [&input](std::span<const Sample> samples) { return fit_study(input, samples); };
+}
+
+}  // namespace
+
+std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
+  auto input = std::make_unique<StudyInput>();
+  Diagnostics diagnostics;
+  input->urdf_text = read_urdf_text(files.urdf);
+  input->robot = parse_urdf(input->urdf_text, files.urdf);
+  if (!files.config.empty()) input->config = read_config(files.config, diagnostics);
+  print_or_throw(diagnostics);
+  const bool has_config = !files.config.empty();
+  if (files.samples.empty() || !files.scene.empty()) {
+    input->plan = read_simulation(input->robot, files.scene, files.target,
+                                  static_cast<std::uint64_t>(files.seed), diagnostics,
+                                  has_config ? &input->config : nullptr);
+  }
+  if (!has_config && files.samples.empty()) {
+    input->config = parse_config(input->plan.config, "first configuration", diagnostics);
+  } else if (!has_config) {
+    diagnostics.error({"--config", 0}, "is required with samples");
+  }
+  if (input->config.steps.empty() && has_config) {
+    diagnostics.error({files.config, 0}, "has no steps");
+  }
+  print_or_throw(diagnostics);
+  ParameterTable places;
+  if (files.samples.empty()) {
+    places = take_poses(files, poses, *input);
+  } else {
+    take_recorded(files, *input);
+  }
+  Diagnostics of_samples;
+  input->calibration = assemble(input->config, input->robot, input->samples, of_samples);
+  print_or_throw(of_samples);
+  set_drawn(files, places, *input);
+  if (files.seed > 0) input->plan.setup.seed = static_cast<std::uint64_t>(files.seed);
+  set_up(files, *input);
+  for (const std::string& file :
+       {files.urdf, files.config, files.scene, files.pose_file, files.have}) {
+    if (!file.empty()) input->files.push_back(file);
+  }
+  input->files.insert(input->files.end(), files.samples.begin(), files.samples.end());
+  return input;
+}
+
+std::vector<std::string> free_names(const StudyInput& input) {
+  std::vector<std::string> names;
+  for (const int p : input.setup.free) names.push_back(input.calibration.table[p].name);
+  return names;
+}
+
+}  // namespace kinecal::cli

@@ -1,0 +1,41 @@
+// What studies, selections and plans start from: a robot, what is calibrated, poses, and the noise.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "kinecal/capture/capture_pose.hpp"
+#include "kinecal/io/config/config.hpp"
+#include "kinecal/io/simulation/simulation_plan.hpp"
+#include "kinecal/solve/calibrate.hpp"
+#include "kinecal/study/repeatability.hpp"
+
+namespace kinecal::cli {
+
+/// A robot and its study.  It stays where it was made: the setup refers to it.
+struct StudyInput {
+  Robot robot;
+  Config config;
+  SimulationPlan plan;
+  std::string urdf_text;           ///< content of the URDF
+  std::vector<CapturePose> poses;  ///< one for each sample
+  std::vector<Sample> samples;     ///< recorded ones, or those of the poses
+  Calibration calibration;         ///< of these samples
+  StudySetup setup;                ///< without truth and noise of a job
+  std::vector<std::string> files;  ///< that were read
+  std::size_t have = 0;            ///< the last samples, which exist already
+  bool keep_ruined = true;         ///< calibrate with all samples
+};
+
+/// Reads everything.  Prints warnings.
+/// @param poses  how many to generate, if there are neither samples nor a file of poses
+/// @throws InputError  with one of the errors; the others are printed
+[[nodiscard]] std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses);
+
+/// Names of the free parameters, in their order.
+[[nodiscard]] std::vector<std::string> free_names(const StudyInput& input);
+
+}  // namespace kinecal::cli

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study_tables.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kinecal/report/json.hpp"
+#include "kinecal/report/text.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+constexpr double kLinear = 0.1;  // StudyTrial::nonlinearity up to which variances are predicted
+constexpr int kForVariance = 2;  // trials without which there is none
+
+std::vector<const StudyGroup*> of_robot(const StudyResult& result, int robot) {
+  std::vector<const StudyGroup*> groups;
+  for (const StudyGroup& group : result.groups) {
+    if (group.robot == robot) groups.push_back(&group);
+  }
+  return groups;
+}
+
+int robots_of(const StudyResult& result) {
+  int robots = 0;
+  for (const StudyGroup& group : result.groups) robots = std::max(robots, group.robot + 1);
+  return robots;
+}
+
+/// The groups of all robots with the most poses.
+std::vector<const StudyGroup*> with_most(const StudyResult& result) {
+  std::vector<const StudyGroup*> groups;
+  for (int robot = 0; robot < robots_of(result); ++robot) {
+    const auto all = of_robot(result, robot);
+    if (!all.empty()) groups.push_back(all.front());
+  }
+  return groups;
+}
+
+std::string variance(double value) {
+  return std::isfinite(value) ? fmt::format("{:.2e}", value) : "-";
+}
+
+std::string unit_of(const StudyInput& input, std::size_t p) {
+  return input.calibration.table[input.setup.free[p]].unit;
+}
+
+/// A table of variances: one pair of columns for each group.
+std::string variances(const StudyInput& input, const std::vector<const StudyGroup*>& groups,
+                      const std::vector<std::string>& titles, bool ratio) {
+  TextTable::Row header = {"parameter", "unit^2"};
+  for (const std::string& title : titles) {
+    header.push_back(title);
+    header.push_back("predicted");
+  }
+  if (ratio) header.push_back("ratio");
+  TextTable table(header, 2);
+  const std::vector<std::string> names = free_names(input);
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    TextTable::Row row = {names[p], unit_of(input, p)};
+    for (const StudyGroup* group : groups) {
+      row.push_back(variance(group->parameters[p].variance));
+      row.push_back(variance(group->parameters[p].predicted));
+    }
+    if (ratio) {
+      const ParameterSpread &most = groups.front()->parameters[p],
+                            &least = groups.back()->parameters[p];
+      row.push_back(most.variance > 0.0 && std::isfinite(most.predicted)
+                        ? fmt::format("{:.1f}", least.variance / most.variance)
+                        : "-");
+    }
+    table.add(row);
+  }
+  return table.str();
+}
+
+std::string unit_of_block(const StudyInput& input) {
+  const AnyProblem& problem = *input.calibration.steps.back().problem;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    if (problem.samples_of(t) > 0) return problem.term(t).options().unit;
+  }
+  return "m";
+}
+
+std::string table_one(const StudyInput& input, const StudyResult& result) {
+  const auto groups = of_robot(result, 0);
+  if (groups.empty() || groups.front()->trials < kForVariance) return "";
+  std::vector<std::string> titles;
+  for (const StudyGroup* group : groups) titles.push_back(fmt::format("{} poses", group->poses));
+  const bool has_ratio = groups.size() > 1;
+  std::string text = fmt::format(
+      "\nTable I: variance of {} calibrations of robot 1, and the one that the covariance "
+      "predicts\n",
+      groups.front()->trials);
+  text += variances(input, groups, titles, has_ratio);
+  if (!has_ratio) return text;
+  const int most = groups.front()->poses, least = groups.back()->poses;
+  text += fmt::format("Median of the ratios {}:{}: {:.1f}; independent poses give {:.1f}", least,
+                      most, variance_ratio(result, 0), double(most) / least);
+  if (most == 100 && least == 25) text += "; the Fetch paper has 6.4";
+  return text + "\n";
+}
+
+std::string table_two(const StudyInput& input, const StudyResult& result) {
+  const auto groups = with_most(result);
+  constexpr std::size_t kMost = 8;  // more do not fit beside each other
+  if (groups.size() < 2 || groups.size() > kMost || groups.front()->trials < kForVariance)
+    return "";
+  std::vector<std::string> titles;
+  for (const StudyGroup* group : groups)
+    titles.push_back(fmt::format("robot {}", group->robot + 1));
+  return fmt::format("\nTable II: the same of {}, {} poses\n", counted(groups.size(), "robot"),
+                     groups.front()->poses) +
+         variances(input, groups, titles, false);
+}
+
+std::string table_three(const StudyInput& input, const StudyResult& result) {
+  const std::string unit = unit_of_block(input), shown = reading_unit(unit);
+  TextTable table({"robot", "poses", "re-projection, " + shown, "without noise", "pose off, mm",
+                   "varies", "predicted", "worst", "failed"},
+                  0);
+  constexpr int kMost = 20;
+  const auto mm = [](double value) {
+    return value > 0.0 ? fmt::format("{:.3f}", 1e3 * value) : std::string("-");
+  };
+  for (const StudyGroup& group : result.groups) {
+    if (group.robot >= kMost) break;
+    table.add({std::to_string(group.robot + 1), std::to_string(group.poses),
+               in_reading_unit(group.reprojection, unit), in_reading_unit(group.systematic, unit),
+               mm(group.position), mm(group.trials > 1 ? group.varied_position : 0.0),
+               mm(group.predicted_position), mm(group.worst_position),
+               fmt::format("{} of {}", group.failed, group.trials)});
+  }
+  std::string text = fmt::format(
+      "\nTable III: mean re-projection error on new samples, and error of '{}' in '{}'\n",
+      input.setup.frame.name(), input.setup.in.name());
+  text += table.str();
+  const int robots = robots_of(result);
+  if (robots > kMost) text += fmt::format("  ... and {} more\n", robots - kMost);
+  return text;
+}
+
+/// Sums over all robots.
+std::string sums(const StudyInput& input, const StudyResult& result) {
+  std::string text;
+  int trials = 0, failed = 0, ruined = 0, left_out = 0;
+  double before = 0.0, after = 0.0, most = 0.0;
+  for (const StudyGroup& group : result.groups) {
+    trials += group.trials;
+    failed += group.failed;
+    ruined += group.ruined;
+    left_out += group.left_out;
+    after += group.position * group.position * group.trials;
+    most = std::max(most, group.worst_position);
+  }
+  for (const double of : result.before) before += of * of;
+  const std::string unit = unit_of_block(input);
+  text += fmt::format("\n{} of {} failed: mean re-projection error above {} {}, or not converged\n",
+                      failed, counted(static_cast<std::size_t>(trials), "calibration"),
+                      in_reading_unit(result.limit, unit), reading_unit(unit));
+  text += fmt::format(
+      "'{}' in '{}': {:.1f} mm by the URDF, {:.3f} mm calibrated (RMS), {:.3f} mm at worst\n",
+      input.setup.frame.name(), input.setup.in.name(),
+      1e3 * std::sqrt(before / std::max(1.0, static_cast<double>(result.before.size()))),
+      1e3 * std::sqrt(after / std::max(1, trials)), 1e3 * most);
+  if (ruined > 0) {
+    text += fmt::format("{} ruined, {} left out\n",
+                        counted(static_cast<std::size_t>(ruined), "sample"), left_out);
+  }
+  return text;
+}
+
+/// Whether the covariance describes the trials.
+std::string linearity(const StudyResult& result) {
+  const auto worst = std::max_element(
+      result.groups.begin(), result.groups.end(),
+      [](const StudyGroup& a, const StudyGroup& b) { return a.nonlinearity < b.nonlinearity; });
+  if (worst == result.groups.end()) return "";
+  if (worst->ruined > 0) return "";
+  if (worst->nonlinearity < kLinear) {
+    return fmt::format(
+        "Linear: results differ from those of the linearized problem by {:.1f} % of "
+        "their distance from the truth, at most\n",
+        100.0 * worst->nonlinearity);
+  }
+  return fmt::format(
+      "Not linear: with {} poses, results of robot {} differ from those of the linearized problem "
+      "by "
+      "{:.0f} % of their distance from the truth; predicted variances do not hold there\n",
+      worst->poses, worst->robot + 1, 100.0 * worst->nonlinearity);
+}
+
+}  // namespace
+
+double variance_ratio(const StudyResult& result, int robot) {
+  const auto groups = of_robot(result, robot);
+  if (groups.size() < 2) return 0.0;
+  std::vector<double> ratios;
+  for (std::size_t p = 0; p < groups.front()->parameters.size(); ++p) {
+    const ParameterSpread &most = groups.front()->parameters[p],
+                          &least = groups.back()->parameters[p];
+    if (most.variance > 0.0 && std::isfinite(most.predicted)) {
+      ratios.push_back(least.variance / most.variance);
+    }
+  }
+  if (ratios.empty()) return 0.0;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle;
+}
+
+std::string study_text(const StudyInput& input, const StudyResult& result) {
+  std::string text =
+      fmt::format("{}: {}, {} poses to choose from, {} free parameters\n", input.robot.name(),
+                  counted(static_cast<std::size_t>(robots_of(result)), "robot"),
+                  input.samples.size(), input.setup.free.size());
+  if (result.done < result.jobs) {
+    text += fmt::format("Interrupted: {} of {} calibrations are done\n", result.done, result.jobs);
+  }
+  return text + table_one(input, result) + table_two(input, result) + table_three(input, result) +
+         sums(input, result) + linearity(result);
+}
+
+std::string study_json(const StudyInput& input, const StudyResult& result) {
+  const std::vector<std::string> names = free_names(input);
+  std::string groups;
+  for (const StudyGroup& group : result.groups) {
+    std::string parameters;
+    for (std::size_t p = 0; p < names.size(); ++p) {
+      const ParameterSpread& of = group.parameters[p];
+      parameters += fmt::format(
+          R"({}{{"name": {}, "unit": {}, "truth": {}, "mean": {}, "variance": {}, "predicted": {}}})",
+          p == 0 ? "" : ",\n      ", detail::json_string(names[p]),
+          detail::json_string(unit_of(input, p)), detail::json_number(of.truth),
+          detail::json_number(of.mean), detail::json_number(of.variance),
+          detail::json_number(of.predicted));
+    }
+    std::string numbers;
+    for (const auto& [name, value] : {std::pair("position", group.position),
+                                      {"varied_position", group.varied_position},
+                                      {"predicted_position", group.predicted_position},
+                                      {"worst_position", group.worst_position},
+                                      {"rotation", group.rotation},
+                                      {"reprojection", group.reprojection},
+                                      {"systematic", group.systematic},
+                                      {"nonlinearity", group.nonlinearity}}) {
+      numbers += fmt::format(R"("{}": {}, )", name, detail::json_number(value));
+    }
+    groups += fmt::format(
+        R"({}{{"robot": {}, "poses": {}, "trials": {}, "failed": {}, "ruined": {}, "left_out": {}, )"
+        R"({}"parameters": [)"
+        "\n      {}]}}",
+        groups.empty() ? "\n    " : ",\n    ", group.robot + 1, group.poses, group.trials,
+        group.failed, group.ruined, group.left_out, numbers, parameters);
+  }
+  return fmt::format(
+      "{{\n  \"robot\": {},\n  \"frame\": {},\n  \"in\": {},\n  \"unit\": {},\n  \"limit\": {},\n"
+      "  \"jobs\": {},\n  \"done\": {},\n  \"groups\": [{}]\n}}\n",
+      detail::json_string(input.robot.name()), detail::json_string(input.setup.frame.name()),
+      detail::json_string(input.setup.in.name()), detail::json_string(unit_of_block(input)),
+      detail::json_number(result.limit), result.jobs, result.done, groups);
+}
+
+}  // namespace kinecal::cli

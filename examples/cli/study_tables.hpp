@@ -1,0 +1,33 @@
+// The tables of a study, for people and for programs.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/study/study_summary.hpp"
+#include "study_input.hpp"
+
+namespace kinecal::cli {
+
+/// What a study found.
+struct StudyResult {
+  std::vector<StudyGroup> groups;  ///< by robot, then by number of poses
+  std::vector<double> before;      ///< error of each robot by the URDF, metres
+  std::size_t jobs = 0;            ///< that were to be done
+  std::size_t done = 0;            ///< that are done
+  double limit = 0.0;              ///< of the mean re-projection error
+  double solves_per_second = 0.0;  ///< and core
+};
+
+/// Tables I, II and III of the Fetch paper, and what the trials show beside it.
+[[nodiscard]] std::string study_text(const StudyInput& input, const StudyResult& result);
+
+/// The same as JSON.
+[[nodiscard]] std::string study_json(const StudyInput& input, const StudyResult& result);
+
+/// Median of the ratio of variances with the fewest and with the most poses, over the determined
+/// parameters of a robot; zero without two numbers of poses.
+[[nodiscard]] double variance_ratio(const StudyResult& result, int robot);
+
+}  // namespace kinecal::cli

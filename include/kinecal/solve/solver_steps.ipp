@@ -1,0 +1,110 @@
+// The iterations of Ceres: careful ones, then bold ones.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "kinecal/solve/solve.hpp"
+
+namespace kinecal::detail {
+
+class ProgressCallback final : public ceres::IterationCallback {
+ public:
+  explicit ProgressCallback(const SolveOptions& options) : options_(options) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (options_.progress) options_.progress(summary.iteration, summary.cost);
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const SolveOptions& options_;
+};
+
+[[nodiscard]] inline ceres::Solver::Options ceres_options(const SolveOptions& options) {
+  ceres::Solver::Options ceres_options;
+  ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  ceres_options.max_num_iterations = options.max_num_iterations;
+  ceres_options.function_tolerance = options.function_tolerance;
+  ceres_options.gradient_tolerance = 1e-16;
+  ceres_options.parameter_tolerance = 1e-12;
+  ceres_options.logging_type = ceres::SILENT;
+  ceres_options.num_threads = 1;
+  return ceres_options;
+}
+
+/// How far steps go.
+enum class Steps {
+  careful,  ///< only downhill, from a small trust region
+  bold      ///< long ones, some of them uphill
+};
+
+/// Calibrations have directions that are barely observable, at the bottom of curved valleys.  Careful
+/// steps follow a valley in a tenth of the iterations that bold ones need, which jump from side to side;
+/// but where many directions are barely observable they creep, and may stop short of the minimum.  So
+/// careful steps come first, and bold ones have the last word: from where careful ones ended, or from
+/// the start if they did not.
+inline void set_steps(Steps steps, ceres::Solver::Options& options) {
+  constexpr double kCareful = 1e4, kBold = 1e6;
+  options.use_nonmonotonic_steps = steps == Steps::bold;
+  options.initial_trust_region_radius = steps == Steps::bold ? kBold : kCareful;
+}
+
+/// The outcome of several runs of Ceres.
+struct Minimum {
+  bool usable = false, converged = false;
+  std::string message;             ///< of the last run
+  double cost = 0.0;               ///< at the end of the last run
+  std::vector<double> costs = {};  ///< of each iteration of all runs
+  int iterations = 0;              ///< of all runs
+  int evaluations = 0;             ///< of all samples, of all runs
+  double seconds = 0.0;
+};
+
+/// Adds a run to the outcome.
+inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
+  minimum.usable = summary.IsSolutionUsable();
+  minimum.converged = summary.termination_type == ceres::CONVERGENCE;
+  minimum.message = summary.message;
+  minimum.cost = summary.final_cost;
+  minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  for (const ceres::IterationSummary& iteration : summary.iterations) {
+    minimum.costs.push_back(iteration.cost);
+  }
+  minimum.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
+  minimum.seconds += summary.total_time_in_seconds;
+}
+
+/// Runs Ceres from x to a minimum.
+/// @param x        in: the start; out: where it ended
+/// @param minimum  this run is added to it
+inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const SolveOptions& options,
+                       Minimum& minimum) {
+  ceres::Solver::Options solver = ceres_options(options);
+  ProgressCallback progress(options);
+  solver.callbacks.push_back(&progress);
+  const std::vector<double> start = x;
+  const std::size_t costs = minimum.costs.size();
+  constexpr int kMostCareful = 20;  // iterations
+  for (const Steps steps : {Steps::careful, Steps::bold}) {
+    const bool is_bold = steps == Steps::bold;
+    if (is_bold && !minimum.converged) {
+      if (options.max_num_iterations <= kMostCareful) return;
+      std::copy(start.begin(), start.end(), x.begin());
+      minimum.costs.resize(costs);
+    }
+    set_steps(steps, solver);
+    solver.max_num_iterations =
+        is_bold ? options.max_num_iterations : std::min(kMostCareful, options.max_num_iterations);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    add_run(summary, minimum);
+    if (!minimum.usable) return;
+  }
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,162 @@
+// How the rows of samples change by each error of a measurement, for sample_design.ipp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/study/sample_design.hpp"
+#include "kinecal/study/sample_rows.ipp"
+
+namespace kinecal::detail {
+
+/// Collects what the rows of each sample change by each error.
+class DesignRows {
+ public:
+  DesignRows(const MakeProblem& make, const FreeSet& free, std::span<const double> values,
+             std::span<const Sample> samples, const MeasurementNoise& noise)
+      : changing_(make, values, samples), noise_(noise) {
+    const StudyRows rows = changing_.rows(changing_.samples(), &free);
+    stacks_.resize(changing_.samples().size());
+    for (const auto& [key, jacobian] : rows.jacobian) {
+      Stack& stack = stacks_[sample_of(key)];
+      stack.first[key] = stack.jacobian.rows();
+      stack.jacobian.conservativeResize(stack.jacobian.rows() + jacobian.rows(), free.size());
+      stack.jacobian.bottomRows(jacobian.rows()) = jacobian;
+    }
+    add_features();
+    add_joints();
+  }
+
+  [[nodiscard]] std::vector<SampleDesign> designs() const {
+    std::vector<SampleDesign> all;
+    for (const Stack& stack : stacks_) {
+      const Eigen::MatrixXd& j = stack.jacobian;
+      const Eigen::MatrixXd errors = stack.matrix();
+      const Eigen::MatrixXd scores = j.transpose() * errors;
+      all.push_back({PlainMatrix(j.transpose() * j), PlainMatrix(scores * scores.transpose())});
+    }
+    return all;
+  }
+
+ private:
+  /// The rows of a sample, and how errors change them.
+  struct Stack {
+    std::map<FeatureKey, Eigen::Index> first;  ///< of each feature's rows
+    Eigen::MatrixXd jacobian;                  ///< weighted
+    std::vector<Eigen::VectorXd> errors;       ///< weighted change by one standard deviation
+
+    [[nodiscard]] Eigen::MatrixXd matrix() const {
+      Eigen::MatrixXd all(jacobian.rows(), static_cast<Eigen::Index>(errors.size()));
+      for (std::size_t i = 0; i < errors.size(); ++i) {
+        all.col(static_cast<Eigen::Index>(i)) = errors[i];
+      }
+      return all;
+    }
+  };
+
+  [[nodiscard]] static std::size_t sample_of(const FeatureKey& key) {
+    return static_cast<std::size_t>(std::get<0>(key));
+  }
+
+  /// Adds the difference of two evaluations to each sample, one error for each group of keys.
+  /// @param half   of the change between them, in standard deviations
+  /// @param apart  features err independently; else all rows of a sample together
+  void add(const StudyRows& after, const StudyRows& before, double half, bool apart) {
+    std::map<std::pair<std::size_t, int>, Eigen::VectorXd> changes;
+    for (const auto& [key, residual] : after.residual) {
+      const std::size_t sample = sample_of(key);
+      const Stack& stack = stacks_[sample];
+      const Eigen::VectorXd change = (residual - before.residual.at(key)) / (2.0 * half);
+      if (change.isZero(0.0)) continue;
+      Eigen::VectorXd& column = changes[{sample, apart ? std::get<2>(key) : 0}];
+      if (column.size() == 0) column.setZero(stack.jacobian.rows());
+      column.segment(stack.first.at(key), change.size()) += change;
+    }
+    for (auto& [of, column] : changes) stacks_[of.first].errors.push_back(std::move(column));
+  }
+
+  void add_features() {
+    constexpr double kHalf = 0.01;  // standard deviations
+    for (const MountedSensor& sensor : changing_.problem().sensors()) {
+      const std::string& name = sensor.mount().name;
+      if (!changing_.measuring().contains(name)) continue;
+      const bool together = !takes_planes(name);  // of different features other rows change
+      const std::size_t places = together ? 1 : most_features(name);
+      for (std::size_t error = 0; error < most_errors(sensor); ++error) {
+        for (std::size_t only = 0; only < places; ++only) {
+          const auto change = [&](std::size_t, const Observation& seen, std::size_t place) {
+            std::optional<FeatureChange> of;
+            if (!together && place != only) return of;
+            const auto errors = errors_of(sensor, seen, seen.features[place], noise_);
+            if (error < errors.size()) of = errors[error];
+            return of;
+          };
+          add(changing_.rows(changing_.with(name, change, kHalf)),
+              changing_.rows(changing_.with(name, change, -kHalf)), kHalf, together);
+        }
+      }
+    }
+  }
+
+  void add_joints() {
+    constexpr double kHalf = 0.01;
+    std::set<std::string> joints;
+    for (const Sample& sample : changing_.samples()) {
+      joints.insert(sample.joint_names.begin(), sample.joint_names.end());
+    }
+    const auto moved = [&](const std::string& joint, double change) {
+      std::vector<Sample> samples = changing_.samples();
+      for (Sample& sample : samples) {
+        for (std::size_t i = 0; i < sample.joint_names.size(); ++i) {
+          if (sample.joint_names[i] == joint) sample.joint_positions[i] += change;
+        }
+      }
+      return changing_.rows(samples);
+    };
+    for (const std::string& joint : joints) {
+      const double change = kHalf * noise_.joint;
+      if (change > 0.0) add(moved(joint, change), moved(joint, -change), kHalf, false);
+    }
+  }
+
+  [[nodiscard]] bool takes_planes(const std::string& name) const {
+    const AnyProblem& problem = changing_.problem();
+    for (int t = 0; t < problem.num_terms(); ++t) {
+      if (problem.term(t).pairs_features()) continue;
+      for (const int s : problem.term(t).sensors()) {
+        if (problem.sensors()[static_cast<std::size_t>(s)].mount().name == name) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::size_t most_features(const std::string& name) {
+    std::size_t most = 0;
+    for (const Sample& sample : changing_.samples()) {
+      const Observation* seen = sample.observation(name);
+      if (seen != nullptr) most = std::max(most, seen->features.size());
+    }
+    return most;
+  }
+  [[nodiscard]] std::size_t most_errors(const MountedSensor& sensor) {
+    std::size_t most = 0;
+    for (const Sample& sample : changing_.samples()) {
+      const Observation* seen = sample.observation(sensor.mount().name);
+      if (seen == nullptr || seen->features.empty()) continue;
+      most = std::max(most, errors_of(sensor, *seen, seen->features[0], noise_).size());
+    }
+    return most;
+  }
+
+  ChangingSamples changing_;
+  MeasurementNoise noise_;
+  std::vector<Stack> stacks_;
+};
+
+}  // namespace kinecal::detail

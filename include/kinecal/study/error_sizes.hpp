@@ -1,0 +1,31 @@
+// How large the errors of simulated robots are.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// Sizes of the errors of a robot: each is drawn between half of it and all of it, with either sign.
+struct ErrorSizes {
+  double joint = 0.05;       ///< of joints that turn, radians
+  double sliding = 0.01;     ///< of other joints, metres
+  double position = 0.01;    ///< of frames, metres
+  double rotation = 0.02;    ///< of frames, radians
+  double intrinsics = 0.01;  ///< of focal lengths and principal point, relative
+  double z_offset = 0.005;   ///< of depth, metres
+  double z_scaling = 0.01;   ///< of depth, relative
+};
+
+/// The size of the error of a parameter, by its name; zero if it is of no known kind.
+[[nodiscard]] double error_size(const Robot& robot, const std::string& parameter,
+                                const ErrorSizes& sizes);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/study/error_sizes.ipp"
+#endif

@@ -1,0 +1,34 @@
+// An order of poses that shortens the robot's way.
+//
+// A move takes as long as its slowest joint: max |dq| / speed.  From the start the nearest pose is
+// next, again and again; then parts of the way are turned round while that shortens it.
+// Source: Croes, A Method for Solving Traveling-Salesman Problems, 1958 (2-opt).
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// Positions of the same joints in each pose, radians or metres.
+using JointPlaces = std::vector<std::vector<double>>;
+
+/// Seconds from pose to pose in this order, without stops.
+/// @param speeds  of each joint, radians or metres per second
+[[nodiscard]] double motion_time(const JointPlaces& places, const std::vector<int>& order,
+                                 const std::vector<double>& speeds);
+
+/// The same poses in a shorter order, never in a longer one; it begins with the same pose.
+/// @throws std::invalid_argument  if a pose has more or fewer joints than there are speeds, or a speed
+///                                is not positive
+[[nodiscard]] std::vector<int> motion_order(const JointPlaces& places,
+                                            const std::vector<int>& poses,
+                                            const std::vector<double>& speeds);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/study/motion_order.ipp"
+#endif

@@ -1,0 +1,85 @@
+// Choosing poses: few of many candidates, so that a calibration with them is as good as possible.
+//
+//   gripper  trace(G C)   mean variance of the pose that is wanted; what users care for
+//   a        trace(C)     mean variance of the parameters
+//   d        log det C    volume of their uncertainty
+//   e        max eig C    variance of the worst combination
+//
+// C = H^+ V H^+ is the covariance of the calibration with the chosen samples: see sample_design.hpp; with
+// V = H if no scores are given.  Criteria a, d and e are in units in which all candidates together have
+// ones on the diagonal of H.  Directions that not even all candidates determine are left out.
+//
+// First the pose that helps most is added, again and again; then each chosen pose is exchanged for the
+// best other one, until nothing improves.  Poses that differ by less than a given share of every
+// joint's range count as one.  Where poses may fail, a set is worth what it is without the ones that
+// it misses most.
+// Source: Fedorov, Theory of Optimal Experiments, 1972, 3 (exchange); Pukelsheim, Optimal Design of
+// Experiments, 6 (criteria).
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/trust/plain_matrix.hpp"
+
+namespace kinecal {
+
+/// What a set of poses is judged by.
+enum class PoseCriterion { gripper, a, d, e };
+
+/// Poses to choose from.
+struct PoseCandidates {
+  std::vector<PlainMatrix> information;  ///< (n x n) H of each pose
+  std::vector<PlainMatrix> scores = {};  ///< (n x n) V of each pose; empty: as the information
+  PlainMatrix before = {};               ///< (n x n) H of what is known before; empty: nothing
+  PlainMatrix before_scores = {};        ///< (n x n) V of it; empty: nothing
+  PlainMatrix prior = {};  ///< (n x n) H that priors add for each pose; empty: nothing
+  PlainMatrix goal = {};   ///< (n x n) G, square metres: see position_goal()
+  /// Where the joints of each pose are in their ranges, from 0 to 1; empty: no pose is near another.
+  std::vector<std::vector<double>> shares = {};
+};
+
+/// How to choose.
+struct SelectOptions {
+  int count = 25;
+  PoseCriterion criterion = PoseCriterion::gripper;
+  double least_distance = 0.02;  ///< of the joint that differs most, share of its range
+  int failures = 0;              ///< poses that may fail
+};
+
+/// Poses that were chosen.
+struct PoseSelection {
+  std::vector<int> chosen;  ///< candidates, the most useful first: each first few are a good set
+  std::vector<double>
+      values;          ///< of the criterion with the first 1, 2, ... of them; infinite while
+                       ///< they determine less than all candidates do
+  double value = 0.0;  ///< of all of them, without the ones that may fail
+};
+
+/// Chooses poses.
+/// @throws std::invalid_argument  if sizes do not fit, a number is not finite, or there are no candidates
+[[nodiscard]] PoseSelection select_poses(const PoseCandidates& candidates,
+                                         const SelectOptions& options);
+
+/// The criterion of a set; infinite if it determines less than all candidates do.
+[[nodiscard]] double design_value(const PoseCandidates& candidates, const std::vector<int>& chosen,
+                                  PoseCriterion criterion);
+
+/// Values of random sets, the best first, and the best set: what the Fetch paper chose by.
+struct RandomSets {
+  std::vector<double> values;
+  std::vector<int> best;
+};
+
+/// Draws sets of different candidates.
+[[nodiscard]] RandomSets random_sets(const PoseCandidates& candidates, int count, int sets,
+                                     PoseCriterion criterion, std::uint64_t seed = 1);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/study/select_poses.ipp"
+#endif

@@ -1,0 +1,150 @@
+// kinecal study, select-poses and plan: simulated calibrations of many robots.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "kinecal/io/poses/poses.hpp"
+#include "support/run_program.hpp"
+
+namespace kinecal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+
+const std::string kFetch = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/";
+
+class Study : public test::ProgramTest {
+ protected:
+  Study() {
+    write(
+        "scene.yaml",
+        "target: {type: leds, link: gripper_link, leds: [[0.05, 0.03, 0.04], [0, 0.03, 0.04], [0, "
+        "-0.03, 0.04], [0.05, -0.03, 0.04]]}\n");
+  }
+  /// Of the example robot, with few poses.
+  [[nodiscard]] test::Outcome call(const std::string& command, const std::string& arguments) const {
+    return run(std::string(KINECAL_PROGRAM " ") + command + " --urdf " + kFetch +
+               "fetch.urdf --target leds " + arguments);
+  }
+};
+
+TEST_F(Study, PrintsTheTablesOfThePaperAndWritesTrials) {
+  const test::Outcome outcome = call("study", "--robots 2 --repeat 3 --poses 20,12 -o out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Table I: variance of 3 calibrations of robot 1"));
+  EXPECT_THAT(outcome.out, HasSubstr("Table II: the same of 2 robots, 20 poses"));
+  EXPECT_THAT(outcome.out, HasSubstr("Table III: mean re-projection error"));
+  EXPECT_THAT(outcome.out, HasSubstr("0 of 12 calibrations failed"));
+  EXPECT_THAT(outcome.out, ContainsRegex("Median of the ratios 12:20: [0-9.]+; independent poses"));
+  const std::string trials = read("out/trials.csv");
+  EXPECT_EQ(std::count(trials.begin(), trials.end(), '\n'), 13);
+  EXPECT_THAT(read("out/study.json"), HasSubstr("\"predicted_position\""));
+  EXPECT_THAT(outcome.out, HasSubstr(read("out/study.txt")));
+  const test::Outcome again = call("study", "--robots 2 --repeat 3 --poses 20,12 -o out");
+  EXPECT_EQ(again.code, 1);
+  EXPECT_THAT(again.err, HasSubstr("has a study already; use --force"));
+}
+
+TEST_F(Study, TrialsDoNotDependOnThreads) {
+  const std::string what = "--robots 3 --repeat 2 --poses 12 ";
+  ASSERT_EQ(call("study", what + "-o one --threads 1").code, 0);
+  ASSERT_EQ(call("study", what + "-o four --threads 4").code, 0);
+  EXPECT_EQ(read("one/trials.csv"), read("four/trials.csv"));
+  EXPECT_EQ(read("one/study.json"), read("four/study.json"));
+  ASSERT_EQ(call("study", what + "-o other --seed 2").code, 0);
+  EXPECT_NE(read("one/trials.csv"), read("other/trials.csv"));
+}
+
+TEST_F(Study, GoesOnWhereItWasKilled) {
+  const std::string what = "--robots 2 --repeat 40 --poses 12 ";
+  ASSERT_EQ(call("study", what + "-o whole").code, 0);
+  int kills = 0;
+  for (double seconds = 0.15; seconds < 300.0; seconds *= 1.3) {
+    const test::Outcome part =
+        run("timeout -s KILL " + std::to_string(seconds) + " " KINECAL_PROGRAM " study --urdf " +
+            kFetch + "fetch.urdf --target leds " + what + "-o part");
+    if (part.code == 0) break;
+    ++kills;
+  }
+  EXPECT_GT(kills, 0);
+  EXPECT_EQ(read("part/trials.csv"), read("whole/trials.csv"));
+  EXPECT_EQ(read("part/study.json"), read("whole/study.json"));
+  for (const auto& file : fs::directory_iterator(folder_ / "part")) {
+    EXPECT_FALSE(file.path().filename().string().starts_with("journal")) << file.path();
+  }
+}
+
+TEST_F(Study, AJournalOfAnotherStudyIsRefusedAndALineThatWasCutOffIsIgnored) {
+  fs::create_directories(folder_ / "out");
+  write("out/journal.0.csv", "# study of another robot\n1,2,3\n");
+  const test::Outcome outcome = call("study", "--robots 1 --repeat 1 --poses 12 -o out");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("out/journal.0.csv: is of another study"));
+  EXPECT_EQ(call("study", "--robots 1 --repeat 1 --poses 12 -o out --force").code, 0);
+}
+
+TEST_F(Study, RuinedSamplesAreLeftOut) {
+  const test::Outcome outcome = call("study", "--robots 2 --repeat 2 --poses 30 --ruined 0.1");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ContainsRegex("\n[0-9]+ samples ruined, [0-9]+ left out\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("0 of 4 calibrations failed"));
+}
+
+TEST_F(Study, RecordedSamplesAreMeasuredAnew) {
+  const test::Outcome outcome =
+      run(KINECAL_PROGRAM " study --urdf " + kFetch + "fetch.urdf --config " + kFetch +
+          "calibrate.yaml --samples missing.yaml");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("missing.yaml"));
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(Study, PosesInWhichNothingIsSeenAreNamed) {
+  write("poses.yaml", "- {joints: [head_tilt_joint, head_pan_joint], positions: [-0.7, 1.5]}\n");
+  const test::Outcome outcome = call("study", "--pose-file poses.yaml");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("warning: poses.yaml:1: the target is"));
+  EXPECT_THAT(outcome.err, HasSubstr("the camera sees the target in none of the poses"));
+}
+
+TEST_F(Study, SelectPosesIsBetterThanRandomSetsAndWritesPoses) {
+  const test::Outcome outcome =
+      call("select-poses", "--candidates 40 --count 12 --random 50 --simulate 5 -o few.yaml");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  double selected = 0.0, best = 0.0;
+  ASSERT_EQ(std::sscanf(outcome.out.substr(outcome.out.find("known to")).c_str(), "known to %lf mm",
+                        &selected),
+            1);
+  ASSERT_EQ(std::sscanf(outcome.out.substr(outcome.out.find("random sets:")).c_str(),
+                        "random sets: %lf mm", &best),
+            1);
+  EXPECT_LT(selected, best);
+  Diagnostics diagnostics;
+  EXPECT_EQ(read_poses_yaml((folder_ / "few.yaml").string(), diagnostics).size(), 12U);
+  EXPECT_TRUE(diagnostics.errors.empty());
+  EXPECT_EQ(call("select-poses", "--candidates 20 --count 5 -o few.yaml").code, 1);
+}
+
+TEST_F(Study, PlanSaysHowManyPosesAnAccuracyTakes) {
+  const test::Outcome outcome =
+      call("plan", "--candidates 40 --accuracy 'gripper 3 mm' -o plan.yaml");
+  ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, ContainsRegex("[0-9]+ poses give [0-2]\\.[0-9]+ mm: "));
+  EXPECT_THAT(outcome.out, HasSubstr("Knee: after "));
+  const test::Outcome more = call(
+      "plan", "--candidates 40 --have plan.yaml --accuracy 'gripper 1.5 mm' -o more.yaml --force");
+  EXPECT_THAT(more.out, ContainsRegex("with your [0-9]+ poses: [0-2]\\.[0-9]+ mm"));
+  const test::Outcome never = call("plan", "--candidates 40 --accuracy 'gripper 0.001 mm'");
+  EXPECT_EQ(never.code, 2);
+  EXPECT_THAT(never.out, HasSubstr("0.001 mm cannot be reached with poses like these"));
+  const test::Outcome angle = call("plan", "--accuracy 'gripper 1 deg'");
+  EXPECT_EQ(angle.code, 1);
+  EXPECT_THAT(angle.err, HasSubstr("give a length"));
+}
+
+}  // namespace
+}  // namespace kinecal
