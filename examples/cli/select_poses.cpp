@@ -37,57 +37,69 @@ std::string millimetres(double metres) {
   return std::isfinite(metres) ? fmt::format("{:.3f} mm", 1e3 * metres) : "not determined";
 }
 
-}  // namespace
-
-int select_poses(const SelectPosesOptions& options) {
-  std::vector<std::string> inputs = {options.urdf, options.config, options.pose_file,
-                                     options.scene};
-  if (!options.output.empty()) check_output(options.output, inputs, options.force);
-  const std::unique_ptr<StudyInput> input = read_study(options, options.candidates);
-  const PoseChoice choice = pose_choice(*input);
+PoseSelection select(const SelectPosesOptions& options, const PoseChoice& choice) {
   const std::map<std::string, PoseCriterion> criteria = {{"gripper", PoseCriterion::gripper},
                                                          {"a", PoseCriterion::a},
                                                          {"d", PoseCriterion::d},
                                                          {"e", PoseCriterion::e}};
-  const int count = std::min(options.count, static_cast<int>(choice.candidates.information.size()));
-  const PoseSelection selection =
-      kinecal::select_poses(choice.candidates, {.count = count,
+  const auto candidates = static_cast<int>(choice.candidates.information.size());
+  PoseSelection selection =
+      kinecal::select_poses(choice.candidates, {.count = std::min(options.count, candidates),
                                                 .criterion = criteria.at(options.criterion),
                                                 .least_distance = options.least_distance,
                                                 .failures = options.failures});
-  const int found = static_cast<int>(selection.chosen.size());
-  if (found < options.count) {
+  const std::size_t found = selection.chosen.size();
+  if (static_cast<int>(found) < options.count) {
     fmt::print(stderr, "warning: only {} of {} are further than {} of a joint's range apart\n",
                found, counted(choice.candidates.information.size(), "pose"),
                options.least_distance);
   }
-  const RandomSets random =
-      random_sets(choice.candidates, found, options.random, PoseCriterion::gripper, 1);
-  const double selected = expected_position(choice, selection.chosen),
-               best = expected_position(choice, random.best);
+  return selection;
+}
+
+/// The selected poses beside random ones.
+std::string comparison_text(const SelectPosesOptions& options, const StudyInput& input,
+                            const PoseChoice& choice, const std::vector<int>& chosen) {
+  const RandomSets random = random_sets(choice.candidates, static_cast<int>(chosen.size()),
+                                        options.random, PoseCriterion::gripper, 1);
   std::vector<int> all(choice.candidates.information.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-  const std::vector<int> order = short_order(choice, selection.chosen);
+  const double selected = expected_position(choice, chosen);
   std::string text =
       fmt::format("{} of {} selected: '{}' in '{}' will be known to {} (one standard deviation)\n",
-                  found, counted(choice.candidates.information.size(), "pose"),
-                  input->setup.frame.name(), input->setup.in.name(), millimetres(selected));
+                  chosen.size(), counted(all.size(), "pose"), input.setup.frame.name(),
+                  input.setup.in.name(), millimetres(selected));
   text += fmt::format("  best of {} random sets: {}; all poses: {}\n", options.random,
-                      millimetres(best), millimetres(expected_position(choice, all)));
+                      millimetres(expected_position(choice, random.best)),
+                      millimetres(expected_position(choice, all)));
   const int equal = random_poses_for(choice, selected);
   text += equal > static_cast<int>(all.size())
               ? "  random sets are never as good\n"
               : fmt::format("  random sets need {} for as much (median)\n",
                             counted(static_cast<std::size_t>(equal), "pose"));
-  if (options.trials > 1) {
-    text += fmt::format(
-        "  simulated {} times: {}; best random set: {}\n", options.trials,
-        millimetres(simulated_position(*input, choice, selection.chosen, options.trials)),
-        millimetres(simulated_position(*input, choice, random.best, options.trials)));
+  if (options.trials < 2 || !choice.have.empty()) return text;  // of the new ones alone
+  const auto simulated = [&](const std::vector<int>& set) {
+    return millimetres(simulated_position(input, choice, set, options.trials));
+  };
+  return text + fmt::format("  simulated {} times: {}; best random set: {}\n", options.trials,
+                            simulated(chosen), simulated(random.best));
+}
+
+}  // namespace
+
+int select_poses(const SelectPosesOptions& options) {
+  if (!options.output.empty()) {
+    check_output(options.output,
+                 {options.urdf, options.config, options.pose_file, options.scene, options.have},
+                 options.force);
   }
-  text += fmt::format("  in this order: {} with the URDF's speeds and 3 s a stop\n",
-                      duration_text(session_seconds(choice, order)));
-  fmt::print("{}", printable(text));
+  const std::unique_ptr<StudyInput> input = read_study(options, options.candidates);
+  const PoseChoice choice = pose_choice(*input);
+  const PoseSelection selection = select(options, choice);
+  const std::vector<int> order = short_order(choice, selection.chosen);
+  fmt::print("{}  in this order: {} with the URDF's speeds and 3 s a stop\n",
+             printable(comparison_text(options, *input, choice, selection.chosen)),
+             duration_text(session_seconds(choice, order)));
   if (options.output.empty()) return kDone;
   write_pose_file(options.output, poses_of_choice(*input, order));
   fmt::print("{}\n", options.output);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -15,6 +16,7 @@
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/report/checksum.hpp"
+#include "process_group.hpp"
 #include "progress.hpp"
 #include "study_input.hpp"
 #include "study_journal.hpp"
@@ -66,23 +68,24 @@ std::vector<StudyJob> jobs_of(const StudyOptions& options, const std::vector<int
   return jobs;
 }
 
-/// Runs all jobs that are not done, on several threads.
+/// Runs the jobs of this process that are not done, on several threads.
 class StudyRun {
  public:
   StudyRun(const StudyOptions& options, const StudyInput& input, const std::vector<int>& poses,
-           StudyTrials done, StudyJournal* journal)
+           const ProcessGroup& group, StudyTrials done, StudyJournal* journal)
       : options_(options),
         input_(input),
         poses_(poses),
+        group_(group),
         trials_(std::move(done)),
-        journal_(journal),
-        robots_(static_cast<std::size_t>(options.robots)),
-        before_(robots_.size()) {}
+        journal_(journal) {}
 
   void run() {
-    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-    const int threads = options_.threads > 0 ? options_.threads : static_cast<int>(cores);
-    slices_ = options_.robots < threads ? threads : 1;
+    const int cores =
+        group_.size > 1 ? 1 : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int threads = options_.threads > 0 ? options_.threads : cores;
+    const int workers_in_all = threads * group_.size;
+    slices_ = options_.robots < workers_in_all ? workers_in_all : 1;
     meter_ = line_.meter();
     std::vector<std::thread> workers;
     for (int i = 1; i < threads; ++i) workers.emplace_back([this] { work(); });
@@ -92,15 +95,12 @@ class StudyRun {
   }
 
   [[nodiscard]] const StudyTrials& trials() const { return trials_; }
-  /// Robots, by number; those without jobs were not made.
-  [[nodiscard]] const std::vector<StudyRobot>& robots() const { return robots_; }
-  [[nodiscard]] const std::vector<double>& before() const { return before_; }
 
  private:
   void work() {
     while (!Interruption::is_asked() && !failed_) {
-      const int item = next_++;
-      if (item >= options_.robots * slices_) return;
+      const int item = group_.rank + group_.size * next_++;
+      if (item / slices_ >= options_.robots) return;
       try {
         study(item / slices_, item % slices_);
       } catch (...) {
@@ -113,25 +113,20 @@ class StudyRun {
 
   /// Every so many jobs of a robot.
   void study(int number, int slice) {
-    const StudyRobot robot = study_robot(input_.setup, number);
-    const double before = error_before(input_.setup, robot);
+    std::optional<StudyRobot> robot;
     const std::vector<StudyJob> jobs = jobs_of(options_, poses_, number);
     for (auto i = static_cast<std::size_t>(slice); i < jobs.size();
          i += static_cast<std::size_t>(slices_)) {
       const StudyJob& job = jobs[i];
-      if (Interruption::is_asked() || failed_) break;
+      if (Interruption::is_asked() || failed_) return;
       if (is_done(job)) continue;
-      const StudyTrial trial = run_study_job(input_.setup, robot, job);
+      if (!robot) robot = study_robot(input_.setup, number);
+      const StudyTrial trial = run_study_job(input_.setup, *robot, job);
       if (journal_ != nullptr) journal_->add(trial);
       const std::lock_guard lock(mutex_);
       trials_[job] = trial;
       show();
     }
-    const std::lock_guard lock(mutex_);
-    before_[static_cast<std::size_t>(number)] = before;
-    robots_[static_cast<std::size_t>(number)] = robot;
-    constexpr int kKept = 20;  // of more, only the truth is kept
-    if (number >= kKept) robots_[static_cast<std::size_t>(number)].samples.clear();
   }
 
   [[nodiscard]] bool is_done(const StudyJob& job) {
@@ -141,17 +136,18 @@ class StudyRun {
 
   void show() {
     const double all = static_cast<double>(options_.robots) * static_cast<double>(poses_.size()) *
-                       options_.repeats;
-    if (meter_) meter_(static_cast<double>(trials_.size()) / all, "calibrating");
+                       options_.repeats / group_.size;
+    if (meter_) {
+      meter_(std::min(1.0, static_cast<double>(trials_.size()) / all), "calibrating");
+    }
   }
 
   const StudyOptions& options_;
   const StudyInput& input_;
   const std::vector<int>& poses_;
+  ProcessGroup group_;
   StudyTrials trials_;
   StudyJournal* journal_;
-  std::vector<StudyRobot> robots_;
-  std::vector<double> before_;
   ProgressLine line_;
   ProgressMeter meter_;
   std::mutex mutex_;
@@ -161,46 +157,90 @@ class StudyRun {
   std::exception_ptr error_;
 };
 
+std::size_t number_of_jobs(const StudyOptions& options, const std::vector<int>& poses) {
+  return static_cast<std::size_t>(options.robots) * poses.size() *
+         static_cast<std::size_t>(options.repeats);
+}
+
+/// The trials of a group.
+std::vector<StudyTrial> trials_of(const std::vector<StudyTrial>& trials, const StudyGroup& group) {
+  std::vector<StudyTrial> of_group;
+  std::copy_if(trials.begin(), trials.end(), std::back_inserter(of_group),
+               [&](const StudyTrial& trial) {
+                 return trial.job.robot == group.robot && trial.job.poses == group.poses;
+               });
+  return of_group;
+}
+
 StudyResult result_of(const StudyOptions& options, const StudyInput& input,
-                      const std::vector<int>& poses, const StudyRun& run) {
+                      const std::vector<int>& poses, const StudyTrials& trials_by_job) {
   StudyResult result;
-  result.jobs = static_cast<std::size_t>(options.robots) * poses.size() *
-                static_cast<std::size_t>(options.repeats);
-  result.done = run.trials().size();
+  result.jobs = number_of_jobs(options, poses);
+  result.done = trials_by_job.size();
   result.limit = options.limit;
   std::vector<StudyTrial> trials;
   double seconds = 0.0, solves = 0.0;
-  for (const auto& [job, trial] : run.trials()) {
-    if (run.robots()[static_cast<std::size_t>(job.robot)].truth.empty()) continue;
+  for (const auto& [job, trial] : trials_by_job) {
     trials.push_back(trial);
     seconds += trial.seconds;
     solves += trial.solves;
   }
   result.solves_per_second = seconds > 0.0 ? solves / seconds : 0.0;
-  result.before = run.before();
-  result.groups = summarize(input.setup, run.robots(), trials, options.limit);
+  std::vector<StudyRobot> robots;
+  for (int number = 0; number < options.robots; ++number) {
+    robots.push_back({number, study_truth(input.setup, number), {}});
+    result.before.push_back(error_before(input.setup, robots.back().truth));
+  }
+  result.groups = summarize(input.setup, robots, trials, options.limit);
+  constexpr int kPredicted = 20;  // robots; nobody reads more
   for (StudyGroup& group : result.groups) {
-    const StudyRobot& robot = run.robots()[static_cast<std::size_t>(group.robot)];
-    if (robot.samples.empty()) continue;
-    std::vector<StudyTrial> of_group;
-    for (const StudyTrial& trial : trials) {
-      if (trial.job.robot == group.robot && trial.job.poses == group.poses) {
-        of_group.push_back(trial);
-      }
-    }
-    predict(input.setup, robot, of_group, group);
+    if (group.robot >= kPredicted) break;
+    StudyRobot& robot = robots[static_cast<std::size_t>(group.robot)];
+    if (robot.samples.empty()) robot = study_robot(input.setup, group.robot);
+    predict(input.setup, robot, trials_of(trials, group), group);
   }
   return result;
+}
+
+/// Prints what was found, and writes it if all is done.
+void report(const StudyOptions& options, const StudyInput& input, const std::vector<int>& poses,
+            const StudyTrials& trials, OutputFolder* output) {
+  const StudyResult result = result_of(options, input, poses, trials);
+  const std::string text = study_text(input, result);
+  fmt::print("{}", printable(text));
+  if (result.solves_per_second > 0.0) {
+    fmt::print("{:.0f} solves per second and core\n", result.solves_per_second);
+  }
+  if (output == nullptr) return;
+  if (result.done < result.jobs) {
+    fmt::print("{}: run the same command again to go on\n", options.output);
+    return;
+  }
+  std::string lines = trial_columns(free_names(input)) + "\n";
+  for (const auto& [job, trial] : trials) lines += trial_line(trial) + "\n";
+  output->write({{kTrials, lines}, {kTables, text}, {kJson, study_json(input, result)}});
+  StudyJournal::remove(options.output);
+}
+
+void check_options(const StudyOptions& options, const ProcessGroup& group) {
+  if (group.size > 1 && (options.output.empty() || options.force)) {
+    throw InputError(options.force
+                         ? "--force: several processes cannot replace a study; remove its "
+                           "folder before"
+                         : "--output is required for several processes: they meet there");
+  }
+  if (options.output.empty() || options.force) return;
+  if (std::filesystem::exists(std::filesystem::path(options.output) / kJson)) {
+    throw OutputError(options.output +
+                      ": has a study already; use --force to replace it, or choose another folder");
+  }
 }
 
 }  // namespace
 
 int study(const StudyOptions& options) {
-  const std::filesystem::path folder = options.output;
-  if (!options.output.empty() && !options.force && std::filesystem::exists(folder / kJson)) {
-    throw OutputError(folder.string() +
-                      ": has a study already; use --force to replace it, or choose another folder");
-  }
+  const ProcessGroup group = process_group();
+  check_options(options, group);
   const int most =
       options.poses.empty() ? 100 : *std::max_element(options.poses.begin(), options.poses.end());
   const std::unique_ptr<StudyInput> input = read_study(options, most);
@@ -211,28 +251,20 @@ int study(const StudyOptions& options) {
   std::optional<StudyJournal> journal;
   StudyTrials done;
   if (!options.output.empty()) {
-    output.emplace(folder);
-    if (options.force) StudyJournal::remove(folder);
-    journal.emplace(folder, identity(options, *input, poses), 0);
+    output.emplace(options.output);
+    if (options.force) StudyJournal::remove(options.output);
+    journal.emplace(options.output, identity(options, *input, poses), group.rank);
     done = journal->read();
     if (!done.empty()) fmt::print(stderr, "note: {} calibrations were done before\n", done.size());
   }
   const Interruption interruption;
-  StudyRun run(options, *input, poses, std::move(done), journal ? &*journal : nullptr);
+  StudyRun run(options, *input, poses, group, std::move(done), journal ? &*journal : nullptr);
   run.run();
-  const StudyResult result = result_of(options, *input, poses, run);
-  const std::string text = study_text(*input, result);
-  fmt::print("{}", printable(text));
-  if (result.solves_per_second > 0.0) {
-    fmt::print("{:.0f} solves per second and core\n", result.solves_per_second);
-  }
-  if (output && result.done == result.jobs) {
-    std::string lines = trial_columns(free_names(*input)) + "\n";
-    for (const auto& [job, trial] : run.trials()) lines += trial_line(trial) + "\n";
-    output->write({{kTrials, lines}, {kTables, text}, {kJson, study_json(*input, result)}});
-    StudyJournal::remove(folder);
-  } else if (output) {
-    fmt::print("{}: run the same command again to go on\n", folder.string());
+  const StudyTrials trials = journal ? journal->read() : run.trials();
+  const bool is_last = trials.size() == number_of_jobs(options, poses);
+  // Of several processes, the one that finds all trials done writes the tables.
+  if (group.size == 1 || is_last) {
+    report(options, *input, poses, trials, output ? &*output : nullptr);
   }
   return Interruption::is_asked() ? kInterrupted : kDone;
 }

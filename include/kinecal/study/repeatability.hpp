@@ -53,7 +53,10 @@ struct StudyRobot {
   std::vector<Sample> samples;  ///< as it would measure them without noise
 };
 
-/// Draws the errors of a robot.
+/// The true values of all parameters of a robot.
+[[nodiscard]] std::vector<double> study_truth(const StudySetup& setup, int number);
+
+/// A robot, with the samples that it would measure.
 /// @throws StudyError  if a sample cannot be measured by it
 [[nodiscard]] StudyRobot study_robot(const StudySetup& setup, int number);
 
@@ -95,8 +98,9 @@ struct StudyTrial {
 [[nodiscard]] StudyTrial run_study_job(const StudySetup& setup, const StudyRobot& robot,
                                        const StudyJob& job);
 
-/// Its error by the values with which the calibration starts, RMS, metres.
-[[nodiscard]] double error_before(const StudySetup& setup, const StudyRobot& robot);
+/// The error of a robot's pose without a calibration, over all poses, RMS, metres.
+/// @param truth  see study_truth()
+[[nodiscard]] double error_before(const StudySetup& setup, std::span<const double> truth);
 
 }  // namespace kinecal
 

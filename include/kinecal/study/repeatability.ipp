@@ -115,14 +115,19 @@ inline void ruin(const StudySetup& setup, const std::set<std::string>& joints, S
 
 }  // namespace detail
 
-KINECAL_INLINE StudyRobot study_robot(const StudySetup& setup, int number) {
+KINECAL_INLINE std::vector<double> study_truth(const StudySetup& setup, int number) {
   const std::unique_ptr<AnyProblem> problem = setup.make();
   SeededRandom random = detail::study_random(setup, detail::StudySeed::truth, {number, 0, 0});
-  StudyRobot robot{number, setup.drawn, {}};
+  std::vector<double> truth = setup.drawn;
   for (const int p : setup.free) {
     const double size = error_size(problem->robot(), problem->table()[p].name, setup.errors);
-    robot.truth[static_cast<std::size_t>(p)] += random.either_sign(0.5 * size, size);
+    truth[static_cast<std::size_t>(p)] += random.either_sign(0.5 * size, size);
   }
+  return truth;
+}
+
+KINECAL_INLINE StudyRobot study_robot(const StudySetup& setup, int number) {
+  StudyRobot robot{number, study_truth(setup, number), {}};
   robot.samples = exact_samples(setup.make, robot.truth, setup.samples);
   return robot;
 }
@@ -179,9 +184,9 @@ KINECAL_INLINE StudyTrial run_study_job(const StudySetup& setup, const StudyRobo
   return trial;
 }
 
-KINECAL_INLINE double error_before(const StudySetup& setup, const StudyRobot& robot) {
+KINECAL_INLINE double error_before(const StudySetup& setup, std::span<const double> truth) {
   const std::unique_ptr<AnyProblem> problem = setup.make();
-  return pose_change({*problem, robot.truth}, {*problem, setup.drawn}, robot.samples, setup.frame,
+  return pose_change({*problem, truth}, {*problem, setup.drawn}, setup.samples, setup.frame,
                      setup.in)
       .position;
 }
