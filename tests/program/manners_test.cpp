@@ -132,7 +132,8 @@ TEST_F(Manners, ManualAndCompletionHaveAllCommandsAndOptions) {
   const std::string man = kinecal("describe man").out, bash = kinecal("describe bash").out,
                     zsh = kinecal("describe zsh").out;
   for (const std::string& command : commands) {
-    EXPECT_THAT(man, HasSubstr("\n.SS " + command + "\n"));
+    const std::string title = std::regex_replace(command, std::regex("-"), "\\-");
+    EXPECT_THAT(man, HasSubstr("\n.SS " + title + "\n"));
     EXPECT_THAT(bash, HasSubstr("\n    " + command + ") words="));
     EXPECT_THAT(zsh, HasSubstr("\n    " + command + ")\n"));
     const auto options = words_of(kinecal("help " + command).out, "  (?:-h,)?(--[a-z-]+)");
@@ -147,7 +148,7 @@ TEST_F(Manners, ManualAndCompletionHaveAllCommandsAndOptions) {
                   testing::ContainsRegex(option + "[ \"]"));
       EXPECT_THAT(part(zsh, "\n    " + command + ")\n", ";;"), HasSubstr("'*" + option + "["));
       if (option == "--help") continue;
-      EXPECT_THAT(part(man, "\n.SS " + command + "\n", "\n.S"),
+      EXPECT_THAT(part(man, "\n.SS " + title + "\n", "\n.S"),
                   HasSubstr("\\fB" + std::regex_replace(option, std::regex("-"), "\\-") + "\\fR"));
     }
   }
