@@ -251,9 +251,9 @@ void add_study(CLI::App& command, StudyOptions& options) {
       ->type_name("SHARE");
   command
       .add_option("--limit", options.limit,
-                  "mean re-projection error beyond which a calibration failed, metres or pixels")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+                  "mean re-projection error beyond which a calibration failed, metres or pixels; "
+                  "default: 3 mm as in the paper, or 1 pixel")
+      ->check(CLI::PositiveNumber);
   command.add_option("--threads", options.threads, "number of threads, default: one per core")
       ->check(CLI::Range(1, 1024));
   command

@@ -177,7 +177,8 @@ StudyResult result_of(const StudyOptions& options, const StudyInput& input,
   StudyResult result;
   result.jobs = number_of_jobs(options, poses);
   result.done = trials_by_job.size();
-  result.limit = options.limit;
+  const double usual = unit_of_study(input) == "px" ? 1.0 : 3e-3;
+  result.limit = options.limit > 0.0 ? options.limit : usual;
   std::vector<StudyTrial> trials;
   double seconds = 0.0, solves = 0.0;
   for (const auto& [job, trial] : trials_by_job) {
@@ -191,7 +192,7 @@ StudyResult result_of(const StudyOptions& options, const StudyInput& input,
     robots.push_back({number, study_truth(input.setup, number), {}});
     result.before.push_back(error_before(input.setup, robots.back().truth));
   }
-  result.groups = summarize(input.setup, robots, trials, options.limit);
+  result.groups = summarize(input.setup, robots, trials, result.limit);
   constexpr int kPredicted = 20;  // robots; nobody reads more
   for (StudyGroup& group : result.groups) {
     if (group.robot >= kPredicted) break;

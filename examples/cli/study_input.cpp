@@ -156,6 +156,7 @@ void set_up(const StudyFiles& files, StudyInput& input) {
                          input.calibration.table, input.samples);
   };
   setup.free = step.free.parameters();
+  if (setup.free.empty()) throw InputError(files.config + ": no free parameter affects a residual");
   setup.samples = input.samples;
   const auto frames = compared_frames(*step.problem, input.samples);
   if (!frames) throw InputError(files.config + ": nothing is compared whose pose could be judged");

@@ -79,14 +79,6 @@ std::string variances(const StudyInput& input, const std::vector<const StudyGrou
   return table.str();
 }
 
-std::string unit_of_block(const StudyInput& input) {
-  const AnyProblem& problem = *input.calibration.steps.back().problem;
-  for (int t = 0; t < problem.num_terms(); ++t) {
-    if (problem.samples_of(t) > 0) return problem.term(t).options().unit;
-  }
-  return "m";
-}
-
 std::string table_one(const StudyInput& input, const StudyResult& result) {
   const auto groups = of_robot(result, 0);
   if (groups.empty() || groups.front()->trials < kForVariance) return "";
@@ -120,7 +112,7 @@ std::string table_two(const StudyInput& input, const StudyResult& result) {
 }
 
 std::string table_three(const StudyInput& input, const StudyResult& result) {
-  const std::string unit = unit_of_block(input), shown = reading_unit(unit);
+  const std::string unit = unit_of_study(input), shown = reading_unit(unit);
   TextTable table({"robot", "poses", "re-projection, " + shown, "without noise", "pose off, mm",
                    "varies", "predicted", "worst", "failed"},
                   0);
@@ -159,7 +151,7 @@ std::string sums(const StudyInput& input, const StudyResult& result) {
     most = std::max(most, group.worst_position);
   }
   for (const double of : result.before) before += of * of;
-  const std::string unit = unit_of_block(input);
+  const std::string unit = unit_of_study(input);
   text += fmt::format("\n{} of {} failed: mean re-projection error above {} {}, or not converged\n",
                       failed, counted(static_cast<std::size_t>(trials), "calibration"),
                       in_reading_unit(result.limit, unit), reading_unit(unit));
@@ -184,18 +176,26 @@ std::string linearity(const StudyResult& result) {
   if (worst->ruined > 0) return "";
   if (worst->nonlinearity < kLinear) {
     return fmt::format(
-        "Linear: results differ from those of the linearized problem by {:.1f} % of "
-        "their distance from the truth, at most\n",
+        "Linear: residuals differ from those of the linearized problem by {:.1f} % of what its "
+        "solution changes, at most\n",
         100.0 * worst->nonlinearity);
   }
   return fmt::format(
-      "Not linear: with {} poses, results of robot {} differ from those of the linearized problem "
-      "by "
-      "{:.0f} % of their distance from the truth; predicted variances do not hold there\n",
+      "Not linear: with {} poses, residuals of robot {} differ from those of the linearized "
+      "problem by "
+      "{:.0f} % of what its solution changes; predicted variances do not hold there\n",
       worst->poses, worst->robot + 1, 100.0 * worst->nonlinearity);
 }
 
 }  // namespace
+
+std::string unit_of_study(const StudyInput& input) {
+  const AnyProblem& problem = *input.calibration.steps.back().problem;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    if (problem.samples_of(t) > 0) return problem.term(t).options().unit;
+  }
+  return "m";
+}
 
 double variance_ratio(const StudyResult& result, int robot) {
   const auto groups = of_robot(result, robot);
@@ -262,7 +262,7 @@ std::string study_json(const StudyInput& input, const StudyResult& result) {
       "{{\n  \"robot\": {},\n  \"frame\": {},\n  \"in\": {},\n  \"unit\": {},\n  \"limit\": {},\n"
       "  \"jobs\": {},\n  \"done\": {},\n  \"groups\": [{}]\n}}\n",
       detail::json_string(input.robot.name()), detail::json_string(input.setup.frame.name()),
-      detail::json_string(input.setup.in.name()), detail::json_string(unit_of_block(input)),
+      detail::json_string(input.setup.in.name()), detail::json_string(unit_of_study(input)),
       detail::json_number(result.limit), result.jobs, result.done, groups);
 }
 

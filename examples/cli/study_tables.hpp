@@ -26,6 +26,9 @@ struct StudyResult {
 /// The same as JSON.
 [[nodiscard]] std::string study_json(const StudyInput& input, const StudyResult& result);
 
+/// Unit of the residual of the first error block that has samples: "m" or "px".
+[[nodiscard]] std::string unit_of_study(const StudyInput& input);
+
 /// Median of the ratio of variances with the fewest and with the most poses, over the determined
 /// parameters of a robot; zero without two numbers of poses.
 [[nodiscard]] double variance_ratio(const StudyResult& result, int robot);

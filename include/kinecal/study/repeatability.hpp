@@ -83,8 +83,8 @@ struct StudyTrial {
   double rotation = 0.0;      ///< the same, radians
   double reprojection = 0.0;  ///< mean distance of features of new samples, in the block's unit
   double systematic = 0.0;    ///< the same of samples without noise: what the calibration left
-  /// Distance of the result from that of the linearized problem, over that of the latter from the
-  /// truth, both in standard deviations: below 0.1, variances are those of the covariance.
+  /// Distance of the residuals from those of the linearized problem, over what its solution changes of
+  /// them: below 0.1, variances are those of the covariance.
   double nonlinearity = 0.0;
   double seconds = 0.0;             ///< of the calibration's solves
   int solves = 0;                   ///< how many they were

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
 
+#include "kinecal/study/linear_result.ipp"
 #include "kinecal/study/repeatability.hpp"
 #include "kinecal/trust/pose_change.hpp"
 
@@ -86,33 +86,6 @@ inline void ruin(const StudySetup& setup, const std::set<std::string>& joints, S
   return 0.0;
 }
 
-/// See StudyTrial::nonlinearity.
-[[nodiscard]] inline double nonlinearity(const StudySetup& setup, const StudyRobot& robot,
-                                         std::span<const Sample> measured,
-                                         const std::vector<double>& found) {
-  const std::unique_ptr<AnyProblem> problem = setup.make();
-  for (const Sample& sample : measured) problem->add_sample(sample);
-  const FreeSet free(setup.free, problem->table().size());
-  const NormalEquations at_truth = problem->evaluator(free)->normal_equations(robot.truth);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(at_truth.hessian);
-  constexpr double kNothing = 1e-13;  // of the largest eigenvalue
-  double far = 0.0, off = 0.0;
-  for (Eigen::Index i = 0; i < free.size(); ++i) {
-    const double eigen = solver.eigenvalues()(i);
-    if (eigen <= kNothing * solver.eigenvalues()(free.size() - 1)) continue;
-    const Eigen::VectorXd way = solver.eigenvectors().col(i);
-    const double linear = -way.dot(at_truth.gradient) / eigen;
-    double exact = 0.0;
-    for (Eigen::Index c = 0; c < free.size(); ++c) {
-      const auto p = static_cast<std::size_t>(setup.free[static_cast<std::size_t>(c)]);
-      exact += way(c) * (found[p] - robot.truth[p]);
-    }
-    far += eigen * linear * linear;
-    off += eigen * (exact - linear) * (exact - linear);
-  }
-  return far > 0.0 ? std::sqrt(off / far) : 0.0;
-}
-
 }  // namespace detail
 
 KINECAL_INLINE std::vector<double> study_truth(const StudySetup& setup, int number) {
@@ -161,7 +134,8 @@ KINECAL_INLINE StudyTrial run_study_job(const StudySetup& setup, const StudyRobo
     detail::ruin(setup, joints, measured.back(), random);
     ++trial.ruined;
   }
-  const StudyFit fit = setup.fit(measured);
+  StudyFit fit = setup.fit(measured);
+  detail::turn_nearest(*problem, robot.truth, fit.values);
   trial.converged = fit.converged;
   trial.left_out = fit.left_out;
   trial.seconds = fit.seconds;

@@ -66,14 +66,17 @@ struct TailSums {
 
 /// The share by which the sum of squares falls with parameters that change, times that sum.  Changes
 /// that other parameters could as well explain are left out: where the samples before and after have
-/// nothing in common, there are many.
-/// @param by  (coordinates x parameters) of the owner
+/// nothing in common, there are many.  So are parameters without an effect on the samples after it.
+/// @param by     (coordinates x parameters) of the owner
+/// @param whole  (parameters) diagonal of their information in all samples
 [[nodiscard]] inline double fall_of(const TailSums& tail, const Eigen::MatrixXd& inverse,
-                                    const Eigen::MatrixXd& by) {
-  constexpr double kOwn = 1e-3;  // of what a change does, so much is not what others do
+                                    const Eigen::MatrixXd& by, const Eigen::VectorXd& whole) {
+  constexpr double kOwn = 1e-3;   // of what a change does, so much is not what others do
+  constexpr double kNone = 1e-9;  // of the information in all samples: less is rounding
   const Eigen::MatrixXd cross = by.transpose() * tail.information;
   const Eigen::MatrixXd all = cross * by;
-  const Eigen::VectorXd scale = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd scale = all.diagonal().binaryExpr(
+      whole, [](double a, double w) { return a > kNone * w ? 1.0 / std::sqrt(a) : 0.0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(
       scale.asDiagonal() * (all - cross * inverse * cross.transpose()) * scale.asDiagonal());
   const Eigen::VectorXd gradient =
@@ -110,7 +113,8 @@ KINECAL_INLINE std::optional<RecordingChange> recording_change(const AnyProblem&
     const int p = free.parameters()[static_cast<std::size_t>(c)];
     columns[problem.owners()[static_cast<std::size_t>(p)]].push_back(c);
   }
-  const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  const Eigen::MatrixXd all = information(fit, fit.loss);
+  const Eigen::MatrixXd inverse = detail::Spectrum(all).pseudo_inverse();
   const Eigen::MatrixXd to_coordinates =
       fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
   const std::vector<detail::TailSums> tails = detail::tail_sums(fit, problem.num_samples());
@@ -120,8 +124,9 @@ KINECAL_INLINE std::optional<RecordingChange> recording_change(const AnyProblem&
     const int q = static_cast<int>(of_owner.size());
     if (freedom - q < 2.0 * q) continue;
     const Eigen::MatrixXd by = to_coordinates(Eigen::all, of_owner);
+    const Eigen::VectorXd whole = (by.transpose() * all * by).diagonal();
     for (const detail::TailSums& tail : tails) {
-      const double x = std::clamp(detail::fall_of(tail, inverse, by) / squares, 0.0, 1.0);
+      const double x = std::clamp(detail::fall_of(tail, inverse, by, whole) / squares, 0.0, 1.0);
       const double left = std::sqrt((1.0 - x) * freedom / (freedom - q));
       if (left > kLeft || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
       if (!best || left < best->noise_left) best = RecordingChange{owner, tail.sample, left};
