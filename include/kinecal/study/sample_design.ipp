@@ -53,7 +53,7 @@ KINECAL_INLINE ExpectedUncertainty expected_uncertainty(const StudyDesign& desig
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(units.asDiagonal() * information *
                                                               units.asDiagonal());
   constexpr double kNothing = 1e-11;  // of the largest eigenvalue: below it is rounding
-  const Eigen::VectorXd eigen = solver.eigenvalues();
+  const auto& eigen = solver.eigenvalues();
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(n), lost = Eigen::VectorXd::Zero(n);
   ExpectedUncertainty expected;
   for (Eigen::Index i = 0; i < n; ++i) {
