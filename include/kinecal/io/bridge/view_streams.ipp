@@ -59,8 +59,7 @@ class ViewStreams {
     std::string topic;
     std::deque<Stamped> newest;
   };
-  /// One message of each stream.
-  using Match = std::vector<const Stamped*>;
+  using Match = std::vector<const Stamped*>;  ///< one message of each stream
 
   static constexpr std::size_t kKept = 4;
   static constexpr std::chrono::milliseconds kTogether{40};  ///< stamps of one exposure
@@ -88,16 +87,22 @@ class ViewStreams {
     for (auto one = first.rbegin(); one != first.rend(); ++one) {
       Match match;
       for (const Stream& stream : streams_) {
-        for (const Stamped& other : stream.newest) {
-          const auto apart = std::chrono::abs(other.stamp - one->stamp);
-          if (other.stamp <= after || apart > kTogether) continue;
-          match.push_back(&other);
-          break;
-        }
+        if (const Stamped* other = nearest(stream, one->stamp, after)) match.push_back(other);
       }
       if (match.size() == streams_.size()) return match;
     }
     return std::nullopt;
+  }
+
+  /// The message after a time that is nearest to a moment; null if none is of that moment.
+  [[nodiscard]] static const Stamped* nearest(const Stream& stream, Stamp moment, Stamp after) {
+    const Stamped* best = nullptr;
+    Stamp least = kTogether;
+    for (const Stamped& one : stream.newest) {
+      const Stamp apart = std::chrono::abs(one.stamp - moment);
+      if (one.stamp > after && apart <= least) best = &one, least = apart;
+    }
+    return best;
   }
 
   /// The stream that is to be waited for: the one that is furthest behind.
@@ -105,9 +110,7 @@ class ViewStreams {
     const auto newest = [&](const Stream& stream) {
       return stream.newest.empty() ? Stamp::min() : std::max(stream.newest.back().stamp, after);
     };
-    return *std::min_element(
-        streams_.begin(), streams_.end(),
-        [&](const Stream& a, const Stream& b) { return newest(a) < newest(b); });
+    return *std::ranges::min_element(streams_, {}, newest);
   }
 
   [[nodiscard]] View view_of(const Match& match, Deadline deadline) {
@@ -157,8 +160,7 @@ class ViewStreams {
   }
 
   [[nodiscard]] bool is_ahead(const Stamped& message) const {
-    const auto ahead = lead(message);
-    return ahead && *ahead > kSameClock;
+    return lead(message).value_or(ClockOffset{}) > kSameClock;
   }
 
   [[nodiscard]] std::string why_ahead(const Stamped& message) const {
