@@ -11,6 +11,7 @@
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/solve/rotation_grid.hpp"
 #include "kinecal/solve/settle.hpp"
+#include "kinecal/solve/shards.hpp"
 #include "kinecal/solve/solve.hpp"
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/solve/stack.hpp"

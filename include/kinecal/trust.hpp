@@ -21,6 +21,7 @@
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/reluctance.hpp"
 #include "kinecal/trust/ruined.hpp"
+#include "kinecal/trust/shard_uncertainty.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 #include "kinecal/trust/workspace_map.hpp"

@@ -9,11 +9,16 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <span>
 
 #include "kinecal/evaluation/evaluate.hpp"
 #include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal::detail {
+
+[[nodiscard]] inline std::span<const double> numbers(const Eigen::VectorXd& values) {
+  return {values.data(), static_cast<std::size_t>(values.size())};
+}
 
 /// What of an information matrix is left to other directions than some that are open: the least
 /// information, whatever the open ones do.

@@ -118,10 +118,6 @@ KINECAL_INLINE Eigen::VectorXd stepped(const LinearFit& fit, const FreeSet& free
 
 namespace detail {
 
-[[nodiscard]] inline std::span<const double> numbers(const Eigen::VectorXd& values) {
-  return {values.data(), static_cast<std::size_t>(values.size())};
-}
-
 /// Half the step until the weighted cost falls.
 /// @returns  false if it does not fall
 inline bool descend(AnyEvaluator& evaluator, const LinearFit& fit, const Eigen::VectorXd& weights,

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -88,10 +90,14 @@ inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const So
   return inside;
 }
 
+/// Makes evaluators of the same samples by other free parameters.
+using EvaluatorOf = std::function<std::unique_ptr<AnyEvaluator>(const FreeSet&)>;
+
 /// Minimizes over the evaluator's free parameters, within their bounds.
 /// @param values  in: where to start; out: where it ended, if that is usable
-[[nodiscard]] inline Minimum minimize(AnyEvaluator& evaluator, Eigen::VectorXd& values,
-                                      const SolveOptions& options, Losses losses) {
+[[nodiscard]] inline Minimum minimize(AnyEvaluator& evaluator, const EvaluatorOf& evaluator_of,
+                                      Eigen::VectorXd& values, const SolveOptions& options,
+                                      Losses losses) {
   const AnyProblem& problem = evaluator.problem();
   const FreeSet& free = evaluator.free();
   Minimum minimum;
@@ -106,8 +112,7 @@ inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const So
     inside = std::move(next);
     // From the start again: crawling along a bound also drifts along what cannot be observed.
     for (const int p : inside) values(p) = start(p);
-    const auto of_inside =
-        problem.evaluator(FreeSet(inside, problem.table().size()), options.threads);
+    const auto of_inside = evaluator_of(FreeSet(inside, problem.table().size()));
     run_ceres(*of_inside, values, options, losses, minimum);
   }
   return minimum;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/solve/determined_spectrum.ipp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/solve/settle.hpp"
 

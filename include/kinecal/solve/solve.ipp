@@ -2,132 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <sstream>
+#include <utility>
 
-#include "kinecal/evaluation/evaluate.hpp"
-#include "kinecal/solve/minimize.ipp"
 #include "kinecal/solve/solve.hpp"
-#include "kinecal/solve/statistics.hpp"
+#include "kinecal/solve/solve_with.ipp"
 
 namespace kinecal {
-
-namespace detail {
-
-[[nodiscard]] inline bool all_losses_convex(const AnyProblem& problem) {
-  bool convex = true;
-  for (int t = 0; t < problem.num_terms(); ++t) {
-    convex = convex && problem.term(t).options().loss.is_convex();
-  }
-  for (const PriorTerm& prior : problem.priors()) {
-    convex = convex && prior.options.loss.is_convex();
-  }
-  return convex;
-}
-
-/// The name of a term whose loss leaves out half of its features or more; empty if there is none.
-/// Such a "minimum" is a plateau.
-[[nodiscard]] inline std::string mostly_left_out(const AnyProblem& problem,
-                                                 std::span<const double> values) {
-  if (all_losses_convex(problem)) return {};
-  struct Features {
-    int all = 0, left_out = 0;
-  };
-  std::vector<Features> of_terms(static_cast<std::size_t>(problem.num_terms()));
-  (void)evaluate(problem, values, nullptr, [&](int t, int, const TermResiduals& rows) {
-    const AnyTerm& term = problem.term(t);
-    const TermOptions& options = term.options();
-    Features& features = of_terms[static_cast<std::size_t>(t)];
-    for (Eigen::Index row = 0; row < rows.residual.size(); row += term.feature_size()) {
-      const double weight = options.weight * rows.factor(row);
-      const double squared = rows.residual.segment(row, term.feature_size()).squaredNorm();
-      ++features.all;
-      if (options.loss(weight * weight * squared).derivative == 0.0) ++features.left_out;
-    }
-  });
-  for (int t = 0; t < problem.num_terms(); ++t) {
-    const auto [all, left_out] = of_terms[static_cast<std::size_t>(t)];
-    if (left_out > 0 && 2 * left_out >= all) return problem.term(t).name();
-  }
-  return {};
-}
-
-/// A value from an earlier step may lie outside of this step's bounds: takes the nearest one inside.
-inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
-                            Eigen::VectorXd& values) {
-  for (const int p : free.parameters()) {
-    values(p) = std::clamp(values(p), table[p].lower, table[p].upper);
-  }
-}
-
-/// By how much chi-square could still fall, to second order: g^T H^-1 g, over the variance of the
-/// residuals.  With it, 2 cost / (residuals - parameters) is one, whether a sigma was given or not.
-/// Parameters that are held at a bound do not move.
-[[nodiscard]] inline double possible_decrease(AnyEvaluator& evaluator,
-                                              const Eigen::VectorXd& values,
-                                              const StepResult& result) {
-  const AnyProblem& problem = evaluator.problem();
-  const FreeSet inside(within_bounds(evaluator, values, Losses::as_given), problem.table().size());
-  if (inside.size() == 0) return 0.0;
-  const NormalEquations normal = problem.evaluator(inside)->normal_equations(
-      {values.data(), static_cast<std::size_t>(values.size())});
-  // The first rows of the equivalent residual are A^-T g, with H = A^T A.
-  const Eigen::VectorXd projected = EquivalentResidual(normal).residual.head(inside.size());
-  const int spare = std::max(1, result.num_residuals - result.num_parameters);
-  const double variance = 2.0 * normal.cost / spare;
-  return variance > 0.0 ? projected.squaredNorm() / variance : 0.0;
-}
-
-/// How a solve that did not fail ended.  One that ran out of iterations has converged if what is left
-/// is nothing beside the noise.
-inline void judge_convergence(AnyEvaluator& evaluator, const Eigen::VectorXd& values,
-                              const Minimum& last, StepResult& result) {
-  constexpr double kNegligible =
-      1e-3;  // of chi-square, whose noise is sqrt(2 (residuals - parameters))
-  result.converged = last.converged;
-  result.termination = (last.converged ? "converged: " : "did not converge: ") + last.message;
-  if (last.converged) return;
-  std::ostringstream what;
-  what.precision(2);
-  const double decrease = possible_decrease(evaluator, values, result);
-  result.converged = decrease < kNegligible;
-  what << (result.converged ? "converged: " : "did not converge: ") << result.iterations
-       << " iterations are used up, ";
-  if (result.converged) {
-    what << "but what is left is noise: chi-square could fall by " << decrease;
-  } else {
-    what << "and chi-square could still fall by about " << decrease;
-  }
-  result.termination = what.str();
-}
-
-/// Costs and counts at the start; false, with the reason, if there is nothing to solve.
-inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepResult& result) {
-  result.initial_cost = evaluator.normal_equations(values, false).cost;
-  result.final_cost = result.initial_cost;
-  std::optional<UndefinedResidual> undefined;
-  if (!std::isfinite(result.initial_cost)) {
-    undefined = undefined_residual(evaluator.problem(), values);
-  }
-  if (undefined) {
-    result.termination = "failed: the residual of '" + undefined->term +
-                         "' is not defined at the start for the sample at " + undefined->source +
-                         " (a point behind a camera, or points that span no plane)";
-    return false;
-  }
-  if (!std::isfinite(result.initial_cost)) {
-    result.termination = "failed: the cost at the start is not finite";
-  } else if (result.num_residuals < result.num_parameters) {
-    result.termination = "failed: " + std::to_string(result.num_residuals) +
-                         (result.num_residuals == 1 ? " residual" : " residuals") +
-                         " cannot determine " + std::to_string(result.num_parameters) +
-                         (result.num_parameters == 1 ? " parameter" : " parameters");
-  }
-  return result.termination.empty();
-}
-
-}  // namespace detail
 
 KINECAL_INLINE StepResult solve(const AnyProblem& problem, const FreeSet& free,
                                 Eigen::VectorXd& values, const SolveOptions& options) {
@@ -138,37 +18,10 @@ KINECAL_INLINE StepResult solve(const AnyProblem& problem, const FreeSet& free,
                                                        Prior::kRows * (problem.num_samples() - 1);
   result.form = options.form;
   result.samples = problem.num_samples();
-  Eigen::VectorXd x = values;
-  detail::clamp_to_bounds(problem.table(), free, x);
-  const std::span<const double> all(x.data(), static_cast<std::size_t>(x.size()));
-  const auto evaluator = problem.evaluator(free, options.threads);
-  if (!detail::start(*evaluator, all, result)) return result;
-  detail::Minimum first;
-  if (!detail::all_losses_convex(problem)) {
-    first = detail::minimize(*evaluator, x, options, Losses::convex);
-  }
-  const detail::Minimum last = detail::minimize(*evaluator, x, options, Losses::as_given);
-  result.iterations = first.iterations + last.iterations;
-  result.costs = first.costs;
-  result.costs.insert(result.costs.end(), last.costs.begin(), last.costs.end());
-  result.seconds = first.seconds + last.seconds;
-  result.evaluations = first.evaluations + last.evaluations;
-  constexpr double kRounding = 1e-9;  // a start at the minimum may end slightly above it
-  if (!last.usable) {
-    result.termination = "failed: " + last.message;
-  } else if (!std::isfinite(last.cost)) {
-    result.termination = "failed: the cost is not finite";
-  } else if (last.cost > result.initial_cost * (1.0 + kRounding)) {
-    result.termination = "failed: the cost did not decrease";
-  } else if (const std::string term = detail::mostly_left_out(problem, all); !term.empty()) {
-    result.termination = "failed: the loss of '" + term +
-                         "' leaves out half of its features or more; is its scale too small?";
-  } else {
-    detail::judge_convergence(*evaluator, x, last, result);
-    result.final_cost = last.cost;
-    values = x;
-  }
-  return result;
+  const auto evaluator_of = [&](const FreeSet& columns) {
+    return problem.evaluator(columns, options.threads);
+  };
+  return detail::solve_with(evaluator_of, free, values, options, std::move(result));
 }
 
 }  // namespace kinecal

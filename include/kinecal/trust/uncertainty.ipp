@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "kinecal/trust/design_effect.hpp"
+#include "kinecal/trust/loss_curvature.ipp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 
@@ -18,13 +19,6 @@ namespace detail {
 struct RobustSums {
   Eigen::MatrixXd hessian, gradients;
 };
-
-/// rho'' of a loss by central differences of rho'.
-[[nodiscard]] inline double curvature_of(const Loss& loss, double squared) {
-  const double h = 1e-4 * (squared + 1e-3 * loss.scale * loss.scale);
-  const double low = std::max(0.0, squared - h);
-  return (loss(squared + h).derivative - loss(low).derivative) / (squared + h - low);
-}
 
 [[nodiscard]] inline RobustSums robust_sums(const AnyProblem& problem, const LinearFit& fit) {
   const Eigen::Index n = fit.size();
