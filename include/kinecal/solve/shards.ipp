@@ -89,11 +89,11 @@ class ShardEvaluator final : public AnyEvaluator {
 /// @returns  the cost there
 inline double hold_shards(const Shards& shards, const FreeSet& free,
                           const Eigen::VectorXd& reference, int threads, Eigen::VectorXd& values) {
-  constexpr int kRounds = 6;
-  constexpr double kStill = 1e-12;  // in units of effect
+  constexpr int kMostRounds = 6;
+  constexpr double kNear = 1e-12;  // in units of effect
   const Eigen::VectorXd before = values;
   double first_cost = 0.0;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
     const ShardInformation sums = shard_information(shards, free, numbers(values), threads);
     if (!std::isfinite(sums.measured.cost)) break;
     if (round == 0) first_cost = sums.measured.cost;
@@ -110,7 +110,7 @@ inline double hold_shards(const Shards& shards, const FreeSet& free,
         basis.transpose() * (sums.measured.gradient + sums.measured.hessian * (units * back));
     const Eigen::VectorXd down = -Spectrum(reduced).pseudo_inverse() * gradient;
     values(free.parameters()) += units * back + basis * down;
-    if (std::max(back.norm(), down.norm()) < kStill * (1.0 + away.norm())) break;
+    if (std::max(back.norm(), down.norm()) < kNear * (1.0 + away.norm())) break;
   }
   const double after = shard_evaluator(shards, free, threads)
                            ->normal_equations(numbers(values), true, Losses::as_given)
