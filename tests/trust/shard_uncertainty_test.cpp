@@ -28,6 +28,8 @@ TEST(ShardUncertainty, IsThatOfAllSamplesAtOnce) {
         shards.deviation[static_cast<std::size_t>(i)] / all.uncertainty.deviation(i, 0);
     EXPECT_NEAR(ratio, 1.0, 0.1) << scene.names[static_cast<std::size_t>(i)];
   }
+  ASSERT_EQ(shards.misfits.size(), 8U);
+  for (const double misfit : shards.misfits) EXPECT_NEAR(misfit, 1.0, 0.1);
   ASSERT_EQ(shards.blocks.size(), 1U);
   EXPECT_EQ(shards.blocks[0].name, "points");
   EXPECT_EQ(shards.blocks[0].features, 4000.0);

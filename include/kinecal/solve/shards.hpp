@@ -35,8 +35,8 @@ struct Shards {
   int count = 0;                        ///< number of shards
   int samples = 0;                      ///< of all shards
   int num_residuals = 0;                ///< of all features; a prior counts once per sample
-  /// The problem with the samples of a shard.
-  std::function<std::unique_ptr<AnyProblem>(int shard)> read = {};
+  /// The problem with the samples of a shard; whether it is kept or read again is the reader's choice.
+  std::function<std::shared_ptr<const AnyProblem>(int shard)> read = {};
   ShardExchange exchange = {};  ///< empty: all are computed here, one after another
 };
 

@@ -47,7 +47,7 @@ class ShardEvaluator final : public AnyEvaluator {
     std::optional<UndefinedResidual> undefined;
     int before = 0;  // samples
     for (int shard = 0; shard < shards_.count; ++shard) {
-      const std::unique_ptr<AnyProblem> problem = shards_.read(shard);
+      const std::shared_ptr<const AnyProblem> problem = shards_.read(shard);
       const auto visit_shifted = [&](int term, int sample, const TermResiduals& rows) {
         visit(term, before + sample, rows);
       };
@@ -67,7 +67,7 @@ class ShardEvaluator final : public AnyEvaluator {
         name_at(losses == Losses::convex ? "convex" : "as given", free_, values);
     if (last_ && last_->first == what) return last_->second;
     const auto numbers_of = [&](int shard) {
-      const std::unique_ptr<AnyProblem> problem = shards_.read(shard);
+      const std::shared_ptr<const AnyProblem> problem = shards_.read(shard);
       return packed(problem->evaluator(free_, threads_)->normal_equations(values, true, losses));
     };
     NormalEquations sum(free_.size());
@@ -140,7 +140,7 @@ KINECAL_INLINE ShardInformation shard_information(const Shards& shards, const Fr
                                                   std::span<const double> values, int threads) {
   const int n = free.size();
   const auto numbers_of = [&](int shard) {
-    const std::unique_ptr<AnyProblem> problem = shards.read(shard);
+    const std::shared_ptr<const AnyProblem> problem = shards.read(shard);
     const Eigen::MatrixXd error_free = error_free_information(*problem, free, values) +
                                        prior_equations(*problem, free, values).hessian;
     std::vector<double> all = packed(problem->evaluator(free, threads)->normal_equations(values));

@@ -34,6 +34,7 @@ struct ShardUncertainty {
   PlainMatrix covariance;          ///< (free x free); zero along what nothing determines
   std::vector<double> deviation;   ///< of each free parameter; infinite if it is not determined
   std::vector<ShardBlock> blocks;  ///< of each error block
+  std::vector<double> misfits;  ///< of each shard: RMS of its weighted residuals, losses included
 };
 
 /// @param before  values of all parameters of the table at the start

@@ -22,6 +22,7 @@ struct ShardSums {
   Eigen::MatrixXd scores;   ///< (free x free) of g_s g_s^T
   Eigen::MatrixXd priors;   ///< (free x free)
   Eigen::ArrayXXd blocks;   ///< (terms x 4) features, components, squares before and after
+  double cost = 0.0;        ///< of the features, without priors
 
   ShardSums(int parameters, int terms)
       : hessian(Eigen::MatrixXd::Zero(parameters, parameters)),
@@ -36,6 +37,7 @@ struct ShardSums {
       all.insert(all.end(), matrix->reshaped().begin(), matrix->reshaped().end());
     }
     all.insert(all.end(), blocks.reshaped().begin(), blocks.reshaped().end());
+    all.push_back(cost);
     return all;
   }
   /// Adds what packed() gave.
@@ -46,6 +48,7 @@ struct ShardSums {
       next += matrix->size();
     }
     blocks += Eigen::Map<const Eigen::ArrayXXd>(next, blocks.rows(), blocks.cols());
+    cost += all.back();
   }
 };
 
@@ -59,10 +62,11 @@ inline void add_features(const AnyTerm& term, const TermResiduals& rows, ShardSu
     const Eigen::VectorXd r = weight * rows.residual.segment(row, size);
     const Eigen::MatrixXd j = weight * rows.jacobian.middleRows(row, size);
     const Eigen::VectorXd g = j.transpose() * r;
-    const double slope = options.loss(r.squaredNorm()).derivative;
+    const auto [rho, slope] = options.loss(r.squaredNorm());
     const double curvature = curvature_of(options.loss, r.squaredNorm());
     sums.hessian += slope * j.transpose() * j + 2.0 * curvature * g * g.transpose();
     score += slope * g;
+    sums.cost += 0.5 * rho;
   }
 }
 
@@ -110,7 +114,13 @@ KINECAL_INLINE ShardUncertainty shard_uncertainty(const Shards& shards, const Fr
   };
   detail::ShardSums sums(free.size(), shards.problem->num_terms());
   const std::string what = detail::name_at(detail::name_at("sums", free, before), free, after);
-  for (const auto& one : numbers_of_shards(shards, what, numbers_of)) sums.add(one);
+  std::vector<double> misfits;
+  for (const auto& one : numbers_of_shards(shards, what, numbers_of)) {
+    const double rows = sums.blocks.col(1).sum(), cost = sums.cost;
+    sums.add(one);
+    misfits.push_back(
+        std::sqrt(2.0 * (sums.cost - cost) / std::max(1.0, sums.blocks.col(1).sum() - rows)));
+  }
   const detail::ShardInformation information =
       detail::shard_information(shards, free, after, threads);
   detail::Spectrum spectrum(information.error_free);
@@ -125,7 +135,7 @@ KINECAL_INLINE ShardUncertainty shard_uncertainty(const Shards& shards, const Fr
   const Eigen::MatrixXd middle = basis.transpose() * (freedom * sums.scores + sums.priors) * basis;
   const Eigen::MatrixXd covariance = basis * inverse * middle * inverse * basis.transpose();
   ShardUncertainty known{
-      static_cast<int>(rank), covariance, {}, detail::blocks_of(*shards.problem, sums)};
+      static_cast<int>(rank), covariance, {}, detail::blocks_of(*shards.problem, sums), misfits};
   constexpr double kLost = 0.03;  // more than this of a parameter is not determined
   for (int i = 0; i < free.size(); ++i) {
     const bool lost = spectrum.vectors.row(i).head(spectrum.null).norm() > kLost;
