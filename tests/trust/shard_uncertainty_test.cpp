@@ -66,7 +66,8 @@ TEST(ShardUncertainty, OfWhatNothingDeterminesIsInfinite) {
   const ShardUncertainty of = known(scene, 25, values);
   const FreeSet free = scene.free();
   for (int i = 0; i < free.size(); ++i) {
-    const std::string& name = test::scene_table()[free[static_cast<std::size_t>(i)]].name;
+    const std::string& name =
+        test::scene_table()[free.parameters()[static_cast<std::size_t>(i)]].name;
     const bool lost = name == "shoulder_pan" || name == "head_pan_c";
     EXPECT_EQ(std::isinf(of.deviation[static_cast<std::size_t>(i)]), lost) << name;
   }
