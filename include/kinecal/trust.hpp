@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/trust/assess.hpp"
+#include "kinecal/trust/assess_shards.hpp"
 #include "kinecal/trust/capture_causes.hpp"
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/compared_frames.hpp"
@@ -21,7 +22,6 @@
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/reluctance.hpp"
 #include "kinecal/trust/ruined.hpp"
-#include "kinecal/trust/shard_uncertainty.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 #include "kinecal/trust/workspace_map.hpp"

@@ -17,6 +17,7 @@
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/solve/solve.hpp"
+#include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal {
 
@@ -56,7 +57,8 @@ struct Shards {
 ///                   Unchanged if the result is not usable
 /// @param reference  values to which a direction returns that nothing determines
 [[nodiscard]] StepResult solve_shards(const Shards& shards, const FreeSet& free,
-                                      Eigen::VectorXd& values, const Eigen::VectorXd& reference,
+                                      std::vector<double>& values,
+                                      std::span<const double> reference,
                                       const SolveOptions& options = {});
 
 namespace detail {
@@ -65,13 +67,17 @@ namespace detail {
 [[nodiscard]] std::string name_at(const std::string& what, const FreeSet& free,
                                   std::span<const double> values);
 
-/// J^T J of the error-free problem of all shards, weighted, without priors, and the normal equations.
+/// What all shards determine.
 struct ShardInformation {
-  Eigen::MatrixXd error_free;
-  NormalEquations measured;
+  NormalEquations measured;    ///< priors included
+  Eigen::MatrixXd error_free;  ///< J^T J of the error-free problem, weighted, without priors
+  Eigen::MatrixXd priors;      ///< Hessian of the priors
+
+  /// The spectrum of what samples determine, as determined_spectrum().
+  [[nodiscard]] Spectrum spectrum(bool with_priors) const;
 };
 [[nodiscard]] ShardInformation shard_information(const Shards& shards, const FreeSet& free,
-                                                 std::span<const double> values, int threads);
+                                                 std::span<const double> values);
 
 }  // namespace detail
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "kinecal/solve/determined_spectrum.ipp"
@@ -26,6 +27,7 @@ namespace detail {
 }
 [[nodiscard]] inline NormalEquations unpacked(const std::vector<double>& all, int parameters) {
   NormalEquations normal(parameters);
+  if (all.size() < packed(normal).size()) throw std::invalid_argument("sums of another problem");
   normal.cost = all[0];
   normal.gradient = Eigen::Map<const Eigen::VectorXd>(all.data() + 1, parameters);
   normal.hessian =
@@ -94,11 +96,10 @@ inline double hold_shards(const Shards& shards, const FreeSet& free,
   const Eigen::VectorXd before = values;
   double first_cost = 0.0;
   for (int round = 0; round < kMostRounds; ++round) {
-    const ShardInformation sums = shard_information(shards, free, numbers(values), threads);
+    const ShardInformation sums = shard_information(shards, free, numbers(values));
     if (!std::isfinite(sums.measured.cost)) break;
     if (round == 0) first_cost = sums.measured.cost;
-    Spectrum spectrum(sums.error_free);
-    take_away_null_of(sums.error_free, sums.measured.hessian, spectrum);
+    const Spectrum spectrum = sums.spectrum(true);
     if (spectrum.null == 0 && round == 0) return first_cost;
     const auto units = spectrum.scale.cwiseInverse().asDiagonal();
     const Eigen::MatrixXd null = spectrum.vectors.leftCols(spectrum.null);
@@ -136,22 +137,36 @@ KINECAL_INLINE std::string name_at(const std::string& what, const FreeSet& free,
   return name;
 }
 
+KINECAL_INLINE Spectrum ShardInformation::spectrum(bool with_priors) const {
+  const double of_priors = with_priors ? 1.0 : 0.0;
+  const Eigen::MatrixXd shown = error_free + of_priors * priors;
+  Spectrum spectrum(shown);
+  if (std::isfinite(measured.cost)) {  // else a residual is undefined
+    take_away_null_of(shown, measured.hessian - (1.0 - of_priors) * priors, spectrum);
+  }
+  return spectrum;
+}
+
 KINECAL_INLINE ShardInformation shard_information(const Shards& shards, const FreeSet& free,
-                                                  std::span<const double> values, int threads) {
+                                                  std::span<const double> values) {
   const int n = free.size();
   const auto numbers_of = [&](int shard) {
     const std::shared_ptr<const AnyProblem> problem = shards.read(shard);
-    const Eigen::MatrixXd error_free = error_free_information(*problem, free, values) +
-                                       prior_equations(*problem, free, values).hessian;
-    std::vector<double> all = packed(problem->evaluator(free, threads)->normal_equations(values));
-    all.insert(all.end(), error_free.reshaped().begin(), error_free.reshaped().end());
+    std::vector<double> all = packed(problem->evaluator(free)->normal_equations(values));
+    for (const Eigen::MatrixXd& matrix : {error_free_information(*problem, free, values),
+                                          prior_equations(*problem, free, values).hessian}) {
+      all.insert(all.end(), matrix.reshaped().begin(), matrix.reshaped().end());
+    }
     return all;
   };
-  ShardInformation sum{Eigen::MatrixXd::Zero(n, n), NormalEquations(n)};
+  ShardInformation sum{NormalEquations(n), Eigen::MatrixXd::Zero(n, n),
+                       Eigen::MatrixXd::Zero(n, n)};
+  const std::size_t first = packed(sum.measured).size(), square = sum.priors.size();
   for (const auto& one :
        numbers_of_shards(shards, name_at("information", free, values), numbers_of)) {
     sum.measured += unpacked(one, n);
-    sum.error_free += Eigen::Map<const Eigen::MatrixXd>(one.data() + 1 + n + n * n, n, n);
+    sum.error_free += Eigen::Map<const Eigen::MatrixXd>(one.data() + first, n, n);
+    sum.priors += Eigen::Map<const Eigen::MatrixXd>(one.data() + first + square, n, n);
   }
   return sum;
 }
@@ -173,7 +188,8 @@ KINECAL_INLINE std::unique_ptr<AnyEvaluator> shard_evaluator(const Shards& shard
 }
 
 KINECAL_INLINE StepResult solve_shards(const Shards& shards, const FreeSet& free,
-                                       Eigen::VectorXd& values, const Eigen::VectorXd& reference,
+                                       std::vector<double>& values,
+                                       std::span<const double> reference,
                                        const SolveOptions& options) {
   StepResult result;
   result.num_parameters = free.size();
@@ -184,10 +200,16 @@ KINECAL_INLINE StepResult solve_shards(const Shards& shards, const FreeSet& free
   const auto evaluator_of = [&](const FreeSet& columns) {
     return shard_evaluator(shards, columns, options.threads);
   };
-  result = detail::solve_with(evaluator_of, free, values, compressed, std::move(result));
-  if (!result.converged) return result;
-  wrap_angles(*shards.problem, free, values);
-  result.final_cost = detail::hold_shards(shards, free, reference, options.threads, values);
+  const auto vector = [](std::span<const double> of) {
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(of.data(), std::ssize(of)));
+  };
+  Eigen::VectorXd x = vector(values);
+  result = detail::solve_with(evaluator_of, free, x, compressed, std::move(result));
+  if (result.converged) {
+    wrap_angles(*shards.problem, free, x);
+    result.final_cost = detail::hold_shards(shards, free, vector(reference), options.threads, x);
+  }
+  values.assign(x.begin(), x.end());
   return result;
 }
 

@@ -10,25 +10,11 @@
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/compared_frames.hpp"
+#include "kinecal/trust/inside_bounds.ipp"
 
 namespace kinecal {
 
 namespace detail {
-
-/// The free parameters that are not at a bound.
-[[nodiscard]] inline FreeSet inside_bounds(const AnyProblem& problem, const FreeSet& free,
-                                           std::span<const double> values, std::vector<int>& held) {
-  std::vector<int> inside;
-  for (const int p : free.parameters()) {
-    const Parameter& parameter = problem.table()[p];
-    const double value = values[static_cast<std::size_t>(p)];
-    constexpr double kAtBound = 1e-9;
-    const double near = kAtBound * (1e-3 + std::abs(value));
-    const bool at = value <= parameter.lower + near || value >= parameter.upper - near;
-    (at ? held : inside).push_back(p);
-  }
-  return FreeSet(std::move(inside), problem.table().size());
-}
 
 /// Groups of parameters that buy nothing: a change d from the initial values that is no larger than
 /// chance makes it, d^T C^-1 d < 2 rank.  Their fit predicts no better than one without them.

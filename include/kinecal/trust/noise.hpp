@@ -36,6 +36,10 @@ struct BlockNoise {
                                                      const LinearFit& fit,
                                                      const Eigen::MatrixXd& inverse);
 
+/// Variance of the weighted residuals of priors: 1 where weights are one over standard deviations,
+/// else that of all error blocks.
+[[nodiscard]] double prior_variance(const std::vector<BlockNoise>& noise);
+
 /// Standard deviation of the components, from the median of the distances of features.
 /// @param distances   norm of each feature's residual
 /// @param components  residuals of a feature

@@ -18,6 +18,18 @@ KINECAL_INLINE double robust_sigma(std::vector<double> distances, int components
   return *middle / std::sqrt(k * std::pow(1.0 - 2.0 / (9.0 * k), 3.0));
 }
 
+KINECAL_INLINE double prior_variance(const std::vector<BlockNoise>& noise) {
+  double squares = 0.0, freedom = 0.0;
+  bool given = true;
+  for (const BlockNoise& of : noise) {
+    if (!(of.freedom > 0.0)) continue;
+    given = given && of.given > 0.0;
+    squares += of.weighted() * of.weighted() * of.freedom;
+    freedom += of.freedom;
+  }
+  return given || freedom == 0.0 ? 1.0 : squares / freedom;
+}
+
 KINECAL_INLINE std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,
                                                       const LinearFit& fit,
                                                       const Eigen::MatrixXd& inverse) {

@@ -17,6 +17,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal {
 
@@ -37,6 +38,14 @@ struct Observability {
 /// @param values  of all parameters of the table
 [[nodiscard]] Observability observability(const AnyProblem& problem, const FreeSet& free,
                                           std::span<const double> values);
+
+namespace detail {
+
+/// The same from the spectrum of what samples determine without priors.
+[[nodiscard]] Observability observability_of(const AnyProblem& problem, const FreeSet& free,
+                                             const Spectrum& spectrum);
+
+}  // namespace detail
 
 }  // namespace kinecal
 

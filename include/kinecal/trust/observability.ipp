@@ -85,11 +85,9 @@ inline void reduce(Eigen::MatrixXd& basis) {
 
 }  // namespace detail
 
-KINECAL_INLINE Observability observability(const AnyProblem& problem, const FreeSet& free,
-                                           std::span<const double> values) {
-  if (free.size() == 0) return {};
-  const detail::Spectrum spectrum =
-      detail::determined_spectrum(problem, free, values, detail::Priors::ignored);
+KINECAL_INLINE Observability detail::observability_of(const AnyProblem& problem,
+                                                      const FreeSet& free,
+                                                      const Spectrum& spectrum) {
   const Eigen::VectorXd& singular = spectrum.singular;
   Observability result;
   result.rank = free.size() - static_cast<int>(spectrum.null);
@@ -101,6 +99,13 @@ KINECAL_INLINE Observability observability(const AnyProblem& problem, const Free
     result.unobservable.push_back(detail::combination(basis.col(c), spectrum.scale, free));
   }
   return result;
+}
+
+KINECAL_INLINE Observability observability(const AnyProblem& problem, const FreeSet& free,
+                                           std::span<const double> values) {
+  if (free.size() == 0) return {};
+  return detail::observability_of(
+      problem, free, detail::determined_spectrum(problem, free, values, detail::Priors::ignored));
 }
 
 }  // namespace kinecal

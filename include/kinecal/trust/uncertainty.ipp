@@ -41,20 +41,6 @@ struct RobustSums {
   return sums;
 }
 
-/// Variance of the weighted residuals of priors: 1 where weights are one over standard deviations,
-/// else that of all error blocks.
-[[nodiscard]] inline double prior_variance(const std::vector<BlockNoise>& noise) {
-  double squares = 0.0, freedom = 0.0;
-  bool given = true;
-  for (const BlockNoise& of : noise) {
-    if (!(of.freedom > 0.0)) continue;
-    given = given && of.given > 0.0;
-    squares += of.weighted() * of.weighted() * of.freedom;
-    freedom += of.freedom;
-  }
-  return given || freedom == 0.0 ? 1.0 : squares / freedom;
-}
-
 /// V of the cost without losses.
 [[nodiscard]] inline Eigen::MatrixXd noise_information(const LinearFit& fit,
                                                        const std::vector<BlockNoise>& noise) {

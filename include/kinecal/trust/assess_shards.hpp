@@ -1,0 +1,42 @@
+// How good the result of samples in shards is.
+//
+//   C = A^-1 B A^-1      A = sum over features of the cost's Hessian + P      B = sum g_s g_s^T + P
+//
+// with g_s the gradient of all features of sample s, and P the priors.  This supposes nothing of the
+// noise but that samples err independently: so many samples say themselves how much they vary, and
+// features that err together, blocks of unlike noise and losses are all in it.  It takes many more
+// samples than parameters.
+// Source: Huber, Robust Statistics, 1981, 6.3; Liang, Zeger, Biometrika 73, 1986, for g_s.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/solve/shards.hpp"
+#include "kinecal/trust/assess.hpp"
+
+namespace kinecal {
+
+/// What is known of a result.
+struct ShardAssessment {
+  /// Without captures, held-out error, and changes during the recording: these need all samples at once.
+  Assessment assessment;
+  std::vector<BlockStatistics> blocks;  ///< of error blocks; medians to 0.3 %
+  std::vector<double> misfits;  ///< of each shard: RMS of its weighted residuals, losses included
+};
+
+/// @param before   values of all parameters of the table at the start
+/// @param after    the same at the solution
+/// @param samples  of the first shard: the pose that is compared is asked for there
+[[nodiscard]] ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
+                                            std::span<const double> before,
+                                            std::span<const double> after,
+                                            std::span<const Sample> samples);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/assess_shards.ipp"
+#endif
