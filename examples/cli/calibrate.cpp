@@ -105,6 +105,13 @@ void check_results(const CalibrateOptions& options) {
   const OutputFolder can_be_written(options.output);
 }
 
+std::vector<OutputFile> with_copies(const CalibrateOptions& options, const Input& input,
+                                    std::vector<OutputFile> files) {
+  for (OutputFile& copy : copies(options, input)) files.push_back(std::move(copy));
+  check_targets(options, options.output, files);
+  return files;
+}
+
 namespace {
 
 /// The scene must not replace an input or a report, and another file only on demand.
@@ -169,9 +176,7 @@ int calibrate(const CalibrateOptions& options) {
     std::vector<OutputFile> files =
         output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration, findings,
                      fitted.samples, file_options(options));
-    for (OutputFile& copy : copies(options, input)) files.push_back(std::move(copy));
-    check_targets(options, folder->path(), files);
-    write(*folder, files);
+    write(*folder, with_copies(options, input, std::move(files)));
   }
   fmt::print("{}, {:.3f} s: reading {:.3f} s, {}\n", counted(input.samples.size(), "sample"),
              seconds_since(start), reading, solving_text(result));

@@ -46,6 +46,17 @@ struct CalibrateOptions : InputOptions {
 /// Calibrates the robot and writes the results, all or none.
 int calibrate(const CalibrateOptions& options);
 
+struct CalibrateLogOptions : InputOptions {
+  std::string output;
+  std::string offsets = "rising";
+  bool force = false;  ///< replace results
+  int threads = 0;     ///< zero: one per core
+};
+
+/// Calibrates with recordings that are read one after another, never all at once; several processes
+/// share them.
+int calibrate_log(const CalibrateLogOptions& options);
+
 /// Checks what can be known of the results before the work.
 /// @throws OutputError  if the folder cannot be written to, or has files that may not be replaced
 void check_results(const CalibrateOptions& options);

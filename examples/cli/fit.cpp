@@ -16,6 +16,20 @@
 #include "kinecal/trust/ruined.hpp"
 
 namespace kinecal::cli {
+std::vector<BlockConfig*> blocks_to_estimate(Config& config) {
+  std::vector<BlockConfig*> all;
+  for (StepConfig& step : config.steps) {
+    std::vector<BlockConfig*> without;
+    for (BlockConfig& block : step.error_blocks) {
+      if (block.param.empty() && !block.sigma) without.push_back(&block);
+    }
+    for (BlockConfig* block : without) {
+      if (without.size() > 1 || block->loss.type != "none") all.push_back(block);
+    }
+  }
+  return all;
+}
+
 namespace {
 
 constexpr const char* kExcluded = "--exclude";  ///< why a user left a sample out
@@ -70,22 +84,6 @@ Fit fit_samples(const Input& input, const Config& config, const Selection& selec
   }
   fitted.findings.left_out = selection.left_out();
   return fitted;
-}
-
-/// Error blocks without a sigma for which an estimate matters: those with a loss, whose scale is in
-/// sigmas, and several of a step, which are weighed against each other.
-std::vector<BlockConfig*> blocks_to_estimate(Config& config) {
-  std::vector<BlockConfig*> all;
-  for (StepConfig& step : config.steps) {
-    std::vector<BlockConfig*> without;
-    for (BlockConfig& block : step.error_blocks) {
-      if (block.param.empty() && !block.sigma) without.push_back(&block);
-    }
-    for (BlockConfig* block : without) {
-      if (without.size() > 1 || block->loss.type != "none") all.push_back(block);
-    }
-  }
-  return all;
 }
 
 /// Fits, and fits again with the noise of each block that has no sigma in its place, until it stays.

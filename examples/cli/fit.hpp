@@ -23,6 +23,10 @@ struct Fit {
 [[nodiscard]] Fit fit(const Input& input, const CalibrateOptions& options, const Progress& progress,
                       const SolveOptions& solving);
 
+/// Error blocks without a sigma for which an estimate matters: those with a loss, whose scale is in
+/// sigmas, and several of a step, which are weighed against each other.
+[[nodiscard]] std::vector<BlockConfig*> blocks_to_estimate(Config& config);
+
 /// Adds offsets that cannot be, and mistakes that explain a bad fit, to its reasons: with them it is not
 /// to be used.
 void add_causes(const Input& input, Fit& fitted);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
+#include "input.hpp"
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/results/result_files.hpp"
 #include "kinecal/report/findings.hpp"
@@ -26,6 +28,12 @@ struct UrdfFile {
                                                    const Findings& findings,
                                                    std::span<const Sample> samples,
                                                    ResultFileOptions options = {});
+
+/// The files of a result, and copies of its URDF and configuration.
+/// @throws OutputError  if one would replace an input, or may not be replaced
+[[nodiscard]] std::vector<OutputFile> with_copies(const CalibrateOptions& options,
+                                                  const Input& input,
+                                                  std::vector<OutputFile> files);
 
 /// Writes all files or none, and prints their names.
 void write(OutputFolder& folder, const std::vector<OutputFile>& files);

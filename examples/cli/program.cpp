@@ -67,16 +67,34 @@ CLI::Option* add_input(CLI::App& command, InputOptions& options) {
   return samples;
 }
 
-void add_calibrate(CLI::App& command, CalibrateOptions& options) {
-  add_input(command, options)->required();
-  command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
+void add_offsets(CLI::App& command, std::string& offsets) {
   command
       .add_option(
-          "--offsets", options.offsets,
+          "--offsets", offsets,
           "where joint offsets go: rising adds them to <calibration rising>, origin puts them "
           "into the joints' <origin>, for drivers that ignore <calibration>")
       ->check(CLI::IsMember({"rising", "origin"}))
       ->capture_default_str();
+}
+
+void add_calibrate_log(CLI::App& command, CalibrateLogOptions& options) {
+  add_input(command, options)->required();
+  command
+      .add_option("--output", options.output,
+                  "folder for the results; several processes meet there, and a run that was "
+                  "interrupted goes on there")
+      ->required()
+      ->type_name("DIR");
+  add_offsets(command, options.offsets);
+  command.add_option("--threads", options.threads, "number of threads, default: one per core")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("--force", options.force, "replace results");
+}
+
+void add_calibrate(CLI::App& command, CalibrateOptions& options) {
+  add_input(command, options)->required();
+  command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
+  add_offsets(command, options.offsets);
   command.add_flag("--upstream-names", options.upstream_names,
                    "name the files as robot_calibration does, with the date");
   command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
@@ -757,6 +775,10 @@ void add_commands(Commands& commands, const std::string& line) {
         options.command = line;
         return calibrate(options);
       });
+  commands.add<CalibrateLogOptions>("calibrate-log",
+                                    "calibrate with recordings that do not fit into memory, file "
+                                    "after file, in several processes",
+                                    add_calibrate_log, calibrate_log);
   commands.add<RecheckOptions>("evaluate", "show how a result fits other samples, without solving",
                                add_recheck, evaluate);
   commands.add<RecheckOptions>(

@@ -39,8 +39,14 @@ ShardFolder::ShardFolder(std::filesystem::path folder, std::string identity, int
                          const ProcessGroup& group)
     : folder_(std::move(folder)), identity_(std::move(identity)), shards_(shards), group_(group) {
   std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) throw OutputError(folder_.string() + ": " + error.message());
+  constexpr int kTries = 50;  // another process may remove the empty folder around it
+  for (int i = 0; i < kTries && !std::filesystem::is_directory(folder_); ++i) {
+    std::filesystem::create_directories(folder_, error);
+    if (error) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  if (!std::filesystem::is_directory(folder_)) {
+    throw OutputError(folder_.string() + ": cannot be made: " + error.message());
+  }
 }
 
 std::filesystem::path ShardFolder::file_of(const std::string& what, int shard) const {

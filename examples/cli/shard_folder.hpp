@@ -11,6 +11,9 @@
 
 namespace kinecal::cli {
 
+/// The user asked to stop.
+struct Interrupted {};
+
 /// Another process has written the result, and removed the folder.
 struct SharedWorkIsDone {};
 

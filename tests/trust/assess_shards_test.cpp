@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "kinecal/trust/shard_uncertainty.hpp"
+#include "kinecal/trust/assess_shards.hpp"
 #include "support/scene_shards.hpp"
 
 namespace kinecal {

@@ -1,0 +1,422 @@
+// kinecal calibrate-log: recordings that do not fit into memory, file after file.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "commands.hpp"
+#include "fit.hpp"
+#include "input.hpp"
+#include "interruption.hpp"
+#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/cameras/set_camera.hpp"
+#include "kinecal/io/text_file.hpp"
+#include "kinecal/report.hpp"
+#include "kinecal/report/checksum.hpp"
+#include "kinecal/trust/assess_shards.hpp"
+#include "output.hpp"
+#include "process_group.hpp"
+#include "shard_folder.hpp"
+#include "words.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+constexpr const char* kSums = "sums";  ///< folder of what processes exchange, in that of the result
+
+/// What is known of all files before the work begins.
+struct LogContent {
+  int samples = 0;
+  std::vector<int> residuals;    ///< of each step, priors once per sample
+  std::vector<FreeSet> free;     ///< of each step: what any file determines
+  std::vector<double> per_file;  ///< samples of each file
+  int doubts = 0;                ///< about the files after the first
+};
+
+/// One run of one process.
+class LogRun {
+ public:
+  LogRun(const CalibrateLogOptions& options, const ProcessGroup& group)
+      : options_(options), group_(group), first_(read(0)) {
+    if (group_.rank == 0) print(first_.diagnostics);
+    if (!first_.diagnostics.errors.empty()) throw InputError(first_.diagnostics.errors.back());
+    identity_ = identity();
+    folder_.emplace(std::filesystem::path(options.output) / kSums, identity_, files(), group_);
+    content_ = check_files();
+  }
+
+  /// Solves and assesses.
+  [[nodiscard]] Findings calibrate() {
+    const std::vector<BlockConfig*> blocks = blocks_to_estimate(first_.config);
+    Findings findings = calibrate_once();
+    constexpr int kRounds = 10;
+    for (int round = 0; round < kRounds && findings.result.converged; ++round) {
+      if (!take_estimates(findings, blocks)) break;
+      problems_.clear();
+      Diagnostics ignored;  // they are known
+      first_.calibration = assemble(first_.config, first_.robot, first_.samples, ignored);
+      findings = calibrate_once();
+    }
+    return findings;
+  }
+
+  [[nodiscard]] const Input& first() const { return first_; }
+  [[nodiscard]] const std::vector<double>& misfits() const { return misfits_; }
+  [[nodiscard]] const LogContent& content() const { return content_; }
+  void forget() const { folder_->remove(); }
+
+ private:
+  [[nodiscard]] int files() const { return static_cast<int>(options_.samples.size()); }
+  [[nodiscard]] int steps() const { return static_cast<int>(first_.config.steps.size()); }
+
+  /// A file with all that is checked of it.
+  [[nodiscard]] Input read(int file) const {
+    InputOptions one = options_;
+    one.samples = {options_.samples[static_cast<std::size_t>(file)]};
+    return read_input(one);
+  }
+
+  /// What makes sums those of this calibration.
+  [[nodiscard]] std::string identity() const {
+    const std::string program = version();  // " (", then the instruction set, which may differ
+    std::string text =
+        program.substr(0, program.find(" (")) + first_.urdf_text + first_.config_text;
+    for (const std::vector<std::string>* list : {&options_.cameras, &options_.hold}) {
+      for (const std::string& item : *list) text += '\n' + item;
+    }
+    for (const std::string& file : options_.samples) {
+      text += fmt::format("\n{} {}", file, std::filesystem::file_size(file));
+    }
+    return sha256_text(text);
+  }
+
+  [[nodiscard]] ShardExchange exchange(const std::string& prefix) const {
+    return [this, prefix](const std::string& what, const NumbersOfShard& numbers_of) {
+      return folder_->exchange(prefix + what, numbers_of);
+    };
+  }
+
+  /// Samples, doubts, and for each step the residuals and the parameters that they determine.
+  [[nodiscard]] std::vector<double> numbers_of_file(int file) const {
+    std::optional<Input> other;
+    if (file > 0) {
+      other = read(file);
+      print(other->diagnostics);
+      if (!other->diagnostics.errors.empty()) throw InputError(other->diagnostics.errors.back());
+      check_images(*other, file);
+    }
+    const Input& input = other ? *other : first_;
+    std::vector<double> numbers = {static_cast<double>(input.samples.size()),
+                                   static_cast<double>(input.diagnostics.doubts.size())};
+    for (const CalibrationStep& step : input.calibration.steps) {
+      numbers.push_back(step.problem->num_residuals());
+      std::vector<double> freed(static_cast<std::size_t>(step.problem->table().size()), 0.0);
+      for (const int p : step.free.parameters()) freed[static_cast<std::size_t>(p)] = 1.0;
+      numbers.insert(numbers.end(), freed.begin(), freed.end());
+    }
+    return numbers;
+  }
+
+  /// Images are raw or rectified in all files.
+  void check_images(const Input& other, int file) const {
+    const auto here = detail::models_of(other.config), there = detail::models_of(first_.config);
+    for (std::size_t i = 0; i < std::min(here.size(), there.size()); ++i) {
+      if (here[i].image == there[i].image) continue;
+      throw InputError(fmt::format(
+          "{}: pixels of '{}' are those of {} images, but in {} of {} ones; write 'image' in the "
+          "model",
+          options_.samples[static_cast<std::size_t>(file)], here[i].name,
+          here[i].image == ImageKind::raw ? "raw" : "rectified", options_.samples.front(),
+          there[i].image == ImageKind::raw ? "raw" : "rectified"));
+    }
+  }
+
+  [[nodiscard]] LogContent check_files() const {
+    const auto all = exchange("files")("", [&](int file) { return numbers_of_file(file); });
+    LogContent content;
+    const int size = first_.calibration.table.size();
+    for (const std::vector<double>& of : all) {
+      content.per_file.push_back(of[0]);
+      content.samples += static_cast<int>(of[0]);
+      if (&of != &all.front()) content.doubts += static_cast<int>(of[1]);
+    }
+    for (int step = 0; step < steps(); ++step) {
+      const std::size_t at =
+          2 + static_cast<std::size_t>(step) * (1 + static_cast<std::size_t>(size));
+      const int priors = Prior::kRows * static_cast<int>(problem_of(step).priors().size());
+      int residuals = priors * content.samples;
+      std::set<int> free;
+      for (const std::vector<double>& of : all) {
+        residuals += static_cast<int>(of[at]) - priors;
+        for (int p = 0; p < size; ++p) {
+          if (of[at + 1 + static_cast<std::size_t>(p)] != 0.0) free.insert(p);
+        }
+      }
+      content.residuals.push_back(residuals);
+      content.free.emplace_back(std::vector<int>(free.begin(), free.end()), size);
+    }
+    return content;
+  }
+
+  [[nodiscard]] const AnyProblem& problem_of(int step) const {
+    return *first_.calibration.steps[static_cast<std::size_t>(step)].problem;
+  }
+
+  /// A step's problem without samples.
+  [[nodiscard]] std::unique_ptr<AnyProblem> empty(int step) const {
+    return empty_problem(first_.config, first_.config.steps[static_cast<std::size_t>(step)],
+                         first_.robot, problem_of(step).table(), first_.samples);
+  }
+
+  /// A step's problem with the samples of a file.  Small logs are kept.
+  [[nodiscard]] std::shared_ptr<const AnyProblem> problem(int step, int file) {
+    constexpr int kKept = 100000;  // samples
+    if (Interruption::is_asked()) throw Interrupted();
+    const auto known = problems_.find({step, file});
+    if (known != problems_.end()) return known->second;
+    Diagnostics diagnostics;
+    std::vector<Sample> samples =
+        read_recordings({options_.samples[static_cast<std::size_t>(file)]}, diagnostics).samples;
+    for (const std::string& camera : options_.cameras) set_camera(samples, camera, diagnostics);
+    if (options_.recorded == Recorded::before) {
+      add_rising(rising_of(first_.urdf_text, first_.urdf), samples);
+    }
+    diagnostics.throw_if_errors();
+    std::shared_ptr<AnyProblem> made = empty(step);
+    for (const Sample& sample : samples) made->add_sample(sample);
+    int kept = made->num_samples();
+    for (const auto& [key, one] : problems_) kept += one->num_samples();
+    if (kept <= kKept) problems_[{step, file}] = made;
+    return made;
+  }
+
+  /// The result of the first file alone: where to start.
+  [[nodiscard]] std::vector<double> start(const std::string& prefix) {
+    const auto of_first = [&](int file) {
+      if (file > 0) return std::vector<double>();
+      const CalibrationResult result = kinecal::calibrate(first_.calibration);
+      const Eigen::VectorXd values =
+          result.converged ? result.table.values() : first_.calibration.table.values();
+      return std::vector<double>(values.begin(), values.end());
+    };
+    return exchange(prefix)("start", of_first).front();
+  }
+
+  [[nodiscard]] Findings calibrate_once() {
+    std::string prefix = "step";
+    for (const StepConfig& step : first_.config.steps) {
+      for (const BlockConfig& block : step.error_blocks) {
+        prefix += fmt::format(" {}", block.estimated_sigma.value_or(0.0));
+      }
+    }
+    const Eigen::VectorXd table = first_.calibration.table.values();
+    const std::vector<double> initial(table.begin(), table.end()), guess = start(prefix);
+    Findings findings;
+    CalibrationResult& result = findings.result;
+    result.table = first_.calibration.table;
+    std::vector<double> values = initial;
+    for (int step = 0; step < steps(); ++step) {
+      if (!solve(step, fmt::format("{} {} ", prefix, step), initial, guess, values, findings))
+        break;
+    }
+    for (int i = 0; i < result.table.size(); ++i) {
+      result.table[i].value = values[static_cast<std::size_t>(i)];
+    }
+    complete(findings);
+    return findings;
+  }
+
+  /// @param values  in: where the step before ended; out: where this one did
+  /// @returns  whether it converged
+  bool solve(int number, const std::string& prefix, const std::vector<double>& initial,
+             const std::vector<double>& guess, std::vector<double>& values, Findings& findings) {
+    const CalibrationStep& step = first_.calibration.steps[static_cast<std::size_t>(number)];
+    const FreeSet& free = content_.free[static_cast<std::size_t>(number)];
+    const std::unique_ptr<AnyProblem> bare = empty(number);
+    Shards shards{bare.get(),
+                  files(),
+                  content_.samples,
+                  content_.residuals[static_cast<std::size_t>(number)],
+                  [&](int file) { return problem(number, file); },
+                  exchange(prefix)};
+    for (const auto& [parameter, value] : step.assignments) {
+      values[static_cast<std::size_t>(parameter)] = value;
+    }
+    const std::vector<double> reference = values;
+    for (const int p : free.parameters()) {
+      values[static_cast<std::size_t>(p)] = guess[static_cast<std::size_t>(p)];
+    }
+    SolveOptions solving;
+    solving.threads = options_.threads;
+    solving.max_num_iterations = step.max_num_iterations;
+    CalibrationResult& result = findings.result;
+    StepResult solved = solve_shards(shards, free, values, reference, solving);
+    solved.name = step.name;
+    result.converged = solved.converged;
+    result.termination = solved.termination;
+    result.steps.push_back(std::move(solved));
+    for (const int p : free.parameters()) {
+      if (std::find(result.calibrated.begin(), result.calibrated.end(), p) ==
+          result.calibrated.end()) {
+        result.calibrated.push_back(p);
+      }
+    }
+    if (!result.converged) return false;
+    ShardAssessment found = assess_shards(shards, free, initial, values, first_.samples);
+    found.assessment.step = step.name;
+    findings.assessments.push_back(std::move(found.assessment));
+    for (BlockStatistics& block : found.blocks) {
+      std::erase_if(result.blocks, [&](const auto& known) { return known.name == block.name; });
+      result.blocks.push_back(std::move(block));
+    }
+    misfits_ = std::move(found.misfits);
+    return true;
+  }
+
+  /// Adds the verdict, and what the report says of the samples.
+  void complete(Findings& findings) const {
+    findings.robot = first_.robot.name();
+    findings.poses = recorded_poses(first_.calibration, first_.samples);
+    findings.sources.resize(static_cast<std::size_t>(content_.samples));
+    findings.numbers.resize(findings.sources.size());
+    std::iota(findings.numbers.begin(), findings.numbers.end(), 1);
+    std::vector<std::string> doubts = first_.diagnostics.doubts;
+    if (content_.doubts > 0) {
+      doubts.push_back(fmt::format("{} about other files, printed above",
+                                   counted(static_cast<std::size_t>(content_.doubts), "doubt")));
+    }
+    findings.judgement = judge(first_.calibration, findings.result, findings.assessments, doubts);
+    judge_misfits(findings.judgement);
+    const std::string why =
+        impossible_camera(first_.calibration, findings.result.table, first_.samples);
+    if (findings.result.converged && !why.empty()) {
+      findings.judgement.add(Grade::do_not_use, why);
+    }
+    for (const ModelConfig& model : detail::models_of(first_.config)) {
+      if (model.image == ImageKind::automatic) continue;
+      findings.images[model.name] = model.image == ImageKind::raw ? "raw" : "rectified";
+    }
+  }
+
+  /// Files that do not fit the others.
+  void judge_misfits(Judgement& judgement) const {
+    constexpr double kMuch = 2.0;
+    if (misfits_.size() < 3) return;
+    std::vector<double> sorted = misfits_;
+    std::sort(sorted.begin(), sorted.end());
+    const double median = sorted[sorted.size() / 2];
+    for (std::size_t file = 0; file < misfits_.size(); ++file) {
+      if (misfits_[file] <= kMuch * median) continue;
+      judgement.add(Grade::use_with_care,
+                    fmt::format("{}: its residuals are {:.1f} times those of most files",
+                                options_.samples[file], misfits_[file] / median));
+    }
+  }
+
+  /// Gives blocks without a sigma that of their residuals.
+  /// @returns  whether one changed
+  [[nodiscard]] static bool take_estimates(const Findings& findings,
+                                           const std::vector<BlockConfig*>& blocks) {
+    bool changed = false;
+    for (BlockConfig* block : blocks) {
+      const BlockNoise* noise =
+          detail::of_block(findings.assessments, &Assessment::noise, block->name);
+      if (noise == nullptr || !(noise->robust > 0.0)) continue;
+      constexpr double kStays = 0.01;
+      const double before = block->estimated_sigma.value_or(1.0);
+      changed = changed || std::abs(noise->robust - before) > kStays * before;
+      block->estimated_sigma = noise->robust;
+    }
+    return changed;
+  }
+
+  const CalibrateLogOptions& options_;
+  ProcessGroup group_;
+  Input first_;
+  std::string identity_;
+  std::optional<ShardFolder> folder_;
+  LogContent content_;
+  std::map<std::pair<int, int>, std::shared_ptr<const AnyProblem>> problems_;
+  std::vector<double> misfits_;
+};
+
+/// Each file once.
+void check_files_differ(const std::vector<std::string>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      std::error_code missing;
+      if (!std::filesystem::equivalent(files[i], files[k], missing)) continue;
+      throw InputError(files[i] + ": is given twice, so its samples would count twice");
+    }
+  }
+}
+
+CalibrateOptions as_calibrate(const CalibrateLogOptions& options) {
+  CalibrateOptions same;
+  static_cast<InputOptions&>(same) = options;
+  same.output = options.output;
+  same.force = options.force;
+  return same;
+}
+
+/// Prints and writes what the first process has found.
+int report(const CalibrateLogOptions& options, const LogRun& run, const Findings& findings) {
+  fmt::print("{}", summary_text(findings));
+  std::fflush(stdout);
+  const CalibrationResult& result = findings.result;
+  if (findings.judgement.verdict == Grade::do_not_use) {
+    run.forget();
+    fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
+               result.steps.empty() ? "" : result.steps.back().name,
+               findings.judgement.reasons.front());
+    return kNotUsable;
+  }
+  ResultFileOptions files;
+  files.offsets = options.offsets == "origin" ? OffsetStyle::origin : OffsetStyle::rising;
+  const Input& first = run.first();
+  std::vector<OutputFile> all = output_files(first.robot, {first.urdf, first.urdf_text},
+                                             first.calibration, findings, first.samples, files);
+  std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
+  OutputFolder folder(options.output);
+  write(folder, with_copies(as_calibrate(options), first, std::move(all)));
+  run.forget();
+  return kDone;
+}
+
+}  // namespace
+
+int calibrate_log(const CalibrateLogOptions& options) {
+  const ProcessGroup group = process_group();
+  if (options.output.empty()) throw InputError("--output is required");
+  check_files_differ(options.samples);
+  check_results(as_calibrate(options));
+  const auto start = std::chrono::steady_clock::now();
+  const Interruption interruption;
+  try {
+    LogRun run(options, group);
+    const Findings findings = run.calibrate();
+    if (group.rank > 0) return findings.judgement.verdict == Grade::do_not_use ? kNotUsable : kDone;
+    const int code = report(options, run, findings);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    fmt::print("{} of {}, {:.3f} s: {}\n",
+               counted(static_cast<std::size_t>(run.content().samples), "sample"),
+               counted(options.samples.size(), "file"), taken.count(),
+               solving_text(findings.result));
+    return code;
+  } catch (const SharedWorkIsDone&) {
+    return kDone;  // the first process has all that it needs
+  } catch (const Interrupted&) {
+    fmt::print(stderr, "{}: run the same command again to go on\n", options.output);
+    return kInterrupted;
+  }
+}
+
+}  // namespace kinecal::cli
