@@ -18,6 +18,7 @@
 #include "interruption.hpp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
+#include "kinecal/io/doubts/used_joints.hpp"
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/report/checksum.hpp"
