@@ -9,7 +9,6 @@
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "commands.hpp"
@@ -154,15 +153,18 @@ class LogRun {
           2 + static_cast<std::size_t>(step) * (1 + static_cast<std::size_t>(size));
       const int priors = Prior::kRows * static_cast<int>(problem_of(step).priors().size());
       int residuals = priors * content.samples;
-      std::set<int> free;
+      // In the order of the configuration; then what only other files determine.
+      std::vector<int> free =
+          first_.calibration.steps[static_cast<std::size_t>(step)].free.parameters();
       for (const std::vector<double>& of : all) {
         residuals += static_cast<int>(of[at]) - priors;
         for (int p = 0; p < size; ++p) {
-          if (of[at + 1 + static_cast<std::size_t>(p)] != 0.0) free.insert(p);
+          const bool freed = of[at + 1 + static_cast<std::size_t>(p)] != 0.0;
+          if (freed && std::find(free.begin(), free.end(), p) == free.end()) free.push_back(p);
         }
       }
       content.residuals.push_back(residuals);
-      content.free.emplace_back(std::vector<int>(free.begin(), free.end()), size);
+      content.free.emplace_back(std::move(free), size);
     }
     return content;
   }
