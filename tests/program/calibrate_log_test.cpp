@@ -28,7 +28,7 @@ class CalibrateLog : public test::ProgramTest {
   }
   void write_part(const std::string& file, std::size_t first, std::size_t last) {
     std::ostringstream text;
-    write_samples(text, std::span(samples_).subspan(first, last - first));
+    write_samples(text, {samples_.data() + first, samples_.data() + last});
     write(file, text.str());
   }
   void write_parts() {

@@ -163,7 +163,7 @@ TEST_F(Manners, BashCompletesCommandsOptionsAndValues) {
     EXPECT_EQ(outcome.err, "");
     return outcome.out;
   };
-  EXPECT_EQ(completed("cal", 1), "calibrate\n");
+  EXPECT_EQ(completed("cal", 1), "calibrate calibrate-log\n");
   EXPECT_EQ(completed("calibrate --thr", 2), "--threads\n");
   EXPECT_EQ(completed("calibrate --offsets o", 3), "origin\n");
   EXPECT_EQ(completed("help ins", 2), "install inspect\n");
