@@ -175,8 +175,9 @@ struct StudyFiles {
 
 struct StudyOptions : StudyFiles {
   int robots = 3, repeats = 10;
-  std::vector<int> poses;  ///< samples of a calibration; empty: 100, 50, 25
-  double ruined = -1.0;    ///< share of ruined samples; below zero: the scene's
+  std::vector<int> poses;     ///< samples of a calibration; empty: 100, 50, 25
+  double ruined = -1.0;       ///< share of ruined samples; below zero: the scene's
+  bool free_targets = false;  ///< also say what six unknowns for each target would give
   double limit = 0.0;  ///< mean re-projection error beyond which a calibration failed; zero: 3 mm
                        ///< as in the paper, or 1 pixel
   int threads = 0;     ///< zero: one per core

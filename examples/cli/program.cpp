@@ -267,6 +267,9 @@ void add_study(CLI::App& command, StudyOptions& options) {
           "share of samples of which a joint is elsewhere than it says; default: the scene's")
       ->check(CLI::Range(0.0, 0.9))
       ->type_name("SHARE");
+  command.add_flag("--free-targets", options.free_targets,
+                   "say what it would be if the pose of each sample's target were six more "
+                   "unknowns, as in the PR2's calibration");
   command
       .add_option("--limit", options.limit,
                   "mean re-projection error beyond which a calibration failed, metres or pixels; "

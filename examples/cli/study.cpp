@@ -246,6 +246,7 @@ int study(const StudyOptions& options) {
       options.poses.empty() ? 100 : *std::max_element(options.poses.begin(), options.poses.end());
   const std::unique_ptr<StudyInput> input = read_study(options, most);
   if (options.ruined >= 0.0) input->setup.ruined = options.ruined;
+  input->setup.free_targets = options.free_targets;
   input->keep_ruined = !(input->setup.ruined > 0.0);
   const std::vector<int> poses = poses_of_study(options, input->samples.size());
   std::optional<OutputFolder> output;

@@ -137,6 +137,23 @@ std::string table_three(const StudyInput& input, const StudyResult& result) {
   return text;
 }
 
+/// What six unknowns for the target of each sample would give.
+std::string free_targets(const StudyInput& input, const StudyResult& result) {
+  const auto groups = of_robot(result, 0);
+  if (groups.empty() || !(groups.front()->free_targets > 0.0)) return "";
+  TextTable table({"poses", "unknowns", "pose off, mm", "with free targets", "pose off, mm"}, 0);
+  const std::size_t unknowns = input.setup.free.size();
+  for (const StudyGroup* group : groups) {
+    table.add({std::to_string(group->poses), std::to_string(unknowns),
+               fmt::format("{:.3f}", 1e3 * group->predicted_position),
+               std::to_string(unknowns + 6 * static_cast<std::size_t>(group->poses)),
+               fmt::format("{:.3f}", 1e3 * group->free_targets)});
+  }
+  return "\nFree targets, as in the PR2's calibration: six unknowns for the pose of each sample's "
+         "target, predicted\n" +
+         table.str();
+}
+
 /// Sums over all robots.
 std::string sums(const StudyInput& input, const StudyResult& result) {
   std::string text;
@@ -152,6 +169,8 @@ std::string sums(const StudyInput& input, const StudyResult& result) {
   }
   for (const double of : result.before) before += of * of;
   const std::string unit = unit_of_study(input);
+  double systematic = 0.0;
+  for (const StudyGroup& group : result.groups) systematic = std::max(systematic, group.systematic);
   text += fmt::format("\n{} of {} failed: mean re-projection error above {} {}, or not converged\n",
                       failed, counted(static_cast<std::size_t>(trials), "calibration"),
                       in_reading_unit(result.limit, unit), reading_unit(unit));
@@ -160,6 +179,13 @@ std::string sums(const StudyInput& input, const StudyResult& result) {
       input.setup.frame.name(), input.setup.in.name(),
       1e3 * std::sqrt(before / std::max(1.0, static_cast<double>(result.before.size()))),
       1e3 * std::sqrt(after / std::max(1, trials)), 1e3 * most);
+  if (systematic > result.limit && ruined == 0) {
+    text += fmt::format(
+        "Even without noise {} {} remain: what the configuration frees cannot describe these "
+        "robots "
+        "or this target\n",
+        in_reading_unit(systematic, unit), reading_unit(unit));
+  }
   if (ruined > 0) {
     text += fmt::format("{} ruined, {} left out\n",
                         counted(static_cast<std::size_t>(ruined), "sample"), left_out);
@@ -223,7 +249,7 @@ std::string study_text(const StudyInput& input, const StudyResult& result) {
     text += fmt::format("Interrupted: {} of {} calibrations are done\n", result.done, result.jobs);
   }
   return text + table_one(input, result) + table_two(input, result) + table_three(input, result) +
-         sums(input, result) + linearity(result);
+         free_targets(input, result) + sums(input, result) + linearity(result);
 }
 
 std::string study_json(const StudyInput& input, const StudyResult& result) {
@@ -244,6 +270,7 @@ std::string study_json(const StudyInput& input, const StudyResult& result) {
     for (const auto& [name, value] : {std::pair("position", group.position),
                                       {"varied_position", group.varied_position},
                                       {"predicted_position", group.predicted_position},
+                                      {"free_targets", group.free_targets},
                                       {"worst_position", group.worst_position},
                                       {"rotation", group.rotation},
                                       {"reprojection", group.reprojection},

@@ -56,6 +56,50 @@ TEST(Repeatability, WithoutNoiseTheTruthIsFound) {
   EXPECT_LT(trial.reprojection, 1e-9);
 }
 
+TEST(Repeatability, FreeTargetsAreSixUnknownsOfWhichEachSensorHasResiduals) {
+  const SceneStudy study;
+  const std::vector<Sample> samples =
+      exact_samples(study.setup.make, study.setup.drawn, std::span(study.setup.samples).first(3));
+  const FreeSet free = study.scene.free();
+  const StudyDesign design = study_design(study.setup.make, free, study.setup.drawn, samples,
+                                          study.setup.noise, Targets::free);
+  const TrueRobot robot(mobile_manipulator(), {}, {});
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const auto problem = study.scene.problem({samples[s]});
+    Positions positions;
+    for (std::size_t i = 0; i < samples[s].joint_names.size(); ++i) {
+      positions[samples[s].joint_names[i]] = samples[s].joint_positions[i];
+    }
+    const Pose<double> hand = robot.pose("base_link", "hand", positions);
+    Eigen::MatrixXd of_camera, of_arm, motion;
+    (void)evaluate(*problem, study.setup.drawn, &free, [&](int, int, const TermResiduals& rows) {
+      of_camera = rows.jacobian / kPointNoise;
+      of_arm = Eigen::MatrixXd::Zero(of_camera.rows(), of_camera.cols());
+      for (int c = 0; c < 3; ++c) {  // shoulder_lift, elbow, wrist
+        of_arm.col(c) = -of_camera.col(c);
+        of_camera.col(c).setZero();
+      }
+      motion.resize(of_arm.rows(), 6);
+    });
+    const std::vector<Feature> leds = scene_leds();
+    for (Eigen::Index i = 0; i < std::ssize(leds); ++i) {
+      const Vector3<double> arm = hand.rotation * leds[static_cast<std::size_t>(i)].point;
+      for (int k = 0; k < 3; ++k) {
+        motion.block<3, 1>(3 * i, k) = Vector3<double>::Unit(k) / kPointNoise;
+        motion.block<3, 1>(3 * i, 3 + k) = Vector3<double>::Unit(k).cross(arm) / kPointNoise;
+      }
+    }
+    // Residuals of both sensors, and the motion that both follow, which is then eliminated.
+    const Eigen::MatrixXd both = of_camera + of_arm;
+    const Eigen::MatrixXd expected =
+        of_camera.transpose() * of_camera + of_arm.transpose() * of_arm -
+        both.transpose() * motion *
+            (2.0 * motion.transpose() * motion).ldlt().solve(motion.transpose() * both);
+    const Eigen::MatrixXd found = design.samples[s].information.matrix();
+    EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm());
+  }
+}
+
 TEST(Repeatability, VariancesAreThoseOfTheCovariance) {
   constexpr int kTrials = 200;
   const SceneStudy study;

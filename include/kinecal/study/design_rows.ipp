@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -19,7 +20,7 @@ namespace kinecal::detail {
 class DesignRows {
  public:
   DesignRows(const MakeProblem& make, const FreeSet& free, std::span<const double> values,
-             std::span<const Sample> samples, const MeasurementNoise& noise)
+             std::span<const Sample> samples, const MeasurementNoise& noise, Targets targets)
       : changing_(make, values, samples), noise_(noise) {
     const StudyRows rows = changing_.rows(changing_.samples(), &free);
     stacks_.resize(changing_.samples().size());
@@ -31,15 +32,16 @@ class DesignRows {
     }
     add_features();
     add_joints();
+    if (targets == Targets::free) add_targets();
   }
 
   [[nodiscard]] std::vector<SampleDesign> designs() const {
     std::vector<SampleDesign> all;
     for (const Stack& stack : stacks_) {
-      const Eigen::MatrixXd& j = stack.jacobian;
-      const Eigen::MatrixXd errors = stack.matrix();
-      const Eigen::MatrixXd scores = j.transpose() * errors;
-      all.push_back({PlainMatrix(j.transpose() * j), PlainMatrix(scores * scores.transpose())});
+      const Eigen::MatrixXd j = stack.without_half(stack.jacobian);
+      const Eigen::MatrixXd scores = j.transpose() * stack.matrix(stack.errors);
+      all.push_back(
+          {PlainMatrix(stack.jacobian.transpose() * j), PlainMatrix(scores * scores.transpose())});
     }
     return all;
   }
@@ -50,13 +52,23 @@ class DesignRows {
     std::map<FeatureKey, Eigen::Index> first;  ///< of each feature's rows
     Eigen::MatrixXd jacobian;                  ///< weighted
     std::vector<Eigen::VectorXd> errors;       ///< weighted change by one standard deviation
+    std::vector<Eigen::VectorXd> motions;      ///< weighted change by a motion of a free target
 
-    [[nodiscard]] Eigen::MatrixXd matrix() const {
-      Eigen::MatrixXd all(jacobian.rows(), static_cast<Eigen::Index>(errors.size()));
-      for (std::size_t i = 0; i < errors.size(); ++i) {
-        all.col(static_cast<Eigen::Index>(i)) = errors[i];
+    [[nodiscard]] Eigen::MatrixXd matrix(const std::vector<Eigen::VectorXd>& columns) const {
+      Eigen::MatrixXd all(jacobian.rows(), static_cast<Eigen::Index>(columns.size()));
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        all.col(static_cast<Eigen::Index>(i)) = columns[i];
       }
       return all;
+    }
+    /// (I - P / 2) times rows.
+    [[nodiscard]] Eigen::MatrixXd without_half(const Eigen::MatrixXd& of) const {
+      if (motions.empty()) return of;
+      Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix(motions));
+      qr.setThreshold(1e-8);  // points on a line do not turn about it
+      const Eigen::MatrixXd q =
+          qr.householderQ() * Eigen::MatrixXd::Identity(jacobian.rows(), qr.rank());
+      return of - 0.5 * q * (q.transpose() * of);
     }
   };
 
@@ -67,7 +79,9 @@ class DesignRows {
   /// Adds the difference of two evaluations to each sample, one error for each group of keys.
   /// @param half   of the change between them, in standard deviations
   /// @param apart  features err independently; else all rows of a sample together
-  void add(const StudyRows& after, const StudyRows& before, double half, bool apart) {
+  /// @param list   to which they are added
+  void add(const StudyRows& after, const StudyRows& before, double half, bool apart,
+           std::vector<Eigen::VectorXd> Stack::*list = &Stack::errors) {
     std::map<std::pair<std::size_t, int>, Eigen::VectorXd> changes;
     for (const auto& [key, residual] : after.residual) {
       const std::size_t sample = sample_of(key);
@@ -78,7 +92,7 @@ class DesignRows {
       if (column.size() == 0) column.setZero(stack.jacobian.rows());
       column.segment(stack.first.at(key), change.size()) += change;
     }
-    for (auto& [of, column] : changes) stacks_[of.first].errors.push_back(std::move(column));
+    for (auto& [of, column] : changes) (stacks_[of.first].*list).push_back(std::move(column));
   }
 
   void add_features() {
@@ -122,6 +136,29 @@ class DesignRows {
     for (const std::string& joint : joints) {
       const double change = kHalf * noise_.joint;
       if (change > 0.0) add(moved(joint, change), moved(joint, -change), kHalf, false);
+    }
+  }
+
+  /// Rigid motions of the features that are known on their link.
+  void add_targets() {
+    constexpr double kHalf = 1e-4;  // metres, radians
+    for (const MountedSensor& sensor : changing_.problem().sensors()) {
+      const std::string& name = sensor.mount().name;
+      if (changing_.measuring().contains(name)) continue;
+      for (int k = 0; k < 6; ++k) {
+        const Vector3<double> axis = Vector3<double>::Unit(k % 3);
+        const auto change = [&](std::size_t, const Observation& seen, std::size_t place) {
+          const Feature& feature = seen.features[place];
+          if (k < 3) return std::optional(FeatureChange{axis, {}});
+          const Vector3<double> arm = feature.point - seen.features[0].point;
+          return std::optional(FeatureChange{
+              axis.cross(arm), feature.rotation
+                                   ? Vector3<double>(feature.rotation->transpose() * axis)
+                                   : Vector3<double>(Vector3<double>::Zero())});
+        };
+        add(changing_.rows(changing_.with(name, change, kHalf)),
+            changing_.rows(changing_.with(name, change, -kHalf)), kHalf, false, &Stack::motions);
+      }
     }
   }
 

@@ -40,9 +40,10 @@ struct StudySetup {
   FrameOnRobot frame, in;       ///< whose pose is judged, and in which frame
   MeasurementNoise noise = {};
   ErrorSizes errors = {};
-  double ruined = 0.0;      ///< share of samples of which a joint is elsewhere than it says
-  double ruined_by = 0.05;  ///< radians or metres
-  std::uint64_t seed = 1;   ///< the same one: the same robots and noise
+  double ruined = 0.0;        ///< share of samples of which a joint is elsewhere than it says
+  double ruined_by = 0.05;    ///< radians or metres
+  std::uint64_t seed = 1;     ///< the same one: the same robots and noise
+  bool free_targets = false;  ///< also say what six unknowns for each target would give
   std::function<StudyFit(std::span<const Sample>)> fit;  ///< calibrates, as a user would
 };
 

@@ -34,14 +34,28 @@ struct StudyDesign {
   PlainMatrix prior;                  ///< (free x free) of all priors, for one sample
 };
 
+/// Where a target is.
+enum class Targets {
+  held,  ///< on its link, at points that are known: no unknowns, as the Fetch's
+  free  ///< anywhere: six unknowns for each sample, seen by two sensors that count alike, as the PR2's
+};
+
 /// What exact samples are worth near the true robot.
+///
+/// With free targets each sensor has residuals of its own towards points X of the target, and X follows
+/// both: |c - X|^2 + |a - X|^2.  Where X may be moved by t, this leaves of their difference d
+///
+///   min over t = d^T (I - P / 2) d        P: projection onto the rows that t moves
+///
+/// so H = J^T (I - P / 2) J, and V likewise.
 /// @param values   of all parameters of the table: the true robot
 /// @param samples  exact ones: see exact_samples()
 /// @throws StudyError  if a residual is undefined
 [[nodiscard]] StudyDesign study_design(const MakeProblem& make, const FreeSet& free,
                                        std::span<const double> values,
                                        std::span<const Sample> samples,
-                                       const MeasurementNoise& noise);
+                                       const MeasurementNoise& noise,
+                                       Targets targets = Targets::held);
 
 /// How a calibration with some of these samples will vary if it is repeated.  Priors hold
 /// parameters, but do not vary.

@@ -30,11 +30,16 @@ namespace detail {
 KINECAL_INLINE StudyDesign study_design(const MakeProblem& make, const FreeSet& free,
                                         std::span<const double> values,
                                         std::span<const Sample> samples,
-                                        const MeasurementNoise& noise) {
-  StudyDesign design{detail::DesignRows(make, free, values, samples, noise).designs(),
+                                        const MeasurementNoise& noise, Targets targets) {
+  StudyDesign design{detail::DesignRows(make, free, values, samples, noise, targets).designs(),
                      Eigen::MatrixXd::Zero(free.size(), free.size())};
   if (!samples.empty()) {
-    design.prior = detail::prior_of_one(make, free, values, samples[0], design.samples[0]);
+    const SampleDesign held =
+        targets == Targets::held
+            ? design.samples[0]
+            : detail::DesignRows(make, free, values, samples.first(1), noise, Targets::held)
+                  .designs()[0];
+    design.prior = detail::prior_of_one(make, free, values, samples[0], held);
   }
   return design;
 }

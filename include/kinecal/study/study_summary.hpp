@@ -32,11 +32,12 @@ struct StudyGroup {
   double position = 0.0;                    ///< error of the pose, RMS of all trials, metres
   double varied_position = 0.0;             ///< how much the position varies between trials, metres
   double predicted_position = 0.0;          ///< the same by the covariance, metres
-  double worst_position = 0.0;              ///< of a trial, metres
-  double rotation = 0.0;                    ///< RMS, radians
-  double reprojection = 0.0;                ///< mean, unit of the error block
-  double systematic = 0.0;                  ///< mean of samples without noise
-  double nonlinearity = 0.0;                ///< mean: see StudyTrial
+  double free_targets = 0.0;    ///< the same with Targets::free, metres; zero: not asked for
+  double worst_position = 0.0;  ///< of a trial, metres
+  double rotation = 0.0;        ///< RMS, radians
+  double reprojection = 0.0;    ///< mean, unit of the error block
+  double systematic = 0.0;      ///< mean of samples without noise
+  double nonlinearity = 0.0;    ///< mean: see StudyTrial
 };
 
 /// Summarizes trials, group by group.

@@ -97,6 +97,11 @@ KINECAL_INLINE void predict(const StudySetup& setup, const StudyRobot& robot,
   const PlainMatrix goal =
       position_goal(*problem, free, robot.truth, robot.samples, setup.frame, setup.in);
   group.predicted_position = std::sqrt(expected_variance(expected, goal));
+  if (setup.free_targets) {
+    const StudyDesign of_free =
+        study_design(setup.make, free, robot.truth, chosen, setup.noise, Targets::free);
+    group.free_targets = std::sqrt(expected_variance(expected_uncertainty(of_free, all), goal));
+  }
   group.varied_position = std::sqrt(varied_variance(group, trials, goal));
 }
 
