@@ -149,12 +149,10 @@ class DesignRows {
         const Vector3<double> axis = Vector3<double>::Unit(k % 3);
         const auto change = [&](std::size_t, const Observation& seen, std::size_t place) {
           const Feature& feature = seen.features[place];
-          if (k < 3) return std::optional(FeatureChange{axis, {}});
-          const Vector3<double> arm = feature.point - seen.features[0].point;
-          return std::optional(FeatureChange{
-              axis.cross(arm), feature.rotation
-                                   ? Vector3<double>(feature.rotation->transpose() * axis)
-                                   : Vector3<double>(Vector3<double>::Zero())});
+          FeatureChange of;
+          of.point = k < 3 ? axis : axis.cross(feature.point - seen.features[0].point);
+          if (k >= 3 && feature.rotation) of.rotation = feature.rotation->transpose() * axis;
+          return std::optional(of);
         };
         add(changing_.rows(changing_.with(name, change, kHalf)),
             changing_.rows(changing_.with(name, change, -kHalf)), kHalf, false, &Stack::motions);
