@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/report/html.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// Accuracy by number of poses, those of the random sets.
+std::string curve_table(const PoseCurve& curve) {
+  const auto shown = [](double metres) {
+    return std::isfinite(metres) ? fmt::format("{:.3f}", 1e3 * metres) : std::string("-");
+  };
+  std::vector<std::vector<std::string>> rows = {
+      {curve.have > 0 ? "more poses" : "poses", "selected, mm", "random, mm"}};
+  for (const PoseAccuracy& random : curve.random) {
+    const auto selected =
+        std::find_if(curve.selected.begin(), curve.selected.end(),
+                     [&](const PoseAccuracy& point) { return point.poses == random.poses; });
+    if (selected == curve.selected.end()) continue;
+    rows.push_back(
+        {std::to_string(random.poses), shown(selected->position), shown(random.position)});
+  }
+  return detail::html_table(rows, "nnn");
+}
+
+}  // namespace
+
+std::string plan_page(const StudyInput& input, const PlanFindings& findings) {
+  const std::string robot = detail::html_text(input.robot.name());
+  const std::string body = fmt::format(
+      "<header class=\"verdict {}\">\n<h1>{}: <strong>{}</strong></h1>\n"
+      "<pre>{}</pre>\n</header>\n<main>\n"
+      "<section id=\"poses\"><h2>How many poses</h2>\n<div class=\"pair\">{}<div>{}</div></div>\n"
+      "</section>\n<section id=\"parameters\"><h2>What these poses determine</h2>\n"
+      "<pre>{}</pre>\n</section>\n</main>\n",
+      findings.reached ? "good" : "care", robot, detail::html_text(findings.title),
+      detail::html_text(findings.about), detail::html_figure(pose_curve_chart(findings.curve)),
+      curve_table(findings.curve), detail::html_text(findings.lost));
+  return html_file({input.robot.name() + ": " + findings.title, version(), body, ""});
+}
+
+}  // namespace kinecal::cli
