@@ -32,16 +32,20 @@ std::string curve_table(const PoseCurve& curve) {
 }  // namespace
 
 std::string plan_page(const StudyInput& input, const PlanFindings& findings) {
-  const std::string robot = detail::html_text(input.robot.name());
+  const std::size_t title = std::min(findings.lost.find('\n'), findings.lost.size() - 1) + 1;
+  std::string lost = detail::html_paragraphs(findings.lost.substr(0, title));
+  if (title < findings.lost.size()) {
+    lost += "<pre>" + detail::html_lines(findings.lost.substr(title)) + "</pre>\n";
+  }
   const std::string body = fmt::format(
-      "<header class=\"verdict {}\">\n<h1>{}: <strong>{}</strong></h1>\n"
-      "<pre>{}</pre>\n</header>\n<main>\n"
-      "<section id=\"poses\"><h2>How many poses</h2>\n<div class=\"pair\">{}<div>{}</div></div>\n"
-      "</section>\n<section id=\"parameters\"><h2>What these poses determine</h2>\n"
-      "<pre>{}</pre>\n</section>\n</main>\n",
-      findings.reached ? "good" : "care", robot, detail::html_text(findings.title),
-      detail::html_text(findings.about), detail::html_figure(pose_curve_chart(findings.curve)),
-      curve_table(findings.curve), detail::html_text(findings.lost));
+      "<header class=\"verdict {}\">\n<h1>{}: <strong>{}</strong></h1>\n<div>{}</div>\n"
+      "</header>\n<main>\n"
+      "<section id=\"poses\"><h2>How many poses</h2>\n<div class=\"pair\">{}<figure>"
+      "<h3>In numbers</h3>{}</figure></div>\n</section>\n"
+      "<section id=\"parameters\"><h2>What these poses determine</h2>\n{}</section>\n</main>\n",
+      findings.reached ? "good" : "care", detail::html_text(input.robot.name()),
+      detail::html_text(findings.title), detail::html_paragraphs(findings.about),
+      detail::html_figure(pose_curve_chart(findings.curve)), curve_table(findings.curve), lost);
   return html_file({input.robot.name() + ": " + findings.title, version(), body, ""});
 }
 

@@ -99,7 +99,7 @@ std::string tables_of(const StudyText& text) {
   for (const std::string& table : text.tables) {
     const std::size_t end = table.find('\n');
     html += fmt::format("<h3>{}</h3>\n<pre>{}</pre>\n", detail::html_text(table.substr(0, end)),
-                        detail::html_text(table.substr(end + 1)));
+                        detail::html_lines(table.substr(end + 1)));
   }
   return html;
 }
@@ -117,12 +117,12 @@ std::string study_page(const StudyInput& input, const StudyResult& result) {
                                         counted(static_cast<std::size_t>(trials), "calibration"));
   const std::string body = fmt::format(
       "<header class=\"verdict {}\">\n<h1>{}: <strong>{}</strong></h1>\n"
-      "<pre>{}{}{}</pre>\n</header>\n<main>\n"
+      "<div>{}</div>\n</header>\n<main>\n"
       "<section id=\"repeatability\"><h2>Repeatability</h2>\n{}</section>\n"
       "<section id=\"tables\"><h2>Tables</h2>\n{}</section>\n</main>\n",
       failed == 0 && text.linear ? "good" : "care", detail::html_text(input.robot.name()), title,
-      detail::html_text(text.about), detail::html_text(text.sums),
-      detail::html_text(text.linearity), charts_of(input, result), tables_of(text));
+      detail::html_paragraphs(text.about + text.sums + text.linearity), charts_of(input, result),
+      tables_of(text));
   return html_file({input.robot.name() + ": " + title, version(), body, ""});
 }
 

@@ -121,6 +121,9 @@ inline void draw_pose_curve(Drawing& drawing, const PoseCurve& curve, const Plot
     drawing.circle({x.at(point.poses), y.at(1e3 * point.position)}, radius, classes, 0,
                    accuracy_text(point));
   };
+  for (const PoseAccuracy& point : curve.selected) {
+    if (curve.knee && point.poses == *curve.knee) mark(point, 4.5, "after");
+  }
   if (curve.have > 0 && !curve.selected.empty()) mark(curve.selected.front(), 6.0, "ring after");
   if (curve.enough) mark(*curve.enough, 5.0, "good");
 }

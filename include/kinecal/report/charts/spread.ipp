@@ -73,8 +73,8 @@ namespace detail {
     if (ratio < low || ratio > high) ++outside;
   }
   return fmt::format(
-      " With {}, {} of {} determined parameters are outside of the interval; by chance alone "
-      "{:.1f} would be.",
+      " Figures are those of {}: {} of {} determined parameters are outside of the interval, where "
+      "chance alone takes {:.1f} on average; parameters that err together leave it together.",
       shortened(series.name, 40), outside, all, kShare * all);
 }
 
