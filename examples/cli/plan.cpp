@@ -136,6 +136,7 @@ std::vector<int> reached(const PoseChoice& choice, int count, double wanted,
     chosen = set.chosen;
   }
   if (count == 0) {
+    findings.curve.enough = findings.curve.selected.front();
     findings.title = "no more poses are needed";
     findings.about += "which is enough: no more poses are needed\n";
     return {};

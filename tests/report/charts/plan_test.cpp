@@ -61,10 +61,12 @@ TEST(PoseCurve, BeginsAtThePosesThatExist) {
   PoseCurve curve = pose_curve();
   curve.selected = {{0, 1e-3}, {1, 0.9e-3}, {2, 0.8e-3}};
   curve.have = 12;
+  curve.enough = {0, 1e-3};
   const test::SvgChart chart(pose_curve_chart(curve));
   expect_finite(chart);
   EXPECT_EQ(chart.all("//text[.='your 12 poses: 1 mm']").size(), 1u);
   EXPECT_EQ(chart.all("//text[.='more poses']").size(), 1u);
+  EXPECT_TRUE(chart.all("//circle[@class='good']").empty()) << "no more are needed";
 }
 
 TEST(PoseCurve, WhatIsNotDeterminedOrFarAwayIsNoCurve) {
@@ -77,6 +79,7 @@ TEST(PoseCurve, WhatIsNotDeterminedOrFarAwayIsNoCurve) {
   expect_finite(chart);
   EXPECT_TRUE(chart.all("//circle[title]").empty());
   EXPECT_THAT(chart.text("/svg/desc"), HasSubstr("not determined"));
+  EXPECT_THAT(pose_curve_chart(curve).caption, HasSubstr("What is asked for is not reached."));
 }
 
 TEST(Spread, IntervalIsThatOfChi) {

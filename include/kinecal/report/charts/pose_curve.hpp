@@ -21,7 +21,8 @@ struct PoseCurve {
   std::vector<PoseAccuracy> random;    ///< median of random sets, by their number
   double wanted = 0.0;                 ///< accuracy that is asked for, metres
   std::optional<int> knee;             ///< poses after which more improve it little
-  std::optional<PoseAccuracy> enough;  ///< the least set that gives what is asked for
+  /// The least set that gives what is asked for; none: not reached.
+  std::optional<PoseAccuracy> enough;
   int have = 0;  ///< poses that exist: numbers are of those in addition, and begin at zero
 };
 

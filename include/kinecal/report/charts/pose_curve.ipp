@@ -76,7 +76,8 @@ inline void draw_knee(Drawing& drawing, int knee, const PlotArea& area, const Ax
   std::vector<LegendEntry> entries = {{Swatch::line, "after thick", "selected poses"}};
   if (!curve.random.empty()) entries.push_back({Swatch::line, "before", "random sets, median"});
   entries.push_back({Swatch::line, "sigma", "asked for: " + with_unit(curve.wanted, "m")});
-  if (curve.enough) entries.push_back({Swatch::dot, "good", accuracy_text(*curve.enough)});
+  if (curve.enough && curve.enough->poses > 0)
+    entries.push_back({Swatch::dot, "good", accuracy_text(*curve.enough)});
   if (curve.have > 0 && !curve.selected.empty()) {
     entries.push_back({Swatch::ring, "ring after",
                        "your " + accuracy_text({curve.have, curve.selected.front().position})});
@@ -125,7 +126,7 @@ inline void draw_pose_curve(Drawing& drawing, const PoseCurve& curve, const Plot
     if (curve.knee && point.poses == *curve.knee) mark(point, 4.5, "after");
   }
   if (curve.have > 0 && !curve.selected.empty()) mark(curve.selected.front(), 6.0, "ring after");
-  if (curve.enough) mark(*curve.enough, 5.0, "good");
+  if (curve.enough && curve.enough->poses > 0) mark(*curve.enough, 5.0, "good");
 }
 
 }  // namespace detail
@@ -137,6 +138,7 @@ KINECAL_INLINE Chart pose_curve_chart(const PoseCurve& curve) {
   if (curve.knee) {
     chart.caption += " After the knee, five more poses improve it by less than 5 %.";
   }
+  if (!curve.enough) chart.caption += " What is asked for is not reached.";
   const std::vector<detail::LegendEntry> entries = detail::pose_curve_legend(curve);
   detail::Drawing measured("", "", 0.0);  // to know how high the legend is
   const double top = detail::draw_legend(measured, entries, 0.0) + 26.0;
