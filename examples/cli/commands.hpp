@@ -182,6 +182,7 @@ struct StudyOptions : StudyFiles {
                        ///< as in the paper, or 1 pixel
   int threads = 0;     ///< zero: one per core
   std::string output;  ///< folder; empty: only print
+  std::string report;  ///< page with charts; empty: none
   bool force = false;  ///< replace results, and forget a study that was interrupted
 };
 
@@ -207,7 +208,8 @@ struct PlanOptions : StudyFiles {
   std::string accuracy = "gripper 1 mm";
   int candidates = 100;  ///< poses that are generated
   std::string output;    ///< file of poses; empty: only print
-  bool force = false;    ///< replace it
+  std::string report;    ///< page with a chart; empty: none
+  bool force = false;    ///< replace them
 };
 
 /// How many poses an accuracy takes, which, how long that is, and what cannot be known that way.

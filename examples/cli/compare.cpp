@@ -249,7 +249,7 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
       fmt::format("by more than {} standard deviations of the difference", kMoved));
   for (const Chart& chart : charts(data)) body += detail::html_figure(chart);
   body += detail::html_table(rows, "ttnnnnn") + "<details><summary>As text</summary><pre>" +
-          detail::html_text(text_of(a, b, all)) + "</pre></details></section>\n</main>\n";
+          detail::html_lines(text_of(a, b, all)) + "</pre></details></section>\n</main>\n";
   return html_file({title, version(), body, ""});
 }
 

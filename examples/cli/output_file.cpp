@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "kinecal/io/results/file_set.hpp"
+#include "report.hpp"
 
 namespace kinecal::cli {
 
@@ -30,6 +31,12 @@ void check_picture(const std::string& output, const std::vector<std::string>& in
   const std::string ending = std::filesystem::path(output).extension().string();
   if (ending == ".png" || ending == ".PNG") return;
   throw OutputError(output + ": is written as PNG; let the name end in .png");
+}
+
+void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force) {
+  check_output(output, inputs, force);
+  if (is_page(output)) return;
+  throw OutputError(output + ": is written as HTML; let the name end in .html");
 }
 
 std::filesystem::path folder_of(const std::string& output) {

@@ -15,6 +15,9 @@ void check_output(const std::string& output, const std::vector<std::string>& inp
 /// The same of a picture, which is PNG.
 void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
+/// The same of a page, which is HTML.
+void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force);
+
 /// The folder of an output.
 [[nodiscard]] std::filesystem::path folder_of(const std::string& output);
 

@@ -12,6 +12,7 @@
 #include "kinecal/report/text.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "output_file.hpp"
+#include "plan_page.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
 #include "words.hpp"
@@ -62,16 +63,31 @@ std::size_t knee_of(const std::vector<double>& positions) {
   return positions.size() - 1;
 }
 
-/// Accuracy by number of poses, selected and random.
-std::string curve_text(const PoseChoice& choice, const std::vector<double>& positions) {
+/// Accuracy by number of poses, selected and random; what is enough is not known yet.
+PoseCurve curve_of(const PoseChoice& choice, const std::vector<double>& positions, double wanted) {
+  PoseCurve curve;
+  for (std::size_t i = choice.have.empty() ? 1 : 0; i < positions.size(); ++i) {
+    curve.selected.push_back({static_cast<int>(i), positions[i]});
+  }
+  for (const int count : {3, 5, 8, 10, 15, 20, 25, 30, 40, 50, 75, 100}) {
+    if (static_cast<std::size_t>(count) >= positions.size()) break;
+    curve.random.push_back({count, random_position(choice, count)});
+  }
+  curve.wanted = wanted;
+  const std::size_t knee = knee_of(positions);
+  if (std::isfinite(positions[knee])) curve.knee = static_cast<int>(knee);
+  curve.have = static_cast<int>(choice.have.size());
+  return curve;
+}
+
+std::string curve_text(const PoseCurve& curve, const std::vector<double>& positions) {
   TextTable table({"poses", "selected, mm", "random, mm"}, 0);
   const auto shown = [](double metres) {
     return std::isfinite(metres) ? fmt::format("{:.3f}", 1e3 * metres) : std::string("-");
   };
-  for (const int count : {3, 5, 8, 10, 15, 20, 25, 30, 40, 50, 75, 100}) {
-    if (static_cast<std::size_t>(count) >= positions.size()) break;
-    table.add({std::to_string(count), shown(positions[static_cast<std::size_t>(count)]),
-               shown(random_position(choice, count))});
+  for (const PoseAccuracy& random : curve.random) {
+    table.add({std::to_string(random.poses),
+               shown(positions[static_cast<std::size_t>(random.poses)]), shown(random.position)});
   }
   return table.str() + fmt::format("Knee: after {} five more improve it by less than 5 %\n",
                                    counted(knee_of(positions), "pose"));
@@ -88,12 +104,66 @@ std::string lost_text(const StudyInput& input, const PoseChoice& choice) {
          observability_text(input.config.steps.back().name, known, input.calibration.table);
 }
 
+/// "14 poses", "3 more poses".
+std::string poses_text(const PoseChoice& choice, std::size_t count) {
+  return counted(count, choice.have.empty() ? "pose" : "more pose");
+}
+
+/// What is said of a plan that does not reach its accuracy with all poses.
+void not_reached(const PoseChoice& choice, const std::vector<double>& positions, double wanted,
+                 PlanFindings& findings) {
+  const double least = positions.back(), more = least / wanted;
+  findings.title = millimetres(wanted) + " cannot be reached with poses like these";
+  findings.about += fmt::format("{} give {}; {}", poses_text(choice, positions.size() - 1),
+                                millimetres(least), findings.title);
+  findings.about +=
+      std::isfinite(more)
+          ? fmt::format(": that takes {:.0f} times as many samples, or less noise\n", more * more)
+          : "\n";
+}
+
+/// What is said of one that does.
+/// @param count  of the first poses of a large set that reach it
+/// @returns      the poses, in an order of short ways
+std::vector<int> reached(const PoseChoice& choice, int count, double wanted,
+                         PlanFindings& findings) {
+  findings.reached = true;
+  std::vector<int> chosen;
+  // A set of its own size can be better than the first few of a larger one.
+  for (int fewer = count; fewer > 0; --fewer) {
+    const PoseSelection set = kinecal::select_poses(choice.candidates, {.count = fewer});
+    if (fewer < count && expected_position(choice, set.chosen) > wanted) break;
+    chosen = set.chosen;
+  }
+  if (count == 0) {
+    findings.curve.enough = findings.curve.selected.front();
+    findings.title = "no more poses are needed";
+    findings.about += "which is enough: no more poses are needed\n";
+    return {};
+  }
+  std::vector<int> order = short_order(choice, chosen);
+  const double position = expected_position(choice, chosen);
+  findings.curve.enough = {static_cast<int>(chosen.size()), position};
+  findings.title = poses_text(choice, chosen.size()) + " give " + millimetres(position);
+  findings.about += fmt::format("{}: {} with the URDF's speeds and 3 s a stop\n", findings.title,
+                                duration_text(session_seconds(choice, order)));
+  return order;
+}
+
+/// Checks what is to be written.
+void check_outputs(const PlanOptions& options) {
+  std::vector<std::string> inputs = {options.urdf, options.config, options.pose_file, options.scene,
+                                     options.have};
+  inputs.insert(inputs.end(), options.samples.begin(), options.samples.end());
+  if (!options.output.empty()) check_output(options.output, inputs, options.force);
+  inputs.push_back(options.output);
+  if (!options.report.empty()) check_page(options.report, inputs, options.force);
+}
+
 }  // namespace
 
 int plan(const PlanOptions& options) {
-  const std::vector<std::string> inputs = {options.urdf, options.config, options.pose_file,
-                                           options.scene, options.have};
-  if (!options.output.empty()) check_output(options.output, inputs, options.force);
+  check_outputs(options);
   (void)parse_accuracy(options.accuracy);
   const std::unique_ptr<StudyInput> input = read_study(options, options.candidates);
   const double wanted = wanted_position(options.accuracy, *input);
@@ -103,46 +173,32 @@ int plan(const PlanOptions& options) {
   const std::vector<double> positions = positions_of(choice, all.chosen);
   const auto enough =
       std::find_if(positions.begin(), positions.end(), [&](double p) { return p <= wanted; });
-  std::string text = fmt::format("'{}' in '{}', one standard deviation\n",
-                                 input->setup.frame.name(), input->setup.in.name());
+  PlanFindings findings;
+  findings.curve = curve_of(choice, positions, wanted);
+  findings.lost = lost_text(*input, choice);
+  findings.about = fmt::format("'{}' in '{}', one standard deviation\n", input->setup.frame.name(),
+                               input->setup.in.name());
   if (!choice.have.empty()) {
-    text += fmt::format("with your {}: {}\n", counted(choice.have.size(), "pose"),
-                        millimetres(positions.front()));
+    findings.about += fmt::format("with your {}: {}\n", counted(choice.have.size(), "pose"),
+                                  millimetres(positions.front()));
   }
   std::vector<int> chosen;
   if (enough == positions.end()) {
-    const double least = positions.back(), more = least / wanted;
-    text += fmt::format("{} give {}; {} cannot be reached with poses like these",
-                        counted(all.chosen.size(), choice.have.empty() ? "pose" : "more pose"),
-                        millimetres(least), millimetres(wanted));
-    text +=
-        std::isfinite(more)
-            ? fmt::format(": that takes {:.0f} times as many samples, or less noise\n", more * more)
-            : "\n";
+    not_reached(choice, positions, wanted, findings);
   } else {
-    const auto count = static_cast<int>(enough - positions.begin());
-    // A set of its own size can be better than the first few of a larger one.
-    for (int fewer = count; fewer > 0; --fewer) {
-      const PoseSelection set = kinecal::select_poses(choice.candidates, {.count = fewer});
-      if (fewer < count && expected_position(choice, set.chosen) > wanted) break;
-      chosen = set.chosen;
-    }
-    const std::vector<int> order = short_order(choice, chosen);
-    text += count == 0
-                ? "which is enough: no more poses are needed\n"
-                : fmt::format("{} give {}: {} with the URDF's speeds and 3 s a stop\n",
-                              counted(chosen.size(), choice.have.empty() ? "pose" : "more pose"),
-                              millimetres(expected_position(choice, chosen)),
-                              duration_text(session_seconds(choice, order)));
-    chosen = order;
+    chosen = reached(choice, static_cast<int>(enough - positions.begin()), wanted, findings);
   }
-  text += "\n" + curve_text(choice, positions) + "\n" + lost_text(*input, choice);
-  fmt::print("{}", printable(text));
-  const int code = enough == positions.end() ? kNotUsable : kDone;
-  if (options.output.empty() || chosen.empty()) return code;
-  write_pose_file(options.output, poses_of_choice(*input, chosen));
-  fmt::print("{}\n", options.output);
-  return kDone;
+  fmt::print("{}", printable(findings.about + "\n" + curve_text(findings.curve, positions) + "\n" +
+                             findings.lost));
+  if (!options.output.empty() && !chosen.empty()) {
+    write_pose_file(options.output, poses_of_choice(*input, chosen));
+    fmt::print("{}\n", options.output);
+  }
+  if (!options.report.empty()) {
+    write_file(options.report, plan_page(*input, findings));
+    fmt::print("{}\n", options.report);
+  }
+  return findings.reached ? kDone : kNotUsable;
 }
 
 }  // namespace kinecal::cli

@@ -281,7 +281,12 @@ void add_study(CLI::App& command, StudyOptions& options) {
       .add_option("-o,--output", options.output,
                   "folder for tables and trials; a study that was interrupted goes on there")
       ->type_name("DIR");
-  command.add_flag("--force", options.force, "replace the study that is in the folder");
+  command
+      .add_option("--report", options.report,
+                  "a page with charts and the tables, one file: its name ends in .html")
+      ->type_name("FILE");
+  command.add_flag("--force", options.force,
+                   "replace the study that is in the folder, and the page");
 }
 
 /// Options of poses that are chosen.
@@ -300,7 +305,7 @@ void add_choice(CLI::App& command, StudyFiles& files, int& candidates, std::stri
       .add_option("-o,--output", output,
                   "file of the chosen poses: YAML of robot_calibration, or a bag by its name")
       ->type_name("FILE");
-  command.add_flag("--force", force, "replace that file");
+  command.add_flag("--force", force, "replace a file that exists");
 }
 
 void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
@@ -341,6 +346,10 @@ void add_plan(CLI::App& command, PlanOptions& options) {
                   "of the gripper in the camera, one standard deviation: \"gripper 0.5 mm\"")
       ->capture_default_str()
       ->type_name("TEXT");
+  command
+      .add_option("--report", options.report,
+                  "a page with the accuracy over the number of poses: its name ends in .html")
+      ->type_name("FILE");
 }
 
 void add_detect(CLI::App& command, DetectOptions& options) {

@@ -16,10 +16,12 @@
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/report/checksum.hpp"
+#include "output_file.hpp"
 #include "process_group.hpp"
 #include "progress.hpp"
 #include "study_input.hpp"
 #include "study_journal.hpp"
+#include "study_page.hpp"
 #include "study_tables.hpp"
 
 namespace kinecal::cli {
@@ -212,11 +214,15 @@ void report(const StudyOptions& options, const StudyInput& input, const std::vec
   if (result.solves_per_second > 0.0) {
     fmt::print("{:.0f} solves per second and core\n", result.solves_per_second);
   }
-  if (output == nullptr) return;
-  if (result.done < result.jobs) {
+  if (output != nullptr && result.done < result.jobs) {
     fmt::print("{}: run the same command again to go on\n", options.output);
     return;
   }
+  if (!options.report.empty()) {
+    write_file(options.report, study_page(input, result));
+    fmt::print("{}\n", options.report);
+  }
+  if (output == nullptr) return;
   std::string lines = trial_columns(free_names(input)) + "\n";
   for (const auto& [job, trial] : trials) lines += trial_line(trial) + "\n";
   output->write({{kTrials, lines}, {kTables, text}, {kJson, study_json(input, result)}});
@@ -229,6 +235,12 @@ void check_options(const StudyOptions& options, const ProcessGroup& group) {
                          ? "--force: several processes cannot replace a study; remove its "
                            "folder before"
                          : "--output is required for several processes: they meet there");
+  }
+  if (!options.report.empty()) {
+    std::vector<std::string> inputs = {options.urdf, options.config, options.pose_file,
+                                       options.scene};
+    inputs.insert(inputs.end(), options.samples.begin(), options.samples.end());
+    check_page(options.report, inputs, options.force);
   }
   if (options.output.empty() || options.force) return;
   if (std::filesystem::exists(std::filesystem::path(options.output) / kJson)) {

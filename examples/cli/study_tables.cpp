@@ -86,7 +86,7 @@ std::string table_one(const StudyInput& input, const StudyResult& result) {
   for (const StudyGroup* group : groups) titles.push_back(fmt::format("{} poses", group->poses));
   const bool has_ratio = groups.size() > 1;
   std::string text = fmt::format(
-      "\nTable I: variance of {} calibrations of robot 1, and the one that the covariance "
+      "Table I: variance of {} calibrations of robot 1, and the one that the covariance "
       "predicts\n",
       groups.front()->trials);
   text += variances(input, groups, titles, has_ratio);
@@ -106,7 +106,7 @@ std::string table_two(const StudyInput& input, const StudyResult& result) {
   std::vector<std::string> titles;
   for (const StudyGroup* group : groups)
     titles.push_back(fmt::format("robot {}", group->robot + 1));
-  return fmt::format("\nTable II: the same of {}, {} poses\n", counted(groups.size(), "robot"),
+  return fmt::format("Table II: the same of {}, {} poses\n", counted(groups.size(), "robot"),
                      groups.front()->poses) +
          variances(input, groups, titles, false);
 }
@@ -128,9 +128,9 @@ std::string table_three(const StudyInput& input, const StudyResult& result) {
                mm(group.predicted_position), mm(group.worst_position),
                fmt::format("{} of {}", group.failed, group.trials)});
   }
-  std::string text = fmt::format(
-      "\nTable III: mean re-projection error on new samples, and error of '{}' in '{}'\n",
-      input.setup.frame.name(), input.setup.in.name());
+  std::string text =
+      fmt::format("Table III: mean re-projection error on new samples, and error of '{}' in '{}'\n",
+                  input.setup.frame.name(), input.setup.in.name());
   text += table.str();
   const int robots = robots_of(result);
   if (robots > kMost) text += fmt::format("  ... and {} more\n", robots - kMost);
@@ -149,7 +149,7 @@ std::string free_targets(const StudyInput& input, const StudyResult& result) {
                std::to_string(unknowns + 6 * static_cast<std::size_t>(group->poses)),
                fmt::format("{:.3f}", 1e3 * group->free_targets)});
   }
-  return "\nFree targets, as in the PR2's calibration: six unknowns for the pose of each sample's "
+  return "Free targets, as in the PR2's calibration: six unknowns for the pose of each sample's "
          "target, predicted\n" +
          table.str();
 }
@@ -171,7 +171,7 @@ std::string sums(const StudyInput& input, const StudyResult& result) {
   const std::string unit = unit_of_study(input);
   double systematic = 0.0;
   for (const StudyGroup& group : result.groups) systematic = std::max(systematic, group.systematic);
-  text += fmt::format("\n{} of {} failed: mean re-projection error above {} {}, or not converged\n",
+  text += fmt::format("{} of {} failed: mean re-projection error above {} {}, or not converged\n",
                       failed, counted(static_cast<std::size_t>(trials), "calibration"),
                       in_reading_unit(result.limit, unit), reading_unit(unit));
   text += fmt::format(
@@ -191,6 +191,10 @@ std::string sums(const StudyInput& input, const StudyResult& result) {
                         counted(static_cast<std::size_t>(ruined), "sample"), left_out);
   }
   return text;
+}
+
+bool is_linear(const StudyGroup& group) {
+  return group.ruined > 0 || group.nonlinearity < kLinear;
 }
 
 /// Whether the covariance describes the trials.
@@ -240,16 +244,31 @@ double variance_ratio(const StudyResult& result, int robot) {
   return *middle;
 }
 
-std::string study_text(const StudyInput& input, const StudyResult& result) {
-  std::string text =
+StudyText study_texts(const StudyInput& input, const StudyResult& result) {
+  StudyText text;
+  text.about =
       fmt::format("{}: {}, {} poses to choose from, {} free parameters\n", input.robot.name(),
                   counted(static_cast<std::size_t>(robots_of(result)), "robot"),
                   input.samples.size(), input.setup.free.size());
   if (result.done < result.jobs) {
-    text += fmt::format("Interrupted: {} of {} calibrations are done\n", result.done, result.jobs);
+    text.about +=
+        fmt::format("Interrupted: {} of {} calibrations are done\n", result.done, result.jobs);
   }
-  return text + table_one(input, result) + table_two(input, result) + table_three(input, result) +
-         free_targets(input, result) + sums(input, result) + linearity(result);
+  for (const auto& table : {table_one, table_two, table_three, free_targets}) {
+    const std::string lines = table(input, result);
+    if (!lines.empty()) text.tables.push_back(lines);
+  }
+  text.sums = sums(input, result);
+  text.linearity = linearity(result);
+  text.linear = std::all_of(result.groups.begin(), result.groups.end(), is_linear);
+  return text;
+}
+
+std::string study_text(const StudyInput& input, const StudyResult& result) {
+  const StudyText of = study_texts(input, result);
+  std::string text = of.about;
+  for (const std::string& table : of.tables) text += "\n" + table;
+  return text + "\n" + of.sums + of.linearity;
 }
 
 std::string study_json(const StudyInput& input, const StudyResult& result) {

@@ -20,7 +20,18 @@ struct StudyResult {
   double solves_per_second = 0.0;  ///< and core
 };
 
-/// Tables I, II and III of the Fetch paper, and what the trials show beside it.
+/// What a study found, in words.
+struct StudyText {
+  std::string about;                ///< robot, number of poses and parameters
+  std::vector<std::string> tables;  ///< I, II and III of the Fetch paper, each with its title
+  std::string sums;                 ///< over all robots
+  std::string linearity;            ///< whether the covariance describes the trials; may be empty
+  bool linear = true;               ///< so it does, as far as is known
+};
+
+[[nodiscard]] StudyText study_texts(const StudyInput& input, const StudyResult& result);
+
+/// The same in one text.
 [[nodiscard]] std::string study_text(const StudyInput& input, const StudyResult& result);
 
 /// The same as JSON.

@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ContainsRegex;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kFetch = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/";
 
@@ -47,6 +48,30 @@ TEST_F(Study, PrintsTheTablesOfThePaperAndWritesTrials) {
   const test::Outcome again = call("study", "--robots 2 --repeat 3 --poses 20,12 -o out");
   EXPECT_EQ(again.code, 1);
   EXPECT_THAT(again.err, HasSubstr("has a study already; use --force"));
+}
+
+TEST_F(Study, WritesAPageWithChartsAndTables) {
+  const std::string what = "--robots 2 --repeat 3 --poses 20,12 ";
+  const test::Outcome outcome = call("study", what + "--report page.html");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("\npage.html\n"));
+  const std::string page = read("page.html");
+  EXPECT_THAT(page, HasSubstr("<title>fetch: 0 of 12 calibrations failed</title>"));
+  EXPECT_THAT(page, HasSubstr("data-chart=\"spread\""));
+  EXPECT_THAT(page, HasSubstr("data-chart=\"position-spread\""));
+  EXPECT_THAT(page, HasSubstr("<h3>Table I: variance of 3 calibrations of robot 1"));
+  EXPECT_THAT(page, HasSubstr("<h3>Table II: the same of 2 robots, 20 poses</h3>"));
+  EXPECT_THAT(page, HasSubstr("<h3>Table III: mean re-projection error"));
+  EXPECT_THAT(page, ContainsRegex("<p>(Linear|Not linear): "));
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+  const test::Outcome again = call("study", what + "--report page.html");
+  EXPECT_EQ(again.code, 1);
+  EXPECT_THAT(again.err, HasSubstr("page.html: exists; use --force"));
+  EXPECT_EQ(call("study", what + "--report other.html --threads 1").code, 0);
+  EXPECT_EQ(read("other.html"), page);
+  const test::Outcome text = call("study", what + "--report page.txt");
+  EXPECT_EQ(text.code, 1);
+  EXPECT_THAT(text.err, HasSubstr("let the name end in .html"));
 }
 
 TEST_F(Study, TrialsDoNotDependOnThreads) {
@@ -164,6 +189,29 @@ TEST_F(Study, PlanSaysHowManyPosesAnAccuracyTakes) {
   const test::Outcome angle = call("plan", "--accuracy 'gripper 1 deg'");
   EXPECT_EQ(angle.code, 1);
   EXPECT_THAT(angle.err, HasSubstr("give a length"));
+}
+
+TEST_F(Study, PlanWritesAPageWithACurve) {
+  const std::string what = "--candidates 30 --accuracy 'gripper 3 mm' ";
+  const test::Outcome outcome = call("plan", what + "-o plan.yaml --report page.html");
+  ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  const std::string page = read("page.html");
+  EXPECT_THAT(page, ContainsRegex("<strong>[0-9]+ poses give [0-2]\\.[0-9]+ mm</strong>"));
+  EXPECT_THAT(page, HasSubstr("data-chart=\"pose-curve\""));
+  EXPECT_THAT(page, ContainsRegex(">knee: [0-9]+ poses<"));
+  EXPECT_THAT(page, HasSubstr("asked for: 3 mm"));
+  EXPECT_THAT(page, ContainsRegex("<p>(Parameters that no number|All parameters can be had)"));
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+  EXPECT_EQ(call("plan", what + "--report page.html").code, 1) << "it exists";
+  ASSERT_EQ(call("plan", what + "--report again.html").code, 0);
+  EXPECT_EQ(read("again.html"), page);
+  const test::Outcome more = call("plan", what + "--have plan.yaml --report more.html");
+  ASSERT_EQ(more.code, 0) << more.err;
+  EXPECT_THAT(read("more.html"), ContainsRegex(">your [0-9]+ poses: [0-9.]+ mm<"));
+  const test::Outcome never =
+      call("plan", "--candidates 30 --accuracy 'gripper 0.001 mm' --report never.html");
+  EXPECT_EQ(never.code, 2);
+  EXPECT_THAT(read("never.html"), HasSubstr("0.001 mm cannot be reached with poses like these"));
 }
 
 }  // namespace

@@ -128,5 +128,11 @@ TEST(Html, ShowsACalibrationThatNeverBegan) {
   EXPECT_TRUE(document.load_string(markup_of(html_report(data, "")).c_str()));
 }
 
+TEST(HtmlLines, StayLinesAndAreEscaped) {
+  EXPECT_EQ(detail::html_lines("a <b>\n  c\n\nd"), "a &lt;b&gt;\n  c\n\nd\n");
+  EXPECT_EQ(detail::html_lines(""), "");
+  EXPECT_EQ(detail::html_paragraphs("a & b\n\nc\n"), "<p>a &amp; b</p>\n<p>c</p>\n");
+}
+
 }  // namespace
 }  // namespace kinecal

@@ -34,6 +34,12 @@ namespace detail {
 /// Plain text as HTML: escaped; what is not UTF-8, or not allowed in HTML, is replaced.
 [[nodiscard]] std::string html_text(std::string_view text);
 
+/// The same of lines, which stay lines: for <pre>.
+[[nodiscard]] std::string html_lines(std::string_view text);
+
+/// The same of lines that become paragraphs.
+[[nodiscard]] std::string html_paragraphs(std::string_view text);
+
 /// A chart with its caption.
 [[nodiscard]] std::string html_figure(const Chart& chart);
 

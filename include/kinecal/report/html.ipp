@@ -34,6 +34,26 @@ inline constexpr std::size_t kMostOfTitle = 120;  ///< characters
          "points. A click on a sample in a chart or table shows it here.</figcaption></figure>\n";
 }
 
+KINECAL_INLINE std::string html_lines(std::string_view text) {
+  std::string html;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    html += html_text(text.substr(at, end - at)) + "\n";
+    at = end + 1;
+  }
+  return html;
+}
+
+KINECAL_INLINE std::string html_paragraphs(std::string_view text) {
+  std::string html;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    if (end > at) html += "<p>" + html_text(text.substr(at, end - at)) + "</p>\n";
+    at = end + 1;
+  }
+  return html;
+}
+
 }  // namespace detail
 
 KINECAL_INLINE std::string html_file(const HtmlPage& page) {

@@ -129,7 +129,7 @@ namespace kinecal::detail {
       "<pre class=\"command\"><code>{}</code></pre>\n"
       "<details><summary>The report as text</summary><pre>{}</pre></details></section>\n",
       html_table(rows, "tttn"), html_text(data.version), html_text(data.command),
-      html_text(data.summary));
+      html_lines(data.summary));
 }
 
 }  // namespace kinecal::detail
