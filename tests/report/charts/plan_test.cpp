@@ -83,7 +83,7 @@ TEST(PoseCurve, WhatIsNotDeterminedOrFarAwayIsNoCurve) {
 }
 
 TEST(Spread, IntervalIsThatOfChi) {
-  // Quantiles of chi-square: 0.000982 and 5.0239 with one degree of freedom, 2.7004 and 19.0228 with 9.
+  // Of chi-square: 0.000982 and 5.0239 with one degree of freedom, 2.7004 and 19.0228 with 9.
   EXPECT_NEAR(spread_interval(1).first, std::sqrt(0.000982), 1e-4);
   EXPECT_NEAR(spread_interval(1).second, std::sqrt(5.0239), 1e-4);
   EXPECT_NEAR(spread_interval(9).first, std::sqrt(2.7004 / 9.0), 1e-4);
