@@ -98,8 +98,9 @@ TEST_F(CalibrateLog, IsTheSameInSeveralProcesses) {
 TEST_F(CalibrateLog, GoesOnWhereAProcessWasKilled) {
   ASSERT_EQ(log("--threads 1 --output one").code, 0);
   // The second of two processes never comes: the first waits for it, and is killed.
-  const Outcome killed = log("--threads 1 --output out",
-                             "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout -s KILL 3 ");
+  const Outcome killed =
+      log("--threads 1 --output out",
+          "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout --foreground -s KILL 3 ");
   EXPECT_NE(killed.code, 0);
   ASSERT_TRUE(fs::exists(folder_ / "out/sums"));
   EXPECT_FALSE(fs::is_empty(folder_ / "out/sums"));
@@ -109,8 +110,9 @@ TEST_F(CalibrateLog, GoesOnWhereAProcessWasKilled) {
 }
 
 TEST_F(CalibrateLog, CtrlCEndsItAndTheSameCommandGoesOn) {
-  const Outcome stopped = log("--threads 1 --output out",
-                              "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout -s INT 3 ");
+  const Outcome stopped =
+      log("--threads 1 --output out",
+          "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout --foreground -s INT 3 ");
   EXPECT_THAT(stopped.err, HasSubstr("out: run the same command again to go on"));
   EXPECT_EQ(log("--threads 1 --output out").code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "out/calibration.yaml"));
@@ -133,8 +135,9 @@ TEST_F(CalibrateLog, NamesWhatIsWrongWithAFileAndWritesNothing) {
 }
 
 TEST_F(CalibrateLog, SumsOfOtherFilesAreNotTaken) {
-  const Outcome killed = log("--threads 1 --output out",
-                             "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout -s KILL 3 ");
+  const Outcome killed =
+      log("--threads 1 --output out",
+          "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout --foreground -s KILL 3 ");
   ASSERT_NE(killed.code, 0);
   samples_[3].joint_positions[0] += 0.001;
   samples_[3].source = "another sample";
