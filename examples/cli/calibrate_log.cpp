@@ -81,6 +81,7 @@ class LogRun {
   [[nodiscard]] Input read(int file) const {
     InputOptions one = options_;
     one.samples = {options_.samples[static_cast<std::size_t>(file)]};
+    if (file > 0) one.urdf_text = first_.urdf_text;  // bags that were split have it in the first
     return read_input(one);
   }
 
@@ -377,6 +378,8 @@ int report(const CalibrateLogOptions& options, const LogRun& run, const Findings
   const CalibrationResult& result = findings.result;
   if (findings.judgement.verdict == Grade::do_not_use) {
     run.forget();
+    std::error_code has_files;
+    std::filesystem::remove(options.output, has_files);
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
                result.steps.empty() ? "" : result.steps.back().name,
                findings.judgement.reasons.front());

@@ -17,6 +17,7 @@ enum ExitCode { kDone = 0, kBadInput = 1, kNotUsable = 2, kInterrupted = 130 };
 /// What is calibrated, from which samples.
 struct InputOptions {
   std::string urdf;                     ///< empty: the /robot_description of the samples' bag
+  std::string urdf_text = {};           ///< content of a URDF, if neither is there
   std::string config;                   ///< file
   std::vector<std::string> samples;     ///< files
   std::vector<std::string> cameras;     ///< NAME=FILE, for samples without camera_info

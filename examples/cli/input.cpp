@@ -97,6 +97,7 @@ Input read_input(const InputOptions& options) {
   if (configuration) hold_parameters(*configuration, options.hold, diagnostics);
   Recording recording = read_recordings(options.samples, diagnostics);
   input.samples = std::move(recording.samples);
+  if (recording.urdf.empty()) recording.urdf = options.urdf_text;
   if (options.urdf.empty() && recording.urdf.empty()) {
     diagnostics.error({"--urdf", 0},
                       options.samples.empty()

@@ -84,6 +84,24 @@ TEST_F(Study, TrialsDoNotDependOnThreads) {
   EXPECT_NE(read("one/trials.csv"), read("other/trials.csv"));
 }
 
+TEST_F(Study, CtrlCPrintsWhatIsDoneAndTheSameCommandGoesOn) {
+  const std::string what = "--robots 2 --repeat 30 --poses 12 --threads 1 ";
+  ASSERT_EQ(call("study", what + "-o whole").code, 0);
+  test::Outcome stopped;
+  for (double seconds = 4.0; seconds > 0.05; seconds *= 0.7) {
+    fs::remove_all(folder_ / "part");
+    stopped = run("timeout --foreground --preserve-status -s INT " + std::to_string(seconds) +
+                  " " KINECAL_PROGRAM " study --urdf " + kFetch + "fetch.urdf --target leds " +
+                  what + "-o part");
+    if (stopped.code == 130 && stopped.out.find("Interrupted") != std::string::npos) break;
+  }
+  EXPECT_EQ(stopped.code, 130);
+  EXPECT_THAT(stopped.out, ContainsRegex("Interrupted: [0-9]+ of 60 calibrations are done"));
+  EXPECT_THAT(stopped.out, HasSubstr("part: run the same command again to go on"));
+  EXPECT_EQ(call("study", what + "-o part").code, 0);
+  EXPECT_EQ(read("part/study.json"), read("whole/study.json"));
+}
+
 TEST_F(Study, GoesOnWhereItWasKilled) {
   const std::string what = "--robots 2 --repeat 20 --poses 12 ";
   ASSERT_EQ(call("study", what + "-o whole").code, 0);
