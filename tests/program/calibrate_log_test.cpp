@@ -38,9 +38,17 @@ class CalibrateLog : public test::ProgramTest {
     write_part("c_.yaml", 31, 60);
   }
   /// Calibrates the three parts.
-  [[nodiscard]] Outcome log(const std::string& options, const std::string& before = "") const {
-    return run(before + KINECAL_PROGRAM " calibrate-log" + kInput + "a.yaml b.yaml c_.yaml " +
-               options);
+  [[nodiscard]] Outcome log(const std::string& options) const {
+    return run(KINECAL_PROGRAM " calibrate-log" + kInput + "a.yaml b.yaml c_.yaml " + options);
+  }
+  /// Starts the first of two processes, and stops it while it waits for the second.
+  [[nodiscard]] Outcome stopped_by(const std::string& signal) const {
+    write("start.sh", "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 " KINECAL_PROGRAM
+                      " calibrate-log" +
+                          kInput + "a.yaml b.yaml c_.yaml --threads 1 --output out &\n" +
+                          "until ls out/sums/* > /dev/null 2>&1; do sleep 0.05; done; sleep 0.3\n" +
+                          "kill -" + signal + " $!; wait $!\n");
+    return run("sh start.sh");
   }
   /// Starts so many processes as mpirun does.
   [[nodiscard]] int processes(int count, const std::string& output) const {
@@ -98,9 +106,7 @@ TEST_F(CalibrateLog, IsTheSameInSeveralProcesses) {
 TEST_F(CalibrateLog, GoesOnWhereAProcessWasKilled) {
   ASSERT_EQ(log("--threads 1 --output one").code, 0);
   // The second of two processes never comes: the first waits for it, and is killed.
-  const Outcome killed =
-      log("--threads 1 --output out",
-          "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout --foreground -s KILL 3 ");
+  const Outcome killed = stopped_by("KILL");
   EXPECT_NE(killed.code, 0);
   ASSERT_TRUE(fs::exists(folder_ / "out/sums"));
   EXPECT_FALSE(fs::is_empty(folder_ / "out/sums"));
@@ -110,9 +116,7 @@ TEST_F(CalibrateLog, GoesOnWhereAProcessWasKilled) {
 }
 
 TEST_F(CalibrateLog, CtrlCEndsItAndTheSameCommandGoesOn) {
-  const Outcome stopped =
-      log("--threads 1 --output out",
-          "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout --foreground -s INT 3 ");
+  const Outcome stopped = stopped_by("INT");
   EXPECT_THAT(stopped.err, HasSubstr("out: run the same command again to go on"));
   EXPECT_EQ(log("--threads 1 --output out").code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "out/calibration.yaml"));
@@ -135,9 +139,7 @@ TEST_F(CalibrateLog, NamesWhatIsWrongWithAFileAndWritesNothing) {
 }
 
 TEST_F(CalibrateLog, SumsOfOtherFilesAreNotTaken) {
-  const Outcome killed =
-      log("--threads 1 --output out",
-          "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 timeout --foreground -s KILL 3 ");
+  const Outcome killed = stopped_by("KILL");
   ASSERT_NE(killed.code, 0);
   samples_[3].joint_positions[0] += 0.001;
   samples_[3].source = "another sample";

@@ -1,6 +1,7 @@
+#include "kinecal/trust/assess_shards.hpp"
+
 #include <gtest/gtest.h>
 
-#include "kinecal/trust/assess_shards.hpp"
 #include "support/scene_shards.hpp"
 
 namespace kinecal {
