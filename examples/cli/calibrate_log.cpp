@@ -325,23 +325,6 @@ class LogRun {
     }
   }
 
-  /// Gives blocks without a sigma that of their residuals.
-  /// @returns  whether one changed
-  [[nodiscard]] static bool take_estimates(const Findings& findings,
-                                           const std::vector<BlockConfig*>& blocks) {
-    bool changed = false;
-    for (BlockConfig* block : blocks) {
-      const BlockNoise* noise =
-          detail::of_block(findings.assessments, &Assessment::noise, block->name);
-      if (noise == nullptr || !(noise->robust > 0.0)) continue;
-      constexpr double kStays = 0.01;
-      const double before = block->estimated_sigma.value_or(1.0);
-      changed = changed || std::abs(noise->robust - before) > kStays * before;
-      block->estimated_sigma = noise->robust;
-    }
-    return changed;
-  }
-
   const CalibrateLogOptions& options_;
   ProcessGroup group_;
   Input first_;

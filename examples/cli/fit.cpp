@@ -30,6 +30,20 @@ std::vector<BlockConfig*> blocks_to_estimate(Config& config) {
   return all;
 }
 
+bool take_estimates(const Findings& findings, const std::vector<BlockConfig*>& blocks) {
+  bool changed = false;
+  for (BlockConfig* block : blocks) {
+    const BlockNoise* noise =
+        detail::of_block(findings.assessments, &Assessment::noise, block->name);
+    if (noise == nullptr || !(noise->robust > 0.0)) continue;
+    constexpr double kStays = 0.01;
+    const double before = block->estimated_sigma.value_or(1.0);
+    changed = changed || std::abs(noise->robust - before) > kStays * before;
+    block->estimated_sigma = noise->robust;
+  }
+  return changed;
+}
+
 namespace {
 
 constexpr const char* kExcluded = "--exclude";  ///< why a user left a sample out
@@ -95,17 +109,7 @@ Fit fit_with_estimates(const Input& input, const Selection& selection,
   Fit fitted = fit_samples(input, config, selection, options, progress, solving);
   constexpr int kRounds = 10;
   for (int round = 0; round < kRounds && fitted.findings.result.converged; ++round) {
-    bool changed = false;
-    for (BlockConfig* block : blocks) {
-      const BlockNoise* noise =
-          detail::of_block(fitted.findings.assessments, &Assessment::noise, block->name);
-      if (noise == nullptr || !(noise->robust > 0.0)) continue;
-      constexpr double kStays = 0.01;
-      const double before = block->estimated_sigma.value_or(1.0);
-      changed = changed || std::abs(noise->robust - before) > kStays * before;
-      block->estimated_sigma = noise->robust;
-    }
-    if (!changed) break;
+    if (!take_estimates(fitted.findings, blocks)) break;
     fitted = fit_samples(input, config, selection, options, progress, solving);
   }
   return fitted;

@@ -27,6 +27,11 @@ struct Fit {
 /// sigmas, and several of a step, which are weighed against each other.
 [[nodiscard]] std::vector<BlockConfig*> blocks_to_estimate(Config& config);
 
+/// Gives these blocks the noise that their residuals show in place of a sigma.
+/// @returns  whether one changed by more than 1 %
+[[nodiscard]] bool take_estimates(const Findings& findings,
+                                  const std::vector<BlockConfig*>& blocks);
+
 /// Adds offsets that cannot be, and mistakes that explain a bad fit, to its reasons: with them it is not
 /// to be used.
 void add_causes(const Input& input, Fit& fitted);
