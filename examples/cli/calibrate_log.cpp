@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "commands.hpp"
@@ -41,12 +43,34 @@ struct LogContent {
   int doubts = 0;                ///< about the files after the first
 };
 
+/// Size, begin and end of a file, or of all files of a folder: enough to see that it is another one,
+/// without reading it all.
+std::string ends_of(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) {
+    std::set<std::filesystem::path> files;
+    for (const auto& file : std::filesystem::directory_iterator(path)) files.insert(file.path());
+    std::string all;
+    for (const std::filesystem::path& file : files) all += ends_of(file);
+    return all;
+  }
+  constexpr std::streamoff kEnd = 65536;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file.tellg();
+  std::string ends(static_cast<std::size_t>(std::clamp(size, std::streamoff{0}, kEnd)), '\0');
+  std::string text = fmt::format("{} {} ", path.filename().string(), size);
+  for (const std::streamoff at : {std::streamoff{0}, std::max(std::streamoff{0}, size - kEnd)}) {
+    file.seekg(at).read(ends.data(), static_cast<std::streamsize>(ends.size()));
+    text += sha256_text(ends);
+  }
+  return text;
+}
+
 /// One run of one process.
 class LogRun {
  public:
   LogRun(const CalibrateLogOptions& options, const ProcessGroup& group)
       : options_(options), group_(group), first_(read(0)) {
-    if (group_.rank == 0) print(first_.diagnostics);
+    if (group_.rank == 0) print_or_throw(first_.diagnostics);
     if (!first_.diagnostics.errors.empty()) throw InputError(first_.diagnostics.errors.back());
     identity_ = identity();
     folder_.emplace(std::filesystem::path(options.output) / kSums, identity_, files(), group_);
@@ -71,7 +95,6 @@ class LogRun {
   [[nodiscard]] const Input& first() const { return first_; }
   [[nodiscard]] const std::vector<double>& misfits() const { return misfits_; }
   [[nodiscard]] const LogContent& content() const { return content_; }
-  void forget() const { folder_->remove(); }
 
  private:
   [[nodiscard]] int files() const { return static_cast<int>(options_.samples.size()); }
@@ -81,6 +104,7 @@ class LogRun {
   [[nodiscard]] Input read(int file) const {
     InputOptions one = options_;
     one.samples = {options_.samples[static_cast<std::size_t>(file)]};
+    one.is_part = files() > 1;
     if (file > 0) one.urdf_text = first_.urdf_text;  // bags that were split have it in the first
     return read_input(one);
   }
@@ -93,9 +117,7 @@ class LogRun {
     for (const std::vector<std::string>* list : {&options_.cameras, &options_.hold}) {
       for (const std::string& item : *list) text += '\n' + item;
     }
-    for (const std::string& file : options_.samples) {
-      text += fmt::format("\n{} {}", file, std::filesystem::file_size(file));
-    }
+    for (const std::string& file : options_.samples) text += '\n' + ends_of(file);
     return sha256_text(text);
   }
 
@@ -110,8 +132,7 @@ class LogRun {
     std::optional<Input> other;
     if (file > 0) {
       other = read(file);
-      print(other->diagnostics);
-      if (!other->diagnostics.errors.empty()) throw InputError(other->diagnostics.errors.back());
+      print_or_throw(other->diagnostics);
       check_images(*other, file);
     }
     const Input& input = other ? *other : first_;
@@ -354,15 +375,20 @@ CalibrateOptions as_calibrate(const CalibrateLogOptions& options) {
   return same;
 }
 
+/// Removes what processes exchanged, and the folder of the result if nothing else is in it.
+void forget(const std::string& output) {
+  std::error_code ignored;
+  std::filesystem::remove_all(std::filesystem::path(output) / kSums, ignored);
+  std::filesystem::remove(output, ignored);
+}
+
 /// Prints and writes what the first process has found.
 int report(const CalibrateLogOptions& options, const LogRun& run, const Findings& findings) {
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   const CalibrationResult& result = findings.result;
   if (findings.judgement.verdict == Grade::do_not_use) {
-    run.forget();
-    std::error_code has_files;
-    std::filesystem::remove(options.output, has_files);
+    forget(options.output);
     fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
                result.steps.empty() ? "" : result.steps.back().name,
                findings.judgement.reasons.front());
@@ -376,7 +402,7 @@ int report(const CalibrateLogOptions& options, const LogRun& run, const Findings
   std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
   OutputFolder folder(options.output);
   write(folder, with_copies(as_calibrate(options), first, std::move(all)));
-  run.forget();
+  forget(options.output);
   return kDone;
 }
 
@@ -402,6 +428,9 @@ int calibrate_log(const CalibrateLogOptions& options) {
     return code;
   } catch (const SharedWorkIsDone&) {
     return kDone;  // the first process has all that it needs
+  } catch (const InputError&) {
+    if (group.size == 1) forget(options.output);  // else others may go on when it is mended
+    throw;
   } catch (const Interrupted&) {
     fmt::print(stderr, "{}: run the same command again to go on\n", options.output);
     return kInterrupted;

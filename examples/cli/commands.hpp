@@ -23,6 +23,7 @@ struct InputOptions {
   std::vector<std::string> cameras;     ///< NAME=FILE, for samples without camera_info
   std::vector<std::string> hold;        ///< parameters that are not calibrated
   Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
+  bool is_part = false;                 ///< there are more samples: these may be few
 };
 
 struct CalibrateOptions : InputOptions {

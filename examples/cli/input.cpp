@@ -34,14 +34,14 @@ auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(re
 }
 
 /// Assembles what was read, and doubts it.
-void assemble_input(Input& input, Recorded recorded) {
+void assemble_input(Input& input, Recorded recorded, bool is_part) {
   if (recorded == Recorded::before) {
     add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
   }
   choose_images(input.config, input.robot, input.samples, input.diagnostics);
   input.calibration = assemble(input.config, input.robot, input.samples, input.diagnostics);
   find_doubts({input.config, input.robot, input.urdf_text, input.urdf, input.samples,
-               input.calibration, recorded},
+               input.calibration, recorded, is_part},
               input.diagnostics);
 }
 
@@ -114,7 +114,7 @@ Input read_input(const InputOptions& options) {
   input.robot = *robot;
   input.config = *configuration;
   if (diagnostics.errors.size() == before) {
-    assemble_input(input, options.recorded);
+    assemble_input(input, options.recorded, options.is_part);
     return input;
   }
   // Blocks of a wrong configuration are left out; the rest is still checked against the robot.

@@ -98,9 +98,4 @@ std::vector<std::vector<double>> ShardFolder::exchange(const std::string& what,
   return all;
 }
 
-void ShardFolder::remove() const {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
 }  // namespace kinecal::cli

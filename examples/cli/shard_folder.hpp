@@ -32,9 +32,6 @@ class ShardFolder {
   [[nodiscard]] std::vector<std::vector<double>> exchange(const std::string& what,
                                                           const NumbersOfShard& numbers_of) const;
 
-  /// Removes the folder with all numbers.
-  void remove() const;
-
  private:
   [[nodiscard]] std::filesystem::path file_of(const std::string& what, int shard) const;
   void write(const std::filesystem::path& path, const std::vector<double>& numbers) const;

@@ -93,6 +93,16 @@ TEST_F(CalibrateLog, FindsWhatCalibrateFinds) {
   EXPECT_EQ(log("--output out").code, 1) << "exists";
 }
 
+TEST_F(CalibrateLog, AFileMayHaveFewSamples) {
+  write_part("a.yaml", 0, 1);
+  write_part("b.yaml", 1, 59);
+  write_part("c_.yaml", 59, 60);
+  ASSERT_EQ(log("--output out").code, 0);
+  EXPECT_EQ(run(KINECAL_PROGRAM " calibrate-log" + kInput + "a.yaml c_.yaml --output few").code, 2)
+      << "two samples are too few";
+  EXPECT_FALSE(fs::exists(folder_ / "few"));
+}
+
 TEST_F(CalibrateLog, IsTheSameInSeveralProcesses) {
   ASSERT_EQ(log("--threads 1 --output one").code, 0);
   for (const int count : {2, 3, 5}) {
@@ -127,7 +137,7 @@ TEST_F(CalibrateLog, NamesWhatIsWrongWithAFileAndWritesNothing) {
   const Outcome wrong = log("--output out");
   EXPECT_EQ(wrong.code, 1);
   EXPECT_THAT(wrong.err, HasSubstr("error: b.yaml:"));
-  EXPECT_FALSE(fs::exists(folder_ / "out/calibration.yaml"));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
   const Outcome missing =
       run(KINECAL_PROGRAM " calibrate-log" + kInput + "a.yaml no.yaml --output out2");
   EXPECT_EQ(missing.code, 1);

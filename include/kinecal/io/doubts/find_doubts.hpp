@@ -27,6 +27,7 @@ struct CalibrationInput {
       samples;  ///< may be empty: then the robot and the configuration are checked
   const Calibration& calibration;       ///< from assemble()
   Recorded recorded = Recorded::after;  ///< when the samples were recorded
+  bool is_part = false;                 ///< there are more samples elsewhere: these may be few
 };
 
 /// Adds what looks wrong to the errors, doubts and warnings.  The URDF is checked first, then joint

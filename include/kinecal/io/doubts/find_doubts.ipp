@@ -14,7 +14,7 @@
 namespace kinecal {
 
 KINECAL_INLINE void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
-  const auto& [config, robot, urdf_text, urdf, samples, calibration, recorded] = input;
+  const auto& [config, robot, urdf_text, urdf, samples, calibration, recorded, is_part] = input;
   const std::size_t before = diagnostics.errors.size();
   detail::check_initial_values(config, diagnostics);
   detail::check_urdf_units(config, robot, urdf_text, urdf, diagnostics);
@@ -23,7 +23,7 @@ KINECAL_INLINE void find_doubts(const CalibrationInput& input, Diagnostics& diag
   detail::check_joint_positions(joints, samples, diagnostics);
   detail::check_dropped_observations(config, samples, diagnostics);
   const std::size_t distinct = detail::check_repeated_samples(config, joints, samples, diagnostics);
-  if (distinct > 1 || samples.size() == 1) {
+  if (!is_part && (distinct > 1 || samples.size() == 1)) {
     detail::check_still_joints(config, joints, diagnostics);
     detail::check_enough_samples(config, calibration, distinct, diagnostics);
   }
