@@ -37,10 +37,9 @@ constexpr const char* kSums = "sums";  ///< folder of what processes exchange, i
 /// What is known of all files before the work begins.
 struct LogContent {
   int samples = 0;
-  std::vector<int> residuals;    ///< of each step, priors once per sample
-  std::vector<FreeSet> free;     ///< of each step: what any file determines
-  std::vector<double> per_file;  ///< samples of each file
-  int doubts = 0;                ///< about the files after the first
+  std::vector<int> residuals;  ///< of each step, priors once per sample
+  std::vector<FreeSet> free;   ///< of each step: what any file determines
+  int doubts = 0;              ///< about the files after the first
 };
 
 /// Size, begin and end of a file, or of all files of a folder: enough to see that it is another one,
@@ -166,7 +165,6 @@ class LogRun {
     LogContent content;
     const int size = first_.calibration.table.size();
     for (const std::vector<double>& of : all) {
-      content.per_file.push_back(of[0]);
       content.samples += static_cast<int>(of[0]);
       if (&of != &all.front()) content.doubts += static_cast<int>(of[1]);
     }
