@@ -62,7 +62,7 @@ TEST(AssessShards, HasTheStatisticsOfAllResiduals) {
 }
 
 TEST(AssessShards, SeesFeaturesThatErrTogether) {
-  constexpr int kSeeds = 60;
+  constexpr int kSeeds = 20;
   const int elbow = test::scene_table().index("elbow");
   double squares = 0.0, expected = 0.0;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
@@ -78,7 +78,7 @@ TEST(AssessShards, SeesFeaturesThatErrTogether) {
     squares += std::pow(values[static_cast<std::size_t>(elbow)] - scene.truth(elbow), 2);
     expected += std::pow(of.assessment.uncertainty.deviation(scene.free().column(elbow)), 2);
   }
-  EXPECT_NEAR(std::sqrt(squares / expected), 1.0, 0.25);
+  EXPECT_NEAR(std::sqrt(squares / expected), 1.0, 0.35);
 }
 
 TEST(AssessShards, NamesWhatNothingDetermines) {
