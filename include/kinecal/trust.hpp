@@ -15,6 +15,7 @@
 #include "kinecal/trust/noise.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/online.hpp"
+#include "kinecal/trust/plain_equations.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"

@@ -756,7 +756,7 @@ cal_steps:
   b:
     free_params: []
     free_frames:
-     - {name: mast_joint, x: true, y: true, z: true, roll: true, pitch: true, yaw: true}
+     - {name: mast_joint, x: true, y: true, z: true}
     initial_values: {mast_joint_x: 0.1}
 )");
   const Outcome result = calibrate();

@@ -11,6 +11,7 @@
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/study/repeatability.hpp"
+#include "kinecal/trust/plain_equations.hpp"
 
 namespace kinecal::detail {
 
@@ -78,15 +79,16 @@ struct StackedRows {
   for (const Sample& sample : measured) problem->add_sample(sample);
   const FreeSet free(setup.free, problem->table().size());
   const std::unique_ptr<AnyEvaluator> evaluator = problem->evaluator(free);
-  const NormalEquations at_truth = evaluator->normal_equations(robot.truth);
-  const Eigen::VectorXd units = at_truth.hessian.diagonal().unaryExpr(
-      [](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 1.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      units.asDiagonal() * at_truth.hessian * units.asDiagonal());
+  const PlainEquations at_truth = plain_equations(*problem, free, robot.truth);
+  const Eigen::MatrixXd hessian = at_truth.hessian.matrix();
+  const Eigen::VectorXd units =
+      hessian.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 1.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(units.asDiagonal() * hessian *
+                                                              units.asDiagonal());
   constexpr double kNothing = 1e-11;  // of the largest eigenvalue
   const double least = kNothing * solver.eigenvalues()(free.size() - 1);
   const Eigen::VectorXd slope =
-      solver.eigenvectors().transpose() * units.cwiseProduct(at_truth.gradient);
+      solver.eigenvectors().transpose() * units.cwiseProduct(at_truth.gradient.matrix().col(0));
   const Eigen::VectorXd along = slope.binaryExpr(
       solver.eigenvalues(), [&](double g, double e) { return e > least ? -g / e : 0.0; });
   const Eigen::VectorXd step = units.cwiseProduct(solver.eigenvectors() * along);

@@ -9,6 +9,7 @@
 
 #include "kinecal/study/design_rows.ipp"
 #include "kinecal/study/sample_design.hpp"
+#include "kinecal/trust/plain_equations.hpp"
 
 namespace kinecal {
 
@@ -20,7 +21,7 @@ namespace detail {
                                               const SampleDesign& design) {
   const std::unique_ptr<AnyProblem> problem = make();
   problem->add_sample(sample);
-  const Eigen::MatrixXd all = problem->evaluator(free)->normal_equations(values).hessian;
+  const Eigen::MatrixXd all = plain_equations(*problem, free, values).hessian.matrix();
   if (problem->priors().empty()) return Eigen::MatrixXd::Zero(free.size(), free.size());
   return all - design.information.matrix();
 }
