@@ -19,18 +19,12 @@ namespace kinecal::test {
 /// Empty if the server can be started; else why not.  The first call installs its packages.
 inline std::string why_no_bridge_server() {
   static const std::string why = [] {
-    const std::string sources = std::string(KINECAL_SOURCE_DIR) + "/tests/io/bridge/server";
     const std::string folder = KINECAL_BRIDGE_FOLDER;
     if (std::system("command -v npm node flock > /dev/null") != 0) {
       return std::string("node and npm are not installed");
     }
-    const std::string install = "mkdir -p " + folder + " && cd " + folder + " && cp " + sources +
-                                "/package*.json . && (test -d node_modules/ws && "
-                                "cmp -s package-lock.json installed.json || npm ci --no-audit "
-                                "--no-fund && cp package-lock.json installed.json) && cp -u " +
-                                sources + "/*.mjs .";
-    const std::string call = "mkdir -p " + folder + " && flock " + folder + ".lock sh -c '" +
-                             install + "' > " + folder + ".log 2>&1";
+    const std::string call = std::string(KINECAL_SOURCE_DIR) + "/tests/io/bridge/server/install.sh " +
+                             folder + " > " + folder + ".log 2>&1";
     return std::system(call.c_str()) == 0
                ? std::string()
                : "npm cannot install the server's packages: see " + folder + ".log";
