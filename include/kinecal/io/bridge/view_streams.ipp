@@ -96,13 +96,11 @@ class ViewStreams {
 
   /// The message after a time that is nearest to a moment; null if none is of that moment.
   [[nodiscard]] static const Stamped* nearest(const Stream& stream, Stamp moment, Stamp after) {
-    const Stamped* best = nullptr;
-    Stamp least = kTogether;
-    for (const Stamped& one : stream.newest) {
-      const Stamp apart = std::chrono::abs(one.stamp - moment);
-      if (one.stamp > after && apart <= least) best = &one, least = apart;
-    }
-    return best;
+    const auto apart = [&](const Stamped& one) {
+      return one.stamp > after ? std::chrono::abs(one.stamp - moment) : Stamp::max();
+    };
+    const auto best = std::ranges::min_element(stream.newest, {}, apart);
+    return best != stream.newest.end() && apart(*best) <= kTogether ? &*best : nullptr;
   }
 
   /// The stream that is to be waited for: the one that is furthest behind.
