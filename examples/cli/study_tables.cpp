@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "kinecal/report/charts/spread.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
 #include "words.hpp"
@@ -16,7 +17,8 @@ namespace kinecal::cli {
 namespace {
 
 // StudyTrial::nonlinearity up to which variances are taken as predicted.  It is that of all residuals: a
-// parameter that hangs on a prior may still vary more (1.36 times at 0.047, of 170 calibrations).
+// parameter that hangs on a prior may still vary more (1.36 times at 0.047, of 170 calibrations), which
+// beyond_chance() names.
 constexpr double kLinear = 0.06;
 constexpr int kForVariance = 2;  // trials without which there is none
 
@@ -199,6 +201,36 @@ bool is_linear(const StudyGroup& group) {
   return group.ruined > 0 || group.nonlinearity < kLinear;
 }
 
+/// Parameters whose calibrations vary by more or less than chance explains, in a sentence; empty if none
+/// do.
+std::string beyond_chance(const StudyInput& input, const StudyResult& result) {
+  const std::vector<std::string> names = free_names(input);
+  constexpr double kChance = 0.001;  // that one of all parameters and groups is named by chance
+  const double tail =
+      0.5 * kChance / std::max(1.0, static_cast<double>(names.size() * result.groups.size()));
+  std::string worst;
+  double farthest = 0.0;
+  int count = 0;
+  for (const StudyGroup& group : result.groups) {
+    if (group.trials < kForVariance || group.ruined > 0) continue;
+    const auto [low, high] = spread_interval(group.trials - 1, tail);
+    for (std::size_t p = 0; p < names.size(); ++p) {
+      const ParameterSpread& of = group.parameters[p];
+      if (!std::isfinite(of.predicted) || !(of.predicted > 0.0 && of.variance > 0.0)) continue;
+      const double ratio = std::sqrt(of.variance / of.predicted);
+      if (ratio >= low && ratio <= high) continue;
+      ++count;
+      if (std::abs(std::log(ratio)) <= farthest) continue;
+      farthest = std::abs(std::log(ratio));
+      worst = fmt::format("'{}' varies {:.2f} times as much as predicted (robot {}, {} poses)",
+                          names[p], ratio, group.robot + 1, group.poses);
+    }
+  }
+  if (count == 0) return "";
+  return fmt::format("Not as predicted: {}, which chance does not explain{}\n", worst,
+                     count == 1 ? "" : fmt::format("; nor {} more like it", count - 1));
+}
+
 /// Whether the covariance describes the trials.
 std::string linearity(const StudyResult& result) {
   const auto worst = std::max_element(
@@ -261,8 +293,10 @@ StudyText study_texts(const StudyInput& input, const StudyResult& result) {
     if (!lines.empty()) text.tables.push_back(lines);
   }
   text.sums = sums(input, result);
-  text.linearity = linearity(result);
-  text.linear = std::all_of(result.groups.begin(), result.groups.end(), is_linear);
+  const std::string others = beyond_chance(input, result);
+  text.linearity = linearity(result) + others;
+  text.linear =
+      others.empty() && std::all_of(result.groups.begin(), result.groups.end(), is_linear);
   return text;
 }
 

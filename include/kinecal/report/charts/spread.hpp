@@ -25,7 +25,8 @@ struct SpreadRatios {
 
 /// Ratios in which 95 of 100 such studies end if the covariance is right: sqrt(chi^2 / n).
 /// @param freedom  n, positive
-[[nodiscard]] std::pair<double, double> spread_interval(int freedom);
+/// @param tail     share of the studies that end below it, and above it
+[[nodiscard]] std::pair<double, double> spread_interval(int freedom, double tail = 0.025);
 
 /// A row for each parameter, with a dot for each series, one, and spread_interval() of the first.
 [[nodiscard]] Chart spread_chart(const SpreadRatios& ratios);

@@ -125,17 +125,17 @@ inline void draw_ratio_axis(Drawing& drawing, const SpreadRatios& ratios, const 
 
 }  // namespace detail
 
-KINECAL_INLINE std::pair<double, double> spread_interval(int freedom) {
-  constexpr double kTail = 0.025, kInfinite = 1e9, kMost = 50.0;
-  const auto ratio_with_tail = [&](double tail) {  // it falls with the ratio
+KINECAL_INLINE std::pair<double, double> spread_interval(int freedom, double tail) {
+  constexpr double kInfinite = 1e9, kMost = 50.0;
+  const auto ratio_above = [&](double share) {  // of the studies; it falls with the ratio
     double low = 0.0, high = kMost;
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
-      (f_tail(middle, freedom, kInfinite) > tail ? low : high) = middle;
+      (f_tail(middle, freedom, kInfinite) > share ? low : high) = middle;
     }
     return std::sqrt(low);
   };
-  return {ratio_with_tail(1.0 - kTail), ratio_with_tail(kTail)};
+  return {ratio_above(1.0 - tail), ratio_above(tail)};
 }
 
 KINECAL_INLINE Chart spread_chart(const SpreadRatios& ratios) {
