@@ -78,7 +78,7 @@ TEST(AssessShards, SeesFeaturesThatErrTogether) {
     squares += std::pow(values[static_cast<std::size_t>(elbow)] - scene.truth(elbow), 2);
     expected += std::pow(of.assessment.uncertainty.deviation(scene.free().column(elbow)), 2);
   }
-  EXPECT_NEAR(std::sqrt(squares / expected), 1.0, 0.35);
+  EXPECT_NEAR(std::sqrt(squares / expected), 1.0, 0.25);
 }
 
 TEST(AssessShards, NamesWhatNothingDetermines) {

@@ -75,21 +75,25 @@ inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::Ma
   return sums;
 }
 
-/// Whether priors determine parameters, too.
-enum class Priors { count, ignored };
-
 /// The spectrum of what samples determine.
-[[nodiscard]] inline Spectrum determined_spectrum(const AnyProblem& problem, const FreeSet& free,
-                                                  std::span<const double> values, Priors priors) {
-  const Eigen::MatrixXd of_priors = prior_equations(problem, free, values).hessian;
-  Eigen::MatrixXd error_free = error_free_information(problem, free, values);
-  if (priors == Priors::count) error_free += of_priors;
+[[nodiscard]] inline Spectrum determined_spectrum(const SampleInformation& samples, Priors priors) {
+  const double counted = priors == Priors::count ? 1.0 : 0.0;
+  const Eigen::MatrixXd error_free = samples.error_free + counted * samples.priors;
   Spectrum spectrum(error_free);
-  NormalEquations measured = problem.evaluator(free)->normal_equations(values);
-  if (!std::isfinite(measured.cost)) return spectrum;  // a residual is undefined
-  if (priors == Priors::ignored) measured.hessian -= of_priors;
-  take_away_null_of(error_free, measured.hessian, spectrum);
+  if (std::isfinite(samples.measured.cost)) {  // else a residual is undefined
+    take_away_null_of(error_free, samples.measured.hessian - (1.0 - counted) * samples.priors,
+                      spectrum);
+  }
   return spectrum;
+}
+
+/// The information of a problem's samples.
+[[nodiscard]] inline SampleInformation sample_information(const AnyProblem& problem,
+                                                          const FreeSet& free,
+                                                          std::span<const double> values) {
+  return {problem.evaluator(free)->normal_equations(values),
+          error_free_information(problem, free, values),
+          prior_equations(problem, free, values).hessian};
 }
 
 }  // namespace kinecal::detail

@@ -16,6 +16,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal {
 
@@ -58,6 +59,11 @@ struct LinearFit {
 /// @param values  of all parameters of the table
 [[nodiscard]] Coordinates determined_coordinates(const AnyProblem& problem, const FreeSet& free,
                                                  std::span<const double> values);
+
+namespace detail {
+/// The coordinates that samples with this information determine.
+[[nodiscard]] Coordinates coordinates_of(const SampleInformation& samples);
+}  // namespace detail
 
 /// Linearizes a problem.
 /// @param evaluator    of the problem and its free parameters

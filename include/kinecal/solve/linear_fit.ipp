@@ -43,16 +43,19 @@ inline void weigh(const AnyTerm& term, const TermResiduals& rows, Eigen::Ref<Eig
   }
 }
 
+KINECAL_INLINE Coordinates coordinates_of(const SampleInformation& samples) {
+  const Spectrum spectrum = determined_spectrum(samples, Priors::count);
+  const auto in_units = spectrum.scale.cwiseInverse().asDiagonal();
+  return {in_units * spectrum.vectors.rightCols(spectrum.singular.size() - spectrum.null),
+          in_units * spectrum.vectors.leftCols(spectrum.null),
+          spectrum.vectors.leftCols(spectrum.null).rowwise().norm(), spectrum.scale};
+}
+
 }  // namespace detail
 
 KINECAL_INLINE Coordinates determined_coordinates(const AnyProblem& problem, const FreeSet& free,
                                                   std::span<const double> values) {
-  const detail::Spectrum spectrum =
-      detail::determined_spectrum(problem, free, values, detail::Priors::count);
-  const auto in_units = spectrum.scale.cwiseInverse().asDiagonal();
-  return {in_units * spectrum.vectors.rightCols(free.size() - spectrum.null),
-          in_units * spectrum.vectors.leftCols(spectrum.null),
-          spectrum.vectors.leftCols(spectrum.null).rowwise().norm(), spectrum.scale};
+  return detail::coordinates_of(detail::sample_information(problem, free, values));
 }
 
 KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, std::span<const double> values,

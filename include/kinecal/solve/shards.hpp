@@ -67,17 +67,9 @@ namespace detail {
 [[nodiscard]] std::string name_at(const std::string& what, const FreeSet& free,
                                   std::span<const double> values);
 
-/// What all shards determine.
-struct ShardInformation {
-  NormalEquations measured;    ///< priors included
-  Eigen::MatrixXd error_free;  ///< J^T J of the error-free problem, weighted, without priors
-  Eigen::MatrixXd priors;      ///< Hessian of the priors
-
-  /// The spectrum of what samples determine, as determined_spectrum().
-  [[nodiscard]] Spectrum spectrum(bool with_priors) const;
-};
-[[nodiscard]] ShardInformation shard_information(const Shards& shards, const FreeSet& free,
-                                                 std::span<const double> values);
+/// The information of all shards' samples.
+[[nodiscard]] SampleInformation shard_information(const Shards& shards, const FreeSet& free,
+                                                  std::span<const double> values);
 
 }  // namespace detail
 

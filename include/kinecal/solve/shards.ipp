@@ -26,10 +26,10 @@ inline double hold_shards(const Shards& shards, const FreeSet& free,
   const Eigen::VectorXd before = values;
   double first_cost = 0.0;
   for (int round = 0; round < kMostRounds; ++round) {
-    const ShardInformation sums = shard_information(shards, free, numbers(values));
+    const SampleInformation sums = shard_information(shards, free, numbers(values));
     if (!std::isfinite(sums.measured.cost)) break;
     if (round == 0) first_cost = sums.measured.cost;
-    const Spectrum spectrum = sums.spectrum(true);
+    const Spectrum spectrum = determined_spectrum(sums, Priors::count);
     if (spectrum.null == 0 && round == 0) return first_cost;
     const auto units = spectrum.scale.cwiseInverse().asDiagonal();
     const Eigen::MatrixXd null = spectrum.vectors.leftCols(spectrum.null);
@@ -67,30 +67,19 @@ KINECAL_INLINE std::string name_at(const std::string& what, const FreeSet& free,
   return name;
 }
 
-KINECAL_INLINE Spectrum ShardInformation::spectrum(bool with_priors) const {
-  const double of_priors = with_priors ? 1.0 : 0.0;
-  const Eigen::MatrixXd shown = error_free + of_priors * priors;
-  Spectrum spectrum(shown);
-  if (std::isfinite(measured.cost)) {  // else a residual is undefined
-    take_away_null_of(shown, measured.hessian - (1.0 - of_priors) * priors, spectrum);
-  }
-  return spectrum;
-}
-
-KINECAL_INLINE ShardInformation shard_information(const Shards& shards, const FreeSet& free,
-                                                  std::span<const double> values) {
+KINECAL_INLINE SampleInformation shard_information(const Shards& shards, const FreeSet& free,
+                                                   std::span<const double> values) {
   const int n = free.size();
   const auto numbers_of = [&](int shard) {
-    const std::shared_ptr<const AnyProblem> problem = shards.read(shard);
-    std::vector<double> all = packed(problem->evaluator(free)->normal_equations(values));
-    for (const Eigen::MatrixXd& matrix : {error_free_information(*problem, free, values),
-                                          prior_equations(*problem, free, values).hessian}) {
-      all.insert(all.end(), matrix.reshaped().begin(), matrix.reshaped().end());
+    const SampleInformation of = sample_information(*shards.read(shard), free, values);
+    std::vector<double> all = packed(of.measured);
+    for (const Eigen::MatrixXd* matrix : {&of.error_free, &of.priors}) {
+      all.insert(all.end(), matrix->reshaped().begin(), matrix->reshaped().end());
     }
     return all;
   };
-  ShardInformation sum{NormalEquations(n), Eigen::MatrixXd::Zero(n, n),
-                       Eigen::MatrixXd::Zero(n, n)};
+  SampleInformation sum{NormalEquations(n), Eigen::MatrixXd::Zero(n, n),
+                        Eigen::MatrixXd::Zero(n, n)};
   const std::size_t first = packed(sum.measured).size(), square = sum.priors.size();
   for (const auto& one :
        numbers_of_shards(shards, name_at("information", free, values), numbers_of)) {

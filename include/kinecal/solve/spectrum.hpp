@@ -21,6 +21,16 @@ inline constexpr double kUnobservable = 1e-6;
 [[nodiscard]] Eigen::MatrixXd error_free_information(const AnyProblem& problem, const FreeSet& free,
                                                      std::span<const double> values);
 
+/// What samples say of the free parameters: sums over them.
+struct SampleInformation {
+  NormalEquations measured;    ///< at the measured points, priors included
+  Eigen::MatrixXd error_free;  ///< J^T J of the error-free problem, weighted, without priors
+  Eigen::MatrixXd priors;      ///< Hessian of the priors
+};
+
+/// Whether priors determine parameters, too.
+enum class Priors { count, ignored };
+
 /// Eigenvalues of an information matrix whose columns have been scaled to length one.
 struct Spectrum {
   Eigen::VectorXd scale;     ///< lengths of the columns of J; one where they are zero

@@ -60,9 +60,9 @@ enum class Targets {
 /// How a calibration with some of these samples will vary if it is repeated.  Priors hold
 /// parameters, but do not vary.
 struct ExpectedUncertainty {
-  PlainMatrix covariance;         ///< (free x free); zero along what nothing determines
-  std::vector<double> deviation;  ///< of each free parameter; infinite if it is not determined
-  int determined = 0;             ///< directions that samples and priors determine
+  PlainMatrix covariance;  ///< (free x free); zero along what nothing determines
+  PlainMatrix deviation;   ///< of each free parameter; infinite if it is not determined
+  int determined = 0;      ///< directions that samples and priors determine
 };
 
 /// @param chosen  indices of samples

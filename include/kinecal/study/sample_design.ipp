@@ -5,11 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kinecal/study/design_rows.ipp"
 #include "kinecal/study/sample_design.hpp"
 #include "kinecal/trust/plain_equations.hpp"
+#include "kinecal/trust/uncertainty.hpp"
 
 namespace kinecal {
 
@@ -74,12 +74,7 @@ KINECAL_INLINE ExpectedUncertainty expected_uncertainty(const StudyDesign& desig
                              solver.eigenvectors().transpose() * units.asDiagonal();
   const Eigen::MatrixXd covariance = by * scores * by;
   expected.covariance = covariance;
-  constexpr double kLost = 0.03;  // more than this of a parameter is not determined
-  for (Eigen::Index i = 0; i < n; ++i) {
-    expected.deviation.push_back(lost(i) > kLost * kLost
-                                     ? std::numeric_limits<double>::infinity()
-                                     : std::sqrt(std::max(0.0, covariance(i, i))));
-  }
+  expected.deviation = detail::deviations(covariance, lost.cwiseSqrt());
   return expected;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct StudyGroup {
   double position = 0.0;                    ///< error of the pose, RMS of all trials, metres
   double varied_position = 0.0;             ///< how much the position varies between trials, metres
   double predicted_position = 0.0;          ///< the same by the covariance, metres
-  double free_targets = 0.0;    ///< the same with Targets::free, metres; zero: not asked for
+  /// The same with Targets::free, metres; not a number: not asked for.
+  double free_targets = std::numeric_limits<double>::quiet_NaN();
   double worst_position = 0.0;  ///< of a trial, metres
   double rotation = 0.0;        ///< RMS, radians
   double reprojection = 0.0;    ///< mean, unit of the error block

@@ -92,7 +92,7 @@ KINECAL_INLINE void predict(const StudySetup& setup, const StudyRobot& robot,
   const StudyDesign design = study_design(setup.make, free, robot.truth, chosen, setup.noise);
   const ExpectedUncertainty expected = expected_uncertainty(design, all);
   for (std::size_t p = 0; p < group.parameters.size(); ++p) {
-    group.parameters[p].predicted = expected.deviation[p] * expected.deviation[p];
+    group.parameters[p].predicted = std::pow(expected.deviation(static_cast<Eigen::Index>(p)), 2);
   }
   const PlainMatrix goal =
       position_goal(*problem, free, robot.truth, robot.samples, setup.frame, setup.in);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "kinecal/trust/assess_shards.hpp"
@@ -25,20 +24,11 @@ namespace detail {
   for (int t = 0; t < problem.num_terms(); ++t) {
     const AnyTerm& term = problem.term(t);
     const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
-    BlockNoise& of = noise.emplace_back();
-    of.block = term.name();
-    of.unit = term.options().unit;
-    of.features = static_cast<int>(block.figures(BlockSums::features));
-    of.components = term.feature_size();
-    of.unit_sigma = 1.0 / term.options().weight;
-    of.given = term.options().sigma_given ? of.unit_sigma : 0.0;
-    const double rows = block.figures(BlockSums::features) * of.components;
-    of.freedom = rows - inverse.cwiseProduct(block.information).sum();
-    constexpr double kNoFreedom = 1e-6;  // the parameters fit every row
-    if (of.freedom < kNoFreedom * rows || rows == 0.0) continue;
-    of.sigma = of.unit_sigma * std::sqrt(block.figures(BlockSums::weighted) / of.freedom);
-    of.robust = robust_sigma({DistanceBins::median(block.bins.col(2))}, of.components) *
-                std::sqrt(rows / of.freedom);
+    const double median = DistanceBins::median(block.bins.col(2)) * term.options().weight;
+    noise.push_back(block_noise(term, static_cast<int>(block.figures(BlockSums::features)),
+                                block.figures(BlockSums::weighted),
+                                inverse.cwiseProduct(block.information).sum(),
+                                robust_sigma({median}, term.feature_size())));
   }
   return noise;
 }
@@ -88,13 +78,12 @@ namespace detail {
   return sums;
 }
 
-/// The coordinates of a spectrum.
-[[nodiscard]] inline Coordinates coordinates_of(const Spectrum& spectrum) {
-  const Eigen::Index null = spectrum.null, all = spectrum.singular.size();
-  const auto in_units = spectrum.scale.cwiseInverse().asDiagonal();
-  return {in_units * spectrum.vectors.rightCols(all - null),
-          in_units * spectrum.vectors.leftCols(null),
-          spectrum.vectors.leftCols(null).rowwise().norm(), spectrum.scale};
+/// Inverse of a Hessian in the directions that samples and priors determine; zero in others.
+/// @returns  (free x free)
+[[nodiscard]] inline Eigen::MatrixXd inverse_in(const Coordinates& by,
+                                                const Eigen::MatrixXd& hessian) {
+  return by.basis * Spectrum(by.basis.transpose() * hessian * by.basis).pseudo_inverse() *
+         by.basis.transpose();
 }
 
 /// C, from the sums.
@@ -102,17 +91,10 @@ namespace detail {
                                                    const Coordinates& by, double of_priors) {
   const double rows = rows_of(problem, sums);
   const double freedom = rows / std::max(1.0, rows - static_cast<double>(by.basis.cols()));
-  const Eigen::MatrixXd inverse =
-      by.basis * Spectrum(by.basis.transpose() * sums.hessian * by.basis).pseudo_inverse() *
-      by.basis.transpose();
+  const Eigen::MatrixXd inverse = inverse_in(by, sums.hessian);
   const Eigen::MatrixXd covariance =
       inverse * (freedom * sums.scores + of_priors * sums.priors) * inverse;
-  Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  constexpr double kLost = 0.03;  // more than this of a parameter is not determined
-  for (Eigen::Index i = 0; i < by.lost.size(); ++i) {
-    if (by.lost(i) > kLost) deviation(i) = std::numeric_limits<double>::infinity();
-  }
-  return {static_cast<int>(by.basis.cols()), covariance, deviation, 1.0};
+  return {static_cast<int>(by.basis.cols()), covariance, deviations(covariance, by.lost), 1.0};
 }
 
 }  // namespace detail
@@ -124,20 +106,16 @@ KINECAL_INLINE ShardAssessment assess_shards(const Shards& shards, const FreeSet
   const AnyProblem& problem = *shards.problem;
   ShardAssessment found;
   Assessment& of = found.assessment;
-  of.observability = detail::observability_of(
-      problem, free, detail::shard_information(shards, free, after).spectrum(false));
+  of.observability =
+      detail::observability_of(problem, free, detail::shard_information(shards, free, after));
   const FreeSet inside = detail::inside_bounds(problem, free, after, of.at_bound);
   of.parameters = inside.parameters();
-  const Coordinates by =
-      detail::coordinates_of(detail::shard_information(shards, inside, after).spectrum(true));
+  const Coordinates by = detail::coordinates_of(detail::shard_information(shards, inside, after));
   const detail::ShardSums sums = detail::all_sums(shards, inside, before, after, found.misfits);
   of.rows = static_cast<int>(detail::rows_of(problem, sums));
   Eigen::MatrixXd information = sums.priors;
   for (const detail::BlockSums& block : sums.blocks) information += block.information;
-  const Eigen::MatrixXd inverse =
-      by.basis * detail::Spectrum(by.basis.transpose() * information * by.basis).pseudo_inverse() *
-      by.basis.transpose();
-  of.noise = detail::noise_of(problem, sums, inverse);
+  of.noise = detail::noise_of(problem, sums, detail::inverse_in(by, information));
   of.uncertainty = detail::shard_uncertainty(problem, sums, by, prior_variance(of.noise));
   of.weak = weak_parameters(problem, inside, of.uncertainty);
   found.blocks = detail::statistics_of_blocks(problem, sums);

@@ -30,6 +30,15 @@ struct BlockNoise {
   [[nodiscard]] double weighted() const { return sigma / unit_sigma; }
 };
 
+namespace detail {
+/// The noise of one error block from sums over its features.
+/// @param squares   sum of the squared weighted residuals, with their losses
+/// @param leverage  trace of J H^-1 J^T
+/// @param robust    standard deviation of the weighted residuals: see robust_sigma()
+[[nodiscard]] BlockNoise block_noise(const AnyTerm& term, int features, double squares,
+                                     double leverage, double robust);
+}  // namespace detail
+
 /// The noise of each error block of a problem.
 /// @param inverse  (coordinates x coordinates) of the information
 [[nodiscard]] std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,

@@ -18,6 +18,24 @@ KINECAL_INLINE double robust_sigma(std::vector<double> distances, int components
   return *middle / std::sqrt(k * std::pow(1.0 - 2.0 / (9.0 * k), 3.0));
 }
 
+KINECAL_INLINE BlockNoise detail::block_noise(const AnyTerm& term, int features, double squares,
+                                              double leverage, double robust) {
+  BlockNoise of;
+  of.block = term.name();
+  of.unit = term.options().unit;
+  of.features = features;
+  of.components = term.feature_size();
+  of.unit_sigma = 1.0 / term.options().weight;
+  of.given = term.options().sigma_given ? of.unit_sigma : 0.0;
+  const double rows = static_cast<double>(features) * of.components;
+  of.freedom = rows - leverage;
+  constexpr double kNoFreedom = 1e-6;  // the parameters fit every row
+  if (of.freedom < kNoFreedom * rows || rows == 0.0) return of;
+  of.sigma = of.unit_sigma * std::sqrt(squares / of.freedom);
+  of.robust = of.unit_sigma * robust * std::sqrt(rows / of.freedom);
+  return of;
+}
+
 KINECAL_INLINE double prior_variance(const std::vector<BlockNoise>& noise) {
   double squares = 0.0, freedom = 0.0;
   bool given = true;
@@ -34,8 +52,7 @@ KINECAL_INLINE std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,
                                                       const LinearFit& fit,
                                                       const Eigen::MatrixXd& inverse) {
   const auto terms = static_cast<std::size_t>(problem.num_terms());
-  std::vector<BlockNoise> noise(terms);
-  std::vector<double> squares(terms, 0.0);
+  std::vector<double> squares(terms, 0.0), leverages(terms, 0.0);
   std::vector<std::vector<double>> distances(terms);
   for (const RowBlock& block : fit.blocks) {
     const auto t = static_cast<std::size_t>(block.term);
@@ -45,27 +62,18 @@ KINECAL_INLINE std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,
     const auto r = fit.residual.segment(block.first, block.size);
     const Eigen::VectorXd leverage =
         (jacobian * inverse).cwiseProduct(jacobian).rowwise().sum().cwiseProduct(loss);
-    noise[t].freedom += static_cast<double>(block.size) - leverage.sum();
+    leverages[t] += leverage.sum();
     squares[t] += r.cwiseAbs2().dot(loss);
     for (Eigen::Index row = 0; row < block.size; row += size) {
       distances[t].push_back(r.segment(row, size).norm());
     }
   }
+  std::vector<BlockNoise> noise;
   for (std::size_t t = 0; t < terms; ++t) {
     const AnyTerm& term = problem.term(static_cast<int>(t));
-    BlockNoise& of = noise[t];
-    of.block = term.name();
-    of.unit = term.options().unit;
-    of.features = static_cast<int>(distances[t].size());
-    of.components = term.feature_size();
-    of.unit_sigma = 1.0 / term.options().weight;
-    of.given = term.options().sigma_given ? of.unit_sigma : 0.0;
-    const double rows = static_cast<double>(of.features) * of.components;
-    constexpr double kNoFreedom = 1e-6;  // the parameters fit every row
-    if (of.freedom < kNoFreedom * rows || rows == 0.0) continue;
-    of.sigma = of.unit_sigma * std::sqrt(squares[t] / of.freedom);
-    of.robust =
-        of.unit_sigma * robust_sigma(distances[t], of.components) * std::sqrt(rows / of.freedom);
+    noise.push_back(detail::block_noise(term, static_cast<int>(distances[t].size()), squares[t],
+                                        leverages[t],
+                                        robust_sigma(distances[t], term.feature_size())));
   }
   return noise;
 }

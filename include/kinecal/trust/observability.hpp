@@ -41,9 +41,9 @@ struct Observability {
 
 namespace detail {
 
-/// The same from the spectrum of what samples determine without priors.
+/// The same from the information of the samples.
 [[nodiscard]] Observability observability_of(const AnyProblem& problem, const FreeSet& free,
-                                             const Spectrum& spectrum);
+                                             const SampleInformation& samples);
 
 }  // namespace detail
 

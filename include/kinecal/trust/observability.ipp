@@ -87,7 +87,8 @@ inline void reduce(Eigen::MatrixXd& basis) {
 
 KINECAL_INLINE Observability detail::observability_of(const AnyProblem& problem,
                                                       const FreeSet& free,
-                                                      const Spectrum& spectrum) {
+                                                      const SampleInformation& samples) {
+  const Spectrum spectrum = determined_spectrum(samples, Priors::ignored);
   const Eigen::VectorXd& singular = spectrum.singular;
   Observability result;
   result.rank = free.size() - static_cast<int>(spectrum.null);
@@ -104,8 +105,7 @@ KINECAL_INLINE Observability detail::observability_of(const AnyProblem& problem,
 KINECAL_INLINE Observability observability(const AnyProblem& problem, const FreeSet& free,
                                            std::span<const double> values) {
   if (free.size() == 0) return {};
-  return detail::observability_of(
-      problem, free, detail::determined_spectrum(problem, free, values, detail::Priors::ignored));
+  return detail::observability_of(problem, free, detail::sample_information(problem, free, values));
 }
 
 }  // namespace kinecal

@@ -34,6 +34,14 @@ struct Uncertainty {
 [[nodiscard]] Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
                                       const std::vector<BlockNoise>& noise);
 
+namespace detail {
+/// Standard deviations from a covariance; infinite where more than a little of a parameter is not
+/// determined.
+/// @param lost  (free) see Coordinates
+[[nodiscard]] PlainMatrix deviations(const Eigen::MatrixXd& covariance,
+                                     const Eigen::VectorXd& lost);
+}  // namespace detail
+
 /// Two parameters that can hardly be told apart.
 struct Correlation {
   int a = 0, b = 0;          ///< columns of the free set

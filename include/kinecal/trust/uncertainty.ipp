@@ -52,6 +52,16 @@ struct RobustSums {
   return information(fit, variances, prior_variance(noise));
 }
 
+KINECAL_INLINE PlainMatrix deviations(const Eigen::MatrixXd& covariance,
+                                      const Eigen::VectorXd& lost) {
+  constexpr double kLost = 0.03;
+  Eigen::VectorXd of = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  for (Eigen::Index i = 0; i < lost.size(); ++i) {
+    if (lost(i) > kLost) of(i) = std::numeric_limits<double>::infinity();
+  }
+  return of;
+}
+
 }  // namespace detail
 
 KINECAL_INLINE Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
@@ -71,12 +81,8 @@ KINECAL_INLINE Uncertainty uncertainty(const AnyProblem& problem, const LinearFi
   const double effect = design_effect(problem, fit);
   const Eigen::MatrixXd coordinates = effect * inverse * middle * inverse;
   const Eigen::MatrixXd covariance = by.basis * coordinates * by.basis.transpose();
-  Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  constexpr double kLost = 0.03;  // more than this of a parameter is not determined
-  for (Eigen::Index i = 0; i < by.lost.size(); ++i) {
-    if (by.lost(i) > kLost) deviation(i) = std::numeric_limits<double>::infinity();
-  }
-  return {static_cast<int>(coordinates.rows()), covariance, deviation, effect};
+  return {static_cast<int>(coordinates.rows()), covariance, detail::deviations(covariance, by.lost),
+          effect};
 }
 
 KINECAL_INLINE std::vector<Correlation> high_correlations(const Uncertainty& known, double limit) {
