@@ -42,15 +42,6 @@ void end_progress_line() {
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");
 }
 
-ResultFileOptions file_options(const CalibrateOptions& options) {
-  ResultFileOptions files;
-  files.offsets = options.offsets == "origin" ? OffsetStyle::origin : OffsetStyle::rising;
-  if (options.upstream_names) {
-    files.date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
-  }
-  return files;
-}
-
 bool same_file(const std::filesystem::path& one, const std::filesystem::path& other) {
   std::error_code missing;
   return std::filesystem::equivalent(one, other, missing);
@@ -58,7 +49,7 @@ bool same_file(const std::filesystem::path& one, const std::filesystem::path& ot
 
 /// Copies of the URDF and of the configuration; an input that has the name of its copy, in the same
 /// folder, is that copy.
-std::vector<OutputFile> copies(const CalibrateOptions& options, const Input& input) {
+std::vector<OutputFile> copies(const ResultOptions& options, const Input& input) {
   const std::filesystem::path folder(options.output);
   std::vector<OutputFile> files;
   if (!same_file(folder / kOriginalUrdf, options.urdf)) {
@@ -71,7 +62,7 @@ std::vector<OutputFile> copies(const CalibrateOptions& options, const Input& inp
 }
 
 /// Results must not replace their own input, and other files only on demand.
-void check_targets(const CalibrateOptions& options, const std::filesystem::path& folder,
+void check_targets(const ResultOptions& options, const std::filesystem::path& folder,
                    const std::vector<OutputFile>& files) {
   std::vector<std::string> inputs = options.samples;
   inputs.insert(inputs.end(), {options.urdf, options.config});
@@ -96,7 +87,7 @@ void check_targets(const CalibrateOptions& options, const std::filesystem::path&
 
 }  // namespace
 
-void check_results(const CalibrateOptions& options) {
+void check_results(const ResultOptions& options) {
   std::vector<OutputFile> files = copies(options, {});
   files.push_back({"report.json", ""});
   if (!options.upstream_names)
@@ -105,7 +96,16 @@ void check_results(const CalibrateOptions& options) {
   const OutputFolder can_be_written(options.output);
 }
 
-std::vector<OutputFile> with_copies(const CalibrateOptions& options, const Input& input,
+ResultFileOptions file_options(const ResultOptions& options) {
+  ResultFileOptions files;
+  files.offsets = options.offsets == "origin" ? OffsetStyle::origin : OffsetStyle::rising;
+  if (options.upstream_names) {
+    files.date = fmt::format("{:%Y_%m_%d_%H_%M_%S}", fmt::localtime(std::time(nullptr)));
+  }
+  return files;
+}
+
+std::vector<OutputFile> with_copies(const ResultOptions& options, const Input& input,
                                     std::vector<OutputFile> files) {
   for (OutputFile& copy : copies(options, input)) files.push_back(std::move(copy));
   check_targets(options, options.output, files);

@@ -20,7 +20,6 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/doubts/used_joints.hpp"
-#include "kinecal/io/text_file.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/report/checksum.hpp"
 #include "kinecal/trust/assess_shards.hpp"
@@ -67,12 +66,11 @@ std::string ends_of(const std::filesystem::path& path) {
 /// One run of one process.
 class LogRun {
  public:
-  LogRun(const CalibrateLogOptions& options, const ProcessGroup& group)
+  LogRun(const ResultOptions& options, const ProcessGroup& group)
       : options_(options), group_(group), first_(read(0)) {
     if (group_.rank == 0) print_or_throw(first_.diagnostics);
     if (!first_.diagnostics.errors.empty()) throw InputError(first_.diagnostics.errors.back());
-    identity_ = identity();
-    folder_.emplace(std::filesystem::path(options.output) / kSums, identity_, files(), group_);
+    folder_.emplace(std::filesystem::path(options.output) / kSums, identity(), files(), group_);
     content_ = check_files();
   }
 
@@ -92,7 +90,6 @@ class LogRun {
   }
 
   [[nodiscard]] const Input& first() const { return first_; }
-  [[nodiscard]] const std::vector<double>& misfits() const { return misfits_; }
   [[nodiscard]] const LogContent& content() const { return content_; }
 
  private:
@@ -110,9 +107,7 @@ class LogRun {
 
   /// What makes sums those of this calibration.
   [[nodiscard]] std::string identity() const {
-    const std::string program = version();  // " (", then the instruction set, which may differ
-    std::string text =
-        program.substr(0, program.find(" (")) + first_.urdf_text + first_.config_text;
+    std::string text = KINECAL_VERSION + first_.urdf_text + first_.config_text;
     for (const std::vector<std::string>* list : {&options_.cameras, &options_.hold}) {
       for (const std::string& item : *list) text += '\n' + item;
     }
@@ -199,12 +194,7 @@ class LogRun {
                          first_.robot, problem_of(step).table(), first_.samples);
   }
 
-  /// A step's problem with the samples of a file.  Small logs are kept.
-  [[nodiscard]] std::shared_ptr<const AnyProblem> problem(int step, int file) {
-    constexpr int kKept = 100000;  // samples
-    if (Interruption::is_asked()) throw Interrupted();
-    const auto known = problems_.find({step, file});
-    if (known != problems_.end()) return known->second;
+  [[nodiscard]] std::vector<Sample> samples_of(int file) const {
     Diagnostics diagnostics;
     std::vector<Sample> samples =
         read_recordings({options_.samples[static_cast<std::size_t>(file)]}, diagnostics).samples;
@@ -213,8 +203,19 @@ class LogRun {
       add_rising(rising_of(first_.urdf_text, first_.urdf), samples);
     }
     diagnostics.throw_if_errors();
+    return samples;
+  }
+
+  /// A step's problem with the samples of a file.  Small logs are kept.
+  [[nodiscard]] std::shared_ptr<const AnyProblem> problem(int step, int file) {
+    constexpr int kKept = 100000;  // samples
+    if (Interruption::is_asked()) throw Interrupted();
+    const auto known = problems_.find({step, file});
+    if (known != problems_.end()) return known->second;
     std::shared_ptr<AnyProblem> made = empty(step);
-    for (const Sample& sample : samples) made->add_sample(sample);
+    for (const Sample& sample : file == 0 ? first_.samples : samples_of(file)) {
+      made->add_sample(sample);
+    }
     int kept = made->num_samples();
     for (const auto& [key, one] : problems_) kept += one->num_samples();
     if (kept <= kKept) problems_[{step, file}] = made;
@@ -344,10 +345,9 @@ class LogRun {
     }
   }
 
-  const CalibrateLogOptions& options_;
+  const ResultOptions& options_;
   ProcessGroup group_;
   Input first_;
-  std::string identity_;
   std::optional<ShardFolder> folder_;
   LogContent content_;
   std::map<std::pair<int, int>, std::shared_ptr<const AnyProblem>> problems_;
@@ -365,14 +365,6 @@ void check_files_differ(const std::vector<std::string>& files) {
   }
 }
 
-CalibrateOptions as_calibrate(const CalibrateLogOptions& options) {
-  CalibrateOptions same;
-  static_cast<InputOptions&>(same) = options;
-  same.output = options.output;
-  same.force = options.force;
-  return same;
-}
-
 /// Removes what processes exchanged, and the folder of the result if nothing else is in it.
 void forget(const std::string& output) {
   std::error_code ignored;
@@ -381,7 +373,7 @@ void forget(const std::string& output) {
 }
 
 /// Prints and writes what the first process has found.
-int report(const CalibrateLogOptions& options, const LogRun& run, const Findings& findings) {
+int report(const ResultOptions& options, const LogRun& run, const Findings& findings) {
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   const CalibrationResult& result = findings.result;
@@ -392,25 +384,24 @@ int report(const CalibrateLogOptions& options, const LogRun& run, const Findings
                findings.judgement.reasons.front());
     return kNotUsable;
   }
-  ResultFileOptions files;
-  files.offsets = options.offsets == "origin" ? OffsetStyle::origin : OffsetStyle::rising;
   const Input& first = run.first();
-  std::vector<OutputFile> all = output_files(first.robot, {first.urdf, first.urdf_text},
-                                             first.calibration, findings, first.samples, files);
+  std::vector<OutputFile> all =
+      output_files(first.robot, {first.urdf, first.urdf_text}, first.calibration, findings,
+                   first.samples, file_options(options));
   std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
   OutputFolder folder(options.output);
-  write(folder, with_copies(as_calibrate(options), first, std::move(all)));
+  write(folder, with_copies(options, first, std::move(all)));
   forget(options.output);
   return kDone;
 }
 
 }  // namespace
 
-int calibrate_log(const CalibrateLogOptions& options) {
+int calibrate_log(const ResultOptions& options) {
   const ProcessGroup group = process_group();
   if (options.output.empty()) throw InputError("--output is required");
   check_files_differ(options.samples);
-  check_results(as_calibrate(options));
+  check_results(options);
   const auto start = std::chrono::steady_clock::now();
   const Interruption interruption;
   try {

@@ -26,9 +26,16 @@ struct InputOptions {
   bool is_part = false;                 ///< there are more samples: these may be few
 };
 
-struct CalibrateOptions : InputOptions {
-  std::string output;
+/// What is calibrated, and where the result goes.
+struct ResultOptions : InputOptions {
+  std::string output;  ///< folder
   std::string offsets = "rising";
+  bool upstream_names = false;
+  bool force = false;  ///< replace results
+  int threads = 0;     ///< zero: one per core
+};
+
+struct CalibrateOptions : ResultOptions {
   std::vector<std::string>
       reports;               ///< files: a page if it ends in .html, else JSON; whatever the verdict
   std::string command = {};  ///< as the user typed it, for the report
@@ -36,32 +43,22 @@ struct CalibrateOptions : InputOptions {
   std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
   std::vector<int> exclude;             ///< samples to leave out, from 1
   bool keep_outliers = false;           ///< use samples that do not fit the others
-  bool upstream_names = false;
   bool dry_run = false;
-  bool force = false;  ///< replace results
-  int folds = 5;       ///< for held-out errors; 0: leave-one-out
-  int threads = 0;     ///< zero: one per core
-  int starts = 0;      ///< random ones, beside the one of the configuration
+  int folds = 5;   ///< for held-out errors; 0: leave-one-out
+  int starts = 0;  ///< random ones, beside the one of the configuration
   std::string cost = "compressed";
 };
 
 /// Calibrates the robot and writes the results, all or none.
 int calibrate(const CalibrateOptions& options);
 
-struct CalibrateLogOptions : InputOptions {
-  std::string output;
-  std::string offsets = "rising";
-  bool force = false;  ///< replace results
-  int threads = 0;     ///< zero: one per core
-};
-
 /// Calibrates with recordings that are read one after another, never all at once; several processes
 /// share them.
-int calibrate_log(const CalibrateLogOptions& options);
+int calibrate_log(const ResultOptions& options);
 
 /// Checks what can be known of the results before the work.
 /// @throws OutputError  if the folder cannot be written to, or has files that may not be replaced
-void check_results(const CalibrateOptions& options);
+void check_results(const ResultOptions& options);
 
 /// Lists every error in the input and what the samples cannot determine, without calibrating.
 int check(const InputOptions& options);

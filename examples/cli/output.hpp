@@ -29,10 +29,12 @@ struct UrdfFile {
                                                    std::span<const Sample> samples,
                                                    ResultFileOptions options = {});
 
+/// How the files are written that the user asked for.
+[[nodiscard]] ResultFileOptions file_options(const ResultOptions& options);
+
 /// The files of a result, and copies of its URDF and configuration.
 /// @throws OutputError  if one would replace an input, or may not be replaced
-[[nodiscard]] std::vector<OutputFile> with_copies(const CalibrateOptions& options,
-                                                  const Input& input,
+[[nodiscard]] std::vector<OutputFile> with_copies(const ResultOptions& options, const Input& input,
                                                   std::vector<OutputFile> files);
 
 /// Writes all files or none, and prints their names.

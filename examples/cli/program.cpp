@@ -77,7 +77,19 @@ void add_offsets(CLI::App& command, std::string& offsets) {
       ->capture_default_str();
 }
 
-void add_calibrate_log(CLI::App& command, CalibrateLogOptions& options) {
+/// Options of results, but for the folder.
+void add_results(CLI::App& command, ResultOptions& options) {
+  add_offsets(command, options.offsets);
+  command.add_flag("--upstream-names", options.upstream_names,
+                   "name the files as robot_calibration does, with the date");
+  command.add_flag("--force", options.force, "replace the results that are in the folder");
+  command
+      .add_option("--threads", options.threads,
+                  "number of threads, default: one per core; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+}
+
+void add_calibrate_log(CLI::App& command, ResultOptions& options) {
   add_input(command, options)->required();
   command
       .add_option("--output", options.output,
@@ -85,18 +97,13 @@ void add_calibrate_log(CLI::App& command, CalibrateLogOptions& options) {
                   "interrupted goes on there")
       ->required()
       ->type_name("DIR");
-  add_offsets(command, options.offsets);
-  command.add_option("--threads", options.threads, "number of threads, default: one per core")
-      ->check(CLI::Range(1, 1024));
-  command.add_flag("--force", options.force, "replace results");
+  add_results(command, options);
 }
 
 void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   add_input(command, options)->required();
   command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
-  add_offsets(command, options.offsets);
-  command.add_flag("--upstream-names", options.upstream_names,
-                   "name the files as robot_calibration does, with the date");
+  add_results(command, options);
   command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
   command
       .add_option(
@@ -128,11 +135,6 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                   "parts into which samples are divided for held-out errors; 0: leave-one-out")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
-  command.add_flag("--force", options.force, "replace the results that are in the folder");
-  command
-      .add_option("--threads", options.threads,
-                  "number of threads, default: one per core; the result does not depend on it")
-      ->check(CLI::Range(1, 1024));
   command
       .add_option(
           "--starts", options.starts,
@@ -787,10 +789,10 @@ void add_commands(Commands& commands, const std::string& line) {
         options.command = line;
         return calibrate(options);
       });
-  commands.add<CalibrateLogOptions>("calibrate-log",
-                                    "calibrate with recordings that do not fit into memory, file "
-                                    "after file, in several processes",
-                                    add_calibrate_log, calibrate_log);
+  commands.add<ResultOptions>("calibrate-log",
+                              "calibrate with recordings that do not fit into memory, file after "
+                              "file, in several processes",
+                              add_calibrate_log, calibrate_log);
   commands.add<RecheckOptions>("evaluate", "show how a result fits other samples, without solving",
                                add_recheck, evaluate);
   commands.add<RecheckOptions>(
