@@ -88,6 +88,8 @@ TEST(Spread, IntervalIsThatOfChi) {
   EXPECT_NEAR(spread_interval(1).second, std::sqrt(5.0239), 1e-4);
   EXPECT_NEAR(spread_interval(9).first, std::sqrt(2.7004 / 9.0), 1e-4);
   EXPECT_NEAR(spread_interval(9).second, std::sqrt(19.0228 / 9.0), 1e-4);
+  EXPECT_NEAR(spread_interval(9, 0.005).first, std::sqrt(1.7349 / 9.0), 1e-4);
+  EXPECT_NEAR(spread_interval(9, 0.005).second, std::sqrt(23.5894 / 9.0), 1e-4);
 }
 
 TEST(Spread, DotsStandAtTheirRatios) {
