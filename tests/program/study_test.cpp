@@ -76,7 +76,7 @@ TEST_F(Study, WritesAPageWithChartsAndTables) {
 
 // The prior holds this parameter: what samples say of it is so little that errors of second order count.
 TEST_F(Study, NamesAParameterThatVariesMoreThanPredicted) {
-  const test::Outcome outcome = call("study", "--robots 1 --repeat 30 --poses 15");
+  const test::Outcome outcome = call("study", "--robots 1 --repeat 60 --poses 15");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, ContainsRegex("\nNot as predicted: 'head_camera_rgb_joint_b' varies "
                                          "1\\.[0-9]+ times as much as predicted"));

@@ -38,8 +38,7 @@ namespace detail {
 /// Standard deviations from a covariance; infinite where more than a little of a parameter is not
 /// determined.
 /// @param lost  (free) see Coordinates
-[[nodiscard]] PlainMatrix deviations(const Eigen::MatrixXd& covariance,
-                                     const Eigen::VectorXd& lost);
+[[nodiscard]] PlainMatrix deviations(const PlainMatrix& covariance, const PlainMatrix& lost);
 }  // namespace detail
 
 /// Two parameters that can hardly be told apart.

@@ -52,11 +52,10 @@ struct RobustSums {
   return information(fit, variances, prior_variance(noise));
 }
 
-KINECAL_INLINE PlainMatrix deviations(const Eigen::MatrixXd& covariance,
-                                      const Eigen::VectorXd& lost) {
+KINECAL_INLINE PlainMatrix deviations(const PlainMatrix& covariance, const PlainMatrix& lost) {
   constexpr double kLost = 0.03;
-  Eigen::VectorXd of = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  for (Eigen::Index i = 0; i < lost.size(); ++i) {
+  Eigen::VectorXd of = covariance.matrix().diagonal().cwiseMax(0.0).cwiseSqrt();
+  for (Eigen::Index i = 0; i < of.size(); ++i) {
     if (lost(i) > kLost) of(i) = std::numeric_limits<double>::infinity();
   }
   return of;
