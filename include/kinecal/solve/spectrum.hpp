@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "kinecal/evaluation/normal_equations.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 
