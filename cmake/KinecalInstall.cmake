@@ -39,8 +39,8 @@ foreach(component core solve capture io)
 endforeach()
 
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/cmake/package/copyright
-              ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CONCEPTS.md
-              ${PROJECT_SOURCE_DIR}/ARCHITECTURE.md
+              ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/MANUAL.md
+              ${PROJECT_SOURCE_DIR}/CONCEPTS.md ${PROJECT_SOURCE_DIR}/ARCHITECTURE.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT headers)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT headers PATTERN "demo.sh" EXCLUDE)

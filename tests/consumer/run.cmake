@@ -14,7 +14,7 @@ if(MODE STREQUAL headers)
                   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${CMAKE_COMMAND} --install ${WORK}/bare --component headers
                           --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-  foreach(file README.md CONCEPTS.md ARCHITECTURE.md examples/02_calibrate.cpp)
+  foreach(file README.md MANUAL.md CONCEPTS.md ARCHITECTURE.md examples/02_calibrate.cpp)
     if(NOT EXISTS ${prefix}/share/doc/kinecal/${file})
       message(FATAL_ERROR "${file} is not installed")
     endif()
