@@ -22,6 +22,7 @@ struct InputOptions {
   std::vector<std::string> samples;     ///< files
   std::vector<std::string> cameras;     ///< NAME=FILE, for samples without camera_info
   std::vector<std::string> hold;        ///< parameters that are not calibrated
+  std::vector<int> exclude;             ///< samples to leave out, from 1
   Recorded recorded = Recorded::after;  ///< the samples, and <calibration rising>
   bool is_part = false;                 ///< there are more samples: these may be few
 };
@@ -41,7 +42,6 @@ struct CalibrateOptions : ResultOptions {
   std::string command = {};  ///< as the user typed it, for the report
   std::string scene;         ///< MCAP for viewers; whatever the verdict
   std::vector<std::string> mesh_paths;  ///< where the URDF's packages may be
-  std::vector<int> exclude;             ///< samples to leave out, from 1
   bool keep_outliers = false;           ///< use samples that do not fit the others
   bool dry_run = false;
   int folds = 5;   ///< for held-out errors; 0: leave-one-out

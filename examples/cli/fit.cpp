@@ -187,9 +187,15 @@ void add_causes(const Input& input, Fit& fitted) {
   }
   const bool bad = !findings.result.converged || findings.assessments.empty() ||
                    fits_badly(findings.assessments.back());
-  if (!bad) return;
-  for (const std::string& cause : likely_causes(input.config, input.robot, fitted.samples)) {
-    findings.judgement.add(Grade::do_not_use, "likely cause: " + cause);
+  if (bad) {
+    for (const std::string& cause : likely_causes(input.config, input.robot, fitted.samples)) {
+      findings.judgement.add(Grade::do_not_use, "likely cause: " + cause);
+    }
+  } else {
+    for (const std::string& scale :
+         wrong_scales(input.config, input.robot, fitted.samples, findings.result.table)) {
+      findings.judgement.add(Grade::use_with_care, scale + "; are its lengths right?");
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <system_error>
 
 #include "kinecal/io/assemble.hpp"
@@ -33,16 +34,36 @@ auto attempt(Read&& read, Diagnostics& diagnostics) -> std::optional<decltype(re
   }
 }
 
+/// The samples without those that the user excludes.
+std::vector<Sample> used_samples(const std::vector<Sample>& samples,
+                                 const std::vector<int>& exclude) {
+  std::vector<Sample> used;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto number = static_cast<int>(i) + 1;
+    if (std::find(exclude.begin(), exclude.end(), number) == exclude.end()) {
+      used.push_back(samples[i]);
+    }
+  }
+  return used;
+}
+
 /// Assembles what was read, and doubts it.
-void assemble_input(Input& input, Recorded recorded, bool is_part) {
-  if (recorded == Recorded::before) {
+void assemble_input(Input& input, const InputOptions& options) {
+  if (options.recorded == Recorded::before) {
     add_rising(rising_of(input.urdf_text, input.urdf), input.samples);
   }
   choose_images(input.config, input.robot, input.samples, input.diagnostics);
   input.calibration = assemble(input.config, input.robot, input.samples, input.diagnostics);
-  find_doubts({input.config, input.robot, input.urdf_text, input.urdf, input.samples,
-               input.calibration, recorded, is_part},
-              input.diagnostics);
+  const auto doubt = [&](std::span<const Sample> samples) {
+    find_doubts({input.config, input.robot, input.urdf_text, input.urdf, samples, input.calibration,
+                 options.recorded, options.is_part},
+                input.diagnostics);
+  };
+  if (options.exclude.empty()) {
+    doubt(input.samples);
+  } else {
+    doubt(used_samples(input.samples, options.exclude));
+  }
 }
 
 }  // namespace
@@ -114,7 +135,7 @@ Input read_input(const InputOptions& options) {
   input.robot = *robot;
   input.config = *configuration;
   if (diagnostics.errors.size() == before) {
-    assemble_input(input, options.recorded, options.is_part);
+    assemble_input(input, options);
     return input;
   }
   // Blocks of a wrong configuration are left out; the rest is still checked against the robot.

@@ -183,9 +183,13 @@ inline void warn_of_unknown_sensors(const StepConfig& step, std::span<const Samp
   for (const ModelConfig& model : step.models) models.insert(model.name);
   for (const ModelConfig& model : step.models) {
     if (recorded.contains(model.name) || samples.empty()) continue;
-    diagnostics.warning(model.place,
-                        fmt::format("model '{}': no sample has a sensor of that name{}", model.name,
-                                    did_you_mean(model.name, recorded)));
+    std::string hint = did_you_mean(model.name, recorded);
+    if (hint.empty() && !recorded.empty()) {
+      hint = fmt::format("; the samples have '{}'", fmt::join(recorded, "', '"));
+    }
+    diagnostics.warning(
+        model.place,
+        fmt::format("model '{}': no sample has a sensor of that name{}", model.name, hint));
   }
 }
 

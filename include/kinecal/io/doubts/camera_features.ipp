@@ -10,44 +10,86 @@
 #include <set>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/sensor_points.hpp"
+#include "kinecal/sensors/depth_camera.hpp"
 
 namespace kinecal::detail {
 
-/// Error or doubt: pixels that are none.
-inline void check_pixels(const RecordedPoints& recorded, std::span<const Sample> samples,
-                         Diagnostics& diagnostics) {
+/// The camera_info of the first sample with a size; nullptr if there is none.
+[[nodiscard]] inline const CameraInfo* sized_camera(const RecordedPoints& recorded,
+                                                    std::span<const Sample> samples) {
   const Observation* seen = samples[recorded.samples.front()].observation(recorded.model.name);
-  if (!seen->camera || seen->camera->width <= 0 || seen->camera->height <= 0) return;
-  const double width = seen->camera->width, height = seen->camera->height;
-  double most = 0.0;
+  const bool sized = seen->camera && seen->camera->width > 0 && seen->camera->height > 0;
+  return sized ? &*seen->camera : nullptr;
+}
+
+/// Doubt: pixels outside of the image.
+/// @param pixels  (u, v, any) of each of the recorded points
+inline void check_inside(const RecordedPoints& recorded, std::span<const Vector3<double>> pixels,
+                         const CameraInfo& camera, std::span<const Sample> samples,
+                         Diagnostics& diagnostics) {
+  const double width = camera.width, height = camera.height;
   std::size_t last = 0;  // sample that is counted
   Occurrences outside;
-  for (std::size_t i = 0; i < recorded.points.size(); ++i) {
-    const double u = recorded.points[i].x(), v = recorded.points[i].y();
-    most = std::max({most, std::abs(u), std::abs(v)});
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double u = pixels[i].x(), v = pixels[i].y();
     const bool is_outside =
         u < -0.1 * width || u > 1.1 * width || v < -0.1 * height || v > 1.1 * height;
     if (!is_outside || (outside.count > 0 && last == recorded.samples[i])) continue;
     last = recorded.samples[i];
     outside.add(last);
   }
+  if (outside.count == 0) return;
+  diagnostics.doubt(place_of(samples, outside.first),
+                    fmt::format("a feature of sensor '{}' is outside its image of {}x{} pixels{}; "
+                                "is it the camera_info of another camera or size?",
+                                recorded.model.name, width, height, outside.others()));
+}
+
+/// Error or doubt: pixels that are none.
+inline void check_pixels(const RecordedPoints& recorded, std::span<const Sample> samples,
+                         Diagnostics& diagnostics) {
+  const CameraInfo* camera = sized_camera(recorded, samples);
+  if (camera == nullptr) return;
+  double most = 0.0;
+  for (const auto& pixel : recorded.points)
+    most = std::max(most, pixel.head<2>().cwiseAbs().maxCoeff());
   if (most < 4.0 && recorded.points.size() > 3) {
     diagnostics.error(
         place_of(samples, recorded.samples.front()),
         fmt::format("no feature of sensor '{}' is beyond {:.3g} pixels of an image of "
                     "{}x{}; they look like metres or normalized coordinates",
-                    recorded.model.name, most, width, height));
-  } else if (outside.count > 0) {
-    diagnostics.doubt(
-        place_of(samples, outside.first),
-        fmt::format("a feature of sensor '{}' is outside its image of {}x{} pixels{}; "
-                    "is it the camera_info of another camera or size?",
-                    recorded.model.name, width, height, outside.others()));
+                    recorded.model.name, most, camera->width, camera->height));
+  } else {
+    check_inside(recorded, recorded.points, *camera, samples, diagnostics);
   }
+}
+
+/// Error or doubt: points of a depth camera that its camera_info cannot have given.
+inline void check_depth_points(const RecordedPoints& recorded, std::span<const Sample> samples,
+                               Diagnostics& diagnostics) {
+  std::vector<Vector3<double>> pixels;
+  for (std::size_t i = 0; i < recorded.points.size(); ++i) {
+    const std::size_t s = recorded.samples[i];
+    const auto settings = DepthCamera::settings(*samples[s].observation(recorded.model.name));
+    pixels.push_back(DepthCamera::measurement(recorded.points[i], settings));
+    if (pixels.back().z() > 0.0) continue;
+    diagnostics.error(
+        place_of(samples, s),
+        fmt::format(
+            "sensor '{}' has a point {:.4g} m away, which its driver made of a depth of "
+            "{:.4g} m by z_offset_mm {:.6g} and z_scaling {:.6g} of ext_camera_info; one of "
+            "them is wrong",
+            recorded.model.name, recorded.points[i].z(), pixels.back().z(), 1e3 * settings[4],
+            settings[5]));
+    return;
+  }
+  const CameraInfo* camera = sized_camera(recorded, samples);
+  if (camera != nullptr) check_inside(recorded, pixels, *camera, samples, diagnostics);
 }
 
 /// Doubt: a principal point far from the middle of the image, as of another resolution.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "kinecal/io/doubts/exchanged_joints.ipp"
@@ -17,6 +18,20 @@ namespace kinecal::detail {
 
 /// A joint without limits that reaches further than this looks wound up, or in degrees.
 inline constexpr double kWoundUp = 4 * std::numbers::pi;
+
+/// A quarter, half or whole turn that brings nearly all positions of a joint into its limits; nullopt if
+/// none does.
+[[nodiscard]] inline std::optional<double> turn_into_limits(const UsedJoint& joint) {
+  if (!joint.limits || !turns(joint.joint.type)) return std::nullopt;
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  for (const double shift :
+       {0.5 * kTurn, -0.5 * kTurn, 0.25 * kTurn, -0.25 * kTurn, kTurn, -kTurn}) {
+    const auto outside = std::count_if(joint.positions.begin(), joint.positions.end(),
+                                       [&](double q) { return is_outside(joint, q + shift); });
+    if (50 * outside <= std::ssize(joint.positions)) return shift;
+  }
+  return std::nullopt;
+}
 
 /// True if the positions are wrong as they are and right after multiplication by `factor`.
 [[nodiscard]] inline bool fits_in_other_unit(const UsedJoint& joint, double factor) {
@@ -35,6 +50,7 @@ inline constexpr double kWoundUp = 4 * std::numbers::pi;
       std::abs(*std::max_element(joint.positions.begin(), joint.positions.end(),
                                  [](double a, double b) { return std::abs(a) < std::abs(b); }));
   const bool is_large = turns(joint.joint.type) ? most > std::numbers::pi : most > 1.0;
+  if (turn_into_limits(joint)) return false;  // its zero is elsewhere; degrees would hardly move it
   return is_large && are_many(outside, all) && 50 * after <= all;
 }
 
@@ -130,10 +146,15 @@ inline void report_outside(const UsedJoint& joint, std::span<const Sample> sampl
                        turns(joint.joint.type) ? "rad" : "m");
   };
   if (far.count > 0) {
-    diagnostics.doubt(place_of(samples, far.first),
-                      text(far, most_far) +
-                          "; is it the position of another joint, in another "
-                          "unit, or the URDF of another robot?");
+    const std::optional<double> turn = turn_into_limits(joint);
+    diagnostics.doubt(
+        place_of(samples, far.first),
+        text(far, most_far) +
+            (turn ? fmt::format("; with {:+.3g} rad they are inside: is its zero another one than "
+                                "the URDF's?",
+                                *turn)
+                  : "; is it the position of another joint, in another unit, or the URDF of "
+                    "another robot?"));
   } else if (near.count > 0) {
     diagnostics.warning(place_of(samples, near.first), text(near, most_near));
   }

@@ -32,6 +32,14 @@ using Calibrator = std::function<CalibrationResult(const Calibration&)>;
                                                      std::span<const Sample> samples,
                                                      const Calibrator& solve = {});
 
+/// Sentences about models whose points, with another scale, make the noise of a fit that is not bad fall
+/// to a half: a board whose squares are larger than was said.  Empty for most calibrations.
+/// @param samples   those that were fitted
+/// @param solution  the parameters that fit them; where it begins
+[[nodiscard]] std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
+                                                    std::span<const Sample> samples,
+                                                    const ParameterTable& solution);
+
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY

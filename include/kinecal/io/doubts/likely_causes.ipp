@@ -9,73 +9,26 @@
 #include <optional>
 #include <set>
 
-#include "kinecal/io/assemble.hpp"
+#include "kinecal/io/doubts/cause_solver.ipp"
 #include "kinecal/io/doubts/hypotheses.ipp"
 #include "kinecal/io/doubts/likely_causes.hpp"
-#include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/some_samples.ipp"
 
 namespace kinecal {
 
 namespace detail {
 
-/// A calibration solved: its cost and its error blocks.
-struct SolvedSamples {
-  double cost = 0.0;
-  std::vector<BlockStatistics> blocks;
-};
-
 /// A mistake explains a bad fit if the cost is this part of it without.
 inline constexpr double kExplains = 0.1;
-
-/// Assembles and solves; nullopt if the samples cannot be used so, or if the fit is not finite.
-[[nodiscard]] inline std::optional<SolvedSamples> solve_samples(const Config& config,
-                                                                const Robot& robot,
-                                                                std::span<const Sample> samples,
-                                                                const Calibrator& solve) {
-  constexpr int kEnough = 100;  // iterations; what fits is found in far fewer
-  Diagnostics quiet;
-  Calibration calibration = assemble(config, robot, samples, quiet);
-  for (CalibrationStep& step : calibration.steps) {
-    step.max_num_iterations = std::min(step.max_num_iterations, kEnough);
-  }
-  if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;
-  const CalibrationResult result = solve(calibration);
-  if (result.steps.empty() || !std::isfinite(result.steps.back().final_cost)) return std::nullopt;
-  return SolvedSamples{result.steps.back().final_cost, result.blocks};
-}
-
-/// "the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm", of the block that falls most; of a
-/// prior only if no other falls.
-[[nodiscard]] inline std::string fall_of(const SolvedSamples& before, const SolvedSamples& after) {
-  std::string text = fmt::format("the cost falls from {:.3g} to {:.3g}", before.cost, after.cost);
-  double most = 1.0;
-  for (const BlockStatistics& block : before.blocks) {
-    for (const BlockStatistics& same : after.blocks) {
-      const double ratio = block.after.mean / std::max(same.after.mean, 1e-300);
-      if (same.name != block.name || block.unit == "1" || !(ratio > most)) continue;
-      most = ratio;
-      text = fmt::format("the mean residual of '{}' falls from {} to {}", block.name,
-                         residual_text(block.after.mean, block.unit),
-                         residual_text(same.after.mean, same.unit));
-    }
-  }
-  return text;
-}
-
-/// A mistake that explains the residuals.
-struct Cause {
-  double cost = 0.0;  ///< without it
-  std::string sentence;
-};
+/// A factor of points is wrong, also of a fit that is not bad, if the noise is half of it without.
+inline constexpr double kExplainsScale = 0.25;
 
 /// The factor of a model's points with which the samples fit best: a board whose squares are larger than
 /// was said.  Parabolas through three costs, over the logarithm of the factor.
-[[nodiscard]] inline std::optional<Cause> scale_cause(const Config& config, const Robot& robot,
+[[nodiscard]] inline std::optional<Cause> scale_cause(const CauseSolver& solver,
                                                       const std::vector<Sample>& samples,
                                                       const std::string& model,
-                                                      const SolvedSamples& now,
-                                                      const Calibrator& solve) {
+                                                      const SolvedSamples& now, double explains) {
   const auto fit = [&](double x) {
     std::vector<Sample> scaled = samples;
     for (Sample& sample : scaled) {
@@ -84,7 +37,7 @@ struct Cause {
         for (Feature& feature : seen.features) feature.point *= std::exp(x);
       }
     }
-    return solve_samples(config, robot, scaled, solve);
+    return solve_samples(solver, solver.config, scaled);
   };
   constexpr double kFirst = 0.1, kFurthest = 1.1, kEnough = 1e-3;
   constexpr int kSteps = 8;
@@ -104,13 +57,30 @@ struct Cause {
       best += move;
       at_best = *next;
     }
+    if (i == 0 && std::abs(move) < most && at_best.cost > 2.0 * explains * now.cost) {
+      return std::nullopt;  // the parabola fits well enough to see that nothing is to be gained
+    }
     step = std::min(step, std::max(0.1 * step, std::abs(move)));
   }
-  if (at_best.cost * std::max(1.0, std::exp(-2.0 * best)) >= kExplains * now.cost) {
+  if (at_best.cost * std::max(1.0, std::exp(-2.0 * best)) >= explains * now.cost) {
     return std::nullopt;
   }
   return Cause{at_best.cost, fmt::format("with the points of '{}' multiplied by {:.4g}, {}", model,
                                          std::exp(best), fall_of(now, at_best))};
+}
+
+/// The models whose points fit better with a factor.
+[[nodiscard]] inline std::vector<Cause> scale_causes(const CauseSolver& solver,
+                                                     const std::vector<Sample>& samples,
+                                                     const SolvedSamples& now, double explains) {
+  std::vector<Cause> found;
+  const std::set<std::string> pixels = pixel_models(solver.config);
+  for (const ModelConfig& model : models_of(solver.config)) {
+    if (pixels.contains(model.name)) continue;
+    auto scaled = scale_cause(solver, samples, model.name, now, explains);
+    if (scaled) found.push_back(*std::move(scaled));
+  }
+  return found;
 }
 
 /// The sentences, the lowest costs first; alike costs in the order of the hypotheses.  What only
@@ -135,10 +105,9 @@ struct Cause {
 KINECAL_INLINE std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
                                                       std::span<const Sample> samples,
                                                       const Calibrator& solve) {
-  const Calibrator solver =
-      solve ? solve : [](const Calibration& calibration) { return calibrate(calibration); };
+  const detail::CauseSolver solver{config, robot, solve ? solve : detail::plain_calibrator()};
   const std::vector<Sample> some = detail::some_of(samples);
-  const auto now = detail::solve_samples(config, robot, some, solver);
+  const auto now = detail::solve_samples(solver, config, some);
   std::vector<detail::Cause> found;
   for (const auto& hypothesis :
        detail::hypotheses(config, detail::used_joints(config, robot, some))) {
@@ -146,20 +115,32 @@ KINECAL_INLINE std::vector<std::string> likely_causes(const Config& config, cons
     Config changed_config = config;
     if (hypothesis.correct) std::for_each(changed.begin(), changed.end(), hypothesis.correct);
     if (hypothesis.correct_config) hypothesis.correct_config(changed_config);
-    const auto then = detail::solve_samples(changed_config, robot, changed, solver);
+    const auto then = detail::solve_samples(solver, changed_config, changed);
     if (!then) continue;
     const double cost = then->cost / (hypothesis.shrinks * hypothesis.shrinks);
     if (now && cost >= detail::kExplains * now->cost) continue;
     found.push_back({cost, hypothesis.undone + ", " +
                                (now ? detail::fall_of(*now, *then) : "the samples can be solved")});
   }
-  const std::set<std::string> pixels = detail::pixel_models(config);
-  for (const ModelConfig& model : detail::models_of(config)) {
-    if (!now || pixels.contains(model.name)) continue;
-    auto scaled = detail::scale_cause(config, robot, some, model.name, *now, solver);
-    if (scaled) found.push_back(*std::move(scaled));
+  if (now) {
+    for (detail::Cause& cause : detail::scale_causes(solver, some, *now, detail::kExplains)) {
+      found.push_back(std::move(cause));
+    }
   }
   return detail::sentences(std::move(found));
+}
+
+KINECAL_INLINE std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
+                                                     std::span<const Sample> samples,
+                                                     const ParameterTable& solution) {
+  const detail::CauseSolver solver{config, robot, detail::plain_calibrator(), &solution};
+  const std::vector<Sample> some = detail::some_of(samples);
+  const auto now = detail::solve_samples(solver, config, some);
+  const auto is_exact = [](const BlockStatistics& block) {
+    return block.after.mean < 1e-6;  // metres or pixels: simulated without noise
+  };
+  if (!now || std::all_of(now->blocks.begin(), now->blocks.end(), is_exact)) return {};
+  return detail::sentences(detail::scale_causes(solver, some, *now, detail::kExplainsScale));
 }
 
 }  // namespace kinecal

@@ -1,4 +1,5 @@
-// How points spread about their mean: a sensor that does not move against the arm that it measures.
+// How points spread about their center: a sensor that does not move against the arm that it measures.
+// By medians, so that a few points far away do not decide.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,14 +19,24 @@
 
 namespace kinecal::detail {
 
+[[nodiscard]] inline double median_of(std::vector<double> numbers) {
+  const auto at = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), at, numbers.end());
+  return *at;
+}
+
 KINECAL_INLINE double spread_of(std::span<const Vector3<double>> points) {
   if (points.empty()) return 0.0;
-  Vector3<double> mean = Vector3<double>::Zero();
-  for (const auto& point : points) mean += point;
-  mean /= static_cast<double>(points.size());
-  double sum = 0.0;
-  for (const auto& point : points) sum += (point - mean).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(points.size()));
+  Vector3<double> center;
+  std::vector<double> numbers(points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(points.begin(), points.end(), numbers.begin(),
+                   [axis](const auto& point) { return point(axis); });
+    center(axis) = median_of(numbers);
+  }
+  std::transform(points.begin(), points.end(), numbers.begin(),
+                 [&](const auto& point) { return (point - center).norm(); });
+  return median_of(std::move(numbers));
 }
 
 /// Keeps the points of the samples in which the other model has some, too.
@@ -86,7 +97,7 @@ inline void compare_spreads(const RecordedPoints& fixed, const RecordedPoints& a
   if (std::abs(of_fixed - of_arm) <= least || (factor > 1.0 / 3.0 && factor < 3.0)) return;
   const SourceLocation place = place_of(samples, fixed.samples.front());
   const std::string text = fmt::format(
-      "points of '{}' move over {:.3g} m (rms about their mean), those of sensor '{}' "
+      "points of '{}' move over {:.3g} m (median distance from their center), those of sensor '{}' "
       "over {:.3g} m",
       arm.model.name, of_arm, fixed.model.name, of_fixed);
   const std::string unit = unit_of_factor(factor);

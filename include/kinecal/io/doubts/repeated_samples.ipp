@@ -57,13 +57,14 @@ namespace kinecal::detail {
   return compared > 0 || (a.features.empty() && b.features.empty()) ? most : HUGE_VAL;
 }
 
-/// All that the sensors recorded in a sample, for comparison.
+/// All that the sensors recorded in a sample, for comparison; in steps of 1e-6 of their units, so that
+/// a copy that was printed with fewer digits is one.
 using RecordedNumbers = std::pair<std::vector<std::string>, std::vector<double>>;
 
 [[nodiscard]] inline RecordedNumbers recorded_in(const Sample& sample) {
   RecordedNumbers all;
   const auto add = [&](double number) {  // what is not a number must be comparable, too
-    all.second.push_back(std::isnan(number) ? HUGE_VAL : number);
+    all.second.push_back(std::isnan(number) ? HUGE_VAL : std::round(1e6 * number));
   };
   for (const Observation& seen : sample.observations) {
     all.first.push_back(seen.sensor);

@@ -152,6 +152,9 @@ KINECAL_INLINE void check_sensor_points(const Config& config, const Robot& robot
     const SensorEntry* entry = registry().sensor(recorded.model.type);
     if (recorded.in_metres) {
       check_distances(recorded, reach, samples, diagnostics);
+      if (recorded.model.type == DepthCamera::kType) {
+        check_depth_points(recorded, samples, diagnostics);
+      }
     } else if (entry->sensor->delivers(Quantity::pixel)) {
       check_pixels(recorded, samples, diagnostics);
     }
