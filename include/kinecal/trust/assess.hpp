@@ -13,6 +13,7 @@
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/prior_pulls.hpp"
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 
@@ -39,6 +40,7 @@ struct Assessment {
   std::vector<CaptureError> captures;  ///< of each sample
   std::optional<RecordingChange> change;  ///< during the recording
   std::vector<IdleGroup> idle;            ///< whose parameters buy nothing
+  std::vector<PriorPull> pulls;           ///< priors that the samples contradict
   std::optional<PoseUncertainty> pose;    ///< of what the first error block compares
   int rows = 0;                           ///< residuals, without priors
 

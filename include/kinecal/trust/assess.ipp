@@ -70,6 +70,8 @@ KINECAL_INLINE Assessment assess(const AnyProblem& problem, const FreeSet& free,
   const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
   found.uncertainty = uncertainty(problem, fit, found.noise);
+  detail::mark_undetermined(problem, inside, fit.coordinates, found.uncertainty);
+  found.pulls = prior_pulls(problem, inside, values, fit, inverse, found.uncertainty);
   found.weak = weak_parameters(problem, inside, found.uncertainty);
   found.captures = capture_errors(problem, fit);
   found.change = recording_change(problem, inside, fit);

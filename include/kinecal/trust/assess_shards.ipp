@@ -117,6 +117,7 @@ KINECAL_INLINE ShardAssessment assess_shards(const Shards& shards, const FreeSet
   for (const detail::BlockSums& block : sums.blocks) information += block.information;
   of.noise = detail::noise_of(problem, sums, detail::inverse_in(by, information));
   of.uncertainty = detail::shard_uncertainty(problem, sums, by, prior_variance(of.noise));
+  detail::mark_undetermined(problem, inside, by, of.uncertainty);
   of.weak = weak_parameters(problem, inside, of.uncertainty);
   found.blocks = detail::statistics_of_blocks(problem, sums);
   const std::shared_ptr<const AnyProblem> first = shards.read(0);

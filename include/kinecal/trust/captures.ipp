@@ -38,7 +38,7 @@ class CaptureSearch {
       for (int round = 0; round < kRefits; ++round) {
         const std::vector<bool> before = bad_;
         fit_without(bad_);
-        mark();
+        mark(Tail::as_seen);
         if (bad_ == before) break;
       }
     }
@@ -56,6 +56,7 @@ class CaptureSearch {
     return residual_.segment(f.row, f.size).norm();
   }
 
+  /// Noise of each term, from the median of the features in samples that are not bad.
   void set_sigmas(double freedom) {
     std::vector<std::vector<double>> distances(static_cast<std::size_t>(problem_.num_terms()));
     std::vector<int> sizes(distances.size(), 1);
@@ -65,8 +66,11 @@ class CaptureSearch {
       sizes[static_cast<std::size_t>(f.term)] = f.size;
     }
     sigma_.clear();
+    tail_.clear();
     for (std::size_t t = 0; t < distances.size(); ++t) {
-      sigma_.push_back(robust_sigma(distances[t], sizes[t]) / std::sqrt(freedom));
+      const double sigma = robust_sigma(distances[t], sizes[t]);
+      tail_.push_back(tail_factor(distances[t], sizes[t], sigma));
+      sigma_.push_back(sigma / std::sqrt(freedom));
     }
   }
   /// The share of rows that parameters do not take up.
@@ -125,9 +129,15 @@ class CaptureSearch {
   [[nodiscard]] double limit(const FeatureRows& f) const {
     constexpr double kFalse = 1e-3;  // data sets without bad captures in which one is found
     const double t = std::log(static_cast<double>(features_.size()) / kFalse), k = f.size;
-    return std::sqrt(k + 2.0 * std::sqrt(k * t) + 2.0 * t);
+    const double factor = tail_counts_ ? tail_[static_cast<std::size_t>(f.term)] : 1.0;
+    return factor * std::sqrt(k + 2.0 * std::sqrt(k * t) + 2.0 * t);
   }
-  void mark() {
+  /// Whether the limit is that of equal noise in all directions, or of the tail of the features that fit:
+  /// to be asked only when bad captures are no longer among them.
+  enum class Tail { normal, as_seen };
+
+  void mark(Tail tail = Tail::normal) {
+    tail_counts_ = tail == Tail::as_seen;
     std::vector<bool> bad(bad_.size(), false);
     for (const FeatureRows& f : features_) {
       if (times(f) > limit(f)) bad[static_cast<std::size_t>(f.sample)] = true;
@@ -165,8 +175,10 @@ class CaptureSearch {
   std::vector<FeatureRows> features_;
   std::vector<bool> bad_;      ///< by sample
   std::vector<double> sigma_;  ///< of weighted residual components, by term
-  Eigen::VectorXd residual_;   ///< of the present fit
-  Eigen::MatrixXd inverse_;    ///< of its information
+  std::vector<double> tail_;   ///< factor of the limit, by term: see tail_factor()
+  bool tail_counts_ = false;
+  Eigen::VectorXd residual_;  ///< of the present fit
+  Eigen::MatrixXd inverse_;   ///< of its information
 };
 
 }  // namespace detail

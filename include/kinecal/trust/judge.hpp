@@ -2,7 +2,8 @@
 //
 // Do not use                                          Use with care
 //   a step did not converge
-//   noise 10 x the sigma that was given                 3 x
+//   noise 10 x the sigma that was given, or a           3 x
+//   sigma above 5 cm or 30 px and 50 x the noise
 //   without sigma: distances of 20 mm, 12 px            8 mm, 4 px
 //   freedom less than half of the parameters            less than the parameters
 //   held-out error 3 x the fitted one                   1.5 x
@@ -17,6 +18,8 @@
 //                                                       a parameter ended at a bound
 //                                                       a parameter known to 5 degrees, 20 mm, 5 %
 //                                                       or 20 px only
+//                                                       a prior that moves a parameter by 4 standard
+//                                                       deviations
 //                                                       doubts about the input
 //
 // Freedom is the number of residuals minus that of determined parameters.  Combinations of parameters

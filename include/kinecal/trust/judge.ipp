@@ -6,34 +6,12 @@
 #include <cmath>
 
 #include "kinecal/trust/judge.hpp"
+#include "kinecal/trust/judge_noise.ipp"
 #include "kinecal/trust/plausible_change.ipp"
 
 namespace kinecal {
 
 namespace detail {
-
-inline void judge_noise(const Assessment& step, Judgement& judgement) {
-  constexpr Limits kTimes{3.0, 10.0}, kMetres{0.008, 0.02}, kPixels{4.0, 12.0};
-  for (const BlockNoise& noise : step.noise) {
-    if (noise.features == 0 || noise.freedom <= 0.0) continue;
-    // Of both estimates: a few bad captures raise the one, a wrong model raises both.
-    const double sigma = std::min(noise.sigma, noise.robust);
-    const std::string shown = "residuals show " + reading(sigma, noise.unit);
-    if (noise.given > 0.0) {
-      const double times = sigma / noise.given;
-      if (!kTimes.exceeded(times)) continue;
-      judgement.add(kTimes.grade(times), "error block '" + noise.block + "': sigma " +
-                                             reading(noise.given, noise.unit) + " given, " + shown);
-    } else if (noise.unit == "m" || noise.unit == "px") {
-      const Limits& limits = noise.unit == "m" ? kMetres : kPixels;
-      const double distance = sigma * std::sqrt(noise.components);
-      if (!limits.exceeded(distance)) continue;
-      judgement.add(limits.grade(distance),
-                    "error block '" + noise.block + "': residuals show distances of " +
-                        reading(distance, noise.unit) + "; the model does not fit these samples");
-    }
-  }
-}
 
 inline void judge_freedom(const Assessment& step, Judgement& judgement) {
   const double parameters = std::max(1, step.uncertainty.determined);
@@ -93,15 +71,20 @@ inline void judge_change(const Assessment& step, const AnyProblem& problem, Judg
                     " %; calibrate with the samples of one part");
 }
 
+/// How much a parameter changed; of a ratio 1 + v, by how much of it.
+[[nodiscard]] inline double change_of(const Parameter& p) {
+  if (p.unit != "1" || !(1.0 + p.initial > 0.0)) return p.value - p.initial;
+  return (1.0 + p.value) / (1.0 + p.initial) - 1.0;
+}
+
 inline void judge_values(const CalibrationStep& step, const CalibrationResult& result,
                          const Assessment& assessment, Judgement& judgement) {
   for (const int p : step.free.parameters()) {
     const Parameter& parameter = result.table[p];
-    const double change = std::abs(parameter.value - parameter.initial);
+    const double by = change_of(parameter);
     const Limits limits = plausible_change(step, p);
-    if (limits.exceeded(change)) {
-      const double by = parameter.value - parameter.initial;
-      judgement.add(limits.grade(change),
+    if (limits.exceeded(std::abs(by))) {
+      judgement.add(limits.grade(std::abs(by)),
                     "'" + parameter.name + "' changed by " +
                         (parameter.unit == "1" ? reading(1e2 * by, "1") + " %"
                                                : reading(by, parameter.unit)) +
@@ -126,6 +109,19 @@ inline void judge_weak(const Assessment& step, const ParameterTable& table, Judg
                     reading(step.deviation(step.weak.hold.front()).value_or(0.0), first.unit) +
                     ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
                     "; record poses that differ more, or hold:" + hold);
+}
+
+inline void judge_priors(const Assessment& step, const ParameterTable& table,
+                         Judgement& judgement) {
+  for (const PriorPull& pull : step.pulls) {
+    const Parameter& p = table[pull.parameter];
+    judgement.add(
+        Grade::use_with_care,
+        "prior '" + pull.prior + "' and the samples contradict each other: it moves '" + p.name +
+            "' by " + reading(pull.shift, p.unit) + ", " + reading(pull.times, "1") +
+            " times its +-, which does not contain that; is its scale too large, or is the "
+            "drawing wrong there?");
+  }
 }
 
 inline void judge_pose(const Assessment& step, Judgement& judgement) {
@@ -171,6 +167,7 @@ KINECAL_INLINE Judgement judge(const Calibration& calibration, const Calibration
     if (last) detail::judge_change(assessments[s], *step.problem, judgement);
     detail::judge_values(step, result, assessments[s], judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
+    if (last) detail::judge_priors(assessments[s], result.table, judgement);
     if (last) detail::judge_pose(assessments[s], judgement);
   }
   for (const std::string& doubt : doubts) judgement.add(Grade::use_with_care, doubt);

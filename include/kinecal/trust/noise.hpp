@@ -31,6 +31,12 @@ struct BlockNoise {
 };
 
 namespace detail {
+/// How much longer the tail of distances is than that of noise that is equal in all directions: noise of
+/// a depth camera is along its rays, and grows with distance.  From the quantile of 95 %; at most that
+/// of noise in one direction of three.
+/// @param sigma  robust_sigma() of the same distances
+[[nodiscard]] double tail_factor(std::vector<double> distances, int components, double sigma);
+
 /// The noise of one error block from sums over its features.
 /// @param squares   sum of the squared weighted residuals, with their losses
 /// @param leverage  trace of J H^-1 J^T

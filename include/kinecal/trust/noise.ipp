@@ -18,6 +18,21 @@ KINECAL_INLINE double robust_sigma(std::vector<double> distances, int components
   return *middle / std::sqrt(k * std::pow(1.0 - 2.0 / (9.0 * k), 3.0));
 }
 
+KINECAL_INLINE double detail::tail_factor(std::vector<double> distances, int components,
+                                          double sigma) {
+  constexpr std::size_t kFew = 40;
+  constexpr double kNormal = 1.645, kMost = 1.7;  // quantile of a normal distribution
+  if (distances.size() < kFew || !(sigma > 0.0)) return 1.0;
+  const auto at =
+      distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size()));
+  std::nth_element(distances.begin(), at, distances.end());
+  // Of chi-square, Wilson and Hilferty: k (1 - 2 / 9k + z sqrt(2 / 9k))^3.
+  const double k = components, part = 2.0 / (9.0 * k);
+  const double expected =
+      sigma * std::sqrt(k * std::pow(1.0 - part + kNormal * std::sqrt(part), 3.0));
+  return std::clamp(*at / expected, 1.0, kMost);
+}
+
 KINECAL_INLINE BlockNoise detail::block_noise(const AnyTerm& term, int features, double squares,
                                               double leverage, double robust) {
   BlockNoise of;

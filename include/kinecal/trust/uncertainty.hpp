@@ -39,6 +39,13 @@ namespace detail {
 /// determined.
 /// @param lost  (free) see Coordinates
 [[nodiscard]] PlainMatrix deviations(const PlainMatrix& covariance, const PlainMatrix& lost);
+
+/// Makes the deviation of parameters infinite that a small part in an undetermined combination can move
+/// further than their own deviation, if that combination is off as far as robots are: by 2 degrees,
+/// 8 mm or 2 % of its largest parameter.
+/// @param free  the parameters of `known`
+void mark_undetermined(const AnyProblem& problem, const FreeSet& free, const Coordinates& by,
+                       Uncertainty& known);
 }  // namespace detail
 
 /// Two parameters that can hardly be told apart.

@@ -10,6 +10,7 @@
 #include "kinecal/trust/loss_curvature.ipp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/uncertainty.hpp"
+#include "kinecal/trust/weak_parameters.hpp"
 
 namespace kinecal {
 
@@ -59,6 +60,26 @@ KINECAL_INLINE PlainMatrix deviations(const PlainMatrix& covariance, const Plain
     if (lost(i) > kLost) of(i) = std::numeric_limits<double>::infinity();
   }
   return of;
+}
+
+KINECAL_INLINE void mark_undetermined(const AnyProblem& problem, const FreeSet& free,
+                                      const Coordinates& by, Uncertainty& known) {
+  constexpr double kOff = 0.4;  // of useful_deviation()
+  if (by.null.cols() == 0) return;
+  Eigen::VectorXd deviation = known.deviation.matrix();
+  for (Eigen::Index i = 0; i < deviation.size(); ++i) {
+    // Of all undetermined combinations, that which moves this parameter most.
+    const Eigen::VectorXd along = by.null * (by.scale(i) * by.null.row(i).transpose());
+    double most = 0.0;
+    for (int c = 0; c < free.size(); ++c) {
+      const Parameter& p = problem.table()[free.parameters()[static_cast<std::size_t>(c)]];
+      most = std::max(most, std::abs(along(c)) / (kOff * useful_deviation(p)));
+    }
+    if (std::abs(along(i)) > most * deviation(i)) {
+      deviation(i) = std::numeric_limits<double>::infinity();
+    }
+  }
+  known.deviation = deviation;
 }
 
 }  // namespace detail

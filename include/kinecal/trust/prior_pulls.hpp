@@ -1,0 +1,43 @@
+// Priors that the samples contradict.
+//
+// A prior adds w^2 n r^2 / 2 to the cost, for n samples.  Without its gradient g the solution would be
+// off by H^-1 g.  A prior that is right moves a parameter by about one standard deviation at most, as
+// noise does.  One that moves it by several is not what the samples show, and the standard deviations,
+// which take it for a measurement, do not contain what it distorts.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/solve/linear_fit.hpp"
+#include "kinecal/trust/uncertainty.hpp"
+
+namespace kinecal {
+
+/// A prior that moves the solution further than chance explains.
+struct PriorPull {
+  std::string prior;   ///< its name
+  int parameter = -1;  ///< table index of the one that it moves most, in standard deviations
+  double shift = 0.0;  ///< by how much, to first order; unit of the parameter
+  double times = 0.0;  ///< the same in standard deviations
+};
+
+/// Priors that move some parameter by more than 4 standard deviations, the largest first.
+/// @param free     the parameters of `fit` and `known`
+/// @param values   of all parameters of the table: the solution
+/// @param inverse  (coordinates x coordinates) of the information of `fit`, priors included
+[[nodiscard]] std::vector<PriorPull> prior_pulls(const AnyProblem& problem, const FreeSet& free,
+                                                 std::span<const double> values,
+                                                 const LinearFit& fit,
+                                                 const Eigen::MatrixXd& inverse,
+                                                 const Uncertainty& known);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/prior_pulls.ipp"
+#endif
