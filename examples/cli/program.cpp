@@ -11,6 +11,10 @@
 #include <utility>
 #include <vector>
 
+#ifdef KINECAL_HAS_GLOG
+#include <glog/logging.h>
+#endif
+
 #include "commands.hpp"
 #include "describe.hpp"
 #include "kinecal/io/printable.hpp"
@@ -891,6 +895,9 @@ int run(int argc, char** argv) {
 namespace kinecal {
 
 int run_program(int argc, char** argv) {
+#ifdef KINECAL_HAS_GLOG
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs each step that it has to shorten
+#endif
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {
