@@ -56,6 +56,25 @@ TEST(Judge, ComparesTheNoiseWithTheSigmaThatWasGiven) {
   }
 }
 
+TEST(Judge, NamesASigmaInAnotherUnit) {
+  Judged judged;
+  judged.noise().given = 1.0;
+  judged.assessments[0].held_out.clear();
+  expect(judged.judgement(), Grade::do_not_use, "residuals show 0.");
+  EXPECT_THAT(judged.judgement().reasons.front(), HasSubstr("sigma must be in metres"));
+  judged.noise().given = 0.04;  // too large, but it may be meant
+  expect(judged.judgement(), Grade::good, "");
+}
+
+TEST(Judge, NamesPriorsThatTheSamplesContradict) {
+  Judged judged;
+  judged.assessments[0].pulls = {
+      {"keep", judged.scene.result.table.index("head_pan_x"), 0.0087, 9.0}};
+  expect(judged.judgement(), Grade::use_with_care,
+         "prior 'keep' and the samples contradict each other: it moves 'head_pan_x' by 8.7 mm, 9 "
+         "times");
+}
+
 TEST(Judge, ComparesTheNoiseWithWhatRobotsReachWhereNoSigmaWasGiven) {
   for (const auto& [metres, verdict] : {std::pair(0.0079, Grade::good),
                                         {0.0081, Grade::use_with_care},

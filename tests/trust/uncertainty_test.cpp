@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/solve/stack.hpp"
 #include "support/noisy_scene.hpp"
@@ -73,6 +77,27 @@ TEST(Uncertainty, IsInfiniteOnlyForWhatIsNotDetermined) {
     } else if (name == "elbow" || name == "camera_fx") {
       EXPECT_LT(deviation, 0.01) << name;
     }
+  }
+}
+
+/// What takes a small part in what nothing determines is off with it: not determined either, unless that
+/// part is below its own deviation.
+TEST(Uncertainty, IsInfiniteForWhatAnUndeterminedCombinationMovesFurther) {
+  test::NoisyScene scene(10);
+  for (const char* name : {"shoulder_pan", "head_pan_c"}) scene.names.push_back(name);
+  const Assessment found = scene.solve_and_assess();
+  const Eigen::VectorXd values = scene.values();
+  const Coordinates by = determined_coordinates(scene.solved(), scene.free(), scene.span(values));
+  ASSERT_EQ(by.null.cols(), 1);
+  const auto pan = std::find(found.parameters.begin(), found.parameters.end(),
+                             scene.result.table.index("shoulder_pan"));
+  const double turn = 0.4 * 5.0 * std::numbers::pi / 180.0;  // radians
+  const Eigen::VectorXd moved = by.null.col(0) / by.null(pan - found.parameters.begin(), 0) * turn;
+  for (std::size_t c = 0; c < found.parameters.size(); ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    const double sigma = std::sqrt(found.uncertainty.covariance(i, i));
+    if (std::abs(moved(i)) > 2.0 * sigma) EXPECT_TRUE(std::isinf(found.uncertainty.deviation(i)));
+    if (std::isfinite(found.uncertainty.deviation(i))) EXPECT_LT(std::abs(moved(i)), 2.0 * sigma);
   }
 }
 

@@ -27,11 +27,11 @@ struct BoardsSeen {
   BoardsSeen seen;
   GrayImage left = image;
   BoardSearch how = BoardSearch::sectors;
-  for (int tries = 0; tries < 5 && seen.boards.size() < 2; ++tries) {
+  for (int tries = 0; tries < 6 && seen.boards.size() < 2; ++tries) {
     const CornerGrid grid{columns, rows, find_chessboard(left, columns, rows, how)};
     if (grid.corners.empty()) {
-      if (tries > 0 || std::min(columns, rows) > 3) break;
-      how = BoardSearch::squares;
+      if (how == BoardSearch::squares) break;
+      how = BoardSearch::squares;  // finds small boards, and one beside another of another size
       continue;
     }
     if (is_checkerboard(image, grid)) {

@@ -100,6 +100,16 @@ TEST(PipeRobot, TheThirdUnreadableAnswerInARowEndsTheSession) {
   }
 }
 
+TEST(PipeRobot, LinesThatNobodyAskedForAnswerNothing) {
+  PipeRobot robot(
+      {"echo ready; n=0; while read a; do n=$((n+1)); echo \"{\\\"stamp\\\": $n}\"; echo log; "
+       "done"});
+  for (int i = 1; i <= 5; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the line is there
+    EXPECT_EQ(robot.light(1), Stamp(i));
+  }
+}
+
 TEST(PipeRobot, WaitingCanBeInterrupted) {
   bool interrupted = false;
   PipeRobot robot(

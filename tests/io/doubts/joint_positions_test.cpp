@@ -67,6 +67,13 @@ TEST_F(JointPositions, AWholeTurnBeyondTheLimitsAreTheSamePose) {
   EXPECT_THAT(diagnostics.warnings, ElementsAre(HasSubstr("'flex' is outside its limits")));
 }
 
+TEST_F(JointPositions, HalfATurnBeyondTheLimitsIsAnotherZeroAndNotDegrees) {
+  for (Sample& sample : samples) position(sample, "pan") += std::numbers::pi;
+  const Diagnostics diagnostics = found();
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.doubts, ElementsAre(HasSubstr("are inside: is its zero another one")));
+}
+
 TEST_F(JointPositions, SlightlyBeyondTheLimitsAreAWarningThatStandsOnce) {
   position(samples[3], "pan") = 2.95;
   position(samples[7], "pan") = -2.97;

@@ -68,6 +68,21 @@ TEST_F(LikelyCauses, TheScaleOfPointsIsFound) {
   }
 }
 
+TEST_F(LikelyCauses, AWrongScaleIsFoundInAFitThatIsNotBad) {
+  const Robot robot = parse_urdf(urdf, "arm.urdf");
+  const auto scales = [&] {
+    Diagnostics diagnostics;
+    const Calibration calibration = assemble(config(), robot, samples, diagnostics);
+    return wrong_scales(config(), robot, samples, calibrate(calibration).table);
+  };
+  EXPECT_THAT(scales(), IsEmpty());
+  for (Sample& sample : samples) {
+    for (Feature& feature : sample.observations[1].features) feature.point *= 1.03;
+  }
+  EXPECT_THAT(scales(),
+              testing::Contains(HasSubstr("with the points of 'tracker' multiplied by 0.97")));
+}
+
 TEST_F(LikelyCauses, LengthsThatAreFreeDoNotShrinkWithThePoints) {
   replace(
       config_text, "free_frames:\n",

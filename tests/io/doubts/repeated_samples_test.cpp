@@ -42,6 +42,12 @@ TEST_F(RepeatedSamples, SomeCopiesAreADoubtAndAFewAWarning) {
   EXPECT_THAT(few.warnings, ElementsAre(HasSubstr("is a copy")));
 }
 
+TEST_F(RepeatedSamples, ACopyThatWasPrintedWithFewerDigitsIsOne) {
+  samples.push_back(samples[4]);
+  for (Feature& feature : samples.back().observations[1].features) feature.point.x() += 1e-9;
+  EXPECT_THAT(found().doubts, ElementsAre(HasSubstr("is a copy")));
+}
+
 TEST_F(RepeatedSamples, TheFirstOfTheFileIsNamed) {
   for (const std::size_t i : {9, 2, 5}) {
     samples.push_back(samples[i]);

@@ -36,6 +36,11 @@ TEST_F(SensorPoints, InAnyOtherUnitAreAnErrorThatNamesIt) {
   EXPECT_THAT(found().errors, ElementsAre(HasSubstr("kilometres")));
 }
 
+TEST_F(SensorPoints, OneFarAwayDoesNotDecideTheUnit) {
+  samples[6].observations[1].features[0].point.x() += 20.0;
+  EXPECT_THAT(found().errors, IsEmpty());
+}
+
 TEST_F(SensorPoints, OfATargetInMillimetresAreADoubtAtLeast) {
   scale(0, 1000.0);  // (0, 0, 30) and (50, 20, 0)
   const Diagnostics diagnostics = found();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -32,8 +33,13 @@ class PipeRobot::Pipe {
   template <class Read>
   auto ask(const std::string& what, const std::string& request, Read&& read) {
     const std::string who = "'" + process_.command() + "': " + what + ": ";
-    // What comes before the request does not answer it; nor does what is late for the last one.
-    while (late_ > 0 && process_.read_line(std::chrono::milliseconds(0))) --late_;
+    // What comes before the request does not answer it: a greeting, a line of a log, or what is late for
+    // the last one.
+    constexpr int kMost =
+        1000;  // lines; a program that sends without end is heard as one that is late
+    for (int i = 0; i < kMost && process_.read_line(std::chrono::milliseconds(0)); ++i) {
+      late_ = std::max(0, late_ - 1);
+    }
     if (late_ > 0) {
       throw SilenceError(
           who + "it still has not answered to the last request, '" + unanswered_ + "'",

@@ -1,0 +1,46 @@
+#include "kinecal/trust/prior_pulls.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/noisy_scene.hpp"
+
+namespace kinecal {
+namespace {
+
+/// Assesses the scene with a prior on where the head stands.
+/// @param sigma  of the prior, metres; it counts once for each sample
+/// @param off    its mean less the truth, metres
+Assessment with_prior(double sigma, double off) {
+  test::NoisyScene scene(40);
+  scene.solve();
+  AnyProblem& problem = *scene.calibration.steps[0].problem;
+  Prior prior{.param = "head_pan", .position_scale = 1.0, .rotation_scale = 0.0};
+  prior.mean[1] = scene.truth(scene.result.table.index("head_pan_x")) + off;
+  prior.mean[2] = scene.truth(scene.result.table.index("head_pan_y"));
+  problem.add_prior("stand", prior, {.weight = 1.0 / (sigma * std::sqrt(40.0))});
+  scene.result = calibrate(scene.calibration);
+  const Eigen::VectorXd values = scene.values();
+  return assess(problem, scene.free(), scene.span(values), scene.samples);
+}
+
+TEST(PriorPulls, AreNoneIfThePriorIsRight) {
+  EXPECT_TRUE(with_prior(1e-3, 0.0).pulls.empty());
+  EXPECT_TRUE(with_prior(1e-3, 1e-3).pulls.empty()) << "off by one of its standard deviations";
+}
+
+TEST(PriorPulls, NameAStrongPriorThatTheSamplesContradict) {
+  const Assessment found = with_prior(1e-4, 0.03);
+  ASSERT_EQ(found.pulls.size(), 1u);
+  EXPECT_EQ(found.pulls[0].prior, "stand");
+  EXPECT_GT(found.pulls[0].times, 4.0);
+}
+
+/// What it moves is far below what the samples say.
+TEST(PriorPulls, AreNoneIfThePriorIsWeak) {
+  EXPECT_TRUE(with_prior(1.0, 0.03).pulls.empty());
+}
+
+}  // namespace
+}  // namespace kinecal
