@@ -10,7 +10,10 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "board_turns.hpp"
 #include "commands.hpp"
@@ -232,6 +235,25 @@ std::pair<std::size_t, std::size_t> collect(std::vector<Look> looks, std::vector
   return {features, used};
 }
 
+/// "; 'big' in 16, 'small' in 7" of several targets, by the frames of their features; else empty.
+std::string count_of_targets(const std::vector<Sample>& samples) {
+  std::map<std::string, std::size_t> counts;
+  for (const Sample& sample : samples) {
+    std::set<std::string> seen;
+    for (const Observation& observation : sample.observations) {
+      if (observation.camera) continue;  // in the frame of the camera
+      for (const Feature& feature : observation.features) seen.insert(feature.frame);
+    }
+    for (const std::string& frame : seen) ++counts[frame];
+  }
+  if (counts.size() < 2) return {};
+  std::string text;
+  for (const auto& [frame, count] : counts) {
+    text += fmt::format("{}'{}' in {}", text.empty() ? "; " : ", ", frame, count);
+  }
+  return text;
+}
+
 void write(const DetectOptions& options, const std::vector<Sample>& samples) {
   const OutputFolder folder(folder_of(options.output));  // creates it if it is missing
   write_recording(options.output, samples,
@@ -274,8 +296,8 @@ int detect(const DetectOptions& options) {
     return kBadInput;
   }
   write(options, samples);
-  fmt::print("wrote {}: {} of {}: {}; {} refused\n", options.output, used, seen,
-             counted(features, "feature"), count - used);
+  fmt::print("wrote {}: {} of {}: {}; {} refused{}\n", options.output, used, seen,
+             counted(features, "feature"), count - used, printable(count_of_targets(samples)));
   if (!options.sheet.empty()) fmt::print("wrote {}\n", options.sheet);
   return kDone;
 }

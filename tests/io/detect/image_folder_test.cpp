@@ -56,6 +56,15 @@ TEST_F(ImageFolderTest, AColumnNamesTheImageAndTheOthersAreJoints) {
   EXPECT_EQ(images[1].source, path("poses.csv") + ":3");
 }
 
+TEST_F(ImageFolderTest, TheColumnOfImagesMayHaveAnyNameIfItsCellsAreImages) {
+  for (const char* name : {"Image", "FILENAME", "photo"}) {
+    const auto images = list(std::string("q1,") + name + "\n0.5,b.png\n0.25,a.png\n");
+    ASSERT_EQ(images.size(), 2u) << name;
+    EXPECT_EQ(images[0].path, path("images/b.png"));
+    EXPECT_THAT(images[0].joints.names, ElementsAre("q1"));
+  }
+}
+
 TEST_F(ImageFolderTest, WithoutNamesRowsAreInTheOrderOfTheSortedFiles) {
   const auto images = list("q1;q2\n1;2\n3;4\n");
   ASSERT_EQ(images.size(), 2u);

@@ -48,11 +48,22 @@ namespace detail {
   return ' ';
 }
 
-/// Where the column `image` is; nullopt if the table has none.
+/// A text in small letters (ASCII).
+[[nodiscard]] inline std::string in_small_letters(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// Where the names of images are: a column of that name, or one whose first cell names an image; nullopt
+/// if the table has none.
 [[nodiscard]] inline std::optional<std::size_t> image_column(const std::vector<CsvRow>& rows) {
   for (std::size_t i = 0; !rows.empty() && i < rows.front().cells.size(); ++i) {
-    const std::string& name = rows.front().cells[i];
+    const std::string name = in_small_letters(rows.front().cells[i]);
     if (name == "image" || name == "file" || name == "filename") return i;
+  }
+  for (std::size_t i = 0; rows.size() > 1 && i < rows[1].cells.size(); ++i) {
+    const std::string cell = in_small_letters(rows[1].cells[i]);
+    if (cell.ends_with(".png") || cell.ends_with(".jpg") || cell.ends_with(".jpeg")) return i;
   }
   return std::nullopt;
 }
