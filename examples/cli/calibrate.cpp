@@ -167,7 +167,7 @@ int calibrate(const CalibrateOptions& options) {
   write_reports(options, input, fitted);
   if (!options.scene.empty()) write_scene_file(options.scene, input, fitted, options.mesh_paths);
   if (findings.judgement.verdict == Grade::do_not_use) {
-    fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
+    fmt::print(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
                result.steps.empty() ? "" : result.steps.back().name,
                findings.judgement.reasons.front());
     return kNotUsable;

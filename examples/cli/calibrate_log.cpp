@@ -379,7 +379,7 @@ int report(const ResultOptions& options, const LogRun& run, const Findings& find
   const CalibrationResult& result = findings.result;
   if (findings.judgement.verdict == Grade::do_not_use) {
     forget(options.output);
-    fmt::print(stderr, "error: step '{}' is not calibrated, nothing written: {}\n",
+    fmt::print(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
                result.steps.empty() ? "" : result.steps.back().name,
                findings.judgement.reasons.front());
     return kNotUsable;

@@ -97,8 +97,8 @@ void add_calibrate_log(CLI::App& command, ResultOptions& options) {
   add_input(command, options)->required();
   command
       .add_option("--output", options.output,
-                  "folder for the results; several processes meet there, and a run that was "
-                  "interrupted goes on there")
+                  "output folder; processes that share it share the work, and an interrupted run "
+                  "resumes in it")
       ->required()
       ->type_name("DIR");
   add_results(command, options);
@@ -131,9 +131,10 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
                   "leave out these samples: numbers from 1, in the order of the files")
       ->delimiter(',')
       ->type_name("N");
-  command.add_flag("--keep-outliers", options.keep_outliers,
-                   "use all samples; by default those are left out of which a feature is off by "
-                   "twice what chance makes of one in a thousand recordings");
+  command.add_flag(
+      "--keep-outliers", options.keep_outliers,
+      "use all samples; by default, outliers are left out: samples with a residual that "
+      "chance exceeds once in 1000 recordings");
   command
       .add_option("--folds", options.folds,
                   "parts into which samples are divided for held-out errors; 0: leave-one-out")
@@ -143,7 +144,7 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
       .add_option(
           "--starts", options.starts,
           "also solve from N random starts, the same ones each time: joints up to 10 degrees "
-          "or 2 cm off, frames up to 10 degrees and 5 cm; the lowest minimum is taken")
+          "or 2 cm off, frames up to 10 degrees and 5 cm; keeps the lowest minimum")
       ->check(CLI::Range(0, 100000))
       ->type_name("N");
   command
@@ -189,7 +190,7 @@ void add_init(CLI::App& command, InitOptions& options) {
       ->type_name("NAME");
   command
       .add_option("--base", options.base,
-                  "link in which measurements are compared, default: the highest one")
+                  "link in which measurements are compared; default: the root of the URDF")
       ->type_name("LINK");
   command.add_flag("--force", options.force, "replace the file that is there");
 }
@@ -213,7 +214,7 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
   command.add_option("--poses", options.poses, "number of images, default: 30")
       ->check(CLI::Range(1, 9999))
       ->type_name("N");
-  command.add_option("--seed", options.seed, "another number: another robot, default: 1")
+  command.add_option("--seed", options.seed, "random seed (default 1); each seed is another robot")
       ->excludes(scene)
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
@@ -230,11 +231,11 @@ void add_study_files(CLI::App& command, StudyFiles& files) {
   CLI::Option* samples =
       command
           .add_option("--samples", files.samples,
-                      "recorded samples: their poses and targets; what was measured is simulated")
+                      "recorded samples: uses their poses and targets, simulates the measurements")
           ->type_name("FILE");
   command
       .add_option("--pose-file", files.pose_file,
-                  "poses: YAML of robot_calibration, or a bag; default: they are generated")
+                  "poses: YAML of robot_calibration, or a bag; default: generates them")
       ->excludes(samples)
       ->type_name("FILE");
   CLI::Option* scene =
@@ -246,7 +247,7 @@ void add_study_files(CLI::App& command, StudyFiles& files) {
       ->excludes(scene)
       ->excludes(samples)
       ->check(CLI::IsMember({"checkerboard", "apriltag", "leds"}));
-  command.add_option("--seed", files.seed, "another number: other robots and noise, default: 1")
+  command.add_option("--seed", files.seed, "random seed (default 1) of robots and noise")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
 }
@@ -268,14 +269,13 @@ void add_study(CLI::App& command, StudyOptions& options) {
       ->capture_default_str()
       ->type_name("N");
   command
-      .add_option(
-          "--ruined", options.ruined,
-          "share of samples of which a joint is elsewhere than it says; default: the scene's")
+      .add_option("--ruined", options.ruined,
+                  "fraction of samples with one wrong joint reading; default: from the scene")
       ->check(CLI::Range(0.0, 0.9))
       ->type_name("SHARE");
   command.add_flag("--free-targets", options.free_targets,
-                   "say what it would be if the pose of each sample's target were six more "
-                   "unknowns, as in the PR2's calibration");
+                   "compare with a calibration that also estimates the target pose of each sample "
+                   "(as on the PR2)");
   command
       .add_option("--limit", options.limit,
                   "mean re-projection error beyond which a calibration failed, metres or pixels; "
@@ -285,7 +285,7 @@ void add_study(CLI::App& command, StudyOptions& options) {
       ->check(CLI::Range(1, 1024));
   command
       .add_option("-o,--output", options.output,
-                  "folder for tables and trials; a study that was interrupted goes on there")
+                  "folder for tables and trials; an interrupted study resumes in it")
       ->type_name("DIR");
   command
       .add_option("--report", options.report,
@@ -328,7 +328,7 @@ void add_select_poses(CLI::App& command, SelectPosesOptions& options) {
       ->capture_default_str();
   command
       .add_option("--distance", options.least_distance,
-                  "poses of which no joint differs by this share of its range count as one")
+                  "treat poses as equal if every joint is within this fraction of its range")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command.add_option("--failures", options.failures, "poses that may fail")
@@ -349,7 +349,7 @@ void add_plan(CLI::App& command, PlanOptions& options) {
   add_choice(command, options, options.candidates, options.output, options.force);
   command
       .add_option("--accuracy", options.accuracy,
-                  "of the gripper in the camera, one standard deviation: \"gripper 0.5 mm\"")
+                  "of the gripper in the camera frame, one standard deviation: \"gripper 0.5 mm\"")
       ->capture_default_str()
       ->type_name("TEXT");
   command
@@ -382,7 +382,7 @@ void add_detect(CLI::App& command, DetectOptions& options) {
       .add_option(
           "--bag", options.bags,
           "recording of images or clouds, camera_info and joint states: ROS 1 bag, ROS 2 bag "
-          "or MCAP; each time that the robot stands still gives a sample; may be repeated")
+          "or MCAP; each standstill of the robot gives a sample; may be repeated")
       ->allow_extra_args(false)
       ->type_name("FILE");
   command
@@ -480,26 +480,27 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       ->check(kNotEmpty)
       ->type_name("FILE");
   command.add_flag("--manual", options.manual,
-                   "record wherever a person has put the robot, at each Enter");
+                   "you move the robot by hand; each Enter records a sample");
   command
       .add_option("-o,--output", options.output,
                   "the samples, written after each pose: .yaml, .bag (ROS 1) or .mcap")
       ->required()
       ->type_name("FILE");
-  command.add_option("--velocity", options.velocity, "factor of the usual speed")
+  command.add_option("--velocity", options.velocity, "speed, as a fraction of normal")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command.add_flag("--resume", options.resume, "go on with the poses that the output lacks");
+  command.add_flag("--resume", options.resume,
+                   "continue an interrupted session: record the poses that the output lacks");
   CLI::Option* calibrate =
       command
           .add_option(
               "--calibrate", options.calibrate,
-              "configuration: calibrate after each pose, and say how well the gripper is known")
+              "configuration: calibrate after each pose and print the gripper's uncertainty")
           ->check(kNotEmpty)
           ->type_name("FILE");
   command
       .add_option("--until", options.until,
-                  "end when the pose is known as well as this, one sigma: \"gripper 1 mm\", "
+                  "end when the pose is known this well, one sigma: \"gripper 1 mm\", "
                   "\"tool0 0.1 deg\"")
       ->needs(calibrate)
       ->check(kNotEmpty)
@@ -630,8 +631,7 @@ void add_recheck(CLI::App& command, RecheckOptions& options) {
                 when == "before" ? kinecal::Recorded::before : kinecal::Recorded::after;
           },
           "before or after calibrated.urdf and the calibrated cameras were installed; default: "
-          "what "
-          "fits better")
+          "what fits better")
       ->check(CLI::IsMember({"after", "before"}));
   command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
 }
@@ -640,7 +640,7 @@ void add_verify(CLI::App& command, RecheckOptions& options) {
   add_recheck(command, options);
   command
       .add_option("--level", options.level,
-                  "share of false alarms: how often a result that holds may be refused")
+                  "false alarm rate: how often a valid result may be rejected")
       ->check(CLI::Range(1e-6, 0.5))
       ->capture_default_str();
 }
@@ -785,7 +785,7 @@ void add_commands(Commands& commands, const std::string& line) {
       add_init, init);
   commands.add<InputOptions>(
       "check",
-      "list every error in the input and what the samples cannot determine, without calibrating",
+      "check the input without solving: errors, warnings, what the samples cannot determine",
       add_check, check);
   commands.add<CalibrateOptions>(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files",
@@ -806,7 +806,8 @@ void add_commands(Commands& commands, const std::string& line) {
                                "list what differs between two results by more than its uncertainty",
                                add_compare, compare);
   commands.add<InstallOptions>(
-      "install", "copy a result to the robot and set it in the launch file; or go back",
+      "install",
+      "copy a result to the robot and update its launch file, or restore the previous version",
       add_install, install);
   commands.add<std::vector<std::string>>(
       "inspect", "show what is in recordings: topics, sensors, features, joints, gaps", add_inspect,
@@ -815,13 +816,14 @@ void add_commands(Commands& commands, const std::string& line) {
                                "move a robot through poses and record what its finders see",
                                add_capture, capture);
   commands.add<CapturePosesOptions>(
-      "capture_poses", "record the poses for capture: a person moves the robot, at each Enter",
+      "capture_poses", "record the poses for capture: you move the robot by hand and press Enter",
       add_capture_poses, capture_poses);
   commands.add<DetectOptions>(
       "detect", "find boards and tags in photographs and recordings, and write samples", add_detect,
       detect);
   commands.add<SimulateOptions>(
-      "simulate", "photograph a simulated robot that differs from its URDF by known errors",
+      "simulate",
+      "render photographs of a simulated robot that differs from its URDF by known errors",
       add_simulate, simulate);
   commands.add<StudyOptions>(
       "study", "calibrate simulated robots many times: how well it repeats, with how many poses",
@@ -830,7 +832,8 @@ void add_commands(Commands& commands, const std::string& line) {
       "select-poses", "choose few poses of many, so that a calibration is as good as possible",
       add_select_poses, select_poses);
   commands.add<PlanOptions>(
-      "plan", "say how many poses an accuracy takes, which, and how long that is", add_plan, plan);
+      "plan", "find how many poses, and which, an accuracy needs, and how long they take", add_plan,
+      plan);
   commands.add<ConvertOptions>("convert", "write samples or poses in another format", add_convert,
                                convert);
   commands.add<CameraOptions>("camera", "show a camera file, and write it as camera_info",

@@ -124,7 +124,8 @@ TEST_F(VerdictProgram, WritesTheReportOfWhatIsNotToBeUsedAndNothingElse) {
   const test::Outcome result = calibrate("--report r.json");
   EXPECT_EQ(result.code, 2);
   EXPECT_THAT(result.out, StartsWith("verdict: do not use\n  - "));
-  EXPECT_THAT(result.err, HasSubstr("error: step 'calibrate' is not calibrated, nothing written"));
+  EXPECT_THAT(result.err,
+              HasSubstr("error: calibration of step 'calibrate' failed, no results written"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
   EXPECT_EQ(report("r.json")["verdict"].as<std::string>(), "do not use");
   EXPECT_GE(report("r.json")["reasons"].size(), 1u);

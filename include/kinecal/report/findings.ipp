@@ -129,7 +129,8 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
 
 [[nodiscard]] inline std::string next_text(const Findings& findings) {
   if (findings.judgement.verdict == Grade::do_not_use) {
-    return "Next: mend what the verdict names and calibrate again; nothing was written\n";
+    return "Next: fix the problems listed under the verdict and calibrate again; no results were "
+           "written\n";
   }
   std::string idle;
   for (const Assessment& step : findings.assessments) {

@@ -18,9 +18,10 @@ inline void judge_freedom(const Assessment& step, Judgement& judgement) {
   const double freedom = step.rows - parameters;
   if (freedom >= parameters) return;
   judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,
-                "step '" + step.step + "': " + std::to_string(step.rows) + " residuals for " +
+                "step '" + step.step + "': " + std::to_string(step.rows) +
+                    " residuals are too few to check " +
                     std::to_string(static_cast<int>(parameters)) +
-                    " parameters leave little to check them; record more samples");
+                    " parameters; record more samples");
 }
 
 inline void judge_held_out(const Assessment& step, Judgement& judgement) {

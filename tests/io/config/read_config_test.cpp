@@ -870,9 +870,9 @@ TEST(ReadConfig, MissingOrMisspeltRosParametersAreFound) {
                           "ros__parameters:'"));
   EXPECT_THAT(errors("a:\n  ros__parameters: 3\n"),
               ElementsAre("calibrate.yaml:2: node 'a': ros__parameters is '3', not a map"));
-  EXPECT_THAT(errors(kRos2 + "other:\n  ros__parameters: {a: 1}\n"),
-              ElementsAre("calibrate.yaml:15: node 'other' is a second one beside "
-                          "'robot_calibration'; a calibration is a single node"));
+  EXPECT_THAT(
+      errors(kRos2 + "other:\n  ros__parameters: {a: 1}\n"),
+      ElementsAre("calibrate.yaml:15: two nodes, 'robot_calibration' and 'other'; keep one"));
 }
 
 // ---- real files ----

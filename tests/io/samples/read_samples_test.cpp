@@ -302,7 +302,7 @@ TEST(ReadSamples, FileWithoutSamplesIsAnError) {
 
 TEST(ReadSamples, TextThatIsNotASampleIsAnErrorWithItsLine) {
   expect_error(kSample + "hello\n", 6, {"sample", "'hello' is not a map"});
-  expect_error(kSample + "- 1\n- 2\n---\n", 6, {"sample", "a list stands here, not a map"});
+  expect_error(kSample + "- 1\n- 2\n---\n", 6, {"sample", "expected a map, found a list"});
 }
 
 TEST(ReadSamples, SampleWithoutJointStatesOrObservationsIsAnError) {
@@ -440,10 +440,10 @@ TEST(ReadSamples, MissingSeparatorIsAnError) {
 
 TEST(ReadSamples, ListOrMapInTheWrongPlaceIsAnError) {
   expect_error(kJoints + "observations: {sensor_name: arm}\n---\n", 2,
-               {"observations: a map stands here, not a list"});
+               {"observations: expected a list, found a map"});
   expect_error(kJoints + "observations: [arm]\n---\n", 2, {"observations", "'arm' is not a map"});
   expect_error("joint_states: {name: [a, [b]], position: [1]}\n" + kArm, 1,
-               {"name: a list stands here, not a word or number"});
+               {"name: expected a word or number, found a list"});
 }
 
 TEST(ReadSamples, ValuesThatTheRecorderLeftOutAreAnErrorWithTheRemedy) {

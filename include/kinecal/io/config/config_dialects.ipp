@@ -137,8 +137,8 @@ inline void read_dialect(ConfigMap& file, ConfigProgress& progress) {
     return;
   }
   for (std::size_t i = 1; i < nodes.size(); ++i) {
-    file.error(nodes[i].place, "node '" + nodes[i].key + "' is a second one beside '" +
-                                   nodes[0].key + "'; a calibration is a single node");
+    file.error(nodes[i].place,
+               "two nodes, '" + nodes[0].key + "' and '" + nodes[i].key + "'; keep one");
   }
   for (const ConfigEntry& entry : nodes) file.use(entry.key);
   ConfigMap node(nodes[0].value, nodes[0].place, "node '" + nodes[0].key + "'", file.diagnostics());

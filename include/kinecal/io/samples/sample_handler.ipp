@@ -134,8 +134,8 @@ class SampleHandler {
       ++skipped_;
       if (node != SampleNode::unknown) {
         error(node, line,
-              fmt::format("a {} stands here, not a {}",
-                          kind == SampleNodeKind::map ? "map" : "list", kind_name(node)));
+              fmt::format("expected a {}, found a {}", kind_name(node),
+                          kind == SampleNodeKind::map ? "map" : "list"));
       }
       return;
     }

@@ -125,7 +125,7 @@ TEST(Ros1Bag, FromFrontToEndItIsTheSameAsWithItsIndex) {
       EXPECT_THAT(read.errors, IsEmpty());
       EXPECT_THAT(read.warnings,
                   ElementsAre(AllOf(StartsWith("a.bag: the recording was interrupt"),
-                                    HasSubstr("wanted messages read: 50, up to byte "))));
+                                    HasSubstr("relevant messages read: 50, up to byte "))));
     }
   }
 }

@@ -180,8 +180,10 @@ class McapMessages {
                       "the file, which is not cut off; it is damaged",
                       start));
     }
-    warn(fmt::format("the recording was interrupted: it is read up to byte {}, without the last {}",
-                     start, byte_count(file_.size() - start)));
+    const std::string rest = file_.size() == start
+                                 ? "where the file ends"
+                                 : "without the last " + byte_count(file_.size() - start);
+    warn(fmt::format("the recording was interrupted: read up to byte {}, {}", start, rest));
     return finish();
   }
 

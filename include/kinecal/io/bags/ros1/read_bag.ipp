@@ -210,9 +210,9 @@ class Ros1BagReading {
     std::string text = header_.index_place == 0
                            ? "the recording was interrupted: it has no index"
                            : "the recording was interrupted, or the file cut off or damaged: its "
-                             "index is not whole (" +
+                             "index is incomplete (" +
                                  why + ")";
-    text += "; wanted messages read: " + std::to_string(messages_.count()) + ", up to byte " +
+    text += "; relevant messages read: " + std::to_string(messages_.count()) + ", up to byte " +
             std::to_string(read_to_) + " of " + std::to_string(file_.size());
     messages_.warning(text);
   }
