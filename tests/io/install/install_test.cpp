@@ -218,16 +218,29 @@ TEST_F(Install, KeepsWhoMayReadTheLaunchFile) {
   }
 }
 
-TEST_F(Install, ALinkIsReplacedAndRestoredAsALink) {
+TEST_F(Install, OfALinkTheBackupHasTheContent) {
   write("package.launch", test::kLaunch);
   fs::remove(folder_ / "robot/robot.launch");
   fs::create_symlink("../package.launch", folder_ / "robot/robot.launch");
   install();
   EXPECT_EQ(read("package.launch"), test::kLaunch);
   EXPECT_FALSE(fs::is_symlink(folder_ / "robot/robot.launch"));
+  EXPECT_FALSE(fs::is_symlink(folder_ / "robot/robot.launch.backup_1"));
+  write("package.launch", "<launch/>");  // later, a new version of the package
+  EXPECT_EQ(read("robot/robot.launch.backup_1"), test::kLaunch);
   restore();
-  EXPECT_TRUE(fs::is_symlink(folder_ / "robot/robot.launch"));
+  EXPECT_FALSE(fs::is_symlink(folder_ / "robot/robot.launch"));
   EXPECT_EQ(launch(), test::kLaunch);
+}
+
+TEST_F(Install, WarnsThatALinkIsReplaced) {
+  write("package.launch", test::kLaunch);
+  fs::remove(folder_ / "robot/robot.launch");
+  fs::create_symlink("../package.launch", folder_ / "robot/robot.launch");
+  install();
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(HasSubstr("robot.launch: is a symbolic link to ../package.launch; "
+                                    "a file replaces the link")));
 }
 
 TEST_F(Install, ANameCanBeAnotherOrNone) {

@@ -96,6 +96,12 @@ KINECAL_INLINE Installation install(const ResultFolder& result, const std::files
   Installation done;
   for (const OutputFile& file : added) done.added.push_back(file.name);
   if (text != old.text()) {
+    if (target.launch_is_link()) {
+      diagnostics.warnings.push_back(
+          target.launch().string() + ": is a symbolic link to " +
+          std::filesystem::read_symlink(target.launch()).string() +
+          "; a file replaces the link, and what it names stays as it is");
+    }
     done.backup = target.replace_launch(added, text);
   } else if (!added.empty()) {
     target.add(added);

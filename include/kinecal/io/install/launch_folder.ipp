@@ -40,6 +40,8 @@ class LaunchFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] std::filesystem::path launch() const { return folder_ / launch_; }
 
+  [[nodiscard]] bool launch_is_link() const { return std::filesystem::is_symlink(launch()); }
+
   /// Removes what an interrupted run has left.
   void remove_leftovers() const {
     std::error_code ignored;
@@ -219,11 +221,12 @@ class LaunchFolder {
     }
   }
 
-  /// Gives the launch file a second name; if it is a symbolic link, the link.
+  /// Gives the launch file a second name.  Of a symbolic link its content is kept: the file that it
+  /// names may change later.
   void keep(const Staging& staging, const std::string& name) const {
     const std::filesystem::path kept = staging.path / name;
-    if (::link(launch().c_str(), kept.c_str()) != 0) {  // a file system without links
-      write_durably(kept, read_text_file(launch()), folder_ / name);
+    if (launch_is_link() || ::link(launch().c_str(), kept.c_str()) != 0) {  // or no links here
+      write_like_launch(staging, {{name, read_text_file(launch())}});
     }
     rename_file(kept, folder_ / name);
   }
