@@ -155,6 +155,21 @@ TEST_F(CameraFile, ReadsMessagesOfBothRos) {
   }
 }
 
+TEST_F(CameraFile, WarnsOfBinningAndOfARegion) {
+  (void)read(replaced(kMessage, "binning_x: 0", "binning_x: 2\nbinning_y: 2"));
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("c.yaml: camera_info has binning 2 x 2, "
+                                                           "which is not used: K and P are")));
+  const std::string part = "roi: {x_offset: 8, y_offset: 4, width: 320, height: 240}";
+  (void)read(replaced(kMessage, "roi: {x_offset: 0}", part));
+  EXPECT_THAT(
+      diagnostics_.warnings,
+      ElementsAre(HasSubstr("has a region of interest of 320 x 240 pixels at 8, 4, which")));
+  (void)read(
+      replaced(kMessage, "roi: {x_offset: 0}",  // the full image
+               "binning_y: 1\nroi: {x_offset: 0, width: 640, height: 480, do_rectify: true}"));
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+}
+
 TEST_F(CameraFile, ReadsOneCameraOfACamchain) {
   const CameraInfo camera = read(kKalibr, "cam0");
   EXPECT_THAT(diagnostics_.errors, IsEmpty());

@@ -207,6 +207,21 @@ TEST(ReadSamples, DepthParametersWithoutACameraAreAWarning) {
                                 HasSubstr("z_scaling are not used"))));
 }
 
+TEST(ReadSamples, BinningAndARegionAreAWarningOnceForASensor) {
+  const std::string sample = with_camera("{width: 4, height: 4, p: " + kTwelve +
+                                         ", binning_x: 2, binning_y: 2, "
+                                         "roi: {x_offset: 1, y_offset: 0, height: 2, width: 2, "
+                                         "do_rectify: false}}");
+  const Reading reading = read_text(sample + sample);
+  ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
+  EXPECT_THAT(reading.diagnostics.warnings,
+              ElementsAre(HasSubstr("sensor 'head': camera_info has binning 2 x 2 and a region of "
+                                    "interest of 2 x 2 pixels at 1, 0, which is not used")));
+  const Reading full = read_text(with_camera("{width: 4, height: 4, p: " + kTwelve +
+                                             ", binning_x: 1, roi: {width: 4, height: 4}}"));
+  EXPECT_THAT(full.diagnostics.warnings, IsEmpty());
+}
+
 TEST(ReadSamples, EmptyKAndRAreZeros) {
   const Reading reading = read_text(with_camera("{width: 4, K: [], P: " + kTwelve + "}"));
   ASSERT_THAT(reading.diagnostics.errors, IsEmpty());

@@ -23,8 +23,21 @@
 #include <vector>
 
 #include "kinecal/io/cameras/camera_fields.ipp"
+#include "kinecal/io/cameras/image_part.ipp"
 
 namespace kinecal::detail {
+
+/// Warns of a camera_info that is of a part of the image.
+inline void doubt_image_part(ConfigMap& file, const CameraInfo& camera) {
+  ImagePart part{file.number("binning_x", 0.0), file.number("binning_y", 0.0)};
+  if (const ConfigEntry* entry = file.find("roi"); entry != nullptr && entry->value.is_map()) {
+    ConfigMap roi(entry->value, entry->place, "roi", file.diagnostics());
+    part.x = roi.number("x_offset", 0.0), part.y = roi.number("y_offset", 0.0);
+    part.width = roi.number("width", 0.0), part.height = roi.number("height", 0.0);
+  }
+  const std::string doubt = doubt_image_part(part, camera);
+  if (!doubt.empty()) file.diagnostics().warning(file.place(), doubt);
+}
 
 /// Reads a camera_info file or message.
 /// @param file  the top-level map
@@ -43,7 +56,8 @@ namespace kinecal::detail {
   }
   const bool has_r = read_camera_matrix(file, {"rectification_matrix", "R", "r"}, camera.r);
   const bool has_p = read_camera_matrix(file, {"projection_matrix", "P", "p"}, camera.p);
-  file.ignore({"camera_name", "header", "binning_x", "binning_y", "roi"});
+  doubt_image_part(file, camera);
+  file.ignore({"camera_name", "header"});
   file.report_unknown();  // or camera_matrix would replace a misspelt projection_matrix
   complete_camera(camera, has_r, has_p, file.place(), file.diagnostics());
   return camera;

@@ -159,6 +159,9 @@ class SampleBuilder {
       errors_.add(line, where() + ": " + wrong);
     }
     observation().camera = camera_.take(line, where, errors_);
+    if (!observation().camera) return;
+    const std::string doubt = doubt_image_part(camera_.part(), *observation().camera);
+    if (!doubt.empty()) errors_.warn_once(line, fmt::format("sensor {}: {}", shown(name), doubt));
   }
 
   std::string file_;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "kinecal/io/camera_info.hpp"
+#include "kinecal/io/cameras/image_part.ipp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/samples/feature_id_parameters.ipp"
 #include "kinecal/io/samples/sample_schema.ipp"
@@ -96,7 +97,15 @@ class SampleCamera {
     if (node == SampleNode::k_item) append(info_.k, k_, value);
     if (node == SampleNode::r_item) append(info_.r, r_, value);
     if (node == SampleNode::p_item) append(info_.p, p_, value);
+    if (node == SampleNode::binning_x) part_.binning_x = value;
+    if (node == SampleNode::binning_y) part_.binning_y = value;
+    if (node == SampleNode::roi_x) part_.x = value;
+    if (node == SampleNode::roi_y) part_.y = value;
+    if (node == SampleNode::roi_height) part_.height = value;
+    if (node == SampleNode::roi_width) part_.width = value;
   }
+
+  [[nodiscard]] const ImagePart& part() const { return part_; }
 
   /// Only z_offset_mm, z_scaling and ids matter; others may have any value.  The value is text until
   /// here: millimetres become metres by moving its decimal point, without a rounding error.
@@ -173,6 +182,7 @@ class SampleCamera {
 
   CameraInfo info_;
   List k_, r_, p_;
+  ImagePart part_;
   Parameter parameter_;
   FeatureIdParameters ids_;
 };

@@ -9,7 +9,7 @@
 //                 orientation: {x: ..., y: ..., z: ..., w: ...},          (of poses only)
 //                 sigma: ..., id: ...}, ...]                              (if it has them)
 //     ext_camera_info:
-//       camera_info: {height, width, distortion_model, D, K, R, P}
+//       camera_info: {height, width, distortion_model, D, K, R, P, binning_x, binning_y, roi}
 //       parameters: [{name: ..., value: ...}, ...]
 //
 // Source: robot_calibration_msgs/CalibrationData; D K R P are ROS 1, d k r p are ROS 2.
@@ -69,6 +69,13 @@ enum class SampleNode : std::uint8_t {
   r_item,
   p,
   p_item,
+  binning_x,
+  binning_y,
+  roi,
+  roi_x,
+  roi_y,
+  roi_height,
+  roi_width,
   parameters,
   parameter,
   parameter_name,
@@ -135,6 +142,13 @@ struct SampleNodeRule {
       {r_item, r, number, ""},
       {p, camera_info, list, "P", "p"},
       {p_item, p, number, ""},
+      {binning_x, camera_info, number, "binning_x"},
+      {binning_y, camera_info, number, "binning_y"},
+      {roi, camera_info, map, "roi"},
+      {roi_x, roi, number, "x_offset"},
+      {roi_y, roi, number, "y_offset"},
+      {roi_height, roi, number, "height"},
+      {roi_width, roi, number, "width"},
       {parameters, ext_camera_info, list, "parameters"},
       {parameter, parameters, map, ""},
       {parameter_name, parameter, word, "name"},
@@ -160,7 +174,7 @@ inline constexpr auto kSampleNodeRules = sample_node_rules();
 
 /// What may stand under a node.
 struct SampleChildren {
-  std::array<SampleNode, 8> nodes{};
+  std::array<SampleNode, 10> nodes{};
   std::size_t size = 0;
   std::uint64_t bits = 0, required = 0;  ///< see sample_bit()
 };
