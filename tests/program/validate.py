@@ -19,17 +19,19 @@ def validator(name):
 
 
 def rows(file):
-    """The rows of residuals.csv as objects; the last columns are the components of the residual."""
+    """The rows of residuals.csv as objects."""
     with open(file, newline="") as lines:
         table = csv.reader(lines)
         names = next(table)
         for cells in table:
-            row = dict(zip(names, cells))
+            row = dict(zip(names, cells, strict=True))
             for name in ("sample", "feature", "id"):
                 if name in row:
                     row[name] = int(row[name]) if row[name] else None
             row["distance"] = float(row["distance"])
-            row["residual"] = [float(cell) for cell in cells[len(names) - 1 :]]
+            for name in names:
+                if name.startswith("residual_"):
+                    row[name] = float(row[name]) if row[name] else None
             yield row
 
 

@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "kinecal/report/residual_rows.ipp"
 #include "support/noisy_scene.hpp"
 
 namespace kinecal {
@@ -25,7 +26,8 @@ TEST(ResidualsCsv, HasARowForEachFeatureWithItsDistance) {
   std::istringstream text(residuals_csv(scene.calibration, findings));
   std::string line;
   std::getline(text, line);
-  EXPECT_EQ(line, "error_block,sample,source,feature,unit,distance,residual");
+  EXPECT_EQ(line,
+            "error_block,sample,source,feature,unit,distance,residual_1,residual_2,residual_3");
   int rows = 0;
   double squares = 0.0;
   while (std::getline(text, line)) {
@@ -59,7 +61,8 @@ TEST(ResidualsCsv, NumbersFeaturesAsTheSampleListsThemAndGivesTheirIds) {
   std::istringstream text(residuals_csv(scene.calibration, findings));
   std::string line;
   std::getline(text, line);
-  EXPECT_EQ(line, "error_block,sample,source,feature,id,unit,distance,residual");
+  EXPECT_EQ(line,
+            "error_block,sample,source,feature,id,unit,distance,residual_1,residual_2,residual_3");
   std::map<std::string, std::string> features;  // of each sample: feature and id
   while (std::getline(text, line)) {
     const std::vector<std::string> row = cells(line);
@@ -69,6 +72,16 @@ TEST(ResidualsCsv, NumbersFeaturesAsTheSampleListsThemAndGivesTheirIds) {
   EXPECT_EQ(features["1"], " 1: 3: 4:");
   EXPECT_EQ(features["2"], " 3:21 2:22 1:23");
   EXPECT_EQ(features["3"], " 1: 2: 3: 4:");
+}
+
+TEST(ResidualsCsv, RowsOfASmallerBlockEndWithEmptyCells) {
+  const std::vector<detail::CsvResidual> rows = {
+      {"points,1,a.yaml:1", {}, "m", 5.0, {3.0, 0.0, 4.0}},
+      {"plane,2,a.yaml:9", {}, "m", 2.0, {-2.0}}};
+  EXPECT_EQ(detail::csv_text(rows),
+            "error_block,sample,source,feature,unit,distance,residual_1,residual_2,residual_3\n"
+            "points,1,a.yaml:1,1,m,5,3,0,4\n"
+            "plane,2,a.yaml:9,1,m,2,-2,,\n");
 }
 
 }  // namespace

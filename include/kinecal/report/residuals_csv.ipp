@@ -4,32 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/report/residual_rows.ipp"
 #include "kinecal/report/residuals_csv.hpp"
 
 namespace kinecal {
-
-namespace detail {
-
-/// A name as a cell of a table.
-[[nodiscard]] inline std::string csv_cell(const std::string& name) {
-  if (name.find_first_of(",\"\n") == std::string::npos) return name;
-  std::string all = "\"";
-  for (const char c : name) all += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return all + "\"";
-}
-
-/// A row of residuals.
-struct CsvResidual {
-  std::string before;  ///< cells up to the feature's place
-  FeatureLabel feature;
-  std::string after;  ///< cells from the unit
-};
-
-}  // namespace detail
 
 KINECAL_INLINE std::string residuals_csv(const Calibration& calibration, const Findings& findings) {
   std::vector<detail::CsvResidual> rows;
@@ -44,23 +25,17 @@ KINECAL_INLINE std::string residuals_csv(const Calibration& calibration, const F
                                              detail::csv_cell(problem.source(sample)));
       for (Eigen::Index row = 0; row < residuals.residual.size(); row += size) {
         const auto r = residuals.residual.segment(row, size);
-        std::string after = fmt::format("{},{}", term.options().unit, r.norm());
-        for (Eigen::Index i = 0; i < size; ++i) after += fmt::format(",{}", r(i));
-        rows.push_back({before, problem.feature(t, sample, row / size), std::move(after)});
+        rows.push_back({before,
+                        problem.feature(t, sample, row / size),
+                        term.options().unit,
+                        r.norm(),
+                        {r.begin(), r.end()}});
       }
     };
     (void)evaluate(problem, {values.data(), static_cast<std::size_t>(values.size())}, nullptr,
                    visit);
   }
-  const bool ids = std::any_of(rows.begin(), rows.end(),
-                               [](const auto& row) { return row.feature.id.has_value(); });
-  std::string text =
-      fmt::format("error_block,sample,source,feature,{}unit,distance,residual\n", ids ? "id," : "");
-  for (const auto& [before, feature, after] : rows) {
-    const std::string id = feature.id ? fmt::format("{}", *feature.id) : "";
-    text += fmt::format("{},{},{}{}\n", before, feature.place + 1, ids ? id + "," : "", after);
-  }
-  return text;
+  return detail::csv_text(rows);
 }
 
 }  // namespace kinecal
