@@ -571,7 +571,7 @@ TEST(ReadSamples, AsManyThreadsAsOneLikesReadTheSame) {
     EXPECT_THAT(diagnostics.errors,
                 ElementsAre(path + ":25001: sample without 'observations'",
                             AllOf(StartsWith(path + ":25008: not YAML: "),
-                                  HasSubstr("the last sample begins at line 25003;"))));
+                                  HasSubstr("the last sample begins at line 25003"))));
   }
   std::filesystem::remove(path);
 }

@@ -115,6 +115,32 @@ TEST(SampleFile, SampleBeforeTextThatIsNotYamlMayBeInAnotherPiece) {
                                                 HasSubstr("the last sample begins at line 6;"))));
 }
 
+TEST(SampleFile, OutputOfARecordingToolIsNamed) {
+  const std::string lost = "A message was lost!!!\n\ttotal count change:1\n\ttotal count: 1---\n";
+  const std::string silent =
+      "WARNING: no messages received and simulated time is active.\nIs /clock being published?\n";
+  const Reading reading = read_in_every_way(silent + kSample + lost + kSample + silent + silent +
+                                            many_samples(20) + lost + kSample);
+  const std::string says = " are output of the tool that recorded the file; delete them";
+  EXPECT_THAT(reading.errors,
+              ElementsAre("s.yaml:1: lines 1 to 2" + says, "s.yaml:8: lines 8 to 10" + says,
+                          "s.yaml:16: lines 16 to 17" + says, "s.yaml:18: lines 18 to 19" + says,
+                          "s.yaml:120: lines 120 to 122" + says));
+}
+
+TEST(SampleFile, OnlyTheLastSampleMayBeCutOff) {
+  const std::string wrong = "joint_states: {name: [a], position: [x]}\n" + kArm;
+  const std::string not_yaml = "joint_states: {name: [a], position: [x]\n" + kArm;
+  const auto asks = [](const Reading& reading) {
+    return !reading.errors.empty() && reading.errors.back().ends_with("; is the file cut off?");
+  };
+  EXPECT_TRUE(asks(read_in_every_way(kSample + wrong)));
+  EXPECT_TRUE(asks(read_in_every_way(kSample + not_yaml)));
+  EXPECT_FALSE(asks(read_in_every_way(kSample + wrong + "---\n")));
+  EXPECT_FALSE(asks(read_in_every_way(kSample + not_yaml + "---\n" + kSample)));
+  EXPECT_FALSE(asks(read_in_every_way(kSample + wrong + "---\n" + kJoints + kArm)));
+}
+
 TEST(SampleFile, DocumentsEndAndBeginInEveryWayOfYaml) {
   const std::string sample = kJoints + kArm;
   const std::string crlf = [](std::string text) {

@@ -2,7 +2,8 @@
 //
 // The pieces do not depend on the number of threads, and their content is joined in the order of
 // the file.  So samples and messages do not depend on the number of threads either.  Memory holds
-// the samples and one piece for each thread. SPDX-License-Identifier: Apache-2.0
+// the samples and one piece for each thread.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <fmt/format.h>
@@ -23,6 +24,7 @@
 
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/samples/sample_handler.ipp"
+#include "kinecal/io/samples/tool_output.ipp"
 #include "kinecal/io/yaml/yaml_events.ipp"
 #include "kinecal/io/yaml/yaml_pieces.ipp"
 #include "kinecal/samples/progress_meter.hpp"
@@ -37,24 +39,27 @@ struct SamplePiece {
   std::optional<YamlError> not_yaml;    ///< the reason if it was not read to its end
   int sample_line = 0;                  ///< where its last sample begins
   bool last_document_is_empty = false;  ///< as it is after a final `---`
+  bool may_be_cut_off = false;          ///< not YAML in the file's last document
 
   /// True if the rest of the file is not read.
   [[nodiscard]] bool stops() const { return not_yaml || errors.too_many(); }
 };
 
-[[nodiscard]] inline SamplePiece read_sample_piece(const std::string& file,
-                                                   const YamlPiece& piece) {
+[[nodiscard]] inline SamplePiece read_sample_piece(const std::string& file, YamlPiece piece) {
   SampleHandler handler(file);
   SamplePiece read;
+  std::vector<SampleErrors::Message> outputs = take_tool_output(piece);
   try {
     YamlEvents events(piece.text, piece.line);
     while (!handler.builder().errors().too_many() && events.next_document(handler)) {
     }
   } catch (const YamlError& e) {
     read.not_yaml = e;
+    read.may_be_cut_off = !has_marker_from(piece, e.line);
   }
   read.samples = handler.take();
   read.errors = std::move(handler.builder().errors());
+  add_in_order(read.errors, std::move(outputs));
   read.sample_line = handler.builder().sample_line();
   read.last_document_is_empty = handler.last_document_is_empty();
   return read;
@@ -100,8 +105,11 @@ class SampleFile {
       for (auto& [line, text] : piece.errors.errors) all.add(line, std::move(text));
       for (auto& [line, text] : piece.errors.warnings) all.warn_once(line, std::move(text));
       if (piece.sample_line > 0) sample_line = piece.sample_line;
-      if (piece.not_yaml) all.add(piece.not_yaml->line, not_yaml(*piece.not_yaml, sample_line));
+      if (piece.not_yaml) all.add(piece.not_yaml->line, not_yaml(piece, sample_line));
       if (piece.stops() || all.too_many()) break;
+      if (&piece == &read_.back() && is_wrong_at_end(piece, all)) {
+        all.errors.back().text += "; is the file cut off?";
+      }
     }
     if (all.errors.empty()) check_end(samples, sample_line, all);
     report(all, file_, diagnostics);
@@ -122,7 +130,7 @@ class SampleFile {
       }
       SamplePiece& read = read_.emplace_back();  // keeps its address while others are added
       lock.unlock();
-      read = read_sample_piece(file_, *piece);
+      read = read_sample_piece(file_, std::move(*piece));
       if (!read.stops()) continue;
       lock.lock();
       stopped_ = true;
@@ -139,10 +147,16 @@ class SampleFile {
     }
   }
 
-  [[nodiscard]] static std::string not_yaml(const YamlError& error, int sample_line) {
-    const std::string sample =
-        sample_line > 0 ? fmt::format(" the last sample begins at line {};", sample_line) : "";
-    return fmt::format("not YAML: {};{} is the file cut off?", error.what(), sample);
+  [[nodiscard]] static std::string not_yaml(const SamplePiece& piece, int sample_line) {
+    std::string text = fmt::format("not YAML: {}", piece.not_yaml->what());
+    if (sample_line > 0) text += fmt::format("; the last sample begins at line {}", sample_line);
+    return text + (piece.may_be_cut_off ? "; is the file cut off?" : "");
+  }
+
+  /// True if the last error is in the last sample of the file, which no `---` ends.
+  [[nodiscard]] static bool is_wrong_at_end(const SamplePiece& last, const SampleErrors& all) {
+    return !last.last_document_is_empty && last.sample_line > 0 && !all.errors.empty() &&
+           all.errors.back().line >= last.sample_line;
   }
 
   /// A recording that was interrupted may end in the middle of a number and still be YAML.
