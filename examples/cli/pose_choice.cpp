@@ -11,6 +11,8 @@
 #include <set>
 
 #include "kinecal/io/urdf/velocity_limits.hpp"
+#include "kinecal/trust/pose_change.hpp"
+#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -37,7 +39,175 @@ double share_of(const Joint& joint, double position) {
   return turns(joint.type) ? 0.5 + position / (2.0 * std::numbers::pi) : position;
 }
 
+/// Where the joints of a sample are in their ranges.
+std::vector<double> shares_of(const StudyInput& input, const std::vector<std::string>& joints,
+                              const Sample& sample) {
+  std::vector<double> shares;
+  for (const std::string& name : joints) {
+    shares.push_back(share_of(input.robot.joint(name), sample.position(name).value_or(0.0)));
+  }
+  return shares;
+}
+
+/// Whether two poses count as one.
+bool are_alike(const std::vector<double>& a, const std::vector<double>& b, double least_distance) {
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [&](double x, double y) { return std::abs(x - y) <= least_distance; });
+}
+
+/// Radians or metres per second.
+std::vector<double> speeds_of(const StudyInput& input, const std::vector<std::string>& joints) {
+  const auto limits = velocity_limits(input.urdf_text, "the URDF");
+  constexpr double kTurning = 1.0, kSliding = 0.1;  // rad/s, m/s, where the URDF has no limit
+  std::vector<double> speeds;
+  for (const std::string& name : joints) {
+    const auto limit = limits.find(name);
+    const bool turning = turns(input.robot.joint(name).type);
+    speeds.push_back(limit != limits.end() ? limit->second : turning ? kTurning : kSliding);
+  }
+  return speeds;
+}
+
+/// What the samples add: the first ones are candidates, the others exist.
+void add_information(std::size_t candidates, PoseChoice& choice) {
+  const StudyDesign& design = choice.design;
+  PoseCandidates& of = choice.candidates;
+  const Eigen::Index n = design.prior.rows();
+  Eigen::MatrixXd before = Eigen::MatrixXd::Zero(n, n), scores = before;
+  std::vector<int> all;
+  for (std::size_t i = 0; i < design.samples.size(); ++i) {
+    all.push_back(static_cast<int>(i));
+    if (i < candidates) {
+      of.information.push_back(design.samples[i].information);
+      of.scores.push_back(design.samples[i].scores);
+      continue;
+    }
+    before += design.samples[i].information.matrix() + design.prior.matrix();
+    scores += design.samples[i].scores.matrix();
+    choice.have.push_back(static_cast<int>(i));
+  }
+  of.prior = design.prior;
+  of.before = before;
+  of.before_scores = scores;
+  choice.determined = expected_uncertainty(design, all).determined;
+}
+
+constexpr int kRobots = 3;  // drawn ones, of which it is checked what their calibrations leave
+
+/// A study of some samples, and after them of others at which the result is judged.
+StudySetup setup_of_set(const StudyInput& input, const std::vector<int>& set) {
+  StudySetup setup = input.setup;
+  setup.samples.clear();
+  for (const int i : set) {
+    setup.samples.push_back(input.setup.samples[static_cast<std::size_t>(i)]);
+  }
+  constexpr std::size_t kJudged = 50;
+  const std::size_t all = input.setup.samples.size();
+  for (std::size_t i = 0; i < all; i += std::max<std::size_t>(1, all / kJudged)) {
+    setup.samples.push_back(input.setup.samples[i]);
+  }
+  return setup;
+}
+
+/// Calibrations of drawn robots with exact samples.
+/// @param count    the first samples of the setup, to calibrate with
+/// @param change   of each robot's true values
+/// @returns  of the error: robots and position
+template <class Change>
+RemainingError calibrate_exactly(const StudyInput& input, const StudySetup& setup,
+                                 std::size_t count, const Config& config, Change change) {
+  RemainingError remaining;
+  double sum = 0.0;
+  const std::unique_ptr<AnyProblem> problem = setup.make();
+  for (int number = 0; number < kRobots; ++number) {
+    std::vector<double> truth = study_truth(setup, number);
+    change(truth);
+    try {
+      const std::vector<Sample> exact = exact_samples(setup.make, truth, setup.samples);
+      const StudyFit fit = fit_study(input, config, std::span(exact).first(count));
+      const PoseChange off =
+          pose_change({*problem, truth}, {*problem, fit.values}, exact, setup.frame, setup.in);
+      sum += off.position * off.position;
+      ++remaining.robots;
+    } catch (const StudyError&) {
+      continue;  // a point behind the camera of this robot says nothing of the others
+    }
+  }
+  remaining.position = std::sqrt(sum / std::max(1, remaining.robots));
+  return remaining;
+}
+
+/// The configuration without one of its priors, or without all.
+Config without_priors(Config config, const std::string& only = "") {
+  for (StepConfig& step : config.steps) {
+    std::erase_if(step.error_blocks, [&](const BlockConfig& block) {
+      return block.type == "outrageous" && (only.empty() || block.name == only);
+    });
+  }
+  return config;
+}
+
+/// Names of the last step's priors.
+std::vector<std::string> priors_of(const Config& config) {
+  std::vector<std::string> names;
+  for (const BlockConfig& block : config.steps.back().error_blocks) {
+    if (block.type == "outrageous") names.push_back(block.name);
+  }
+  return names;
+}
+
+/// Parameters that are held at another value than they are simulated with, by index.
+std::vector<int> held_elsewhere(const StudyInput& input) {
+  std::vector<int> held;
+  const std::vector<int>& free = input.setup.free;
+  for (std::size_t p = 0; p < input.configured.size(); ++p) {
+    const auto index = static_cast<int>(p);
+    constexpr double kSame = 1e-9;  // metres, radians
+    if (std::abs(input.configured[p] - input.setup.drawn[p]) < kSame) continue;
+    if (std::find(free.begin(), free.end(), index) == free.end()) held.push_back(index);
+  }
+  return held;
+}
+
+/// "'a', 'b'"
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
 }  // namespace
+
+void drop_poses_of_have(StudyInput& input, double least_distance) {
+  if (input.have == 0) return;
+  const std::vector<std::string> joints = moved_joints(input);
+  std::vector<std::vector<double>> shares;
+  for (const Sample& sample : input.samples) shares.push_back(shares_of(input, joints, sample));
+  const std::size_t candidates = input.samples.size() - input.have;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < input.samples.size(); ++i) {
+    const bool is_known =
+        i < candidates &&
+        std::any_of(shares.begin() + static_cast<std::ptrdiff_t>(candidates), shares.end(),
+                    [&](const auto& other) { return are_alike(shares[i], other, least_distance); });
+    if (is_known) continue;
+    input.samples[kept] = input.samples[i];
+    input.poses[kept++] = input.poses[i];
+  }
+  const std::size_t dropped = input.samples.size() - kept;
+  if (dropped == candidates) {
+    throw InputError(
+        fmt::format("--have: no joint of the poses to choose from is further than {} of its range "
+                    "from your poses; give other poses",
+                    least_distance));
+  }
+  if (dropped == 0) return;
+  fmt::print(stderr, "note: {} to choose from left out: --have has the same or nearly so\n",
+             counted(dropped, "pose"));
+  input.samples.resize(kept);
+  input.poses.resize(kept);
+  input.setup.samples = input.samples;
+}
 
 PoseChoice pose_choice(const StudyInput& input) {
   const StudySetup& setup = input.setup;
@@ -46,53 +216,105 @@ PoseChoice pose_choice(const StudyInput& input) {
   const AnyProblem& problem = *input.calibration.steps.back().problem;
   const FreeSet free(setup.free, problem.table().size());
   choice.design = study_design(setup.make, free, setup.drawn, choice.samples, setup.noise);
-  const std::size_t candidates = choice.samples.size() - input.have;
-  for (std::size_t i = 0; i < candidates; ++i) {
-    choice.candidates.information.push_back(choice.design.samples[i].information);
-    choice.candidates.scores.push_back(choice.design.samples[i].scores);
-  }
-  choice.candidates.prior = choice.design.prior;
-  Eigen::MatrixXd before = Eigen::MatrixXd::Zero(free.size(), free.size()), scores = before;
-  for (std::size_t i = candidates; i < choice.samples.size(); ++i) {
-    before += choice.design.samples[i].information.matrix() + choice.design.prior.matrix();
-    scores += choice.design.samples[i].scores.matrix();
-    choice.have.push_back(static_cast<int>(i));
-  }
-  choice.candidates.before = before;
-  choice.candidates.before_scores = scores;
   choice.candidates.goal =
       position_goal(problem, free, setup.drawn, choice.samples, setup.frame, setup.in);
+  const std::size_t candidates = choice.samples.size() - input.have;
+  add_information(candidates, choice);
   choice.joints = moved_joints(input);
-  const auto limits = velocity_limits(input.urdf_text, "the URDF");
-  constexpr double kTurning = 1.0, kSliding = 0.1;  // rad/s, m/s, where the URDF has no limit
-  for (const std::string& name : choice.joints) {
-    const auto limit = limits.find(name);
-    const bool turning = turns(input.robot.joint(name).type);
-    choice.speeds.push_back(limit != limits.end() ? limit->second : turning ? kTurning : kSliding);
-  }
+  choice.speeds = speeds_of(input, choice.joints);
   for (const Sample& sample : choice.samples) {
-    std::vector<double> place, shares;
+    std::vector<double> place;
     for (const std::string& name : choice.joints) {
       place.push_back(sample.position(name).value_or(0.0));
-      shares.push_back(share_of(input.robot.joint(name), place.back()));
     }
     choice.places.push_back(std::move(place));
     if (choice.candidates.shares.size() < candidates) {
-      choice.candidates.shares.push_back(std::move(shares));
+      choice.candidates.shares.push_back(shares_of(input, choice.joints, sample));
     }
   }
   return choice;
 }
 
 double expected_position(const PoseChoice& choice, const std::vector<int>& chosen) {
-  std::vector<int> all(choice.samples.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-  const ExpectedUncertainty best = expected_uncertainty(choice.design, all);
   std::vector<int> both = choice.have;
   both.insert(both.end(), chosen.begin(), chosen.end());
   const ExpectedUncertainty expected = expected_uncertainty(choice.design, both);
-  if (expected.determined < best.determined) return std::numeric_limits<double>::infinity();
+  if (expected.determined < choice.determined) return std::numeric_limits<double>::infinity();
   return std::sqrt(expected_variance(expected, choice.candidates.goal));
+}
+
+RemainingError remaining_error(const StudyInput& input, const PoseChoice& choice,
+                               const std::vector<int>& chosen, double tolerated) {
+  std::vector<int> set = choice.have;
+  set.insert(set.end(), chosen.begin(), chosen.end());
+  const StudySetup setup = setup_of_set(input, set);
+  const std::vector<std::string> priors = priors_of(input.config);
+  const std::vector<int> held = held_elsewhere(input);
+  const auto left_by = [&](const Config& config, bool as_configured) {
+    return calibrate_exactly(input, setup, set.size(), config, [&](std::vector<double>& truth) {
+      for (const int p : held) {
+        const auto i = static_cast<std::size_t>(p);
+        if (as_configured) truth[i] = input.configured[i];
+      }
+    });
+  };
+  const auto helps = [&](const Config& config, bool as_configured) {
+    const RemainingError left = left_by(config, as_configured);
+    return left.robots > 0 && left.position <= tolerated;
+  };
+  RemainingError remaining = left_by(input.config, false);
+  if (!(remaining.position > tolerated)) return remaining;
+  const Config without = without_priors(input.config);
+  const bool by_priors = !priors.empty() && helps(without, false);
+  const bool by_held = !by_priors && !held.empty() && helps(input.config, true);
+  const bool by_both =
+      !by_priors && !by_held && !priors.empty() && !held.empty() && helps(without, true);
+  if (by_priors || by_both) {
+    const auto cause = std::find_if(priors.begin(), priors.end(), [&](const std::string& name) {
+      return helps(without_priors(input.config, name), by_both);
+    });
+    remaining.priors = cause == priors.end() ? priors : std::vector<std::string>{*cause};
+  }
+  if (!by_held && !by_both) return remaining;
+  for (const int p : held) remaining.held.push_back(input.calibration.table[p].name);
+  return remaining;
+}
+
+std::string remaining_text(const RemainingError& remaining) {
+  const std::string text =
+      fmt::format("Without noise the calibrations of {1} are still {0} off (RMS)",
+                  millimetres(remaining.position),
+                  counted(static_cast<std::size_t>(remaining.robots), "drawn robot"));
+  std::vector<std::string> causes;
+  if (!remaining.priors.empty()) {
+    causes.push_back(fmt::format("the prior{} {} {}", remaining.priors.size() == 1 ? "" : "s",
+                                 listed(remaining.priors),
+                                 remaining.priors.size() == 1 ? "pulls" : "pull"));
+  }
+  if (!remaining.held.empty()) {
+    causes.push_back("the simulated target is not where the configuration holds " +
+                     listed(remaining.held));
+  }
+  if (causes.empty()) {
+    return text + "; what the configuration frees cannot describe these robots or this target\n";
+  }
+  return text + ": " + causes.front() + (causes.size() > 1 ? "; " + causes.back() : "") + "\n";
+}
+
+double tolerated_error(double spread, double wanted) {
+  constexpr double kMore = 1.1;
+  return std::sqrt(std::max(0.0, kMore * kMore * wanted * wanted - spread * spread));
+}
+
+std::string millimetres(double metres) {
+  if (!std::isfinite(metres)) return "not determined";
+  const double shown = 1e3 * metres;
+  constexpr double kSmall = 0.01;  // below it, three digits after the point are too few
+  if (!(shown > 0.0) || shown >= kSmall) return fmt::format("{:.3f} mm", shown);
+  std::string text =
+      fmt::format("{:.{}f}", shown, 1 - static_cast<int>(std::floor(std::log10(shown))));
+  if (text.back() == '0') text.pop_back();
+  return text + " mm";
 }
 
 double random_position(const PoseChoice& choice, int count) {

@@ -21,7 +21,13 @@ struct PoseChoice {
   JointPlaces places;               ///< of these joints, radians or metres
   std::vector<double> speeds;       ///< of these joints, radians or metres per second
   std::vector<int> have = {};       ///< samples that exist already, the last ones: no candidates
+  int determined = 0;               ///< directions that all samples and priors determine
 };
+
+/// Drops the poses to choose from that are like one that exists already.
+/// @param least_distance  see SelectOptions
+/// @throws InputError  if no pose is left
+void drop_poses_of_have(StudyInput& input, double least_distance);
 
 [[nodiscard]] PoseChoice pose_choice(const StudyInput& input);
 
@@ -29,7 +35,29 @@ struct PoseChoice {
 /// metres; infinite if they determine less than all poses do.
 [[nodiscard]] double expected_position(const PoseChoice& choice, const std::vector<int>& chosen);
 
-/// Median of the same of random sets, metres.
+/// What calibrations of drawn robots leave of the pose that is judged, if nothing is measured wrongly.
+struct RemainingError {
+  int robots = 0;                   ///< that were calibrated; 0: none could be simulated
+  double position = 0.0;            ///< RMS of the robots, metres
+  std::vector<std::string> priors;  ///< without which it is gone; none if that does not help
+  std::vector<std::string> held;  ///< parameters that are held, but simulated elsewhere: the cause
+};
+
+/// Calibrates drawn robots without noise, with these samples and those that exist.
+/// @param tolerated  metres; a cause is sought if more remains
+[[nodiscard]] RemainingError remaining_error(const StudyInput& input, const PoseChoice& choice,
+                                             const std::vector<int>& chosen, double tolerated);
+
+/// What remains, and why: a line.
+[[nodiscard]] std::string remaining_text(const RemainingError& remaining);
+
+/// What may remain so that a spread becomes no more than a tenth worse than what is asked for, metres.
+[[nodiscard]] double tolerated_error(double spread, double wanted);
+
+/// "0.497 mm", "not determined".
+[[nodiscard]] std::string millimetres(double metres);
+
+/// Median of expected_position() of random sets, metres.
 [[nodiscard]] double random_position(const PoseChoice& choice, int count);
 
 /// The least number of poses with which the median of random sets is as good, and that median; one more

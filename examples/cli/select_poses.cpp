@@ -17,9 +17,15 @@
 namespace kinecal::cli {
 namespace {
 
-/// How much the pose varies in simulated calibrations with some samples, metres.
-double simulated_position(const StudyInput& input, const PoseChoice& choice,
-                          const std::vector<int>& chosen, int trials) {
+/// What simulated calibrations of a robot without errors give.
+struct Simulated {
+  double varied = 0.0;  ///< spread of the pose, metres
+  double off = 0.0;     ///< its error, RMS, metres
+};
+
+/// Simulates calibrations with some samples.
+Simulated simulated(const StudyInput& input, const PoseChoice& choice,
+                    const std::vector<int>& chosen, int trials) {
   StudySetup setup = input.setup;
   setup.samples.clear();
   for (const int i : chosen) setup.samples.push_back(choice.samples[static_cast<std::size_t>(i)]);
@@ -30,11 +36,12 @@ double simulated_position(const StudyInput& input, const PoseChoice& choice,
     done.push_back(run_study_job(setup, robot, {0, count, repeat}));
   }
   std::vector<StudyGroup> groups = summarize(setup, {&robot, 1}, done, 1.0);
-  return std::sqrt(varied_variance(groups.at(0), done, choice.candidates.goal));
+  return {std::sqrt(varied_variance(groups.at(0), done, choice.candidates.goal)),
+          groups.at(0).position};
 }
 
-std::string millimetres(double metres) {
-  return std::isfinite(metres) ? fmt::format("{:.3f} mm", 1e3 * metres) : "not determined";
+std::string simulated_text(const Simulated& of) {
+  return fmt::format("varies by {}, is {} off", millimetres(of.varied), millimetres(of.off));
 }
 
 PoseSelection select(const SelectPosesOptions& options, const PoseChoice& choice) {
@@ -57,7 +64,28 @@ PoseSelection select(const SelectPosesOptions& options, const PoseChoice& choice
   return selection;
 }
 
-/// The selected poses beside random ones.
+/// What the selected poses are worth.
+std::string selected_text(const StudyInput& input, const PoseChoice& choice,
+                          const std::vector<int>& chosen) {
+  const double selected = expected_position(choice, chosen);
+  const std::string what = fmt::format("{} of {} selected: '{}' in '{}'", chosen.size(),
+                                       counted(choice.candidates.information.size(), "pose"),
+                                       input.setup.frame.name(), input.setup.in.name());
+  if (!std::isfinite(selected)) {
+    return what + " is not determined: they determine less than all poses do; choose more\n";
+  }
+  const double tolerated = tolerated_error(selected, selected);
+  const RemainingError remaining = remaining_error(input, choice, chosen, tolerated);
+  if (!(remaining.position > tolerated)) {
+    return what + " will be known to " + millimetres(selected) + " (one standard deviation)\n";
+  }
+  return what +
+         fmt::format(" will vary by {} (one standard deviation), but {} remain without noise\n  {}",
+                     millimetres(selected), millimetres(remaining.position),
+                     remaining_text(remaining));
+}
+
+/// Random sets, and all poses.
 std::string comparison_text(const SelectPosesOptions& options, const StudyInput& input,
                             const PoseChoice& choice, const std::vector<int>& chosen) {
   const RandomSets random = random_sets(choice.candidates, static_cast<int>(chosen.size()),
@@ -65,39 +93,49 @@ std::string comparison_text(const SelectPosesOptions& options, const StudyInput&
   std::vector<int> all(choice.candidates.information.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   const double selected = expected_position(choice, chosen);
-  std::string text =
-      fmt::format("{} of {} selected: '{}' in '{}' will be known to {} (one standard deviation)\n",
-                  chosen.size(), counted(all.size(), "pose"), input.setup.frame.name(),
-                  input.setup.in.name(), millimetres(selected));
-  text += fmt::format("  best of {} random sets: {}; all poses: {}\n", options.random,
-                      millimetres(expected_position(choice, random.best)),
-                      millimetres(expected_position(choice, all)));
+  if (!std::isfinite(selected)) {
+    return "  all poses: " + millimetres(expected_position(choice, all)) + "\n";
+  }
+  std::string text = fmt::format("  best of {} random sets: {}; all poses: {}\n", options.random,
+                                 millimetres(expected_position(choice, random.best)),
+                                 millimetres(expected_position(choice, all)));
   const int equal = random_poses_for(choice, selected);
   text += equal > static_cast<int>(all.size())
               ? "  random sets are never as good\n"
               : fmt::format("  random sets need {} for as much (median)\n",
                             counted(static_cast<std::size_t>(equal), "pose"));
   if (options.trials < 2 || !choice.have.empty()) return text;  // of the new ones alone
-  const auto simulated = [&](const std::vector<int>& set) {
-    return millimetres(simulated_position(input, choice, set, options.trials));
+  const auto of = [&](const std::vector<int>& set) {
+    return simulated_text(simulated(input, choice, set, options.trials));
   };
   return text + fmt::format("  simulated {} times: {}; best random set: {}\n", options.trials,
-                            simulated(chosen), simulated(random.best));
+                            of(chosen), of(random.best));
+}
+
+void check_options(const SelectPosesOptions& options) {
+  if (options.failures >= options.count) {
+    throw InputError(
+        fmt::format("--failures: {} of --count {} may fail, which leaves no pose; "
+                    "give fewer failures or more poses",
+                    options.failures, counted(static_cast<std::size_t>(options.count), "pose")));
+  }
+  if (options.output.empty()) return;
+  check_output(options.output,
+               {options.urdf, options.config, options.pose_file, options.scene, options.have},
+               options.force);
 }
 
 }  // namespace
 
 int select_poses(const SelectPosesOptions& options) {
-  if (!options.output.empty()) {
-    check_output(options.output,
-                 {options.urdf, options.config, options.pose_file, options.scene, options.have},
-                 options.force);
-  }
+  check_options(options);
   const std::unique_ptr<StudyInput> input = read_study(options, options.candidates);
+  drop_poses_of_have(*input, options.least_distance);
   const PoseChoice choice = pose_choice(*input);
   const PoseSelection selection = select(options, choice);
   const std::vector<int> order = short_order(choice, selection.chosen);
-  fmt::print("{}  in this order: {} with the URDF's speeds and 3 s a stop\n",
+  fmt::print("{}{}  in this order: {} with the URDF's speeds and 3 s a stop\n",
+             printable(selected_text(*input, choice, selection.chosen)),
              printable(comparison_text(options, *input, choice, selection.chosen)),
              duration_text(session_seconds(choice, order)));
   if (options.output.empty()) return kDone;

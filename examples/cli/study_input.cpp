@@ -96,6 +96,8 @@ void set_drawn(const StudyFiles& files, const ParameterTable& places, StudyInput
     if (!files.samples.empty()) break;
     for (const auto& [parameter, value] : step.assignments) table[parameter].value = value;
   }
+  const Eigen::VectorXd configured = table.values();
+  input.configured.assign(configured.begin(), configured.end());
   for (const Parameter& place : places) {
     if (const int p = table.find(place.name); p >= 0) table[p].value = place.value;
   }
@@ -103,8 +105,33 @@ void set_drawn(const StudyFiles& files, const ParameterTable& places, StudyInput
   input.setup.drawn.assign(values.begin(), values.end());
 }
 
-/// Calibrates samples of the study as `kinecal calibrate` does, but without its statements.
-StudyFit fit_study(const StudyInput& input, std::span<const Sample> all) {
+void set_up(const StudyFiles& files, StudyInput& input) {
+  StudySetup& setup = input.setup;
+  const CalibrationStep& step = input.calibration.steps.back();
+  setup.make = [&input] {
+    return empty_problem(input.config, input.config.steps.back(), input.robot,
+                         input.calibration.table, input.samples);
+  };
+  setup.free = step.free.parameters();
+  if (setup.free.empty()) throw InputError(files.config + ": no free parameter affects a residual");
+  setup.samples = input.samples;
+  const auto frames = compared_frames(*step.problem, input.samples);
+  if (!frames) throw InputError(files.config + ": nothing is compared whose pose could be judged");
+  setup.frame = frames->first;
+  setup.in = frames->second;
+  setup.noise = input.plan.noise;
+  setup.errors = input.plan.errors;
+  setup.ruined = input.plan.setup.faults.outliers;
+  setup.ruined_by = input.plan.setup.faults.outlier_size;
+  setup.seed = input.plan.setup.seed;
+  setup.fit = [&input](std::span<const Sample> samples) {
+    return fit_study(input, input.config, samples);
+  };
+}
+
+}  // namespace
+
+StudyFit fit_study(const StudyInput& input, const Config& config, std::span<const Sample> all) {
   StudyFit fit;
   fit.solves = 0;
   std::vector<Sample> samples(all.begin(), all.end());
@@ -117,7 +144,7 @@ StudyFit fit_study(const StudyInput& input, std::span<const Sample> all) {
   solving.threads = 1;
   const auto once = [&] {
     Diagnostics ignored;
-    Fitted fitted{assemble(input.config, input.robot, samples, ignored), {}};
+    Fitted fitted{assemble(config, input.robot, samples, ignored), {}};
     ignored.throw_if_errors();
     fitted.result = kinecal::calibrate(fitted.calibration, {}, solving);
     for (const StepResult& step : fitted.result.steps) fit.seconds += step.seconds;
@@ -147,30 +174,6 @@ StudyFit fit_study(const StudyInput& input, std::span<const Sample> all) {
   fit.values.assign(values.begin(), values.end());
   return fit;
 }
-
-void set_up(const StudyFiles& files, StudyInput& input) {
-  StudySetup& setup = input.setup;
-  const CalibrationStep& step = input.calibration.steps.back();
-  setup.make = [&input] {
-    return empty_problem(input.config, input.config.steps.back(), input.robot,
-                         input.calibration.table, input.samples);
-  };
-  setup.free = step.free.parameters();
-  if (setup.free.empty()) throw InputError(files.config + ": no free parameter affects a residual");
-  setup.samples = input.samples;
-  const auto frames = compared_frames(*step.problem, input.samples);
-  if (!frames) throw InputError(files.config + ": nothing is compared whose pose could be judged");
-  setup.frame = frames->first;
-  setup.in = frames->second;
-  setup.noise = input.plan.noise;
-  setup.errors = input.plan.errors;
-  setup.ruined = input.plan.setup.faults.outliers;
-  setup.ruined_by = input.plan.setup.faults.outlier_size;
-  setup.seed = input.plan.setup.seed;
-  setup.fit = [&input](std::span<const Sample> samples) { return fit_study(input, samples); };
-}
-
-}  // namespace
 
 std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   auto input = std::make_unique<StudyInput>();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,19 @@ struct StudyInput {
   std::vector<std::string> files;  ///< that were read
   std::size_t have = 0;            ///< the last samples, which exist already
   bool keep_ruined = true;         ///< calibrate with all samples
+  /// Values of all parameters by the configuration: those of its simulated target can differ.
+  std::vector<double> configured;
 };
 
 /// Reads everything.  Prints warnings.
 /// @param poses  how many to generate, if there are neither samples nor a file of poses
 /// @throws InputError  with one of the errors; the others are printed
 [[nodiscard]] std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses);
+
+/// Calibrates samples of the study as `kinecal calibrate` does, but without its statements.
+/// @param config  the study's, or one that differs from it in error blocks
+[[nodiscard]] StudyFit fit_study(const StudyInput& input, const Config& config,
+                                 std::span<const Sample> all);
 
 /// Names of the free parameters, in their order.
 [[nodiscard]] std::vector<std::string> free_names(const StudyInput& input);

@@ -12,6 +12,7 @@ namespace kinecal {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
@@ -205,16 +206,79 @@ TEST_F(Study, PlanSaysHowManyPosesAnAccuracyTakes) {
       call("plan", "--candidates 30 --accuracy 'gripper 3 mm' -o plan.yaml");
   ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out, ContainsRegex("[0-9]+ poses give [0-2]\\.[0-9]+ mm: "));
-  EXPECT_THAT(outcome.out, HasSubstr("Knee: after "));
+  EXPECT_THAT(outcome.out, ContainsRegex("Knee: after |No knee within "));
   const test::Outcome more = call(
       "plan", "--candidates 30 --have plan.yaml --accuracy 'gripper 1.5 mm' -o more.yaml --force");
   EXPECT_THAT(more.out, ContainsRegex("with your [0-9]+ poses: [0-2]\\.[0-9]+ mm"));
   const test::Outcome never = call("plan", "--candidates 30 --accuracy 'gripper 0.001 mm'");
   EXPECT_EQ(never.code, 2);
   EXPECT_THAT(never.out, HasSubstr("0.001 mm cannot be reached with poses like these"));
+  const test::Outcome least =
+      call("plan", "--candidates 30 --accuracy 'gripper 0.0001 mm' -o best.yaml");
+  EXPECT_EQ(least.code, 2);
+  EXPECT_THAT(least.out, HasSubstr("0.0001 mm cannot be reached"));
+  EXPECT_THAT(least.out, ContainsRegex("\nbest.yaml: the best [0-9]+ poses, which do not reach "));
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_poses_yaml((folder_ / "best.yaml").string(), diagnostics).empty());
   const test::Outcome angle = call("plan", "--accuracy 'gripper 1 deg'");
   EXPECT_EQ(angle.code, 1);
   EXPECT_THAT(angle.err, HasSubstr("give a length"));
+  const test::Outcome unit = call("plan", "--accuracy 'gripper 1'");
+  EXPECT_EQ(unit.code, 1);
+  EXPECT_THAT(unit.err, AllOf(HasSubstr("'gripper 1' is not the accuracy of a position"),
+                              Not(HasSubstr("deg"))));
+}
+
+TEST_F(Study, PosesThatExistAreNotChosenAgain) {
+  ASSERT_EQ(call("plan", "--candidates 30 --accuracy 'gripper 3 mm' -o have.yaml").code, 0);
+  const test::Outcome outcome =
+      call("select-poses",
+           "--candidates 30 --have have.yaml --count 10 --random 5 --simulate 0 -o more.yaml");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, ContainsRegex("note: [0-9]+ poses to choose from left out"));
+  Diagnostics diagnostics;
+  const auto have = read_poses_yaml((folder_ / "have.yaml").string(), diagnostics);
+  const auto more = read_poses_yaml((folder_ / "more.yaml").string(), diagnostics);
+  ASSERT_FALSE(more.empty());
+  for (const CapturePose& pose : more) {
+    for (const CapturePose& other : have) EXPECT_NE(pose.positions, other.positions);
+  }
+  const test::Outcome all = call("select-poses", "--pose-file have.yaml --have have.yaml");
+  EXPECT_EQ(all.code, 1);
+  EXPECT_THAT(all.err, HasSubstr("--have: no joint of the poses to choose from is further than"));
+}
+
+TEST_F(Study, PlanAndSelectPosesSayWhatAPriorLeavesWithoutNoise) {
+  // So strong that they hold the camera where the URDF has it.
+  ASSERT_EQ(run("sed 's/_scale: .*/_scale: 500.0/' " + kFetch + "calibrate.yaml > prior.yaml").code,
+            0);
+  const std::string what = "--config prior.yaml --candidates 30 ";
+  const test::Outcome outcome =
+      call("plan", what + "--accuracy 'gripper 3 mm' -o few.yaml --report page.html");
+  EXPECT_EQ(outcome.code, 2) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out,
+              ContainsRegex("^Without noise the calibrations of 3 drawn robots are "
+                            "still [0-9.]+ mm off \\(RMS\\): the prior 'restrict_camera' pulls\n"));
+  EXPECT_TRUE(fs::exists(folder_ / "few.yaml"));
+  const std::string page = read("page.html");
+  EXPECT_THAT(page, HasSubstr("<header class=\"verdict care\">"));
+  EXPECT_THAT(page, ContainsRegex("but [0-9.]+ mm remain without noise</strong>"));
+  EXPECT_THAT(page, Not(HasSubstr("<circle class=\"good\"")));
+  const test::Outcome selected = call("select-poses", what + "--count 10 --random 5 --simulate 3");
+  EXPECT_THAT(selected.out, ContainsRegex("but [0-9.]+ mm remain without noise\n"));
+  EXPECT_THAT(selected.out,
+              ContainsRegex("simulated 3 times: varies by [0-9.]+ mm, is [0-9.]+ mm"));
+}
+
+TEST_F(Study, SelectPosesOfTooFewPosesOrTooManyFailuresSaysSo) {
+  const test::Outcome few =
+      call("select-poses", "--candidates 30 --count 2 --random 5 --simulate 2");
+  EXPECT_EQ(few.code, 0) << few.err;
+  EXPECT_THAT(few.out, AllOf(HasSubstr("is not determined: they determine less than all poses do"),
+                             Not(HasSubstr("random sets need"))));
+  const test::Outcome none = call("select-poses", "--count 10 --failures 10");
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.err, HasSubstr("--failures: 10 of --count 10 poses may fail"));
 }
 
 TEST_F(Study, PlanWritesAPageWithACurve) {
@@ -224,7 +288,7 @@ TEST_F(Study, PlanWritesAPageWithACurve) {
   const std::string page = read("page.html");
   EXPECT_THAT(page, ContainsRegex("<strong>[0-9]+ poses give [0-2]\\.[0-9]+ mm</strong>"));
   EXPECT_THAT(page, HasSubstr("data-chart=\"pose-curve\""));
-  EXPECT_THAT(page, ContainsRegex(">knee: [0-9]+ poses<"));
+  EXPECT_THAT(page, ContainsRegex(">knee: [0-9]+ poses<|No knee within "));
   EXPECT_THAT(page, HasSubstr("asked for: 3 mm"));
   EXPECT_THAT(page, ContainsRegex("<p>(Parameters that no number|All parameters can be had)"));
   EXPECT_THAT(page, Not(HasSubstr("nan")));

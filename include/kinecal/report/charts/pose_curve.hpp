@@ -20,9 +20,11 @@ struct PoseCurve {
   std::vector<PoseAccuracy> selected;  ///< the poses that are best together, by their number
   std::vector<PoseAccuracy> random;    ///< median of random sets, by their number
   double wanted = 0.0;                 ///< accuracy that is asked for, metres
-  std::optional<int> knee;             ///< poses after which more improve it little
+  std::optional<int> knee;  ///< poses after which more improve it little; none within the curve
   /// The least set that gives what is asked for; none: not reached.
   std::optional<PoseAccuracy> enough;
+  /// Error that calibrations leave without noise, metres; zero: too little to say so.
+  double remaining = 0.0;
   int have = 0;  ///< poses that exist: numbers are of those in addition, and begin at zero
 };
 

@@ -137,6 +137,12 @@ KINECAL_INLINE Chart pose_curve_chart(const PoseCurve& curve) {
               ""};
   if (curve.knee) {
     chart.caption += " After the knee, five more poses improve it by less than 5 %.";
+  } else if (!curve.selected.empty()) {
+    chart.caption += " No knee within " + detail::poses_text(curve.selected.back().poses) + ".";
+  }
+  if (curve.remaining > 0.0) {
+    chart.caption += " It is the spread only: without noise calibrations are " +
+                     detail::with_unit(curve.remaining, "m") + " off.";
   }
   if (!curve.enough) chart.caption += " What is asked for is not reached.";
   const std::vector<detail::LegendEntry> entries = detail::pose_curve_legend(curve);
