@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -67,17 +68,28 @@ std::vector<PositionSpread> positions_of(const GroupsByPoses& groups) {
       const double share = 1.0 / static_cast<double>(of->second.size());
       point.varied += share * group->varied_position * group->varied_position;
       point.predicted += share * group->predicted_position * group->predicted_position;
+      point.off += share * group->position * group->position;
     }
     point.varied = std::sqrt(point.varied);
     point.predicted = std::sqrt(point.predicted);
+    point.off = std::sqrt(point.off);
     points.push_back(point);
   }
   return points;
 }
 
+/// Why there are no charts.
+std::string without_charts(const StudyResult& result) {
+  const bool repeated = std::any_of(result.groups.begin(), result.groups.end(),
+                                    [](const StudyGroup& group) { return group.trials > 1; });
+  return repeated ? "The covariance predicts no variation, as without noise: there is nothing to "
+                    "compare the calibrations with."
+                  : "One calibration of a robot says nothing of repeatability.";
+}
+
 std::string charts_of(const StudyInput& input, const StudyResult& result) {
   const GroupsByPoses groups = groups_by_poses(result);
-  if (groups.empty()) return "<p>One calibration of a robot says nothing of repeatability.</p>\n";
+  if (groups.empty()) return "<p>" + detail::html_text(without_charts(result)) + "</p>\n";
   const std::size_t robots = groups.begin()->second.size();
   std::string html = "<div class=\"pair\">";
   Chart spread = spread_chart(ratios_of(input, groups));

@@ -145,7 +145,7 @@ std::string table_three(const StudyInput& input, const StudyResult& result) {
 std::string free_targets(const StudyInput& input, const StudyResult& result) {
   const auto groups = of_robot(result, 0);
   if (groups.empty() || !(groups.front()->free_targets > 0.0)) return "";
-  TextTable table({"poses", "unknowns", "pose off, mm", "with free targets", "pose off, mm"}, 0);
+  TextTable table({"poses", "unknowns", "predicted, mm", "with free targets", "predicted, mm"}, 0);
   const std::size_t unknowns = input.setup.free.size();
   for (const StudyGroup* group : groups) {
     table.add({std::to_string(group->poses), std::to_string(unknowns),
@@ -154,7 +154,7 @@ std::string free_targets(const StudyInput& input, const StudyResult& result) {
                fmt::format("{:.3f}", 1e3 * group->free_targets)});
   }
   return "Free targets, as in the PR2's calibration: six unknowns for the pose of each sample's "
-         "target, predicted\n" +
+         "target\n" +
          table.str();
 }
 

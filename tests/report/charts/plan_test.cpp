@@ -57,6 +57,19 @@ TEST(PoseCurve, DotsStandAtTheirPosesAndPositions) {
   EXPECT_THAT(chart.text("/svg/desc"), HasSubstr("Selected: 3 poses: 1.15 mm; 40 poses: 0.316 mm"));
 }
 
+TEST(PoseCurve, WithoutAKneeOrWithAnErrorThatRemainsItSaysSo) {
+  PoseCurve curve = pose_curve();
+  curve.knee.reset();
+  curve.enough.reset();
+  curve.remaining = 39e-3;
+  const Chart drawn = pose_curve_chart(curve);
+  EXPECT_THAT(drawn.caption, HasSubstr("No knee within 40 poses."));
+  EXPECT_THAT(drawn.caption, HasSubstr("without noise calibrations are 39 mm off"));
+  const test::SvgChart chart(drawn);
+  EXPECT_TRUE(chart.all("//circle[@class='good']").empty());
+  EXPECT_EQ(chart.text("//text[@class='small strong']"), "");
+}
+
 TEST(PoseCurve, BeginsAtThePosesThatExist) {
   PoseCurve curve = pose_curve();
   curve.selected = {{0, 1e-3}, {1, 0.9e-3}, {2, 0.8e-3}};
@@ -128,14 +141,18 @@ TEST(Spread, OfManyParametersThoseFarthestFromOneAreShown) {
 
 TEST(PositionSpread, DotsStandAtTheirPosesAndPositions) {
   const test::SvgChart chart(position_spread_chart(
-      {{25, 1.0e-3, 0.9e-3}, {50, 0.7e-3, kInfinity}, {100, 0.5e-3, 0.4e-3}}));
+      {{25, 1.0e-3, 0.9e-3, 5e-3}, {50, 0.7e-3, kInfinity, 5e-3}, {100, 0.5e-3, 0.4e-3, 5e-3}}));
   expect_finite(chart);
   const auto varied = chart.all("//circle[@class='after' and title]");
   ASSERT_EQ(varied.size(), 3u);
   EXPECT_NEAR(chart.value('x', varied[1].attribute("cx").as_double()), 50.0, 0.1);
   EXPECT_NEAR(chart.value('y', varied[1].attribute("cy").as_double()), 0.7, 0.01);
   EXPECT_EQ(chart.all("//circle[@class='ring before' and title]").size(), 2u);
-  EXPECT_THAT(chart.text("/svg/desc"), HasSubstr("25 poses: varied 1 mm, predicted 0.9 mm."));
+  EXPECT_THAT(chart.text("/svg/desc"),
+              HasSubstr("25 poses: off 5 mm, varied 1 mm, predicted 0.9 mm."));
+  const auto off = chart.all("//circle[@class='bad' and title]");
+  ASSERT_EQ(off.size(), 3u);
+  EXPECT_NEAR(chart.value('y', off[0].attribute("cy").as_double()), 5.0, 0.01);
   expect_finite(test::SvgChart(position_spread_chart({})));
 }
 

@@ -1,4 +1,4 @@
-// How the position varies between calibrations, with how many poses: of a study.
+// How far off the position is and how it varies between calibrations, with how many poses: of a study.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,9 +13,10 @@ struct PositionSpread {
   int poses = 0;
   double varied = 0.0;     ///< standard deviation of the calibrations, metres
   double predicted = 0.0;  ///< by the covariance, metres
+  double off = 0.0;        ///< error of the calibrations, RMS, metres
 };
 
-/// Varied and predicted position over the number of poses.
+/// Error, varied and predicted position over the number of poses.
 /// @param points  by number of poses, ascending
 [[nodiscard]] Chart position_spread_chart(const std::vector<PositionSpread>& points);
 

@@ -55,31 +55,34 @@ inline void draw_pose_ticks(Drawing& drawing, const std::vector<PositionSpread>&
 
 KINECAL_INLINE Chart position_spread_chart(const std::vector<PositionSpread>& points) {
   Chart chart{"repeatability", "position-spread", "Position and number of poses",
-              "How much the position varies between calibrations of the same robot, and how much "
-              "the covariance predicts. One standard deviation.",
+              "How far off the position is (RMS), how much it varies between calibrations of the "
+              "same robot, and how much the covariance predicts (one standard deviation).",
               ""};
   const detail::PlotArea area{48.0, 44.0, detail::kChartWidth - 16.0, 254.0};
   detail::Drawing drawing(chart.name, chart.title, area.bottom + 40.0);
   detail::draw_legend(drawing,
-                      {{detail::Swatch::dot, "after", "varied"},
+                      {{detail::Swatch::dot, "bad", "error, RMS"},
+                       {detail::Swatch::dot, "after", "varied"},
                        {detail::Swatch::ring, "ring before", "predicted by the covariance"}},
                       0.0);
   double highest = 0.0, most = 1.0;
-  std::string description = "Standard deviation of the position.";
+  std::string description = "Error and standard deviation of the position.";
   for (const PositionSpread& point : points) {
-    for (const double value : {point.varied, point.predicted}) {
+    for (const double value : {point.off, point.varied, point.predicted}) {
       if (std::isfinite(value)) highest = std::max(highest, 1e3 * value);
     }
     most = std::max(most, static_cast<double>(point.poses));
     description +=
-        fmt::format(" {} poses: varied {}, predicted {}.", point.poses,
-                    detail::with_unit(point.varied, "m"), detail::with_unit(point.predicted, "m"));
+        fmt::format(" {} poses: off {}, varied {}, predicted {}.", point.poses,
+                    detail::with_unit(point.off, "m"), detail::with_unit(point.varied, "m"),
+                    detail::with_unit(point.predicted, "m"));
   }
   const detail::Axis x = detail::Axis::exact(0.0, 1.04 * most, area.left, area.right);
   const detail::Axis y = detail::Axis::linear(0.0, highest, area.bottom, area.top);
-  drawing.axis_y(area, y, "standard deviation of the position, mm");
+  drawing.axis_y(area, y, "position, mm");
   detail::draw_pose_ticks(drawing, points, area, x);
   detail::draw_spreads(drawing, points, &PositionSpread::predicted, x, y, "before", "ring before");
+  detail::draw_spreads(drawing, points, &PositionSpread::off, x, y, "bad", "bad");
   detail::draw_spreads(drawing, points, &PositionSpread::varied, x, y, "after thick", "after");
   chart.svg = drawing.str(description);
   return chart;
