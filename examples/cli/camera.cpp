@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <span>
+#include <string>
 
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/io/camera_info.hpp"
 #include "kinecal/io/cameras/read_camera_file.hpp"
+#include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/printable.hpp"
 #include "output_file.hpp"
 
@@ -29,6 +31,14 @@ void print_camera(const CameraInfo& camera) {
   print_row("P", camera.p);
 }
 
+/// @throws InputError  if a camera_info of it would be refused, here and by drivers
+void check_size(const CameraInfo& camera, const std::string& file) {
+  if (camera.width > 0 && camera.height > 0) return;
+  throw InputError(file + ": the size of the image is missing, and camera_info needs it; add " +
+                   (camera.width > 0 ? "image_height" : "image_width and image_height") +
+                   "; nothing was written");
+}
+
 }  // namespace
 
 int camera(const CameraOptions& options) {
@@ -42,6 +52,7 @@ int camera(const CameraOptions& options) {
   if (!diagnostics.errors.empty()) return kBadInput;
   print_camera(camera);
   if (options.output.empty()) return kDone;
+  check_size(camera, options.file);
   write_file(options.output, options.keys == "message" ? to_camera_message_yaml(camera)
                                                        : to_camera_info_yaml(camera, options.name));
   fmt::print("wrote {}\n", options.output);

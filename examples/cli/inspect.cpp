@@ -114,6 +114,10 @@ void print_gaps(const std::vector<Sample>& samples) {
 
 void print_topics(const std::string& file, const std::vector<TopicContent>& topics) {
   fmt::print("{}: {}\n", printable(file), to_string(recording_format(file)));
+  if (topics.empty()) {
+    fmt::print("no messages\n\n");
+    return;
+  }
   TextTable table({"topic", "type", "used as", "messages", "kB"}, 3);
   for (const TopicContent& topic : topics) {
     table.add({topic.name, topic.type, std::string(to_string(topic.use)),
@@ -154,8 +158,9 @@ std::vector<std::string> with_samples(const std::vector<std::string>& files,
       }
       continue;
     }
+    const std::size_t errors = diagnostics.errors.size();
     const std::vector<TopicContent> topics = bag_topics(file, diagnostics);
-    if (!topics.empty()) print_topics(file, topics);
+    if (!topics.empty() || diagnostics.errors.size() == errors) print_topics(file, topics);
     const auto has = [&](TopicUse use) {
       return std::any_of(topics.begin(), topics.end(), [&](const TopicContent& topic) {
         return topic.use == use && topic.messages > 0;

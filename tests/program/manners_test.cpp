@@ -179,6 +179,16 @@ TEST_F(Manners, TheManualIsFormattedWithoutWarnings) {
   EXPECT_THAT(formatted.out, HasSubstr("calibrate"));
 }
 
+TEST_F(Manners, ACameraWithoutASizeIsShownButNotWritten) {
+  write("camera.yaml", "K: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n");
+  EXPECT_EQ(kinecal("camera camera.yaml").code, 0);
+  const Outcome written = kinecal("camera camera.yaml --output out.yaml");
+  EXPECT_EQ(written.code, 1);
+  EXPECT_THAT(written.err, HasSubstr("camera.yaml: the size of the image is missing, and "
+                                     "camera_info needs it; add image_width and image_height"));
+  EXPECT_FALSE(fs::exists(folder_ / "out.yaml"));
+}
+
 TEST_F(Manners, APipeWithoutAWriterNeverBlocks) {
   prepare();
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);

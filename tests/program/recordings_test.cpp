@@ -8,6 +8,7 @@
 #include <string>
 
 #include "kinecal/io/bags/mcap/read_mcap.hpp"
+#include "kinecal/io/bags/mcap/write_mcap.hpp"
 #include "kinecal/io/recordings/convert.hpp"
 #include "kinecal/io/samples/read_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
@@ -211,6 +212,17 @@ TEST_F(RecordingsProgram, ThatWereCutOffGiveWhatWasWrittenWholeAndAWarning) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("warning: cut.bag"));
   EXPECT_THAT(outcome.out, HasSubstr("samples"));
+}
+
+TEST_F(RecordingsProgram, WithoutMessagesAreInspected) {
+  {
+    std::ofstream out(folder_ / "empty.mcap", std::ios::binary);
+    McapWriter writer(out);
+    writer.close();
+  }
+  const test::Outcome outcome = kinecal("inspect empty.mcap");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(testing::StartsWith("empty.mcap: "), HasSubstr("no messages\n")));
 }
 
 TEST_F(RecordingsProgram, WithMistakesWriteNothing) {

@@ -415,7 +415,7 @@ TEST(ReadSamples, AFeatureMayHaveASigma) {
   EXPECT_EQ(found.at(0).sigma, 0.002);
   EXPECT_EQ(found.at(1).sigma, std::nullopt);
   expect_error(features("sigma: small"), 4, {"sigma", "'small' is not a number"});
-  expect_error(features("sigma: {x: 1}"), 4, {"sigma", "a map stands here"});
+  expect_error(features("sigma: {x: 1}"), 4, {"sigma", "expected a word or number, found a map"});
 }
 
 TEST(ReadSamples, ASampleMayHaveConditionsOfAnyName) {
@@ -434,7 +434,8 @@ TEST(ReadSamples, ASampleMayHaveConditionsOfAnyName) {
   for (std::size_t n = 1; n < 4; ++n) EXPECT_THAT(reading.samples[n].conditions, IsEmpty());
   expect_error(with("{temperature: warm}"), 2, {"conditions", "'warm' is not a number"});
   expect_error(with("{temperature: }"), 2, {"conditions", "'' is not a number"});
-  expect_error(with("{temperature: [1]}"), 2, {"conditions", "a list stands here"});
+  expect_error(with("{temperature: [1]}"), 2,
+               {"conditions", "expected a word or number, found a list"});
   expect_error(with("{load: 1, load: 2}"), 2, {"conditions", "'load' occurs twice"});
   expect_error(with("23.5"), 2, {"conditions", "'23.5' is not a map"});
 }
