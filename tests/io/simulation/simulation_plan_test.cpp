@@ -131,6 +131,8 @@ TEST(SimulationPlan, WrongWordsAreErrorsWithTheirLines) {
   }
   EXPECT_THAT(read_text("errors: {values: {elbow_flx_joint: 1}}").second.errors.at(0),
               HasSubstr("did you mean 'elbow_flex_joint'?"));
+  EXPECT_THAT(read_text("target: {type: leds, leds: []}").second.errors.at(0),
+              HasSubstr("leds is empty; give the point of at least one LED"));
 }
 
 TEST(SimulationPlan, ALinkThatDoesNotExistIsNamed) {

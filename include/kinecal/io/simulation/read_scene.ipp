@@ -108,8 +108,12 @@ inline void read_target(ConfigMap& map, SimulationPlan& plan) {
     target.pose.rotation =
         rotation_from_rpy(read_vector(map, *rpy).value_or(Vector3<double>::Zero()));
   }
+  const ConfigEntry* given = map.peek("leds");
   for (const ConfigEntry& led : map.list("leds")) {
     target.leds.push_back(read_vector(map, led).value_or(Vector3<double>::Zero()));
+  }
+  if (given != nullptr && given->value.is_list() && target.leds.empty()) {
+    map.error(given->place, "leds is empty; give the point of at least one LED, or leave it out");
   }
   map.report_unknown();
 }
