@@ -10,6 +10,7 @@
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/doubts/rising.hpp"
 #include "kinecal/io/printable.hpp"
+#include "kinecal/report/charts/parameters.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
@@ -164,6 +165,24 @@ void compare_poses(const Assembled& a, const Assembled& b, Comparison& all) {
                            all.pose->in);
 }
 
+/// How the judged pose moved; empty if it is not known.
+std::string pose_text(const Assembled& a, const Comparison& all) {
+  if (!all.pose || all.change.poses <= 0) return "";
+  return fmt::format(
+      "'{}' in '{}' moved by {} and {}, {} at the worst of {} of {}; it is known to {} and {}\n",
+      all.pose->frame.name(), all.pose->in.name(), reading(all.change.position, "m"),
+      reading(all.change.rotation, "rad"), reading(all.change.worst_position, "m"),
+      counted(static_cast<std::size_t>(all.change.poses), "pose"), a.result.folder,
+      reading(all.pose->position, "m"), reading(all.position_b, "m"));
+}
+
+/// What was not compared, and why: a line each.
+std::string others_text(const Comparison& all) {
+  std::string text;
+  for (const NotCompared& of : all.others) text += fmt::format("  {} {}\n", of.name, of.why);
+  return text;
+}
+
 std::string text_of(const Assembled& a, const Assembled& b, const Comparison& all) {
   std::string text = fmt::format(
       "{} of {} moved by more than {} standard deviations of the difference\n", all.moved.size(),
@@ -178,18 +197,9 @@ std::string text_of(const Assembled& a, const Assembled& b, const Comparison& al
     }
     text += table.str();
   }
-  if (!all.others.empty()) text += "\nNot compared\n";
-  for (const NotCompared& of : all.others) text += fmt::format("  {} {}\n", of.name, of.why);
-  if (all.pose && all.change.poses > 0) {
-    text += fmt::format(
-        "\n'{}' in '{}' moved by {} and {}, {} at the worst of {} of {}; it is known to {} and "
-        "{}\n",
-        all.pose->frame.name(), all.pose->in.name(), reading(all.change.position, "m"),
-        reading(all.change.rotation, "rad"), reading(all.change.worst_position, "m"),
-        counted(static_cast<std::size_t>(all.change.poses), "pose"), a.result.folder,
-        reading(all.pose->position, "m"), reading(all.position_b, "m"));
-  }
-  return text;
+  if (!all.others.empty()) text += "\nNot compared\n" + others_text(all);
+  const std::string pose = pose_text(a, all);
+  return text + (pose.empty() ? "" : "\n" + pose);
 }
 
 std::string json_of(const Assembled& a, const Assembled& b, const Comparison& all) {
@@ -237,17 +247,21 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
                                  list == &all.moved ? "" : "not significant"});
     }
   }
+  const std::string head =
+      pose_text(a, all) + (all.others.empty() ? "" : "Not compared: " + others_text(all).substr(2));
   const std::string title = a.result.folder + " and " + b.result.folder;
   std::string body = fmt::format(
       "<header class=\"verdict {}\">\n"
       "<h1>{}: <strong>{} of {} moved</strong></h1>\n<p class=\"note\">{}: "
-      "{}</p>\n</header>\n"
+      "{}</p>\n<div>{}</div>\n</header>\n"
       "<main>\n<section id=\"parameters\"><h2>Differences</h2>\n",
       all.moved.empty() ? "good" : "care", detail::html_text(a.result.robot.name()),
       all.moved.size(), counted(all.moved.size() + all.equal.size(), "parameter"),
       detail::html_text(title),
-      fmt::format("by more than {} standard deviations of the difference", kMoved));
-  for (const Chart& chart : charts(data)) body += detail::html_figure(chart);
+      fmt::format("by more than {} standard deviations of the difference", kMoved),
+      detail::html_paragraphs(head));
+  for (const Chart& chart : parameter_charts(data, "How much more the second result has"))
+    body += detail::html_figure(chart);
   body += detail::html_table(rows, "ttnnnnn") + "<details><summary>As text</summary><pre>" +
           detail::html_lines(text_of(a, b, all)) + "</pre></details></section>\n</main>\n";
   return html_file({title, version(), body, ""});

@@ -46,6 +46,14 @@ TEST(ParameterCharts, MarksAndIntervalsStandAtTheirValues) {
   EXPECT_EQ(chart.all("//text[.='5.0 ± 2.0 mm']").size(), 1u);
 }
 
+TEST(ParameterCharts, TheCaptionSaysWhatTheNumbersAre) {
+  const ReportData data = with({{"camera_x", "camera", "m", 0.105, 0.1, 1e-3, ""}});
+  EXPECT_THAT(parameter_charts(data)[0].caption,
+              testing::StartsWith("What the calibration added,"));
+  EXPECT_THAT(parameter_charts(data, "The difference")[0].caption,
+              testing::StartsWith("The difference, with its 95 % interval."));
+}
+
 TEST(ParameterCharts, WhatIsNotDeterminedIsHatchedAndHasNoFigure) {
   const test::SvgChart chart(
       parameter_charts(with({{"pan", "pan", "rad", 0.3, 0.0, std::nullopt, "not determined"}}))[0]);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "kinecal/report/charts/chart.hpp"
@@ -11,7 +12,9 @@ namespace kinecal {
 /// For each unit, degrees, millimetres, per cent and pixels: what was added to each parameter, with 1.96
 /// standard deviations to either side.  Parameters that are not significant are faint; those that are
 /// not determined have a hatched row.  What is beyond the axis ends in an arrow.
-[[nodiscard]] std::vector<Chart> parameter_charts(const ReportData& data);
+/// @param change  what the numbers are, as a caption begins
+[[nodiscard]] std::vector<Chart> parameter_charts(
+    const ReportData& data, const std::string& change = "What the calibration added");
 
 }  // namespace kinecal
 

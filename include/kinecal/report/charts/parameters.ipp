@@ -138,14 +138,13 @@ inline void draw_forest_row(Drawing& drawing, const ForestRow& row, const PlotAr
   return text;
 }
 
-[[nodiscard]] inline Chart forest_chart(const std::vector<ForestRow>& rows,
-                                        const std::string& unit) {
+[[nodiscard]] inline Chart forest_chart(const std::vector<ForestRow>& rows, const std::string& unit,
+                                        const std::string& change) {
   const std::string shown = parameter_unit(unit).second;
   const std::string slug = shown == "°" ? "deg" : shown == "%" ? "percent" : slug_of(shown);
   Chart chart{"parameters", "parameters" + (slug.empty() ? "" : "-" + slug),
               "Parameters" + (shown.empty() ? "" : ", " + (shown == "°" ? "degrees" : shown)),
-              "What the calibration added, with its 95 % interval. Faint: not significant; arrows: "
-              "beyond the axis.",
+              change + ", with its 95 % interval. Faint: not significant; arrows: beyond the axis.",
               ""};
   constexpr double kRow = 19.0, kGap = 7.0;
   double height = 30.0;
@@ -179,7 +178,8 @@ inline void draw_forest_row(Drawing& drawing, const ForestRow& row, const PlotAr
 
 }  // namespace detail
 
-KINECAL_INLINE std::vector<Chart> parameter_charts(const ReportData& data) {
+KINECAL_INLINE std::vector<Chart> parameter_charts(const ReportData& data,
+                                                   const std::string& change) {
   std::vector<std::string> units;
   for (const ReportedParameter& parameter : data.parameters) {
     if (std::find(units.begin(), units.end(), parameter.unit) == units.end()) {
@@ -192,7 +192,7 @@ KINECAL_INLINE std::vector<Chart> parameter_charts(const ReportData& data) {
     for (const ReportedParameter& parameter : data.parameters) {
       if (parameter.unit == unit) rows.push_back(detail::forest_row(parameter));
     }
-    charts.push_back(detail::forest_chart(rows, unit));
+    charts.push_back(detail::forest_chart(rows, unit, change));
   }
   return charts;
 }
