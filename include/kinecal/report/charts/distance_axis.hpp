@@ -23,8 +23,9 @@ namespace kinecal::detail {
                                 const PlotArea& area);
 
 /// Lines at once and three times the distance that noise makes one expect.
-void draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,
-                      const ReportedBlock& block);
+/// @returns  of which of them: others are beyond the axis
+std::vector<double> draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,
+                                     const ReportedBlock& block);
 
 }  // namespace kinecal::detail
 

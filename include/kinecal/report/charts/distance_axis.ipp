@@ -47,15 +47,18 @@ KINECAL_INLINE Axis samples_axis(const ReportData& data, const ReportedBlock& bl
   return Axis::exact(first - room, last + room, area.left, area.right);
 }
 
-KINECAL_INLINE void draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,
-                                     const ReportedBlock& block) {
+KINECAL_INLINE std::vector<double> draw_noise_lines(Drawing& drawing, const PlotArea& area,
+                                                    const Axis& y, const ReportedBlock& block) {
   const double noise = people_factor(block.unit) * expected_distance(block, block.sigma);
-  if (!(noise > 0.0) || !std::isfinite(noise)) return;
+  std::vector<double> drawn;
+  if (!(noise > 0.0) || !std::isfinite(noise)) return drawn;
   for (const double times : {1.0, 3.0}) {
     if (times * noise > y.high() || times * noise < y.low()) continue;
     const double at = y.at(times * noise);
     drawing.line({area.left, at}, {area.right, at}, times == 1.0 ? "sigma" : "given");
+    drawn.push_back(times);
   }
+  return drawn;
 }
 
 }  // namespace kinecal::detail

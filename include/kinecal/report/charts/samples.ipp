@@ -139,16 +139,21 @@ inline void draw_left_out(Drawing& drawing, const ReportData& data, const Sample
   return legend;
 }
 
+/// What the lines are that draw_noise_lines() has drawn.
+[[nodiscard]] inline std::string noise_lines_text(const std::vector<double>& times) {
+  if (times.empty()) return "";
+  if (times.size() > 1) return " Lines: what noise makes one expect, and three times that.";
+  return times.front() == 1.0 ? " Line: what noise makes one expect."
+                              : " Line: three times what noise makes one expect.";
+}
+
 [[nodiscard]] inline Chart sample_chart(const ReportData& data, const ReportedBlock& block,
                                         const std::string& slug) {
   const std::vector<double> distances = distances_of(block), sorted = sorted_finite(distances);
   const auto chosen = chosen_marks(distances);
   Chart chart{"residuals", "samples-" + slug,
               "Residuals in capture order: " + shortened(block.name, 60),
-              "Each dot is a feature, the dark ones are the worst of their samples. Lines: what "
-              "noise makes one expect, and three times that." +
-                  chosen_text(chosen.size(), sorted.size(), "features"),
-              ""};
+              "Each dot is a feature, the dark ones are the worst of their samples.", ""};
   const PlotArea area{46.0, 46.0, kChartWidth - 20.0, 270.0};
   Drawing drawing(chart.name, chart.title, area.bottom + 38.0);
   draw_legend(drawing, samples_legend(data, block), 0.0);
@@ -156,7 +161,8 @@ inline void draw_left_out(Drawing& drawing, const ReportData& data, const Sample
   const Axis y = distance_axis(block, sorted, area.bottom, area.top + 14.0);
   drawing.axis_y(area, y, axis_name("distance", block.unit));
   drawing.axis_x(area, x, "sample", true);
-  draw_noise_lines(drawing, area, y, block);
+  chart.caption += noise_lines_text(draw_noise_lines(drawing, area, y, block)) +
+                   chosen_text(chosen.size(), sorted.size(), "features");
   const SampleMarks marks = sample_marks(data, block, distances, chosen, x, y);
   draw_dots(drawing, data, block, marks, marks.others, "dots");
   draw_dots(drawing, data, block, marks, marks.left_out, "dots out");
