@@ -338,11 +338,43 @@ TEST(ReadConfig, KeyThatOccursTwiceIsAnError) {
                           "is in line 7"));
 }
 
-TEST(ReadConfig, KeysThatAreNoTextAndMergeKeysAreErrors) {
+TEST(ReadConfig, MergeKeysGiveWhatTheMapDoesNotHave) {
+  const std::string text =
+      "defaults: &d {frame: gripper, type: camera2d}\nmore: &m {type: chain, x: 1}\n" +
+      with(kRos1, "type: chain, frame: gripper", "<<: [*m, *d], x: 2");
+  EXPECT_THAT(errors(text), IsEmpty());
+  EXPECT_THAT(warnings(text),
+              Contains("calibrate.yaml:5: model 'arm': unknown key 'x' is ignored"));
+  EXPECT_THAT(errors(with(kRos1, "frame: gripper", "frame: gripper, <<: 3")),
+              ElementsAre("calibrate.yaml:3: model: merge key '<<' is '3', not a map"));
+}
+
+TEST(ReadConfig, KeysBelowANameAreNamedOnce) {
+  const auto indented = [](std::string text) {
+    for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) text.insert(at, "  ");
+    return text;
+  };
+  EXPECT_THAT(errors("robot_calibration:\n" + indented(kRos1)),
+              ElementsAre("calibrate.yaml:1: the keys are below 'robot_calibration'; move them to "
+                          "the top"));
+  EXPECT_THAT(errors("fetch:\n" + indented(kRos2)),
+              ElementsAre("calibrate.yaml:1: the node is below 'fetch'; move it to the top"));
+  EXPECT_THAT(errors("node:\n  calibration_steps: [a]\n  a: {}\n"),
+              ElementsAre("calibrate.yaml:1: calibration_steps is below 'node'; add "
+                          "'ros__parameters:' between the two"));
+}
+
+TEST(ReadConfig, InitialValuesThatTheListLacksAreNamed) {
+  EXPECT_THAT(
+      errors(with(
+          kRos2, "      error_blocks:", "      board_initial_values: {x: 1}\n      error_blocks:")),
+      ElementsAre("calibrate.yaml:13: step 'calibrate': 'board_initial_values' is not used: "
+                  "add 'board' to the list 'free_frames_initial_values'"));
+}
+
+TEST(ReadConfig, KeysThatAreNoTextAreErrors) {
   EXPECT_THAT(errors(kRos1 + "? [a, b]\n: 1\n"),
               ElementsAre("calibrate.yaml:11: a key is a list, not a text"));
-  EXPECT_THAT(errors("defaults: &d {frame: gripper}\n" + with(kRos1, "frame: gripper", "<<: *d")),
-              Contains(HasSubstr("calibrate.yaml:4: model: merge keys ('<<') are not read")));
 }
 
 TEST(ReadConfig, AnchorsAreFollowedAlsoInACircle) {

@@ -129,11 +129,40 @@ inline bool misses_ros_parameters(const ConfigMap& file) {
   return false;
 }
 
+/// Reports keys that stand one level too deep, below the name of a node or of a namespace.
+/// @return  whether they do
+inline bool is_too_deep(const ConfigMap& file) {
+  const std::vector<std::string> known = {"cal_steps", "models", "free_params", "free_frames",
+                                          "error_blocks"};
+  const auto stands_in = [](const auto& map) {
+    return [&map](const std::string& key) { return map(key) != nullptr; };
+  };
+  const auto at_top = [&](const std::string& key) { return file.peek(key); };
+  if (std::any_of(known.begin(), known.end(), stands_in(at_top))) return false;
+  for (const ConfigEntry& entry : file.entries()) {
+    const std::string below = "below '" + entry.key + "'";
+    const auto deeper = [&](const std::string& key) { return entry.value.find(key); };
+    const auto is_node = [](const YamlNode& node) { return node.find("ros__parameters"); };
+    if (deeper("calibration_steps") != nullptr) {
+      file.error(entry.place,
+                 "calibration_steps is " + below + "; add 'ros__parameters:' between the two");
+    } else if (std::any_of(known.begin(), known.end(), stands_in(deeper))) {
+      file.error(entry.place, "the keys are " + below + "; move them to the top");
+    } else if (std::any_of(entry.value.items.begin(), entry.value.items.end(), is_node)) {
+      file.error(entry.place, "the node is " + below + "; move it to the top");
+    } else {
+      continue;
+    }
+    return true;
+  }
+  return false;
+}
+
 /// Reads the file's top-level map in its dialect: ROS 2 with `ros__parameters`, ROS 1 without.
 inline void read_dialect(ConfigMap& file, ConfigProgress& progress) {
   const std::vector<ConfigEntry> nodes = ros2_nodes(file);
   if (nodes.empty()) {
-    if (!misses_ros_parameters(file)) read_ros1(file, progress);
+    if (!misses_ros_parameters(file) && !is_too_deep(file)) read_ros1(file, progress);
     return;
   }
   for (std::size_t i = 1; i < nodes.size(); ++i) {

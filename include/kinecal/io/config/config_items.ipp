@@ -100,6 +100,7 @@ class FindRos2Items {
         items.push_back(item(step, kind, *name, element.place));
       }
     }
+    if (!kind.suffix.empty()) report_unlisted(step, kind);
     return items;
   }
 
@@ -123,7 +124,7 @@ class FindRos2Items {
 
   /// Suggests a map that does not belong to another item, and marks it as known.
   void report_missing(ConfigMap& step, const ConfigItemKind& kind, const std::string& name,
-                      const SourceLocation& listed) const {
+                      const SourceLocation& listed) {
     const std::string key = name + kind.suffix;
     std::vector<std::string> maps;
     for (const ConfigEntry& entry : step.entries()) {
@@ -132,7 +133,21 @@ class FindRos2Items {
     const std::string meant = step.did_you_mean(key, maps);
     step.error(listed, kind.subject(name) + " has no map '" + key + "' beside the list '" +
                            kind.list + "'" + meant);
-    if (!meant.empty()) step.use(*nearest_name(key, maps));
+    if (meant.empty()) return;
+    step.use(*nearest_name(key, maps));
+    listed_.insert(*nearest_name(key, maps));
+  }
+
+  /// Reports the map of a listed name that this list lacks.
+  void report_unlisted(ConfigMap& step, const ConfigItemKind& kind) const {
+    for (const ConfigEntry& entry : step.entries()) {
+      if (!entry.key.ends_with(kind.suffix) || listed_.contains(entry.key)) continue;
+      const std::string name = entry.key.substr(0, entry.key.size() - kind.suffix.size());
+      if (!listed_.contains(name)) continue;
+      step.error(entry.place, "'" + entry.key + "' is not used: add '" + name + "' to the list '" +
+                                  kind.list + "'");
+      step.use(entry.key);
+    }
   }
 
   std::set<std::string> listed_;               ///< keys of the items of all lists so far

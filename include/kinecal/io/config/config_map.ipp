@@ -35,7 +35,12 @@ class ConfigMap {
   ConfigMap(const YamlNode& map, SourceLocation place, std::string subject,
             Diagnostics& diagnostics)
       : place_(std::move(place)), subject_(std::move(subject)), diagnostics_(&diagnostics) {
-    for (std::size_t i = 0; i < map.keys.size(); ++i) add(map.keys[i], map.items[i]);
+    for (std::size_t i = 0; i < map.keys.size(); ++i) {
+      if (!is_merge(map.keys[i])) add(map.keys[i], map.items[i]);
+    }
+    for (std::size_t i = 0; i < map.keys.size(); ++i) {
+      if (is_merge(map.keys[i])) merge(map.items[i], map.keys[i].line);
+    }
   }
   ConfigMap(YamlNode&&, SourceLocation, std::string, Diagnostics&) = delete;
 
@@ -178,13 +183,31 @@ class ConfigMap {
     entries_.push_back(std::move(entry));
   }
 
+  [[nodiscard]] static bool is_merge(const YamlNode& key) {
+    return key.is_scalar() && key.text == "<<";
+  }
+
+  /// `<<: *map` or `<<: [*map, ...]`: what the map itself does not have; an earlier map goes first.
+  /// Source: Merge Key Language-Independent Type for YAML 1.1
+  void merge(const YamlNode& merged, int line) {
+    if (merged.is_list()) {
+      for (const YamlNode& map : merged.items) merge(map, line);
+      return;
+    }
+    if (!merged.is_map()) {
+      error({place_.file, line}, "merge key '<<' is " + describe_config(merged) + ", not a map");
+    }
+    const ConfigMap others(merged, place_, subject_, *diagnostics_);
+    for (const ConfigEntry& entry : others.entries()) {
+      if (peek(entry.key) == nullptr) append(entry);
+    }
+  }
+
   void add(const YamlNode& key, const YamlNode& value) {
     const SourceLocation place = place_of(key);
     const auto name = config_text(key);
     if (!name) {
       error(place, "a key is " + describe_config(key) + ", not a text");
-    } else if (*name == "<<") {
-      error(place, "merge keys ('<<') are not read; write out what they stand for");
     } else if (const ConfigEntry* first = peek(*name)) {
       error(place, "key '" + *name + "' occurs twice; the first is in line " +
                        std::to_string(first->place.line));
