@@ -49,9 +49,9 @@ TEST(ParameterCharts, MarksAndIntervalsStandAtTheirValues) {
 TEST(ParameterCharts, TheCaptionSaysWhatTheNumbersAre) {
   const ReportData data = with({{"camera_x", "camera", "m", 0.105, 0.1, 1e-3, ""}});
   EXPECT_THAT(parameter_charts(data)[0].caption,
-              testing::StartsWith("What the calibration added,"));
+              testing::StartsWith("What the calibration added;"));
   EXPECT_THAT(parameter_charts(data, "The difference")[0].caption,
-              testing::StartsWith("The difference, with its 95 % interval."));
+              testing::StartsWith("The difference; bars, ±: 95 % interval."));
 }
 
 TEST(ParameterCharts, WhatIsNotDeterminedIsHatchedAndHasNoFigure) {

@@ -144,7 +144,7 @@ inline void draw_forest_row(Drawing& drawing, const ForestRow& row, const PlotAr
   const std::string slug = shown == "°" ? "deg" : shown == "%" ? "percent" : slug_of(shown);
   Chart chart{"parameters", "parameters" + (slug.empty() ? "" : "-" + slug),
               "Parameters" + (shown.empty() ? "" : ", " + (shown == "°" ? "degrees" : shown)),
-              change + ", with its 95 % interval. Faint: not significant; arrows: beyond the axis.",
+              change + "; bars, ±: 95 % interval. Faint: not significant; arrows: beyond the axis.",
               ""};
   constexpr double kRow = 19.0, kGap = 7.0;
   double height = 30.0;
