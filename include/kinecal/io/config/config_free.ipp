@@ -172,16 +172,17 @@ inline void check_initial_axes(const ConfigMap& map, const FrameInitialValueConf
   return bounds;
 }
 
-/// Reports bounds of parameters that are not free.
+/// Reports bounds of parameters that are not free, and drops them: one mistake, one message.
 /// @param free   names of the free parameters
 /// @param where  where they are free, for the message: "in this step"
-inline void check_bounds(const ConfigMap& map, const std::vector<BoundConfig>& bounds,
+inline void check_bounds(const ConfigMap& map, std::vector<BoundConfig>& bounds,
                          const std::vector<std::string>& free, const std::string& where) {
-  for (const BoundConfig& bound : bounds) {
-    if (std::find(free.begin(), free.end(), bound.name) != free.end()) continue;
+  std::erase_if(bounds, [&](const BoundConfig& bound) {
+    if (std::find(free.begin(), free.end(), bound.name) != free.end()) return false;
     map.error(bound.place, "bounds: '" + bound.name + "' is not free " + where +
                                map.did_you_mean(bound.name, free));
-  }
+    return true;
+  });
 }
 
 }  // namespace kinecal::detail

@@ -84,7 +84,7 @@ inline void require_items(const ConfigMap& map, const ConfigItemKind& kind) {
             "no " + kind.noun + " is given; list at least one under '" + kind.list + "'");
 }
 
-inline void check_step(const ConfigMap& map, const StepConfig& step) {
+inline void check_step(const ConfigMap& map, StepConfig& step) {
   require_items(map, kModelItems);
   require_items(map, kErrorBlockItems);
   check_free_parameters(map, step);
@@ -138,7 +138,7 @@ inline void read_step(ConfigMap& map, const FindConfigItems& find, const std::st
 inline void share_values(ConfigMap& map, ConfigProgress& progress) {
   std::vector<StepConfig>& steps = progress.config.steps;
   const std::vector<InitialValueConfig> values = read_initial_values(map);
-  const std::vector<BoundConfig> bounds = read_bounds(map);
+  std::vector<BoundConfig> bounds = read_bounds(map);
   if (steps.empty()) return;
   const auto add = [](auto& own, const auto& shared) {
     const auto has_name = [&](const auto& item) { return item.name == shared.name; };
