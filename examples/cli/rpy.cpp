@@ -37,7 +37,7 @@ Vector3<double> three_numbers(const std::vector<std::string>& texts) {
 void print(const char* what, const Vector3<double>& v) {
   const Vector3<double> r = v + Vector3<double>::Zero();  // never -0
   const Vector3<double> d = r * (180.0 / std::numbers::pi);
-  fmt::print("{}, rad  {:.17g} {:.17g} {:.17g}\n", what, r.x(), r.y(), r.z());
+  fmt::print("{}, rad  {} {} {}\n", what, r.x(), r.y(), r.z());
   fmt::print("{}, deg  {:.6f} {:.6f} {:.6f}\n", what, d.x(), d.y(), d.z());
 }
 

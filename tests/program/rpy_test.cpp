@@ -35,6 +35,7 @@ TEST_F(Rpy, PrintsEveryDigitAndDegrees) {
   constexpr double kFused = 1e-15;  // the program may have been compiled for another level
   EXPECT_LE((after("roll, pitch, yaw, rad", result.out) - rpy_from_rotation(exp(v))).norm(),
             kFused);
+  EXPECT_THAT(result.out, HasSubstr("rotation vector, rad  0.1 -0.2 0.30000000000000004\n"));
   EXPECT_THAT(result.out, HasSubstr("rotation vector, deg  5.729578 -11.459156 17.188734"));
 }
 

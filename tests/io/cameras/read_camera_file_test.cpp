@@ -155,6 +155,14 @@ TEST_F(CameraFile, ReadsMessagesOfBothRos) {
   }
 }
 
+TEST_F(CameraFile, AKOfZerosIsAnErrorInItsLine) {
+  std::string text = kMessage;
+  text = replaced(text, "k: [550.5, 0.0, 320.25, 0.0, 551.5,", "k: [0.0, 0.0, 320.25, 0.0, 0.0,");
+  text = replaced(text, "p: [550.5, 0.0, 320.25, -33.0, 0.0, 551.5,",
+                  "p: [0.0, 0.0, 320.25, -33.0, 0.0, 0.0,");
+  EXPECT_THAT(refusal(text), HasSubstr("c.yaml:8: focal lengths 0 and 0 are not greater than"));
+}
+
 TEST_F(CameraFile, WarnsOfBinningAndOfARegion) {
   (void)read(replaced(kMessage, "binning_x: 0", "binning_x: 2\nbinning_y: 2"));
   EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("c.yaml: camera_info has binning 2 x 2, "

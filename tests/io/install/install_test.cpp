@@ -310,7 +310,7 @@ TEST_F(Install, RefusesAnIncompleteOrBrokenResult) {
   write("out/rgb_camera.yaml", "camera_matrix: [1, 2");
   expect_refused(HasSubstr("rgb_camera.yaml:"));
   write("out/rgb_camera.yaml", camera("0.0"));
-  expect_refused(HasSubstr("rgb_camera.yaml: focal lengths 0 and 0 are not"));
+  expect_refused(HasSubstr("rgb_camera.yaml:4: focal lengths 0 and 0 are not"));
   write("out/rgb_camera.yaml", camera("500.0"));
   write("out/calibrated.urdf", urdf("1").substr(0, 60));
   expect_refused(HasSubstr("calibrated.urdf:1: malformed XML"));

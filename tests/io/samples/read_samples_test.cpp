@@ -307,8 +307,24 @@ TEST(ReadSamples, TellsHowMuchHasBeenRead) {
   EXPECT_GT(fractions.back(), 0.999);
 }
 
+TEST(ReadSamples, ADecimalCommaIsNamed) {
+  const std::string begin = kJoints + "observations:\n- sensor_name: arm\n  features:\n  - ";
+  expect_error(begin + "point: {x: 0.04, y: 0,03, z: 1}\n---\n", 5,
+               {"point: unknown key '03'; decimal comma? write a dot: 0.03"});
+}
+
+TEST(ReadSamples, AFrameLosesTheSlashOfOldRos) {
+  const Reading reading = read_text(kJoints +
+                                    "observations:\n- sensor_name: arm\n  features:\n"
+                                    "  - {header: {frame_id: /tool}, point: {x: 1, y: 2, z: 3}}\n"
+                                    "---\n");
+  ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
+  EXPECT_EQ(reading.samples.at(0).observations.at(0).features.at(0).frame, "tool");
+}
+
 TEST(ReadSamples, FileWithoutSamplesIsAnError) {
-  for (const char* text : {"", "\n\n", "# nothing\n", "---\n", "---\n---\n"}) {
+  EXPECT_THAT(read_text("").diagnostics.errors, ElementsAre(HasSubstr("the file is empty")));
+  for (const char* text : {"\n\n", "# nothing\n", "---\n", "---\n---\n"}) {
     const Reading reading = read_text(text);
     EXPECT_THAT(reading.diagnostics.errors, ElementsAre(reading.path + ": no samples in this file"))
         << text;

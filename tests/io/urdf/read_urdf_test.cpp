@@ -174,6 +174,12 @@ TEST(ReadUrdfError, AnEmptyFile) {
   EXPECT_THAT(refusal(" \n\t"), StartsWith("arm.urdf: the file is empty"));
 }
 
+TEST(ReadUrdfError, AnAttributeThatOccursTwiceWithItsLine) {
+  EXPECT_THAT(refusal("<robot name='a'>\n<link name='b'>\n<visual name='v' name='w'/>\n</link>\n"
+                      "</robot>"),
+              StartsWith("arm.urdf:3: <visual> has the attribute 'name' twice; remove one"));
+}
+
 TEST(ReadUrdfError, MalformedXmlWithItsLine) {
   EXPECT_THAT(refusal("<robot name='a'>\n  <link name='b'>\n</robot>\n"),
               StartsWith("arm.urdf:3: malformed XML: "));

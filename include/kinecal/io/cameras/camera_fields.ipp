@@ -109,23 +109,26 @@ inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const So
 }
 
 /// Reports values that a pinhole camera cannot have.  One of K and P may be all zero.
+/// @param k_line  of K, from 1; 0 if it is unknown
 inline void check_camera(const CameraInfo& camera, const SourceLocation& place,
-                         Diagnostics& diagnostics) {
+                         Diagnostics& diagnostics, int k_line = 0) {
+  const SourceLocation k_place{place.file, k_line > 0 ? k_line : place.line};
   const auto& k = camera.k;
   const auto& p = camera.p;
   const bool has_k = k[0] != 0.0 || k[4] != 0.0, has_p = p[0] != 0.0 || p[5] != 0.0;
   if (!has_k && has_p) {
     diagnostics.warning(place, "K is zero; P is used, so pixels must be of rectified images");
   } else if (!(k[0] > 0.0) || !(k[4] > 0.0)) {
-    diagnostics.error(place,
+    diagnostics.error(k_place,
                       fmt::format("focal lengths {} and {} are not greater than zero", k[0], k[4]));
   } else if (k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
-    diagnostics.error(place, fmt::format("the last row of the camera matrix is {} {} {}, not 0 0 1",
-                                         k[6], k[7], k[8]));
+    diagnostics.error(
+        k_place,
+        fmt::format("the last row of the camera matrix is {} {} {}, not 0 0 1", k[6], k[7], k[8]));
   }
   if (!has_p && has_k) {
     diagnostics.warning(place, "P is zero; K is used");
-  } else if (!(p[0] > 0.0) || !(p[5] > 0.0)) {
+  } else if (has_p && (!(p[0] > 0.0) || !(p[5] > 0.0))) {
     diagnostics.error(place,
                       fmt::format("focal lengths {} and {} of the projection are not greater "
                                   "than zero",

@@ -71,7 +71,12 @@ KINECAL_INLINE CameraInfo read_camera_file(const std::string& path, Diagnostics&
                "is not a camera file: it has neither camera_matrix (camera_info, OpenCV), nor K or "
                "k (a message), nor a camera_model below cam0 (Kalibr)");
   }
-  if (diagnostics.errors.size() == errors) detail::check_camera(camera, {path, 0}, diagnostics);
+  if (diagnostics.errors.size() != errors) return camera;
+  int k_line = 0;
+  for (const char* key : {"camera_matrix", "K", "k"}) {
+    if (const detail::ConfigEntry* k = file.peek(key)) k_line = k->place.line;
+  }
+  detail::check_camera(camera, {path, 0}, diagnostics, k_line);
   return camera;
 }
 

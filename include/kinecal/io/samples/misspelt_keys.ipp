@@ -1,5 +1,7 @@
-// Keys of samples that only kinecal reads, and that are probably misspelt: no message has them, so
-// a wrong letter would silently leave out a sigma, an id or the conditions.
+// Keys of samples that are probably mistakes.
+//
+// No message has the keys that only kinecal reads: a wrong letter would silently leave out a sigma,
+// an id or the conditions.  And {x: 0,03} is the number 0 and a key 03.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,9 +31,17 @@ namespace kinecal::detail {
   return {};
 }
 
-/// Warns of an unknown key that resembles one of kinecal's own, once in a file.
+/// Warns of an unknown key that resembles one of kinecal's own, once in a file.  A key of digits among
+/// numbers is an error.
 inline void doubt_sample_key(SampleErrors& errors, SampleNode parent, int line,
                              std::string_view key) {
+  const bool digits = key.find_first_not_of("0123456789") == std::string_view::npos;
+  if (digits && !key.empty() &&
+      (parent == SampleNode::point || parent == SampleNode::orientation)) {
+    const std::string_view part = key.substr(0, 20);
+    return errors.add(line, fmt::format("{}: unknown key '{}'; decimal comma? write a dot: 0.{}",
+                                        sample_name(parent), part, part));
+  }
   const std::string_view meant = meant_sample_key(parent, key);
   if (meant.empty()) return;
   errors.warn_once(line, fmt::format("{}: unknown key {} is skipped; did you mean '{}'?",

@@ -113,7 +113,7 @@ class SampleBuilder {
     } else if (node == SampleNode::sensor) {
       observation().sensor = text;
     } else if (node == SampleNode::frame) {
-      feature().frame = text;
+      feature().frame = text.substr(text.starts_with('/') ? 1 : 0);  // tf of old ROS 1: /tool
     } else {
       camera_.word(node, line, text);
     }

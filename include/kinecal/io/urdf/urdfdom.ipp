@@ -9,6 +9,8 @@
 #include <exception>
 #include <locale>
 #include <mutex>
+#include <pugixml.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -51,6 +53,26 @@ class UrdfdomMessages : public console_bridge::OutputHandler {
   console_bridge::LogLevel previous_level_;
 };
 
+/// Reports attributes that an element has twice, the first ones, for which urdfdom has no clear message.
+struct DoubleAttributes : pugi::xml_tree_walker {
+  DoubleAttributes(const UrdfText& from, Diagnostics& to) : source(from), diagnostics(to) {}
+
+  bool for_each(pugi::xml_node& node) override {
+    std::set<std::string> names;
+    for (const pugi::xml_attribute attribute : node.attributes()) {
+      if (names.insert(attribute.name()).second) continue;
+      diagnostics.error(source.place(node), std::string("<") + node.name() +
+                                                "> has the attribute '" + attribute.name() +
+                                                "' twice; remove one");
+    }
+    constexpr std::size_t kMost = 20;
+    return diagnostics.errors.size() < kMost;
+  }
+
+  const UrdfText& source;
+  Diagnostics& diagnostics;
+};
+
 /// urdfdom's model of the robot.  urdfdom gets the text of the tree, in which the white space of
 /// attributes is normalized: a tab or a line break between two numbers would make it fail.
 /// @throws InputError  with what urdfdom says, if it refuses the text
@@ -67,6 +89,9 @@ class UrdfdomMessages : public console_bridge::OutputHandler {
   }
   if (!model) {
     Diagnostics diagnostics;
+    DoubleAttributes twice(source, diagnostics);
+    source.robot().traverse(twice);
+    source.throw_if_errors(diagnostics);
     diagnostics.error(source.place_of_name_in(messages.all), messages.all);
     source.throw_if_errors(diagnostics);
   }
