@@ -79,7 +79,7 @@ struct RuntimeChain {
        joint = robot.parent_joint(joint->parent)) {
     way.push_back(joint);
     if (way.size() > robot.joints().size()) {
-      throw RobotError("link '" + link + "' is part of a kinematic loop; a URDF must be a tree");
+      throw RobotError("link '" + link + "' is below itself");
     }
   }
   return way;
@@ -96,10 +96,7 @@ struct RuntimeChain {
   (void)robot.parent_joint(tip);
   const std::vector<Joint>& joints = robot.joints();
   const auto way = detail::find_way(joints, base, tip, std::vector<std::size_t>(2 * joints.size()));
-  if (!way.ends) {
-    throw RobotError("link '" + base + "' or '" + tip +
-                     "' is part of a kinematic loop; a URDF must be a tree");
-  }
+  if (!way.ends) throw RobotError("link '" + base + "' or '" + tip + "' is below itself");
   if (!way.is_connected) {
     throw RobotError("links '" + base + "' and '" + tip + "' are not connected in robot '" +
                      robot.name() + "'");
