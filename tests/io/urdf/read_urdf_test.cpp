@@ -222,8 +222,7 @@ TEST(ReadUrdfError, TwoRootsOrACircleWithoutARoot) {
       "<robot name='r'><link name='a'/><link name='b'/>"
       "<joint name='ab' type='fixed'><parent link='a'/><child link='b'/></joint>"
       "<joint name='ba' type='fixed'><parent link='b'/><child link='a'/></joint></robot>";
-  EXPECT_THAT(refusal(circle),
-              AllOf(StartsWith("arm.urdf:1: "), HasSubstr("is below itself")));
+  EXPECT_THAT(refusal(circle), AllOf(StartsWith("arm.urdf:1: "), HasSubstr("is below itself")));
 }
 
 TEST(ReadUrdfError, ACircleBesideTheTree) {
