@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <iterator>
 #include <utility>
 
@@ -24,10 +25,12 @@ namespace kinecal {
 
 KINECAL_INLINE std::vector<Chart> charts(const ReportData& data) {
   std::vector<Chart> all;
-  for (const auto draw :
-       {error_charts, held_out_charts, sample_charts, feature_charts, pixel_charts, radial_charts,
-        depth_charts, plane_charts, workspace_charts, parameter_charts, correlation_charts,
-        unobservable_charts, convergence_charts, start_charts}) {
+  using Draw = std::vector<Chart> (*)(const ReportData&);
+  const Draw of_parameters = [](const ReportData& of) { return parameter_charts(of); };
+  for (const Draw draw : std::initializer_list<Draw>{
+           error_charts, held_out_charts, sample_charts, feature_charts, pixel_charts,
+           radial_charts, depth_charts, plane_charts, workspace_charts, of_parameters,
+           correlation_charts, unobservable_charts, convergence_charts, start_charts}) {
     std::vector<Chart> some = draw(data);
     std::move(some.begin(), some.end(), std::back_inserter(all));
   }
