@@ -19,6 +19,7 @@
 #include "kinecal/trust/plain_matrix.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
+#include "kinecal/trust/prior_pulls.hpp"
 #include "kinecal/trust/reading.hpp"
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/reluctance.hpp"

@@ -15,26 +15,11 @@
 #include <vector>
 
 #include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/doubts/joint_limits.ipp"
 #include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/used_joints.hpp"
 
 namespace kinecal::detail {
-
-/// By how much a position is outside the limits, radians or metres; 0 inside.
-[[nodiscard]] inline double excess_of(const UsedJoint& joint, double position) {
-  if (!joint.limits) return 0.0;
-  return std::max({joint.limits->lower - position, position - joint.limits->upper, 0.0});
-}
-
-/// True if a position is further outside than offsets of real robots explain.  A whole turn more or
-/// less is the same pose.
-[[nodiscard]] inline bool is_outside(const UsedJoint& joint, double position) {
-  const double margin = turns(joint.joint.type) ? 0.35 : 0.1;  // 20 degrees, 10 cm
-  if (excess_of(joint, position) <= margin) return false;
-  if (!turns(joint.joint.type)) return true;
-  const double turn = 2 * std::numbers::pi;
-  return excess_of(joint, position - turn) > margin && excess_of(joint, position + turn) > margin;
-}
 
 /// True if so many of all positions are no matter of single bad captures.
 [[nodiscard]] inline bool are_many(std::size_t count, std::size_t all) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "kinecal/io/doubts/exchanged_joints.ipp"
+#include "kinecal/io/doubts/joint_limits.ipp"
 #include "kinecal/io/doubts/joint_positions.hpp"
 #include "kinecal/io/doubts/occurrences.hpp"
 
@@ -18,20 +19,6 @@ namespace kinecal::detail {
 
 /// A joint without limits that reaches further than this looks wound up, or in degrees.
 inline constexpr double kWoundUp = 4 * std::numbers::pi;
-
-/// A quarter, half or whole turn that brings nearly all positions of a joint into its limits; nullopt if
-/// none does.
-[[nodiscard]] inline std::optional<double> turn_into_limits(const UsedJoint& joint) {
-  if (!joint.limits || !turns(joint.joint.type)) return std::nullopt;
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  for (const double shift :
-       {0.5 * kTurn, -0.5 * kTurn, 0.25 * kTurn, -0.25 * kTurn, kTurn, -kTurn}) {
-    const auto outside = std::count_if(joint.positions.begin(), joint.positions.end(),
-                                       [&](double q) { return is_outside(joint, q + shift); });
-    if (50 * outside <= std::ssize(joint.positions)) return shift;
-  }
-  return std::nullopt;
-}
 
 /// True if the positions are wrong as they are and right after multiplication by `factor`.
 [[nodiscard]] inline bool fits_in_other_unit(const UsedJoint& joint, double factor) {
