@@ -60,7 +60,7 @@ TEST(Judge, NamesASigmaInAnotherUnit) {
   Judged judged;
   judged.noise().given = 1.0;
   judged.assessments[0].held_out.clear();
-  expect(judged.judgement(), Grade::do_not_use, "residuals show 0.");
+  expect(judged.judgement(), Grade::do_not_use, "residuals show 1.0");
   EXPECT_THAT(judged.judgement().reasons.front(), HasSubstr("sigma must be in metres"));
   judged.noise().given = 0.04;  // too large, but it may be meant
   expect(judged.judgement(), Grade::good, "");
@@ -104,7 +104,7 @@ TEST(Judge, WantsMoreResidualsThanParameters) {
                                       {14, Grade::do_not_use}}) {
     Judged judged;
     judged.assessments[0].rows = rows;  // 10 parameters
-    expect(judged.judgement(), verdict, "residuals for 10 parameters leave little");
+    expect(judged.judgement(), verdict, "residuals are too few to check 10 parameters");
   }
 }
 
@@ -200,6 +200,7 @@ TEST(Judge, PassesDoubtsOnAndPutsTheGravestReasonFirst) {
 
 TEST(Reading, IsInTheUnitThatPeopleRead) {
   EXPECT_EQ(reading(0.0034, "m"), "3.4 mm");
+  EXPECT_EQ(reading(-2.0, "m"), "-2 m");
   EXPECT_EQ(reading(0.01, "rad"), "0.573 deg");
   EXPECT_EQ(reading(1.25, "px"), "1.25 px");
   EXPECT_EQ(reading(0.5, "1"), "0.5");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 
@@ -13,8 +14,9 @@ KINECAL_INLINE std::string reading(double value, std::string_view unit) {
   double shown = value;
   const char* of = "";
   if (unit == "m") {
-    shown = 1e3 * value;
-    of = " mm";
+    const bool is_large = std::abs(value) >= 1.0;
+    shown = is_large ? value : 1e3 * value;
+    of = is_large ? " m" : " mm";
   } else if (unit == "rad") {
     shown = value * 180.0 / std::numbers::pi;
     of = " deg";
