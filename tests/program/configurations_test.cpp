@@ -39,15 +39,18 @@ class Configurations : public test::ProgramTest {
   static constexpr std::string_view kVerdict = "verdict: ";
 };
 
-TEST_F(Configurations, OfTheFetchAreGood) {
+/// Its prior holds the camera where the drawing has it, to 1 mm as it counts once for each sample; the true
+/// one is 8 mm off.
+TEST_F(Configurations, OfTheFetchNeedCareAsTheirPriorContradictsTheSamples) {
   KINECAL_NEEDS_DATA("fetch");
+  const std::string care = "use with care";
   const std::string synth = "fetch/synth/";
   for (const char* samples : {"samples.yaml", "calibration_data.bag"}) {
     for (const char* config : {"fetch/synth/calibrate.yaml", "fetch/calibrate.yaml"}) {
-      EXPECT_EQ(calibrate(synth + "fetch_arm_head.urdf", config, synth + samples), "good");
+      EXPECT_EQ(calibrate(synth + "fetch_arm_head.urdf", config, synth + samples), care);
     }
   }
-  EXPECT_EQ(calibrate("fetch/fetch.urdf", "fetch/calibrate.yaml", synth + "samples.yaml"), "good");
+  EXPECT_EQ(calibrate("fetch/fetch.urdf", "fetch/calibrate.yaml", synth + "samples.yaml"), care);
 }
 
 TEST_F(Configurations, OfTheUr5AreGoodWhereSamplesAreEnough) {

@@ -68,7 +68,7 @@ TEST_F(JointPositions, AWholeTurnBeyondTheLimitsAreTheSamePose) {
 }
 
 TEST_F(JointPositions, HalfATurnBeyondTheLimitsIsAnotherZeroAndNotDegrees) {
-  for (Sample& sample : samples) position(sample, "pan") += std::numbers::pi;
+  for (Sample& sample : samples) position(sample, "lift") += std::numbers::pi;
   const Diagnostics diagnostics = found();
   EXPECT_THAT(diagnostics.errors, IsEmpty());
   EXPECT_THAT(diagnostics.doubts, ElementsAre(HasSubstr("are inside: is its zero another one")));
