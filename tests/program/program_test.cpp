@@ -262,7 +262,7 @@ TEST_F(Program, ExitsWith2AndWritesNothingWhenItDoesNotConverge) {
   write("c.yaml", std::string(kConfig) + "max_num_iterations: 1\n");
   const Outcome result = calibrate();
   EXPECT_EQ(result.code, 2) << result.out;
-  EXPECT_THAT(result.err, HasSubstr("not calibrated, nothing written"));
+  EXPECT_THAT(result.err, HasSubstr("failed, no results written"));
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
