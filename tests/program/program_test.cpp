@@ -901,8 +901,9 @@ TEST_F(Program, WritesNoCameraThatCannotBe) {
     write("c.yaml", kConfig + ("initial_values: {camera_" + found + "}\n"));
     const Outcome result = calibrate();
     EXPECT_EQ(result.code, 2) << result.out;
-    EXPECT_THAT(result.err, AllOf(HasSubstr("error: step 'calibrate' is not calibrated, nothing "),
-                                  HasSubstr("camera 'camera': ")));
+    EXPECT_THAT(result.err,
+                AllOf(HasSubstr("calibration of step 'calibrate' failed, no results written"),
+                      HasSubstr("camera 'camera': ")));
     EXPECT_FALSE(fs::exists(folder_ / "out"));
   }
 }

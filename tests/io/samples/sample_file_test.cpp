@@ -188,7 +188,7 @@ TEST(SampleFile, MissingSeparatorAtTheEndIsReported) {
 }
 
 TEST(SampleFile, FileWithoutSamplesIsAnErrorInEveryWay) {
-  EXPECT_THAT(read_in_every_way("").errors, ElementsAre("s.yaml: the file is empty"));
+  EXPECT_THAT(read_in_every_way("").errors, ElementsAre("s.yaml: no samples: the file is empty"));
   for (const std::string text : {"\n", "---\n", "---\n---\n# c\n---\n...\n---\n"}) {
     EXPECT_THAT(read_in_every_way(text).errors, ElementsAre("s.yaml: no samples in this file"));
   }

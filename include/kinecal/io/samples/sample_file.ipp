@@ -162,7 +162,7 @@ class SampleFile {
   /// A recording that was interrupted may end in the middle of a number and still be YAML.
   void check_end(const std::vector<Sample>& samples, int sample_line, SampleErrors& all) const {
     if (samples.empty()) {
-      all.add(0, done_ == 0 ? "the file is empty" : "no samples in this file");
+      all.add(0, done_ == 0 ? "no samples: the file is empty" : "no samples in this file");
     } else if (!read_.back().last_document_is_empty) {
       const char last = pieces_.last();
       if (last == '\n' || last == '}' || last == ']') {
