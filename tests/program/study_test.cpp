@@ -250,8 +250,8 @@ TEST_F(Study, PosesThatExistAreNotChosenAgain) {
 
 TEST_F(Study, PlanAndSelectPosesSayWhatAPriorLeavesWithoutNoise) {
   // So strong that they hold the camera where the URDF has it.
-  ASSERT_EQ(run("sed 's/_scale: .*/_scale: 500.0/' " + kFetch + "calibrate.yaml > prior.yaml").code,
-            0);
+  ASSERT_EQ(run("cp " + kFetch + "calibrate.yaml prior.yaml").code, 0);
+  ASSERT_EQ(run("sed -i 's/_scale: .*/_scale: 500.0/' prior.yaml").code, 0);
   const std::string what = "--config prior.yaml --candidates 30 ";
   const test::Outcome outcome =
       call("plan", what + "--accuracy 'gripper 3 mm' -o few.yaml --report page.html");
