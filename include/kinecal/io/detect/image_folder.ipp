@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -21,6 +20,18 @@
 namespace kinecal {
 namespace detail {
 
+/// A text in small letters (ASCII).
+[[nodiscard]] inline std::string in_small_letters(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// Whether a name is that of an image.
+[[nodiscard]] inline bool is_image_name(const std::string& name) {
+  const std::string ending = in_small_letters(std::filesystem::path(name).extension().string());
+  return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
+}
+
 /// Names of the images in a folder, sorted.
 [[nodiscard]] inline std::vector<std::string> image_names(const std::string& folder) {
   std::error_code failed;
@@ -28,11 +39,7 @@ namespace detail {
   if (failed) throw InputError(folder + ": " + failed.message());
   std::vector<std::string> names;
   for (const std::filesystem::directory_entry& file : files) {
-    std::string ending = file.path().extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (ending != ".png" && ending != ".jpg" && ending != ".jpeg") continue;
-    names.push_back(file.path().filename().string());
+    if (is_image_name(file.path().string())) names.push_back(file.path().filename().string());
   }
   if (names.empty()) throw InputError(folder + ": has no PNG or JPEG images");
   std::sort(names.begin(), names.end());
@@ -48,12 +55,6 @@ namespace detail {
   return ' ';
 }
 
-/// A text in small letters (ASCII).
-[[nodiscard]] inline std::string in_small_letters(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
 /// Where the names of images are: a column of that name, or one whose first cell names an image; nullopt
 /// if the table has none.
 [[nodiscard]] inline std::optional<std::size_t> image_column(const std::vector<CsvRow>& rows) {
@@ -62,8 +63,7 @@ namespace detail {
     if (name == "image" || name == "file" || name == "filename") return i;
   }
   for (std::size_t i = 0; rows.size() > 1 && i < rows[1].cells.size(); ++i) {
-    const std::string cell = in_small_letters(rows[1].cells[i]);
-    if (cell.ends_with(".png") || cell.ends_with(".jpg") || cell.ends_with(".jpeg")) return i;
+    if (is_image_name(rows[1].cells[i])) return i;
   }
   return std::nullopt;
 }
