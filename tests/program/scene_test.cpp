@@ -86,7 +86,7 @@ TEST_F(SceneFile, IsWrittenWhateverTheVerdict) {
   replace("calibrate.yaml", "max_num_iterations: 1000", "max_num_iterations: 1");
   const Outcome bad = calibrate("--scene s.mcap");
   EXPECT_EQ(bad.code, 2) << bad.out << bad.err;
-  EXPECT_THAT(bad.err, HasSubstr("nothing written"));
+  EXPECT_THAT(bad.err, HasSubstr("no results written"));
   EXPECT_EQ(read("s.mcap").substr(0, 8), kMagic);
 }
 
