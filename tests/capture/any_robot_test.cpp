@@ -8,8 +8,8 @@ namespace kinecal {
 namespace {
 
 TEST(AnyRobot, ForwardsToTheRobotThatItHolds) {
-  testing::ToyArm arm;
-  testing::ToyCamera camera{arm};
+  test::ToyArm arm;
+  test::ToyCamera camera{arm};
   AnyRobot robot{any_arm(arm), {{"square", any_camera(camera)}}, {}};
   robot.arm.move({{"pan"}, {0.5}});
   Stamp now = arm.now;
@@ -17,7 +17,7 @@ TEST(AnyRobot, ForwardsToTheRobotThatItHolds) {
   EXPECT_NEAR(robot.arm.next_joints(now).position("pan").value(), 0.5, 0.01);
   const View view = robot.cameras.at("square").next_view(now);
   EXPECT_GT(view.stamp, now);
-  EXPECT_TRUE(testing::ToyFinder{}.find(view));
+  EXPECT_TRUE(test::ToyFinder{}.find(view));
 }
 
 TEST(AnyRobot, ForwardsLamps) {

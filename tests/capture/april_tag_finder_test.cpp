@@ -15,13 +15,15 @@
 namespace kinecal {
 namespace {
 
-using kinecal::testing::camera_640;
-using kinecal::testing::Exposure;
-using kinecal::testing::facing;
-using kinecal::testing::picture;
-using kinecal::testing::pixel_of;
-using kinecal::testing::Print;
-using kinecal::testing::Target;
+using kinecal::test::camera_640;
+using kinecal::test::Exposure;
+using kinecal::test::facing;
+using kinecal::test::mean_error;
+using kinecal::test::picture;
+using kinecal::test::pixel_of;
+using kinecal::test::Print;
+using kinecal::test::Target;
+using kinecal::test::view_of;
 using ::testing::HasSubstr;
 
 constexpr double kTag = 0.05;     // as kTagSize
@@ -46,28 +48,8 @@ Target target_of(const Print& print, int columns, int rows, const Vector3<double
   return {print, facing(at, std::numbers::pi + tilt_x, tilt_y, roll, middle)};
 }
 
-View view_of(const std::vector<Target>& targets, const Exposure& how = {}) {
-  View view;
-  view.frame = "optical";
-  view.camera = camera_640();
-  view.image = picture(*view.camera, targets, how);
-  return view;
-}
-
-double mean_error(const Found& found, const Target& target) {
-  if (!found) return 1000.0;
-  double sum = 0.0;
-  const auto& seen = found.observations[0].features;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const auto truth =
-        pixel_of(camera_640(), target.camera_T_board, found.observations[1].features[i].point);
-    sum += (truth - seen[i].point.head<2>()).norm();
-  }
-  return sum / static_cast<double>(seen.size());
-}
-
 TEST(AprilTagFinder, FindsCornersOfAGridToATenthOfAPixel) {
-  const Print print = kinecal::testing::tag_grid(4, 3);
+  const Print print = kinecal::test::tag_grid(4, 3);
   const std::vector<double> rolls = {1.0, -1.5, 0.0, 2.0, 3.0};
   for (int i = 0; i < test::repetitions(5, 2); ++i) {
     const double roll = rolls[static_cast<std::size_t>(i)];
@@ -80,7 +62,7 @@ TEST(AprilTagFinder, FindsCornersOfAGridToATenthOfAPixel) {
 }
 
 TEST(AprilTagFinder, IdsAreFourTimesTheTagPlusTheCorner) {
-  const Target target = target_of(kinecal::testing::tag_grid(2, 2), 2, 2, {0, 0, 0.5}, 0, 0, 0);
+  const Target target = target_of(kinecal::test::tag_grid(2, 2), 2, 2, {0, 0, 0.5}, 0, 0, 0);
   const Found found = AprilTagFinder(grid(2, 2)).find(view_of({target}));
   ASSERT_TRUE(found) << found.refusal;
   const Observation& held = found.observations[1];
@@ -93,7 +75,7 @@ TEST(AprilTagFinder, IdsAreFourTimesTheTagPlusTheCorner) {
 
 TEST(AprilTagFinder, APartOfTheGridIsEnough) {
   const Target target =
-      target_of(kinecal::testing::tag_grid(4, 3), 4, 3, {0.2, 0.05, 0.45}, 0.2, 0.2, 0.1);
+      target_of(kinecal::test::tag_grid(4, 3), 4, 3, {0.2, 0.05, 0.45}, 0.2, 0.2, 0.1);
   const Found found = AprilTagFinder(grid(4, 3)).find(view_of({target}));
   ASSERT_TRUE(found) << found.refusal;
   EXPECT_LT(found.observations[0].features.size(), 48u);
@@ -106,7 +88,7 @@ TEST(AprilTagFinder, APartOfTheGridIsEnough) {
 
 TEST(AprilTagFinder, ReadsTheWideBorderOfKalibr) {
   const Target target =
-      target_of(kinecal::testing::tag_grid(3, 2, 2), 3, 2, {0, 0, 0.4}, 0.2, 0.2, 0.1);
+      target_of(kinecal::test::tag_grid(3, 2, 2), 3, 2, {0, 0, 0.4}, 0.2, 0.2, 0.1);
   AprilTagSettings settings = grid(3, 2);
   EXPECT_FALSE(AprilTagFinder(settings).find(view_of({target})));
   settings.border = 2;
@@ -118,14 +100,13 @@ TEST(AprilTagFinder, ReadsTheWideBorderOfKalibr) {
 
 TEST(AprilTagFinder, ATagThatIsSeenTwiceIsRefused) {
   const Target target =
-      target_of(kinecal::testing::tag_grid(3, 2, 1, true), 3, 2, {0, 0, 0.5}, 0, 0.2, 0);
+      target_of(kinecal::test::tag_grid(3, 2, 1, true), 3, 2, {0, 0, 0.5}, 0, 0.2, 0);
   EXPECT_THAT(AprilTagFinder(grid(3, 2)).find(view_of({target})).refusal,
               HasSubstr("tag 0 is seen twice"));
 }
 
 TEST(AprilTagFinder, SingleTagsHaveTheirOwnSizesAndPlacesAndOthersAreLeftAlone) {
-  const Target target =
-      target_of(kinecal::testing::tag_grid(3, 2), 3, 2, {0, 0, 0.5}, 0.2, 0.2, 0.1);
+  const Target target = target_of(kinecal::test::tag_grid(3, 2), 3, 2, {0, 0, 0.5}, 0.2, 0.2, 0.1);
   AprilTagSettings settings;
   settings.tags = {{4, kTag, {1.3 * kTag + kTag / 2, 1.3 * kTag + kTag / 2, 0.0}}};
   const Found found = AprilTagFinder(settings).find(view_of({target}));
@@ -136,7 +117,7 @@ TEST(AprilTagFinder, SingleTagsHaveTheirOwnSizesAndPlacesAndOthersAreLeftAlone) 
 }
 
 TEST(AprilTagFinder, BlurAndSmallTagsAreRefused) {
-  const Print print = kinecal::testing::tag_grid(2, 2);
+  const Print print = kinecal::test::tag_grid(2, 2);
   Exposure moving;
   moving.motion = 9;
   const Target near = target_of(print, 2, 2, {0, 0, 0.3}, 0, 0.1, 0);

@@ -13,8 +13,8 @@
 namespace kinecal {
 namespace {
 
-using kinecal::testing::camera_640;
-using kinecal::testing::pixel_of;
+using kinecal::test::camera_640;
+using kinecal::test::pixel_of;
 
 Pose<double> random_pose(SeededRandom& random, double angle) {
   Pose<double> pose;
@@ -40,7 +40,7 @@ Session session(int columns, int rows, int count, CornerKind kind, unsigned seed
                      camera_link_T_camera = random_pose(random, 3.0);
   const Vector3<double> middle((columns - 1) * 0.015, (rows - 1) * 0.015, 0.0);
   for (int i = 0; i < count; ++i) {
-    const Pose<double> camera_T_board = kinecal::testing::facing(
+    const Pose<double> camera_T_board = kinecal::test::facing(
         {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(0.4, 0.8)},
         random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.7, 0.7), middle);
     Pose<double> error;

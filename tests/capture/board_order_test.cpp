@@ -9,10 +9,10 @@
 namespace kinecal {
 namespace {
 
-using kinecal::testing::camera_640;
-using kinecal::testing::facing;
-using kinecal::testing::picture;
-using kinecal::testing::pixel_of;
+using kinecal::test::camera_640;
+using kinecal::test::facing;
+using kinecal::test::picture;
+using kinecal::test::pixel_of;
 
 /// True if a square board with this many inner corners has the same colours after quarter turns.
 bool same_colours(int columns, int rows, int turns) {
@@ -50,7 +50,7 @@ TEST(BoardOrder, CornersReadInAnyOrderGetTheBoardsOwn) {
   for (const auto& [columns, rows] : {std::pair(5, 4), std::pair(5, 5)}) {
     const auto pose = facing({0, 0, 0.5}, 0.2, 0.1, 0.3, {0.06, 0.06, 0});
     const GrayImage image =
-        picture(camera_640(), {{kinecal::testing::checkerboard(columns, rows, 0.03), pose}});
+        picture(camera_640(), {{kinecal::test::checkerboard(columns, rows, 0.03), pose}});
     std::vector<Eigen::Vector2d> truth;
     for (int i = 0; i < columns * rows; ++i) {
       truth.push_back(pixel_of(camera_640(), pose, {i % columns * 0.03, i / columns * 0.03, 0.0}));

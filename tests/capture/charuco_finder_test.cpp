@@ -15,13 +15,15 @@
 namespace kinecal {
 namespace {
 
-using kinecal::testing::camera_640;
-using kinecal::testing::Exposure;
-using kinecal::testing::facing;
-using kinecal::testing::picture;
-using kinecal::testing::pixel_of;
-using kinecal::testing::Print;
-using kinecal::testing::Target;
+using kinecal::test::camera_640;
+using kinecal::test::Exposure;
+using kinecal::test::facing;
+using kinecal::test::mean_error;
+using kinecal::test::picture;
+using kinecal::test::pixel_of;
+using kinecal::test::Print;
+using kinecal::test::Target;
+using kinecal::test::view_of;
 using ::testing::HasSubstr;
 
 CharucoSettings board_of(int squares_x, int squares_y) {
@@ -83,26 +85,6 @@ Target target_of(const CharucoSettings& s, const cv::Mat& drawing, const Vector3
   return {print_of(drawing, s),
           facing(at, tilt_x, tilt_y, roll,
                  {s.squares_x * s.square_size / 2, s.squares_y * s.square_size / 2, 0.0})};
-}
-
-View view_of(const std::vector<Target>& targets, const Exposure& how = {}) {
-  View view;
-  view.frame = "optical";
-  view.camera = camera_640();
-  view.image = picture(*view.camera, targets, how);
-  return view;
-}
-
-double mean_error(const Found& found, const Target& target) {
-  if (!found) return 1000.0;
-  double sum = 0.0;
-  const auto& seen = found.observations[0].features;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const auto truth =
-        pixel_of(camera_640(), target.camera_T_board, found.observations[1].features[i].point);
-    sum += (truth - seen[i].point.head<2>()).norm();
-  }
-  return sum / static_cast<double>(seen.size());
 }
 
 TEST(CharucoFinder, FindsCornersOfABoardToATenthOfAPixel) {

@@ -11,12 +11,14 @@
 namespace kinecal {
 namespace {
 
-using kinecal::testing::camera_640;
-using kinecal::testing::Exposure;
-using kinecal::testing::facing;
-using kinecal::testing::picture;
-using kinecal::testing::pixel_of;
-using kinecal::testing::Target;
+using kinecal::test::camera_640;
+using kinecal::test::Exposure;
+using kinecal::test::facing;
+using kinecal::test::mean_error;
+using kinecal::test::picture;
+using kinecal::test::pixel_of;
+using kinecal::test::Target;
+using kinecal::test::view_of;
 using ::testing::HasSubstr;
 
 constexpr double kSquare = 0.03;
@@ -24,33 +26,12 @@ constexpr double kSquare = 0.03;
 Target board(int columns, int rows, const Vector3<double>& at, double tilt_x, double tilt_y,
              double roll, double square = kSquare) {
   return {
-      kinecal::testing::checkerboard(columns, rows, square),
+      kinecal::test::checkerboard(columns, rows, square),
       facing(at, tilt_x, tilt_y, roll, {(columns - 1) * square / 2, (rows - 1) * square / 2, 0.0})};
-}
-
-View view_of(const std::vector<Target>& targets, const Exposure& how = {}) {
-  View view;
-  view.frame = "optical";
-  view.camera = camera_640();
-  view.image = picture(*view.camera, targets, how);
-  return view;
 }
 
 CheckerboardFinder finder_of(int columns, int rows, double square = kSquare) {
   return CheckerboardFinder({columns, rows, square, {}});
-}
-
-/// Mean distance of corners from where they are, pixels; 1000 if there are none.
-double mean_error(const Found& found, const Target& target) {
-  if (!found) return 1000.0;
-  double sum = 0.0;
-  const auto& seen = found.observations[0].features;
-  const auto& held = found.observations[1].features;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const auto truth = pixel_of(camera_640(), target.camera_T_board, held[i].point);
-    sum += (truth - seen[i].point.head<2>()).norm();
-  }
-  return sum / static_cast<double>(seen.size());
 }
 
 #ifdef KINECAL_HAVE_OPENCV

@@ -9,11 +9,11 @@
 namespace kinecal {
 namespace {
 
-constexpr double kFocal = 300.0;
+constexpr double kFocalLength = 300.0;
 
 /// Where the ray through (u, v) meets the plane z = 1 + 0.5 x - 0.3 y.
 Vector3<double> on_plane(double u, double v) {
-  const double x = (u - 20) / kFocal, y = (v - 15) / kFocal;
+  const double x = (u - 20) / kFocalLength, y = (v - 15) / kFocalLength;
   const double z = 1.0 / (1.0 - 0.5 * x + 0.3 * y);
   return {x * z, y * z, z};
 }

@@ -36,7 +36,7 @@ TEST(Homography, PointsOnALineOrTooFewDetermineNothing) {
 TEST(Homography, ThePoseOfABoardIsFoundFromRaysAndFromPoints) {
   SeededRandom random(3);
   for (int k = 0; k < 20; ++k) {
-    const Pose<double> truth = kinecal::testing::facing(
+    const Pose<double> truth = kinecal::test::facing(
         {random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(0.3, 1.5)},
         random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(-3, 3),
         {0.06, 0.045, 0});

@@ -14,11 +14,11 @@ namespace kinecal {
 namespace {
 
 using std::chrono::milliseconds;
+using test::ToyArm;
+using test::ToyCamera;
+using test::ToyFinder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::ToyArm;
-using testing::ToyCamera;
-using testing::ToyFinder;
 
 std::vector<CapturePose> five_poses() {
   std::vector<CapturePose> poses;

@@ -9,10 +9,10 @@ namespace kinecal {
 namespace {
 
 using std::chrono::milliseconds;
+using test::ToyArm;
+using test::ToyCamera;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::ToyArm;
-using testing::ToyCamera;
 
 /// What a PoseError says.
 template <class F>

@@ -31,13 +31,13 @@ BasicProblem<S> three_blocks(const Loss& loss = {}) {
 }
 
 /// Where the samples of this file are evaluated: a little beside where they are exact.
-std::vector<double> values_of(const ParameterTable& table) {
+std::vector<double> near_values(const ParameterTable& table) {
   return test::random_values(table, 0.02, 5);
 }
 
 std::vector<Sample> near_samples(int count, const std::string& arm_frame = "hand") {
   const Problem problem = test::scene_problem();
-  std::vector<double> truth = values_of(problem.table());
+  std::vector<double> truth = near_values(problem.table());
   for (std::size_t i = 0; i < truth.size(); ++i) truth[i] += 2e-3 * static_cast<double>(i % 3);
   return test::exact_samples(problem, truth, count, arm_frame);
 }
@@ -109,7 +109,7 @@ TEST(Evaluate, APackThatIsNotFullCountsItsSamplesAndNothingElse) {
     Problem problem = three_blocks({LossType::huber, 0.02});
     for (const Sample& sample : samples) problem.add_sample(sample);
     ASSERT_EQ(test::count_batches(problem), (count + kLanesOfPacket - 1) / kLanesOfPacket);
-    const auto x = values_of(problem.table());
+    const auto x = near_values(problem.table());
     const FreeSet free = test::all_free(problem.table());
     SCOPED_TRACE(std::to_string(count) + " samples");
     test::expect_same(normal_equations(problem, x, &free), sum_of_single_samples(samples, x, free),
@@ -129,7 +129,7 @@ TEST(Evaluate, SamplesOfManyShapesCountAsIfEachWereAlone) {
     problem.add_sample(sample);
     oracle.add_sample(sample);
   }
-  const auto x = values_of(problem.table());
+  const auto x = near_values(problem.table());
   const FreeSet free = test::all_free(problem.table());
   const NormalEquations all = normal_equations(problem, x, &free);
   test::expect_same(all, sum_of_single_samples(samples, x, free), kOrderOfSums);
@@ -143,7 +143,7 @@ TEST(Evaluate, VisitsEachSampleOnceUnderItsOwnNumber) {
   const std::vector<Sample> samples = mixed_samples(11 * (kLanesOfPacket + 1));
   Problem problem = three_blocks();
   for (const Sample& sample : samples) problem.add_sample(sample);
-  const auto x = values_of(problem.table());
+  const auto x = near_values(problem.table());
   const FreeSet free = test::all_free(problem.table());
   const auto rows = test::rows_of(problem, x, &free);
   std::size_t expected = 0;
@@ -188,7 +188,7 @@ TEST(Evaluate, AFeatureThatIsNotANumberCountsAsIfItWereNotThere) {
     problem->add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
     for (const Sample& s : problem == &some ? samples : without) problem->add_sample(s);
   }
-  const auto x = values_of(some.table());
+  const auto x = near_values(some.table());
   const FreeSet free = test::all_free(some.table());
   const NormalEquations found = normal_equations(some, x, &free);
   // A sample whose eye misses a feature keeps it between camera and arm.
@@ -220,7 +220,7 @@ void expect_same_bytes(const NormalEquations& a, const NormalEquations& b) {
 
 template <class S>
 void expect_the_same_for_any_threads(const BasicProblem<S>& problem) {
-  const auto x = values_of(problem.table());
+  const auto x = near_values(problem.table());
   const FreeSet free = test::all_free(problem.table());
   const NormalEquations one = normal_equations(problem, x, &free, Losses::as_given, 1);
   for (const int threads : {2, 3, 7}) {
@@ -247,7 +247,7 @@ TEST(Evaluate, SeveralPiecesCountAllSamples) {
   const Problem pieces = five_thousand<Packet>(samples);
   Problem one_piece = three_blocks({LossType::cauchy, 0.02});
   for (const Sample& sample : samples) one_piece.add_sample(sample);
-  const auto x = values_of(pieces.table());
+  const auto x = near_values(pieces.table());
   const FreeSet free = test::all_free(pieces.table());
   NormalEquations expected = normal_equations(one_piece, x, &free);
   expected.cost *= 50.0;
@@ -298,7 +298,7 @@ static_assert(!std::is_constructible_v<Evaluator<double>, BasicProblem<double>, 
 TEST(Evaluate, AProblemWithoutSamplesCostsNothing) {
   for (const int threads : {0, 1, 7}) {
     const Problem problem = three_blocks();
-    const auto x = values_of(problem.table());
+    const auto x = near_values(problem.table());
     const FreeSet free = test::all_free(problem.table());
     Evaluator<Packet> evaluator(problem, free, threads);
     const NormalEquations normal = evaluator.normal_equations(x);
@@ -317,7 +317,7 @@ TEST(Evaluate, ASampleThatNoBlockTakesCostsNothing) {
   Sample sample = near_samples(1)[0];
   sample.observations = {sample.observations[2]};  // the eye alone
   problem.add_sample(sample);
-  const auto x = values_of(problem.table());
+  const auto x = near_values(problem.table());
   const FreeSet free = test::all_free(problem.table());
   EXPECT_EQ(normal_equations(problem, x, &free).cost, 0.0);
   EXPECT_EQ(problem.num_samples(), 1);
@@ -327,7 +327,7 @@ TEST(Evaluate, ASampleThatNoBlockTakesCostsNothing) {
 TEST(Evaluate, APriorWithoutSamplesCostsNothing) {
   Problem problem = three_blocks();
   problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {});
-  const auto x = values_of(problem.table());
+  const auto x = near_values(problem.table());
   const FreeSet free = test::all_free(problem.table());
   EXPECT_EQ(normal_equations(problem, x, &free).cost, 0.0);
 }
@@ -367,7 +367,7 @@ TEST_P(Undefined, InOneLaneIsNamedAndLeavesTheOthersDefined) {
   for (int bad = 0; bad < count; ++bad) {
     for (const std::size_t feature : {0u, 3u}) {
       Problem problem = sights({GetParam(), 0.05});
-      const auto x = values_of(problem.table());
+      const auto x = near_values(problem.table());
       for (int n = 0; n < count; ++n) {
         const Sample& sample = samples[static_cast<std::size_t>(n)];
         problem.add_sample(n == bad ? behind_the_camera(sample, problem, x, {feature}) : sample);
@@ -399,7 +399,7 @@ TEST_P(Undefined, IsTheCostOfAnInfiniteValue) {
   for (const double value :
        {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     for (const char* name : {"camera_z_offset", "camera_joint_x", "elbow", "eye_fx"}) {
-      auto x = values_of(problem.table());
+      auto x = near_values(problem.table());
       x[static_cast<std::size_t>(problem.table().index(name))] = value;
       EXPECT_FALSE(std::isfinite(normal_equations(problem, x, nullptr).cost)) << name;
       EXPECT_FALSE(std::isfinite(normal_equations(problem, x, &free).cost)) << name;
@@ -417,7 +417,7 @@ TEST_P(Undefined, IsTheCostOfAResidualThatOverflows) {
   std::vector<Sample> samples = near_samples(kLanesOfPacket);
   samples.back().observations[0].features[1].point.x() = 1e200;
   for (const Sample& sample : samples) problem.add_sample(sample);
-  const auto x = values_of(problem.table());
+  const auto x = near_values(problem.table());
   const FreeSet free = test::all_free(problem.table());
   EXPECT_FALSE(std::isfinite(normal_equations(problem, x, nullptr).cost));
   EXPECT_FALSE(std::isfinite(normal_equations(problem, x, &free).cost));
@@ -431,7 +431,7 @@ TEST_P(Undefined, IsNotAPointBehindACameraThatDidNotSeeIt) {
     Problem problem = sights({GetParam(), 0.05});
     test::OracleProblem oracle = test::oracle_of(problem);
     add_sights(oracle, {GetParam(), 0.05});
-    const auto x = values_of(problem.table());
+    const auto x = near_values(problem.table());
     for (const Sample& sample : samples) {
       Sample unseen = behind_the_camera(sample, problem, x, {feature});
       unseen.observations[2].features[feature].point.setConstant(

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kOrderOfSums = 1e-12;
+constexpr double kSameTerms = 1e-12;
 
 /// Samples of six features with errors, and ids from 10 on.
 std::vector<Sample> numbered_samples(int count) {
@@ -102,7 +102,7 @@ TYPED_TEST(FeatureIds, TwoCamerasThatSeeDifferentPartsAreAsTwoSamples) {
   const auto problem = problem_of<S>(samples), by_hand = problem_of<S>(split);
   EXPECT_EQ(problem.num_residuals(), by_hand.num_residuals());
   EXPECT_EQ(problem.samples_of(0), problem.num_samples());
-  test::expect_same(sums_of(problem), sums_of(by_hand), kOrderOfSums);
+  test::expect_same(sums_of(problem), sums_of(by_hand), kSameTerms);
 }
 
 TYPED_TEST(FeatureIds, AFeatureThatTakesItsSigmaWithIt) {
@@ -124,7 +124,7 @@ TYPED_TEST(FeatureIds, AFeatureThatTakesItsSigmaWithIt) {
     std::reverse(camera.features.begin(), camera.features.end());
     arm = only(arm, 11, 15);
   }
-  test::expect_same(sums_of(problem_of<S>(samples)), sums_of(problem_of<S>(split)), kOrderOfSums);
+  test::expect_same(sums_of(problem_of<S>(samples)), sums_of(problem_of<S>(split)), kSameTerms);
 }
 
 /// Sensors of poses: a gap needs an orientation, too.
@@ -149,7 +149,7 @@ TYPED_TEST(FeatureIds, OfPosesMayHaveGaps) {
     seen = {only(seen[5], 1, 3), only(seen[6], 0, 2)};
     std::reverse(seen[0].features.begin(), seen[0].features.end());
   }
-  test::expect_same(sums_of(make(samples)), sums_of(make(split)), kOrderOfSums);
+  test::expect_same(sums_of(make(samples)), sums_of(make(split)), kSameTerms);
 }
 
 /// Three sensors in a row: the one in the middle saw all, so those at the ends have gaps.

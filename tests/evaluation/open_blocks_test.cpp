@@ -10,7 +10,7 @@
 namespace kinecal {
 namespace {
 
-std::vector<double> values_of(const ParameterTable& table) {
+std::vector<double> open_values(const ParameterTable& table) {
   std::vector<double> x = test::random_values(table, 0.05, 4);
   for (const char* name :
        {"block_u", "block_v", "block_length", "block_radius", "block_expansion"}) {
@@ -29,7 +29,7 @@ void check_block(const B& block, const std::vector<std::string>& sensors,
   BasicProblem<double> numbers = test::open_problem<double>(block, sensors, options);
   test::OracleProblem oracle = test::oracle_of(packets);
   oracle.add_block("block", block, sensors, options);
-  const std::vector<double> x = values_of(packets.table());
+  const std::vector<double> x = open_values(packets.table());
   std::vector<Sample> samples = test::open_samples(packets, x, 9, arm_frame);
   samples[2].observations[4].features[1].point.x() = std::numeric_limits<double>::quiet_NaN();
   for (const Sample& sample : samples) {
@@ -104,7 +104,7 @@ TEST(OpenBlocks, PlanesWithAParameterAndACondition) {
 /// The number of a line of sight's pixels by which it misses a point, at the truth.
 TEST(OpenBlocks, RaysToOnePointMeet) {
   Problem problem = test::open_problem<Packet>(RayToRay{}, {"eye", "left"});
-  const std::vector<double> x = values_of(problem.table());
+  const std::vector<double> x = open_values(problem.table());
   const test::OracleValues<double> value(problem.table(), x);
   std::vector<Sample> samples = test::open_samples(problem, x, 5);
   for (Sample& sample : samples) {
@@ -135,7 +135,7 @@ TEST(OpenBlocks, RaysToOnePointMeet) {
 
 TEST(OpenBlocks, OnePoseSeenTwiceIsTheSame) {
   Problem problem = test::open_problem<Packet>(PoseToPose{}, {"body", "tracker"});
-  const std::vector<double> x = values_of(problem.table());
+  const std::vector<double> x = open_values(problem.table());
   for (Sample& sample : test::open_samples(problem, x, 5)) {
     const Pose<double> hand = test::tip_pose(problem, 5, "hand", sample, x),
                        board = test::tip_pose(problem, 6, "board", sample, x);
@@ -168,7 +168,7 @@ TEST(OpenBlocks, PoseToPoseIsTheAngleBetween) {
 TEST(OpenBlocks, WithoutErrorsTheResidualIsGone) {
   const auto check = [](const auto& block, const std::vector<std::string>& sensors, double left) {
     Problem problem = test::open_problem<Packet>(block, sensors);
-    const std::vector<double> x = values_of(problem.table());
+    const std::vector<double> x = open_values(problem.table());
     for (const Sample& s : test::open_samples(problem, x, 3)) problem.add_sample(s);
     const FreeSet all = test::all_free(problem.table());
     double before = 0.0, after = 0.0;

@@ -10,7 +10,7 @@
 namespace kinecal {
 namespace {
 
-constexpr double kRounding = 1e-14;  // a few dozen operations on numbers of size one
+constexpr double kRoundingOfJets = 1e-14;  // a few dozen operations on numbers of size one
 
 /// A formula with everything that a jet can do, its arguments positive.
 template <class T>
@@ -36,9 +36,9 @@ TEST(Jet, AgreesWithThatOfCeres) {
     using Reference = ceres::Jet<double, 3>;
     const J found = everything(J(x, 0), J(y, 1), J(z, 2));
     const Reference expected = everything(Reference(x, 0), Reference(y, 1), Reference(z, 2));
-    EXPECT_NEAR(found.a, expected.a, kRounding * (1 + std::abs(expected.a)));
-    EXPECT_LE((found.v - expected.v).norm(), kRounding * (1 + expected.v.norm()));
-    EXPECT_NEAR(found.a, everything(x, y, z), kRounding * (1 + std::abs(expected.a)));
+    EXPECT_NEAR(found.a, expected.a, kRoundingOfJets * (1 + std::abs(expected.a)));
+    EXPECT_LE((found.v - expected.v).norm(), kRoundingOfJets * (1 + expected.v.norm()));
+    EXPECT_NEAR(found.a, everything(x, y, z), kRoundingOfJets * (1 + std::abs(expected.a)));
   }
 }
 
@@ -70,9 +70,10 @@ TEST(Jet, OfPacketsIsOneJetOfDoublesInEachLane) {
     const auto& [x, y, z] = kArguments[static_cast<std::size_t>(i) % kArguments.size()];
     using One = Jet<double, 3>;
     const One expected = everything(One(x, 0), One(y, 1), One(z, 2));
-    EXPECT_NEAR(lane(found.a, i), expected.a, kRounding * (1 + std::abs(expected.a)));
+    EXPECT_NEAR(lane(found.a, i), expected.a, kRoundingOfJets * (1 + std::abs(expected.a)));
     for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(lane(found.v(k), i), expected.v(k), kRounding * (1 + std::abs(expected.v(k))));
+      EXPECT_NEAR(lane(found.v(k), i), expected.v(k),
+                  kRoundingOfJets * (1 + std::abs(expected.v(k))));
     }
   }
 }
@@ -144,9 +145,9 @@ TEST(Jet, OfPacketsMixesWithVectorsOfNumbers) {
   const OfPackets all =
       distance_to(point_jets<OfPackets>(Vector3<Packet>(p.cast<Packet>()), 0), center);
   const Packet packet = distance_to(Vector3<Packet>(p.cast<Packet>()), center);
-  EXPECT_NEAR(lane(packet, 0), one.a, kRounding);
-  EXPECT_NEAR(lane(all.a, 0), one.a, kRounding);
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(lane(all.v(k), 0), one.v(k), kRounding);
+  EXPECT_NEAR(lane(packet, 0), one.a, kRoundingOfJets);
+  EXPECT_NEAR(lane(all.a, 0), one.a, kRoundingOfJets);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(lane(all.v(k), 0), one.v(k), kRoundingOfJets);
 }
 
 TEST(Jet, ANumberHasNoDerivatives) {

@@ -14,7 +14,7 @@ namespace kinecal {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kRounding = 4e-15;  // a few operations on numbers of size one
+constexpr double kRoundingOfUnits = 4e-15;  // a few operations on numbers of size one
 
 /// Rotation vectors where something could go wrong: zero, tiny, around the switch to the series
 /// (0.5), random, near pi and at pi.
@@ -36,15 +36,15 @@ std::vector<Vector3<double>> difficult_vectors() {
 TEST(Rotation, ExpIsARotationMatrix) {
   for (const auto& w : difficult_vectors()) {
     const Matrix3<double> r = exp(w);
-    EXPECT_TRUE((r * r.transpose()).isIdentity(kRounding)) << w.transpose();
-    EXPECT_NEAR(r.determinant(), 1.0, kRounding);
+    EXPECT_TRUE((r * r.transpose()).isIdentity(kRoundingOfUnits)) << w.transpose();
+    EXPECT_NEAR(r.determinant(), 1.0, kRoundingOfUnits);
   }
 }
 
 TEST(Rotation, ExpTurnsByTheLengthOfTheVector) {
   const Matrix3<double> r = exp(Vector3<double>(0.0, 0.0, 0.3));
-  EXPECT_NEAR(r(0, 0), std::cos(0.3), kRounding);
-  EXPECT_NEAR(r(1, 0), std::sin(0.3), kRounding);
+  EXPECT_NEAR(r(0, 0), std::cos(0.3), kRoundingOfUnits);
+  EXPECT_NEAR(r(1, 0), std::sin(0.3), kRoundingOfUnits);
 }
 
 TEST(Rotation, ExpIsTheTurnOfAQuaternionAboutAnyAxis) {
@@ -54,7 +54,7 @@ TEST(Rotation, ExpIsTheTurnOfAQuaternionAboutAnyAxis) {
     const Vector3<double> v = std::sin(half) * axis;
     const Matrix3<double> expected =
         Eigen::Quaterniond(std::cos(half), v.x(), v.y(), v.z()).toRotationMatrix();
-    EXPECT_TRUE(exp(w).isApprox(expected, kRounding)) << w.transpose();
+    EXPECT_TRUE(exp(w).isApprox(expected, kRoundingOfUnits)) << w.transpose();
   }
 }
 
@@ -73,15 +73,15 @@ TEST(Rotation, LogOfATinyRotationKeepsItsRelativeAccuracy) {
   EXPECT_LE((log(exp(w)) - w).norm(), 1e-15 * w.norm());
 }
 
-using Jet = ceres::Jet<double, 3>;
+using Jet3 = ceres::Jet<double, 3>;
 
-Vector3<Jet> jets(const Vector3<double>& w) {
-  return {Jet(w.x(), 0), Jet(w.y(), 1), Jet(w.z(), 2)};
+Vector3<Jet3> jets(const Vector3<double>& w) {
+  return {Jet3(w.x(), 0), Jet3(w.y(), 1), Jet3(w.z(), 2)};
 }
 
 TEST(Rotation, LeftJacobianIsTheDerivativeOfExp) {
   for (const auto& w : difficult_vectors()) {
-    const Matrix3<Jet> r = exp(jets(w));
+    const Matrix3<Jet3> r = exp(jets(w));
     const Matrix3<double> value = exp(w), jacobian = left_jacobian(w);
     for (int k = 0; k < 3; ++k) {
       Matrix3<double> derivative;
@@ -95,7 +95,7 @@ TEST(Rotation, LeftJacobianIsTheDerivativeOfExp) {
 TEST(Rotation, LogDifferentiatesThroughZeroAndNearPi) {
   for (const auto& w : difficult_vectors()) {
     if (w.norm() > kPi - 1e-6) continue;  // the derivative of log itself grows without bound
-    const Vector3<Jet> back = log(exp(jets(w)));
+    const Vector3<Jet3> back = log(exp(jets(w)));
     for (int i = 0; i < 3; ++i) {
       EXPECT_LE((back(i).v - Vector3<double>::Unit(i)).norm(), 1e-11) << w.transpose();
     }
@@ -107,7 +107,7 @@ TEST(Rpy, MatchesTheProductOfThreeAxisRotations) {
   const Matrix3<double> expected = exp(Vector3<double>(0, 0, rpy.z())) *
                                    exp(Vector3<double>(0, rpy.y(), 0)) *
                                    exp(Vector3<double>(rpy.x(), 0, 0));
-  EXPECT_TRUE(rotation_from_rpy(rpy).isApprox(expected, kRounding));
+  EXPECT_TRUE(rotation_from_rpy(rpy).isApprox(expected, kRoundingOfUnits));
 }
 
 TEST(Rpy, IsFoundAgainFromTheRotationAlsoInGimbalLock) {
@@ -123,8 +123,8 @@ TEST(Pose, ComposesAndInverts) {
   const Pose<double> a{exp(Vector3<double>(0.1, 0.2, 0.3)), {1, 2, 3}};
   const Pose<double> b{exp(Vector3<double>(-0.5, 0.1, 0.9)), {-1, 0.5, 2}};
   const Vector3<double> p(0.3, -0.2, 0.7);
-  EXPECT_LE((a * b * p - a * (b * p)).norm(), kRounding);
-  EXPECT_LE((a.inverse() * (a * p) - p).norm(), kRounding);
+  EXPECT_LE((a * b * p - a * (b * p)).norm(), kRoundingOfUnits);
+  EXPECT_LE((a.inverse() * (a * p) - p).norm(), kRoundingOfUnits);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace kinecal {
 namespace {
 
-constexpr double kRounding = 1e-13;
+constexpr double kRoundingOfChains = 1e-13;
 
 KDL::Vector to_kdl(const Vector3<double>& v) {
   return {v.x(), v.y(), v.z()};
@@ -93,11 +93,12 @@ TEST_P(RobotsOfUrdfs, AgreeWithKdl) {
     Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, joints);
     const Pose<double> same = geometric_jacobian(chain, q, jacobian);
     for (int i = 0; i < 3; ++i) {
-      EXPECT_NEAR(pose.translation(i), frame.p(i), kRounding);
-      for (int j = 0; j < 3; ++j) EXPECT_NEAR(pose.rotation(i, j), frame.M(i, j), kRounding);
+      EXPECT_NEAR(pose.translation(i), frame.p(i), kRoundingOfChains);
+      for (int j = 0; j < 3; ++j)
+        EXPECT_NEAR(pose.rotation(i, j), frame.M(i, j), kRoundingOfChains);
     }
     EXPECT_EQ(same.translation, pose.translation);
-    EXPECT_LE((jacobian - expected.data).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_LE((jacobian - expected.data).cwiseAbs().maxCoeff(), kRoundingOfChains);
   }
 }
 
@@ -120,13 +121,13 @@ TEST(GeometricJacobian, OfAChainThatGoesUpAndDownIsThatOfJets) {
     const Pose<J> pose = forward_kinematics(chain, jets);
     Matrix3<double> by_q;
     for (int r = 0; r < 3; ++r) {
-      EXPECT_NEAR(pose.translation(r).v(0), jacobian(r, i), kRounding);
+      EXPECT_NEAR(pose.translation(r).v(0), jacobian(r, i), kRoundingOfChains);
       for (int c = 0; c < 3; ++c) by_q(r, c) = pose.rotation(r, c).v(0);
     }
     const Matrix3<double> spin = by_q * rotation.transpose();  // [w]x
-    EXPECT_NEAR(spin(2, 1), jacobian(3, i), kRounding);
-    EXPECT_NEAR(spin(0, 2), jacobian(4, i), kRounding);
-    EXPECT_NEAR(spin(1, 0), jacobian(5, i), kRounding);
+    EXPECT_NEAR(spin(2, 1), jacobian(3, i), kRoundingOfChains);
+    EXPECT_NEAR(spin(0, 2), jacobian(4, i), kRoundingOfChains);
+    EXPECT_NEAR(spin(1, 0), jacobian(5, i), kRoundingOfChains);
   }
 }
 
@@ -139,8 +140,9 @@ TEST(GeometricJacobian, OfAChainThatTheCompilerKnowsIsTheSame) {
   Eigen::Matrix<double, 6, 4> expected;
   const Pose<double> pose = geometric_jacobian(chain, q, expected);
   const Eigen::Matrix<double, 6, 4> jacobian = geometric_jacobian(Hand{}, q);
-  EXPECT_LE((jacobian - expected).cwiseAbs().maxCoeff(), kRounding);
-  EXPECT_LE((forward_kinematics(Hand{}, q).translation - pose.translation).norm(), kRounding);
+  EXPECT_LE((jacobian - expected).cwiseAbs().maxCoeff(), kRoundingOfChains);
+  EXPECT_LE((forward_kinematics(Hand{}, q).translation - pose.translation).norm(),
+            kRoundingOfChains);
 }
 
 TEST(ForwardKinematics, RefusesOtherSizesThanTheChains) {
@@ -160,7 +162,8 @@ TEST(ForwardKinematics, TakesTheJetsOfCeres) {
   geometric_jacobian(chain, Eigen::Vector4d(0.1 * Eigen::Vector4d(1, 2, 3, 4)), jacobian);
   const Pose<J> pose = forward_kinematics(chain, q);
   for (int r = 0; r < 3; ++r) {
-    for (int i = 0; i < 4; ++i) EXPECT_NEAR(pose.translation(r).v(i), jacobian(r, i), kRounding);
+    for (int i = 0; i < 4; ++i)
+      EXPECT_NEAR(pose.translation(r).v(i), jacobian(r, i), kRoundingOfChains);
   }
 }
 

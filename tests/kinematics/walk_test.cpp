@@ -13,7 +13,7 @@
 namespace kinecal {
 namespace {
 
-constexpr double kRounding = 1e-14;  // a dozen products of numbers of size one
+constexpr double kRoundingOfTwists = 1e-14;  // a dozen products of numbers of size one
 
 const std::set<std::string> kNone;
 const std::set<std::string> kCorrected = {"shoulder_lift", "elbow_mount",  "wrist",
@@ -42,7 +42,7 @@ ParameterTable parameters_of(const Robot& robot) {
   return table;
 }
 
-double difference(const Pose<double>& a, const Pose<double>& b) {
+double distance(const Pose<double>& a, const Pose<double>& b) {
   return (a.rotation - b.rotation).norm() + (a.translation - b.translation).norm();
 }
 
@@ -73,13 +73,14 @@ TEST(Walk, MatchesTheDefinitionBetweenAnyTwoLinks) {
       SCOPED_TRACE(base + " -> " + tip);
       for (const auto& corrected : {kNone, kCorrected}) {
         const RuntimeChain chain = make_chain(robot, base, tip, corrected);
-        EXPECT_LE(difference(forward_kinematics(chain, position_of), expected(zero)), kRounding);
+        EXPECT_LE(distance(forward_kinematics(chain, position_of), expected(zero)),
+                  kRoundingOfTwists);
       }
       const RuntimeChain chain = make_chain(robot, base, tip, kCorrected);
       const auto corrections =
           corrections_for(chain_parameters(chain, table), std::span<const double>(values));
-      EXPECT_LE(difference(forward_kinematics(chain, position_of, corrections), expected(values)),
-                kRounding);
+      EXPECT_LE(distance(forward_kinematics(chain, position_of, corrections), expected(values)),
+                kRoundingOfTwists);
     }
   }
 }
@@ -96,7 +97,8 @@ TEST(Walk, CorrectionStandsBetweenOriginAndMotionAndOffsetAddsToThePosition) {
   const Pose<double> expected =
       robot.joint("elbow_mount").origin * elbow.origin * Pose<double>{exp(w), t} * motion;
   const auto position_of = [](const std::string&) { return 0.7; };
-  EXPECT_LE(difference(forward_kinematics(chain, position_of, corrections), expected), kRounding);
+  EXPECT_LE(distance(forward_kinematics(chain, position_of, corrections), expected),
+            kRoundingOfTwists);
 }
 
 TEST(Walk, ReversedChainIsTheInverseAlsoWithCorrections) {
@@ -115,7 +117,7 @@ TEST(Walk, ReversedChainIsTheInverseAlsoWithCorrections) {
   const auto position_of = [&](const std::string& joint) { return positions(joint); };
   const Pose<double> product = forward_kinematics(there, position_of, corrections) *
                                forward_kinematics(back, position_of, reversed);
-  EXPECT_LE(difference(product, {}), kRounding);
+  EXPECT_LE(distance(product, {}), kRoundingOfTwists);
 }
 
 // Axes of the frame: only two columns turn about them.
@@ -187,7 +189,7 @@ TEST(Walk, AboutAndAlongTheAxesOfTheFrameMatchesTheDefinition) {
       }
       const Pose<double> there = robot.joint("mount").origin * robot.joint("joint").origin *
                                  of_case.corrections[0].frame * motion * robot.joint("tool").origin;
-      EXPECT_LE(difference(of_case.pose(q), c.reversed ? there.inverse() : there), kRounding)
+      EXPECT_LE(distance(of_case.pose(q), c.reversed ? there.inverse() : there), kRoundingOfTwists)
           << to_string(c.type) << " " << c.axis.transpose() << (c.reversed ? " reversed" : "");
     }
   }
@@ -207,7 +209,7 @@ std::vector<std::pair<int, Twist<double>>> twists_of(const AxisChain& of_case, d
       measured_joint_states(of_case.chain, [&](const std::string&) { return position; });
   walk(of_case.chain, std::span<const JointState<double>>(motions),
        std::span<const JointCorrection<double>>(of_case.corrections), walker);
-  EXPECT_LE(difference(walker.walker.pose, of_case.pose(position)), 0.0);
+  EXPECT_LE(distance(walker.walker.pose, of_case.pose(position)), 0.0);
   return by_column(twists, order);
 }
 
@@ -217,15 +219,15 @@ TEST(Walk, AboutAndAlongTheAxesOfTheFrameIsAsAboutAnyAxis) {
     const AxisChain of_frame = any;
     any.chain.joints[0].principal = -1;
     for (const double q : {-3.1, 0.0, 0.4}) {
-      EXPECT_LE(difference(any.pose(q), of_frame.pose(q)), kRounding)
+      EXPECT_LE(distance(any.pose(q), of_frame.pose(q)), kRoundingOfTwists)
           << to_string(c.type) << " " << c.axis.transpose() << (c.reversed ? " reversed" : "");
       const auto expected = twists_of(any, q), found = twists_of(of_frame, q);
       ASSERT_EQ(found.size(), c.corrected ? 7u : 1u);
       ASSERT_EQ(found.size(), expected.size());
       for (std::size_t i = 0; i < found.size(); ++i) {
         EXPECT_EQ(found[i].first, expected[i].first);
-        EXPECT_LE((found[i].second.linear - expected[i].second.linear).norm(), kRounding);
-        EXPECT_LE((found[i].second.angular - expected[i].second.angular).norm(), kRounding);
+        EXPECT_LE((found[i].second.linear - expected[i].second.linear).norm(), kRoundingOfTwists);
+        EXPECT_LE((found[i].second.angular - expected[i].second.angular).norm(), kRoundingOfTwists);
       }
     }
   }
@@ -391,7 +393,7 @@ TEST_P(Twists, AgreeWithAutodiffThroughTheWholeWalk) {
     }
     Eigen::MatrixXd oracle(3, kMaxParameters);
     for (int i = 0; i < 3; ++i) {
-      EXPECT_NEAR(p_base(i), expected(i).a, kRounding * (1 + std::abs(expected(i).a)));
+      EXPECT_NEAR(p_base(i), expected(i).a, kRoundingOfTwists * (1 + std::abs(expected(i).a)));
       oracle.row(i) = expected(i).v.transpose();
     }
     // Products of a dozen rotations and translations of up to 3 GetParam() metres.

@@ -23,7 +23,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// The robot of server.mjs.
-constexpr const char* kUrdf = R"(<robot name="small">
+constexpr const char* kSmallUrdf = R"(<robot name="small">
   <link name="base"/><link name="upper"/><link name="lower"/><link name="camera_optical_frame"/>
   <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
     <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
@@ -32,7 +32,7 @@ constexpr const char* kUrdf = R"(<robot name="small">
   <joint name="head" type="revolute"><parent link="base"/><child link="camera_optical_frame"/>
     <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
 </robot>)";
-constexpr const char* kConfig = R"(chains:
+constexpr const char* kSmallConfig = R"(chains:
 - {name: arm, topic: /arm_controller/follow_joint_trajectory, joints: [shoulder, elbow]}
 - {name: head, topic: /head_controller/follow_joint_trajectory, joints: [head]}
 duration: 0.1
@@ -46,8 +46,8 @@ class KilledBridge : public ProgramTest {
 
   void SetUp() override {
     KINECAL_NEEDS_BRIDGE_SERVER();
-    write("robot.urdf", kUrdf);
-    write("capture.yaml", kConfig);
+    write("robot.urdf", kSmallUrdf);
+    write("capture.yaml", kSmallConfig);
     std::string poses;
     for (int i = 0; i < kPoses; ++i) {
       poses += "- {joints: [shoulder, elbow, head], positions: [" + std::to_string(0.05 * i) +

@@ -32,7 +32,7 @@ for reading, line in enumerate(sys.stdin):
                       "positions": [7.0, position, -0.25]}), flush=True)
 )";
 
-constexpr const char* kConfig = R"(chains:
+constexpr const char* kPosesConfig = R"(chains:
 - {name: head, topic: /head, joints: [head_pan_joint]}
 - {name: arm, topic: /arm, joints: [elbow_flex_joint]}
 features:
@@ -46,7 +46,7 @@ class CapturePoses : public ProgramTest {
   [[nodiscard]] Outcome poses(const std::string& where, const std::string& keys,
                               const std::string& options = "-o poses.yaml") const {
     write("robot.py", kRobot);
-    write("capture.yaml", kConfig);
+    write("capture.yaml", kPosesConfig);
     write("keys.txt", keys);
     return run(
         KINECAL_PROGRAM " capture_poses capture.yaml --robot 'pipe:python3 robot.py " + where +
@@ -126,7 +126,7 @@ TEST_F(CapturePoses, KeepsWhatIsRecordedIfTheRobotIsLost) {
         "for i in 1 2 3 4; do read line; echo \"{\\\"stamp\\\": ${i}00000000, "
         "\\\"names\\\": [\\\"elbow_flex_joint\\\", \\\"head_pan_joint\\\"], "
         "\\\"positions\\\": [0.5, 0.5]}\"; done");
-  write("capture.yaml", kConfig);
+  write("capture.yaml", kPosesConfig);
   const Outcome lost =
       run("printf '\\n\\n' | " KINECAL_PROGRAM
           " capture_poses capture.yaml --robot 'pipe:sh ends.sh' -o poses.yaml "

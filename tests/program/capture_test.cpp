@@ -21,14 +21,14 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string kProgram = KINECAL_PROGRAM;
-const std::string kUrdf =
+const std::string kCapturedUrdf =
     std::string(KINECAL_SOURCE_DIR) + "/examples/mobile_manipulator/mobile_manipulator.urdf";
 
 class CaptureProgram : public ProgramTest {
  protected:
   /// A robot with LEDs, its poses and configurations, in sim/.
   void simulate(int poses) {
-    const Outcome made = run(kProgram + " simulate " + kUrdf + " --target leds --poses " +
+    const Outcome made = run(kProgram + " simulate " + kCapturedUrdf + " --target leds --poses " +
                              std::to_string(poses) + " -o sim");
     ASSERT_EQ(made.code, 0) << made.err;
   }
@@ -230,7 +230,7 @@ TEST_F(CaptureProgram, AllPosesAreCheckedBeforeTheRobotMoves) {
 
 TEST_F(CaptureProgram, PosesALittleBeyondLimitsAreTheRobotsToRefuse) {
   simulate(2);
-  const Robot robot = read_urdf(kUrdf);
+  const Robot robot = read_urdf(kCapturedUrdf);
   const double upper = robot.joint("head_tilt_joint").limits.value().upper;
   std::ofstream(folder_ / "sim/poses.yaml")
       << "- {joints: [head_tilt_joint], positions: [" << upper + 0.05 << "]}\n"

@@ -19,9 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr double kElbow = 0.03, kGear = 0.02;
+constexpr double kOpenElbow = 0.03, kGear = 0.02;
 
-const char* const kUrdf = R"(<robot name="arm">
+const char* const kOpenUrdf = R"(<robot name="arm">
   <link name="base"/><link name="turret"/><link name="upper"/><link name="hand"/>
   <joint name="pan" type="revolute">
     <parent link="base"/><child link="turret"/><axis xyz="0 0 1"/>
@@ -41,7 +41,7 @@ const char* const kUrdf = R"(<robot name="arm">
 /// Makes samples of an arm whose elbow has a wrong zero and a wrong gear ratio.
 class OpenBlocksProgram : public test::ProgramTest {
  protected:
-  OpenBlocksProgram() : robot_(parse_urdf(kUrdf, "arm.urdf")) { write("arm.urdf", kUrdf); }
+  OpenBlocksProgram() : robot_(parse_urdf(kOpenUrdf, "arm.urdf")) { write("arm.urdf", kOpenUrdf); }
 
   /// @param observe  adds observations, given the true pose of the hand in the base
   template <class Observe>
@@ -55,7 +55,7 @@ class OpenBlocksProgram : public test::ProgramTest {
           {"pan", "shoulder", "elbow"}, {angle(random), angle(random), angle(random)}, {}, ""};
       const auto true_position = [&](const std::string& joint) {
         const double q = *sample.position(joint);
-        return joint == "elbow" ? q * (1.0 + kGear) + kElbow : q;
+        return joint == "elbow" ? q * (1.0 + kGear) + kOpenElbow : q;
       };
       observe(forward_kinematics(arm, true_position), sample);
       samples.push_back(sample);
@@ -97,7 +97,7 @@ error_blocks:
  - {name: track, type: pose_to_pose, model_a: body, model_b: mocap, translation_scale: 1000, rotation_scale: 500}
 )");
   ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_NEAR(value("elbow"), kElbow, 1e-9);
+  EXPECT_NEAR(value("elbow"), kOpenElbow, 1e-9);
   EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-9);
   EXPECT_NEAR(value("stand_x"), 1.0, 1e-9);
   EXPECT_THAT(result.err, HasSubstr("a URDF cannot hold 'elbow_gear_ratio'"));
@@ -119,7 +119,7 @@ error_blocks:
  - {name: bar, type: point_to_sphere, model: arm, x: 0.45, y: 0.12, z: 0.33, radius: 0.3}
 )");
   ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_NEAR(value("elbow"), kElbow, 1e-8);
+  EXPECT_NEAR(value("elbow"), kOpenElbow, 1e-8);
   EXPECT_NEAR(value("bar_x"), 0.5, 1e-8);
   EXPECT_NEAR(value("bar_radius"), 0.35, 1e-8);
 }
@@ -139,7 +139,7 @@ error_blocks:
  - {name: bar, type: point_distance, model_a: arm, model_b: socket, length: 0.3}
 )");
   ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_NEAR(value("elbow"), kElbow, 1e-8);
+  EXPECT_NEAR(value("elbow"), kOpenElbow, 1e-8);
   EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-8);
   EXPECT_NEAR(value("bar_length"), 0.35, 1e-8);
 }
@@ -159,7 +159,7 @@ error_blocks:
  - {name: rail, type: point_to_line, model: arm, x: 0.3, y: -0.2, z: 0.1, a: 1, b: 2, c: -0.5}
 )");
   ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_NEAR(value("elbow"), kElbow, 1e-8);
+  EXPECT_NEAR(value("elbow"), kOpenElbow, 1e-8);
   EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-8);
 }
 
@@ -194,7 +194,7 @@ error_blocks:
  - {name: stereo, type: camera2d_to_camera2d, model_a: eye, model_b: wall}
 )");
   ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_NEAR(value("elbow"), kElbow, 1e-8);
+  EXPECT_NEAR(value("elbow"), kOpenElbow, 1e-8);
   EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-8);
   EXPECT_NEAR(value("eye_fx"), kFocal, 1e-8);
   EXPECT_NEAR(value("eye_fy"), kFocal, 1e-8);
@@ -285,7 +285,7 @@ error_blocks:
   record_with(0.3, std::nullopt);
   EXPECT_EQ(calibrate(config, "--keep-outliers").code, 2);  // sigma 0.1 mm given, 5.7 mm shown
   record_with(0.3, 100.0);
-  EXPECT_NEAR(elbow(), kElbow, 1e-8);
+  EXPECT_NEAR(elbow(), kOpenElbow, 1e-8);
   record_with(0.3, -1.0);
   EXPECT_THAT(calibrate(config).err, HasSubstr("samples.yaml:"));
   EXPECT_THAT(calibrate(config).err,

@@ -18,9 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr double kShoulder = 0.02, kElbow = -0.03, kScale = 0.015, kZero = 0.06, kHook = 0.012;
+constexpr double kShoulder = 0.02, kOwnElbow = -0.03, kScale = 0.015, kZero = 0.06, kHook = 0.012;
 
-const char* const kUrdf = R"(<robot name="arm">
+const char* const kOwnUrdf = R"(<robot name="arm">
   <link name="base"/><link name="upper"/><link name="hand"/>
   <joint name="shoulder" type="revolute">
     <origin xyz="0.1 0 0.5"/><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
@@ -33,7 +33,7 @@ const char* const kUrdf = R"(<robot name="arm">
 </robot>
 )";
 
-const std::string kConfig = R"(base_link: base
+const std::string kOwnConfig = R"(base_link: base
 models:
  - {name: arm, type: chain3d, frame: hand}
  - {name: wire, type: draw_wire, frame: base}
@@ -45,9 +45,9 @@ error_blocks:
 class OwnProgram : public test::ProgramTest {
  protected:
   OwnProgram() {
-    write("arm.urdf", kUrdf);
-    write("calibrate.yaml", kConfig);
-    const Robot robot = parse_urdf(kUrdf, "arm.urdf");
+    write("arm.urdf", kOwnUrdf);
+    write("calibrate.yaml", kOwnConfig);
+    const Robot robot = parse_urdf(kOwnUrdf, "arm.urdf");
     const RuntimeChain arm = make_chain(robot, "base", "hand");
     const Vector3<double> point(0.3, 0.05, 0.02);
     std::mt19937 random(1);
@@ -56,7 +56,7 @@ class OwnProgram : public test::ProgramTest {
     for (int n = 0; n < 30; ++n) {
       Sample sample{{"shoulder", "elbow"}, {angle(random), angle(random)}, {}, ""};
       const auto true_position = [&](const std::string& joint) {
-        return *sample.position(joint) + (joint == "elbow" ? kElbow : kShoulder);
+        return *sample.position(joint) + (joint == "elbow" ? kOwnElbow : kShoulder);
       };
       const double length = (forward_kinematics(arm, true_position) * point).norm() - kHook;
       sample.observations = {{"arm", {{"hand", point}}},
@@ -81,7 +81,7 @@ class OwnProgram : public test::ProgramTest {
   }
   /// The configuration with one piece replaced.
   [[nodiscard]] static std::string with(const std::string& piece, const std::string& by) {
-    std::string text = kConfig;
+    std::string text = kOwnConfig;
     return text.replace(text.find(piece), piece.size(), by);
   }
 };
@@ -92,7 +92,7 @@ TEST_F(OwnProgram, CalibratesWithASensorAndABlockOfItsOwn) {
   EXPECT_THAT(result.out, HasSubstr("wire_scale"));
   const YAML::Node values = YAML::Load(read("result/calibration.yaml"));
   EXPECT_NEAR(values["shoulder"].as<double>(), kShoulder, 1e-9);
-  EXPECT_NEAR(values["elbow"].as<double>(), kElbow, 1e-9);
+  EXPECT_NEAR(values["elbow"].as<double>(), kOwnElbow, 1e-9);
   EXPECT_NEAR(values["wire_scale"].as<double>(), kScale, 1e-9);
   EXPECT_NEAR(values["wire_zero"].as<double>(), kZero, 1e-9);
 }

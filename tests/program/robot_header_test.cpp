@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const char* const kUrdf = R"(<?xml version="1.0"?>
+const char* const kHeaderUrdf = R"(<?xml version="1.0"?>
 <robot name="arm">
   <link name="base"/>
   <link name="upper"/>
@@ -30,7 +30,7 @@ const char* const kUrdf = R"(<?xml version="1.0"?>
 
 class RobotHeaderProgram : public test::ProgramTest {
  protected:
-  RobotHeaderProgram() { write("arm.urdf", kUrdf); }
+  RobotHeaderProgram() { write("arm.urdf", kHeaderUrdf); }
 
   [[nodiscard]] test::Outcome generate(const std::string& arguments) const {
     return run(std::string(KINECAL_ROBOT_HEADER_PROGRAM) + " " + arguments);
@@ -41,7 +41,7 @@ class RobotHeaderProgram : public test::ProgramTest {
   void expect_refused(const std::string& from, const std::string& to,
                       const testing::Matcher<std::string>& message,
                       const std::string& more = "") const {
-    std::string text = kUrdf;
+    std::string text = kHeaderUrdf;
     text.replace(text.find(from), from.size(), to);
     write("bad.urdf", text);
     ASSERT_EQ(generate("--urdf arm.urdf --output out/arm.hpp").code, 0);
@@ -86,7 +86,7 @@ TEST_F(RobotHeaderProgram, AnErrorIsReportedWithFileAndLine) {
                  AllOf(StartsWith("bad.urdf:5: "), HasSubstr("bass"), HasSubstr("shoulder")));
   expect_refused("0 0 0.5", "0 0 half", StartsWith("bad.urdf:6: joint 'shoulder': xyz="));
   expect_refused("continuous", "continous", HasSubstr("did you mean 'continuous'?"));
-  expect_refused(kUrdf, "", StartsWith("bad.urdf: the file is empty"));
+  expect_refused(kHeaderUrdf, "", StartsWith("bad.urdf: the file is empty"));
 }
 
 TEST_F(RobotHeaderProgram, ANameThatCannotBeANamespaceIsReportedWithItsLine) {
@@ -106,7 +106,7 @@ TEST_F(RobotHeaderProgram, FilesThatCannotBeReadOrWritten) {
   const test::Outcome itself = generate("--urdf arm.urdf --output ./arm.urdf");
   EXPECT_EQ(itself.code, 1);
   EXPECT_EQ(itself.err, "./arm.urdf: would replace the URDF\n");
-  EXPECT_EQ(read("arm.urdf"), kUrdf);
+  EXPECT_EQ(read("arm.urdf"), kHeaderUrdf);
 }
 
 TEST_F(RobotHeaderProgram, PrintsItsUsageWhenItIsCalledWrongly) {

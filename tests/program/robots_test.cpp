@@ -20,7 +20,7 @@ using testing::HasSubstr;
 const std::string kRobots = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/";
 
 /// One sums in an order of its own, and another instruction set has other lanes.
-constexpr double kRounding = 1e-10;
+constexpr double kSameNumbers = 1e-10;
 
 /// The same for parameters, in radians, meters and by value for pixels: the samples leave two
 /// directions open (the pan joints against each other, for one), and along these rounding alone
@@ -83,7 +83,7 @@ TEST_F(RobotProgram, FetchsCrateSolvesWhatItsConfigurationSays) {
 
   for (const char* cost : {"initial_cost", "final_cost"}) {
     const auto expected = report("configured")["steps"][0][cost].as<double>();
-    EXPECT_NEAR(report("crate")["steps"][0][cost].as<double>(), expected, kRounding * expected);
+    EXPECT_NEAR(report("crate")["steps"][0][cost].as<double>(), expected, kSameNumbers * expected);
     EXPECT_EQ(report("crate")["steps"][0][cost].as<double>(),
               report("a")["steps"][0][cost].as<double>())
         << "a file changes no sample";

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "kinecal/report/chart_style.hpp"
 #include "kinecal/report/svg_text.hpp"
 #include "support/svg_chart.hpp"
@@ -15,9 +13,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-const double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(SvgText, EscapesMarkupAndKeepsEmoji) {
   EXPECT_EQ(svg_escaped("<b a=\"1\" c='2'>&🤖"),
@@ -61,8 +56,8 @@ TEST(SvgText, FiguresHaveThreeDigits) {
   EXPECT_EQ(figure(123456.7), "123\u2009457");
   EXPECT_EQ(figure(1.2e-7), "1.2e-7");
   EXPECT_EQ(figure(3e20), "3e20");
-  EXPECT_EQ(figure(kNan), "–");
-  EXPECT_EQ(figure(-kInfinity), "–");
+  EXPECT_EQ(figure(test::kNan), "–");
+  EXPECT_EQ(figure(-test::kInfinity), "–");
   EXPECT_EQ(count_text(200000), "200\u2009000");
   EXPECT_EQ(count_text(9999), "9999");
 }
@@ -72,8 +67,8 @@ TEST(SvgText, CoordinatesHaveOneDigitAndAreFinite) {
   EXPECT_EQ(coordinate(-0.06), "-0.1");
   EXPECT_EQ(coordinate(-0.01), "0");
   EXPECT_EQ(coordinate(7.0), "7");
-  EXPECT_EQ(coordinate(kNan), "0");
-  EXPECT_EQ(coordinate(kInfinity), "0");
+  EXPECT_EQ(coordinate(test::kNan), "0");
+  EXPECT_EQ(coordinate(test::kInfinity), "0");
   EXPECT_EQ(coordinate(1e300), "1000000");
 }
 
@@ -108,7 +103,8 @@ TEST(SvgAxis, EndsAndTicksAreRound) {
 }
 
 TEST(SvgAxis, AnyTwoNumbersGiveAnAxis) {
-  const double values[] = {0.0, -1.0, 5.0, 1e-300, 1e300, kNan, kInfinity, -kInfinity};
+  const double values[] = {
+      0.0, -1.0, 5.0, 1e-300, 1e300, test::kNan, test::kInfinity, -test::kInfinity};
   for (const double low : values) {
     for (const double high : values) {
       for (const Axis& axis :
@@ -126,7 +122,7 @@ TEST(SvgAxis, AnyTwoNumbersGiveAnAxis) {
 TEST(Svg, IsWellFormedAndDescribed) {
   Drawing drawing("chart", "A <title>", 100.0);
   drawing.name({1.0, 1.0}, "a <\"name\"> of " + std::string(5000, 'x'), 80.0);
-  drawing.circle({kNan, kInfinity}, 2.0, "after", 7, "a & b");
+  drawing.circle({test::kNan, test::kInfinity}, 2.0, "after", 7, "a & b");
   drawing.hatching({1.0, 1.0}, 2.0, 2.0, "hatched");
   const std::string svg = drawing.str("A & B");
   const test::SvgChart chart(svg);

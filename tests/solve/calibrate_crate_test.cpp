@@ -16,11 +16,11 @@ template <FixedString Tip>
 using FromBase = Chain<StaticRobot, "base", Tip>;
 using Pan = JointOffset<"pan">;
 using Elbow = JointOffset<"elbow">;
-using Mount = FrameOffset<"mount", Axes::xyz>;
+using ElbowMount = FrameOffset<"mount", Axes::xyz>;
 
 /// A tracker fixed to the base sees points of the tip.
 using Tracked = Crate<Chain3d<"arm", FromBase<"tip">>, Chain3d<"tracker", FromBase<"base">>, Pan,
-                      Elbow, Mount, Block<"tracking", PointToPoint, "arm", "tracker">>;
+                      Elbow, ElbowMount, Block<"tracking", PointToPoint, "arm", "tracker">>;
 /// The same and what no sample of this file says anything of.
 using WithCamera =
     Crate<Tracked, Camera3d<"camera", FromBase<"camera_frame">>, DepthCorrection<"camera">,
@@ -64,7 +64,7 @@ TEST(CalibrateCrate, FindsWhatWasPutIn) {
   EXPECT_LT(result.steps[0].final_cost, 1e-20);
   EXPECT_NEAR(result.value<Pan>(), truth[0], 1e-10);
   EXPECT_NEAR(result.value<Elbow>(), truth[1], 1e-10);
-  const Vector3<double> mount = result.value<Mount>();
+  const Vector3<double> mount = result.value<ElbowMount>();
   EXPECT_LE((mount - Vector3<double>(truth[2], truth[3], truth[4])).norm(), 1e-10);
 }
 

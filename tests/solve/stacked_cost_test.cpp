@@ -94,7 +94,7 @@ Solved solved(const Problem& problem, CostForm form, int iterations) {
   return s;
 }
 
-std::span<const double> span_of(const Eigen::VectorXd& v) {
+std::span<const double> numbers_of(const Eigen::VectorXd& v) {
   return {v.data(), static_cast<std::size_t>(v.size())};
 }
 
@@ -128,7 +128,8 @@ TEST(StackedResiduals, HaveTheCostAndGradientOfTheNormalEquations) {
         double cost = 0.0;
         std::vector<double> gradient;
         ASSERT_TRUE(ceres_problem.Evaluate({}, &cost, nullptr, &gradient, nullptr));
-        const NormalEquations expected = normal_equations(problem, span_of(values), &free, losses);
+        const NormalEquations expected =
+            normal_equations(problem, numbers_of(values), &free, losses);
         NormalEquations found = expected;  // Ceres has no Hessian
         found.cost = cost;
         found.gradient = Eigen::Map<Eigen::VectorXd>(gradient.data(), free.size());
@@ -168,7 +169,7 @@ TEST(StackedResiduals, TakeTheSameFirstStepAsTheCompressedCost) {
                 kSameProblem * compressed.result.initial_cost);
     const FreeSet free = test::free_of(problem.table(), kFree);
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(problem.table().size());
-    const NormalEquations start = normal_equations(problem, span_of(zero), &free);
+    const NormalEquations start = normal_equations(problem, numbers_of(zero), &free);
     const double step = change_of_residuals(start, free, compressed.values);
     EXPECT_GT(step, 0.1 * std::sqrt(2.0 * start.cost)) << "no step was taken";
     EXPECT_LE(change_of_residuals(start, free, stacked.values - compressed.values),

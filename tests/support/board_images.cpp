@@ -5,7 +5,7 @@
 
 #include "kinecal/study/seeded_random.hpp"
 
-namespace kinecal::testing {
+namespace kinecal::test {
 
 namespace {
 
@@ -100,4 +100,4 @@ Print checkerboard(int columns, int rows, double square) {
   };
 }
 
-}  // namespace kinecal::testing
+}  // namespace kinecal::test

@@ -8,7 +8,7 @@
 #include "kinecal/capture/view.hpp"
 #include "kinecal/geometry/pose.hpp"
 
-namespace kinecal::testing {
+namespace kinecal::test {
 
 /// What is printed: brightness (0 to 1) at (x, y) metres of the target; negative beyond its edge.
 using Print = std::function<double(double x, double y)>;
@@ -63,8 +63,31 @@ inline Pose<double> facing(const Vector3<double>& at, double tilt_x, double tilt
 [[nodiscard]] GrayImage picture(const CameraInfo& camera, const std::vector<Target>& targets,
                                 const Exposure& how = {});
 
+/// What the camera of camera_640() sees of them.
+inline View view_of(const std::vector<Target>& targets, const Exposure& how = {}) {
+  View view;
+  view.frame = "optical";
+  view.camera = camera_640();
+  view.image = picture(*view.camera, targets, how);
+  return view;
+}
+
+/// Mean distance of the corners that a finder found in it from where they are, pixels; 1000 if it found
+/// none.
+inline double mean_error(const Found& found, const Target& target) {
+  if (!found) return 1000.0;
+  double sum = 0.0;
+  const auto& seen = found.observations[0].features;
+  const auto& held = found.observations[1].features;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto truth = pixel_of(camera_640(), target.camera_T_board, held[i].point);
+    sum += (truth - seen[i].point.head<2>()).norm();
+  }
+  return sum / static_cast<double>(seen.size());
+}
+
 /// A checkerboard whose first inner corner is at the origin: dark between the first corners, with a
 /// white margin of one square.
 [[nodiscard]] Print checkerboard(int columns, int rows, double square);
 
-}  // namespace kinecal::testing
+}  // namespace kinecal::test

@@ -57,12 +57,14 @@ class Recorder {
                          std::as_bytes(std::span(file))));
   }
 
-  void camera_info(const std::string& topic, Stamp stamp, const CameraInfo& camera) {
+  void camera_info(const std::string& topic, Stamp stamp, const CameraInfo& camera,
+                   int binning = 0) {
     write(topic, "sensor_msgs/CameraInfo", stamp, camera_ahead,
           detail::fields("height", std::int64_t{camera.height}, "width", std::int64_t{camera.width},
                          "distortion_model", std::string_view(camera.distortion_model), "d",
                          detail::numbers(camera.d), "k", detail::numbers(camera.k), "r",
-                         detail::numbers(camera.r), "p", detail::numbers(camera.p)));
+                         detail::numbers(camera.r), "p", detail::numbers(camera.p), "binning_x",
+                         std::int64_t{binning}, "binning_y", std::int64_t{binning}));
   }
 
   void finish() { bag_.finish(); }

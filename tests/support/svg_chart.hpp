@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <pugixml.hpp>
 #include <stdexcept>
 #include <string>
@@ -15,6 +16,9 @@
 #include "kinecal/report/charts/chart.hpp"
 
 namespace kinecal::test {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A chart that was parsed.
 class SvgChart {

@@ -11,7 +11,7 @@
 
 #include "support/board_images.hpp"
 
-namespace kinecal::testing {
+namespace kinecal::test {
 
 inline constexpr double kTagSize = 0.05;    // metres
 inline constexpr double kTagSpacing = 0.3;  // of the size
@@ -55,4 +55,4 @@ inline Print tag_grid(int columns, int rows, int border = 1, bool twice = false)
   };
 }
 
-}  // namespace kinecal::testing
+}  // namespace kinecal::test

@@ -11,7 +11,7 @@
 
 #include "kinecal/capture/robot_interface.hpp"
 
-namespace kinecal::testing {
+namespace kinecal::test {
 
 using std::chrono::milliseconds;
 
@@ -110,4 +110,4 @@ struct ToyFinder {
 
 static_assert(Arm<ToyArm> && Camera<ToyCamera> && Finder<ToyFinder>);
 
-}  // namespace kinecal::testing
+}  // namespace kinecal::test

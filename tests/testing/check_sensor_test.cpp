@@ -74,15 +74,16 @@ TEST(CheckSensor, FindsDerivativesThatDisagreeWithTheValuesAndPrintsBothMatrices
   EXPECT_THAT(v.text, HasSubstr("\nparameters:\n"));
 }
 
-struct DropsADerivative : Depth {
+struct PlacesWithoutADerivative : Depth {
   template <class S, class Q>
-  Vector3<S> place(const Measurement<DropsADerivative, Q>& m, const std::array<S, 2>& v) const {
+  Vector3<S> place(const Measurement<PlacesWithoutADerivative, Q>& m,
+                   const std::array<S, 2>& v) const {
     return along_the_ray(m, std::array<S, 2>{v[0], S(value_of(v[1]))});
   }
 };
-struct Branches : Depth {
+struct PlacesByABranch : Depth {
   template <class S, class Q>
-  Vector3<S> place(const Measurement<Branches, Q>& m, const std::array<S, 2>& v) const {
+  Vector3<S> place(const Measurement<PlacesByABranch, Q>& m, const std::array<S, 2>& v) const {
     return along_the_ray(m, lane(m.point.z(), 0) > 1.0 ? v : std::array<S, 2>{v[0], v[0] * v[1]});
   }
 };
@@ -94,10 +95,10 @@ struct Moves : Depth {
 };
 
 TEST(CheckSensor, FindsADroppedDerivativeABranchAndAPointThatIsNotTheRecordedOne) {
-  EXPECT_THAT(check_sensor(DropsADerivative{}).text,
+  EXPECT_THAT(check_sensor(PlacesWithoutADerivative{}).text,
               StartsWith("sensor 'depth', place(): derivatives disagree with its values; one row "
                          "per value, one column per variable\nby jets:\n"));
-  EXPECT_THAT(check_sensor(Branches{}).text,
+  EXPECT_THAT(check_sensor(PlacesByABranch{}).text,
               StartsWith("sensor 'depth', place(): values in packets differ"));
   EXPECT_THAT(check_sensor(Moves{}).text,
               StartsWith("sensor 'depth', place(): with the initial parameters it is not what was "

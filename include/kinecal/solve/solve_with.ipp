@@ -99,7 +99,7 @@ inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evalua
   const double decrease = possible_decrease(evaluator, evaluator_of, values, result);
   result.converged = decrease < kNegligible;
   what << (result.converged ? "converged: " : "did not converge: ") << result.iterations
-       << " iterations are used up, ";
+       << (result.iterations == 1 ? " iteration is" : " iterations are") << " used up, ";
   if (result.converged) {
     what << "but what is left is noise: chi-square could fall by " << decrease;
   } else {

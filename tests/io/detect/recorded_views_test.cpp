@@ -18,6 +18,7 @@ namespace {
 using test::kTourStart;
 using test::Recorder;
 using test::Tour;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -46,6 +47,7 @@ CameraInfo small_camera() {
 struct Recorded {
   Encoding encoding = Encoding::cdr;
   bool joints = true, camera_info = true;
+  int binning = 0;
   Stamp camera_ahead{};                                     ///< stamps of images
   std::string image_encoding = "mono8";                     ///< as images have it
   std::function<void(Recorder&, Stamp, double)> more = {};  ///< at 50 Hz
@@ -80,7 +82,9 @@ class RecordedViewsTest : public test::FolderTest {
         },
         [&](Stamp stamp, double time) {
           const double position = tour_.positions(time)[0];
-          if (how.camera_info) to.camera_info("/cam/camera_info", stamp, small_camera());
+          if (how.camera_info) {
+            to.camera_info("/cam/camera_info", stamp, small_camera(), how.binning);
+          }
           to.image("/cam/image", stamp, how.scene ? how.scene(position, time) : picture(position),
                    how.image_encoding);
         });
@@ -104,6 +108,17 @@ class RecordedViewsTest : public test::FolderTest {
     return views;
   }
 };
+
+TEST_F(RecordedViewsTest, WarnsOfImagesThatAreNotTheFullOnes) {
+  for (const Encoding encoding : {Encoding::cdr, Encoding::ros1}) {
+    record({.encoding = encoding, .binning = 2});
+    EXPECT_EQ(open().standstills(), 3u);
+    ASSERT_EQ(diagnostics_.warnings.size(), 1u);
+    EXPECT_THAT(diagnostics_.warnings[0].text,
+                AllOf(HasSubstr("/cam/camera_info"), HasSubstr("binning 2 x 2")));
+    diagnostics_ = {};
+  }
+}
 
 TEST_F(RecordedViewsTest, EachStandstillGivesAViewWithItsJoints) {
   for (const Encoding encoding : {Encoding::cdr, Encoding::ros1}) {

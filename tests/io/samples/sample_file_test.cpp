@@ -18,18 +18,18 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-struct Reading {
+struct FileReading {
   std::string samples;  ///< as they are written, and where they came from
   std::vector<std::string> errors, warnings;
-  bool operator==(const Reading&) const = default;
+  bool operator==(const FileReading&) const = default;
 };
 
-std::ostream& operator<<(std::ostream& out, const Reading& r) {
+std::ostream& operator<<(std::ostream& out, const FileReading& r) {
   return out << r.samples << ::testing::PrintToString(r.errors)
              << ::testing::PrintToString(r.warnings);
 }
 
-Reading read_text(const std::string& text, std::size_t piece_bytes, std::size_t threads) {
+FileReading read_pieces(const std::string& text, std::size_t piece_bytes, std::size_t threads) {
   std::istringstream in(text);
   detail::SampleFile file(in, "s.yaml", piece_bytes);
   file.read(threads);
@@ -44,11 +44,11 @@ Reading read_text(const std::string& text, std::size_t piece_bytes, std::size_t 
 constexpr std::size_t kAll = 1 << 20;  ///< bytes of a piece that holds the whole file
 
 /// In one piece or many, on one thread or several: the same.
-Reading read_in_every_way(const std::string& text) {
-  Reading whole = read_text(text, kAll, 1);
+FileReading read_in_every_way(const std::string& text) {
+  FileReading whole = read_pieces(text, kAll, 1);
   for (const std::size_t bytes : {1, 7, 100, 250, 1000}) {
     for (const std::size_t threads : {1, 4}) {
-      EXPECT_EQ(read_text(text, bytes, threads), whole)
+      EXPECT_EQ(read_pieces(text, bytes, threads), whole)
           << bytes << " bytes, " << threads << " threads\n"
           << text;
     }
@@ -56,24 +56,25 @@ Reading read_in_every_way(const std::string& text) {
   return whole;
 }
 
-const std::string kJoints = "joint_states: {name: [a, b], position: [0.5, -1]}\n";
-const std::string kArm =
+const std::string kTwoJoints = "joint_states: {name: [a, b], position: [0.5, -1]}\n";
+const std::string kOneArm =
     "observations:\n"
     "- sensor_name: arm\n"
     "  features: [{header: {frame_id: tip}, point: {x: 1, y: 2, z: 3}}]\n";
-const std::string kSample = kJoints + kArm + "---\n";  // four lines and the separator
+const std::string kOneSample = kTwoJoints + kOneArm + "---\n";  // four lines and the separator
 
 /// Different samples, so that their order shows.
 std::string many_samples(int count) {
   std::string text;
   for (int i = 0; i < count; ++i) {
-    text += "joint_states: {name: [a], position: [" + std::to_string(i) + "]}\n" + kArm + "---\n";
+    text +=
+        "joint_states: {name: [a], position: [" + std::to_string(i) + "]}\n" + kOneArm + "---\n";
   }
   return text;
 }
 
 TEST(SampleFile, SamplesStandInTheOrderOfTheFile) {
-  const Reading reading = read_in_every_way(many_samples(200));
+  const FileReading reading = read_in_every_way(many_samples(200));
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.warnings, IsEmpty());
   std::size_t at = 0;
@@ -85,9 +86,9 @@ TEST(SampleFile, SamplesStandInTheOrderOfTheFile) {
 }
 
 TEST(SampleFile, FirstErrorOfTheFileIsTheFirstThatIsReported) {
-  const std::string mistake = "joint_states: {name: [a], position: [x]}\n" + kArm + "---\n";
-  const Reading reading = read_in_every_way(many_samples(30) + mistake + many_samples(30) +
-                                            mistake + "---\n" + kJoints + "---\n");
+  const std::string mistake = "joint_states: {name: [a], position: [x]}\n" + kOneArm + "---\n";
+  const FileReading reading = read_in_every_way(many_samples(30) + mistake + many_samples(30) +
+                                                mistake + "---\n" + kTwoJoints + "---\n");
   EXPECT_THAT(reading.errors, ElementsAre(HasSubstr("s.yaml:151: position: 'x' is not a number"),
                                           HasSubstr("s.yaml:306: position: 'x' is not a number"),
                                           HasSubstr("s.yaml:312: sample without 'observations'")));
@@ -96,10 +97,10 @@ TEST(SampleFile, FirstErrorOfTheFileIsTheFirstThatIsReported) {
 TEST(SampleFile, NothingIsReportedAfterTextThatIsNotYaml) {
   const std::string open = "joint_states: {name: [a], position: [x]\n";
   for (const std::string& not_yaml :
-       {open + kArm + "---\n", std::string(", a\n---\n"), std::string("\"a\n---\n"),
+       {open + kOneArm + "---\n", std::string(", a\n---\n"), std::string("\"a\n---\n"),
         std::string("a: [\n---\n"), std::string("]\n"), std::string("*a\n---\n"),
         std::string("a\nb: c\n---\n"), std::string("\tx: [}\n"), std::string("? [\n---\n---\n")}) {
-    const Reading reading =
+    const FileReading reading =
         read_in_every_way(many_samples(20) + not_yaml + many_samples(20) + open + "---\n");
     ASSERT_FALSE(reading.errors.empty());
     EXPECT_THAT(reading.errors.back(), AllOf(StartsWith("s.yaml:10"), HasSubstr("not YAML"),
@@ -110,7 +111,7 @@ TEST(SampleFile, NothingIsReportedAfterTextThatIsNotYaml) {
 }
 
 TEST(SampleFile, SampleBeforeTextThatIsNotYamlMayBeInAnotherPiece) {
-  const Reading reading = read_in_every_way(kSample + kSample + ", a\n");
+  const FileReading reading = read_in_every_way(kOneSample + kOneSample + ", a\n");
   EXPECT_THAT(reading.errors, ElementsAre(AllOf(StartsWith("s.yaml:11: not YAML"),
                                                 HasSubstr("the last sample begins at line 6;"))));
 }
@@ -119,8 +120,8 @@ TEST(SampleFile, OutputOfARecordingToolIsNamed) {
   const std::string lost = "A message was lost!!!\n\ttotal count change:1\n\ttotal count: 1---\n";
   const std::string silent =
       "WARNING: no messages received and simulated time is active.\nIs /clock being published?\n";
-  const Reading reading = read_in_every_way(silent + kSample + lost + kSample + silent + silent +
-                                            many_samples(20) + lost + kSample);
+  const FileReading reading = read_in_every_way(silent + kOneSample + lost + kOneSample + silent +
+                                                silent + many_samples(20) + lost + kOneSample);
   const std::string says = " are output of the tool that recorded the file; delete them";
   EXPECT_THAT(reading.errors,
               ElementsAre("s.yaml:1: lines 1 to 2" + says, "s.yaml:8: lines 8 to 10" + says,
@@ -129,43 +130,43 @@ TEST(SampleFile, OutputOfARecordingToolIsNamed) {
 }
 
 TEST(SampleFile, OnlyTheLastSampleMayBeCutOff) {
-  const std::string wrong = "joint_states: {name: [a], position: [x]}\n" + kArm;
-  const std::string not_yaml = "joint_states: {name: [a], position: [x]\n" + kArm;
-  const auto asks = [](const Reading& reading) {
+  const std::string wrong = "joint_states: {name: [a], position: [x]}\n" + kOneArm;
+  const std::string not_yaml = "joint_states: {name: [a], position: [x]\n" + kOneArm;
+  const auto asks = [](const FileReading& reading) {
     return !reading.errors.empty() && reading.errors.back().ends_with("; is the file cut off?");
   };
-  EXPECT_TRUE(asks(read_in_every_way(kSample + wrong)));
-  EXPECT_TRUE(asks(read_in_every_way(kSample + not_yaml)));
-  EXPECT_FALSE(asks(read_in_every_way(kSample + wrong + "---\n")));
-  EXPECT_FALSE(asks(read_in_every_way(kSample + not_yaml + "---\n" + kSample)));
-  EXPECT_FALSE(asks(read_in_every_way(kSample + wrong + "---\n" + kJoints + kArm)));
+  EXPECT_TRUE(asks(read_in_every_way(kOneSample + wrong)));
+  EXPECT_TRUE(asks(read_in_every_way(kOneSample + not_yaml)));
+  EXPECT_FALSE(asks(read_in_every_way(kOneSample + wrong + "---\n")));
+  EXPECT_FALSE(asks(read_in_every_way(kOneSample + not_yaml + "---\n" + kOneSample)));
+  EXPECT_FALSE(asks(read_in_every_way(kOneSample + wrong + "---\n" + kTwoJoints + kOneArm)));
 }
 
 TEST(SampleFile, DocumentsEndAndBeginInEveryWayOfYaml) {
-  const std::string sample = kJoints + kArm;
+  const std::string sample = kTwoJoints + kOneArm;
   const std::string crlf = [](std::string text) {
     for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) {
       text.insert(i, "\r");
     }
     return text;
-  }(kSample + "...\n" + kSample + "---\n" + kSample);
+  }(kOneSample + "...\n" + kOneSample + "---\n" + kOneSample);
   const std::pair<std::string, int> texts[] = {
-      {"---\n" + kSample + kSample, 2},
-      {"\xef\xbb\xbf" + kSample + kSample, 2},
-      {kSample + "---\n---\n\n# a comment\n---\n" + kSample, 2},
-      {kSample + "# ---\n" + sample + "# ---\n---\n", 2},
-      {kSample + sample + "...\n---\n", 2},
+      {"---\n" + kOneSample + kOneSample, 2},
+      {"\xef\xbb\xbf" + kOneSample + kOneSample, 2},
+      {kOneSample + "---\n---\n\n# a comment\n---\n" + kOneSample, 2},
+      {kOneSample + "# ---\n" + sample + "# ---\n---\n", 2},
+      {kOneSample + sample + "...\n---\n", 2},
       {sample + "...\n" + sample + "... # no marker follows\n" + sample + "---\n", 3},
-      {"%YAML 1.2\n---\n" + sample + "...\n%YAML 1.1\n# c\n\n---\n" + kSample + kSample, 3},
-      {"%TAG !e! tag:example.com,2000:\n---\nx: !e!a 1\n" + kSample, 1},
+      {"%YAML 1.2\n---\n" + sample + "...\n%YAML 1.1\n# c\n\n---\n" + kOneSample + kOneSample, 3},
+      {"%TAG !e! tag:example.com,2000:\n---\nx: !e!a 1\n" + kOneSample, 1},
       {sample + "--- # a comment\n" + sample + "--- \n" + sample + "---\t\n", 3},
-      {kSample + "--- {joint_states: {name: [], position: []}, observations: []}\n---\n", 2},
-      {"x: |\n  ---\n  ...\ny: '\n  ---\n  '\nz: \"\n ---\n\"\n" + kSample + kSample, 2},
-      {"x: a\n  ---\n  b\n" + kSample + "----: 1\n---x: 2\n...y: 3\n" + kSample, 2},
+      {kOneSample + "--- {joint_states: {name: [], position: []}, observations: []}\n---\n", 2},
+      {"x: |\n  ---\n  ...\ny: '\n  ---\n  '\nz: \"\n ---\n\"\n" + kOneSample + kOneSample, 2},
+      {"x: a\n  ---\n  b\n" + kOneSample + "----: 1\n---x: 2\n...y: 3\n" + kOneSample, 2},
       {crlf, 3},
   };
   for (const auto& [text, count] : texts) {
-    const Reading reading = read_in_every_way(text);
+    const FileReading reading = read_in_every_way(text);
     EXPECT_THAT(reading.errors, IsEmpty()) << text;
     EXPECT_THAT(reading.warnings, IsEmpty()) << text;
     int found = 0;
@@ -178,12 +179,13 @@ TEST(SampleFile, DocumentsEndAndBeginInEveryWayOfYaml) {
 }
 
 TEST(SampleFile, MissingSeparatorAtTheEndIsReported) {
-  const std::string sample = kJoints + kArm;
-  EXPECT_THAT(read_in_every_way(kSample + sample).warnings,
+  const std::string sample = kTwoJoints + kOneArm;
+  EXPECT_THAT(read_in_every_way(kOneSample + sample).warnings,
               ElementsAre(AllOf(StartsWith("s.yaml:6: "), HasSubstr("no '---'"))));
-  EXPECT_THAT(read_in_every_way(kSample + sample + "...\n").warnings.size(), 1u);
-  EXPECT_THAT(read_in_every_way(kSample + sample.substr(0, sample.size() - 2)).errors.size(), 1u);
-  EXPECT_THAT(read_in_every_way(kSample + sample + "x: 1").errors,
+  EXPECT_THAT(read_in_every_way(kOneSample + sample + "...\n").warnings.size(), 1u);
+  EXPECT_THAT(read_in_every_way(kOneSample + sample.substr(0, sample.size() - 2)).errors.size(),
+              1u);
+  EXPECT_THAT(read_in_every_way(kOneSample + sample + "x: 1").errors,
               ElementsAre(HasSubstr("s.yaml:6: the file ends within a line")));
 }
 
@@ -196,20 +198,20 @@ TEST(SampleFile, FileWithoutSamplesIsAnErrorInEveryWay) {
 
 TEST(SampleFile, ManyErrorsEndAtTheSamePlaceOnAnyNumberOfThreads) {
   std::string text = many_samples(10);
-  for (int i = 0; i < 500; ++i) text += kJoints + "---\n";
+  for (int i = 0; i < 500; ++i) text += kTwoJoints + "---\n";
   for (const std::size_t bytes : {std::size_t{1}, std::size_t{300}, kAll}) {
     for (const std::size_t threads : {1, 2, 8}) {
-      const Reading reading = read_text(text, bytes, threads);
+      const FileReading reading = read_pieces(text, bytes, threads);
       ASSERT_EQ(reading.errors.size(), 21u);
       EXPECT_THAT(reading.errors[0], StartsWith("s.yaml:51: sample without 'observations'"));
       EXPECT_THAT(reading.errors[20], StartsWith("s.yaml:91: more than 20 errors"));
-      EXPECT_EQ(reading.samples, read_text(many_samples(10), kAll, 1).samples);
+      EXPECT_EQ(reading.samples, read_pieces(many_samples(10), kAll, 1).samples);
     }
   }
 }
 
 TEST(SampleFile, FileThatIsCutOffAnywhereIsTheSameInEveryWay) {
-  const std::string text = kSample + "%YAML 1.2\n---\n" + kSample + "...\n" + kSample;
+  const std::string text = kOneSample + "%YAML 1.2\n---\n" + kOneSample + "...\n" + kOneSample;
   for (std::size_t length = 0; length < text.size(); length += 3) {
     (void)read_in_every_way(text.substr(0, length));
   }

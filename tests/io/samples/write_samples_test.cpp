@@ -24,7 +24,7 @@ std::string written(const std::vector<Sample>& samples) {
   return out.str();
 }
 
-std::vector<Sample> read_text(const std::string& text) {
+std::vector<Sample> read_back(const std::string& text) {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
   const std::string path = ::testing::TempDir() + "write_samples_" + test->name() + ".yaml";
   std::ofstream(path, std::ios::binary) << text;
@@ -102,7 +102,7 @@ std::vector<Sample> difficult_samples() {
 TEST(WriteSamples, PosesKeepTheirOrientation) {
   const Vector3<double> w(0.3, -0.2, 2.5);
   Sample sample{{"elbow"}, {0.5}, {{"mocap", {{"stand", {0.1, 0.2, 0.3}, exp(w)}}}}, ""};
-  const std::vector<Sample> again = read_text(written({sample}));
+  const std::vector<Sample> again = read_back(written({sample}));
   ASSERT_EQ(again.size(), 1u);
   const Feature& feature = again[0].observations[0].features[0];
   EXPECT_EQ(feature.point, sample.observations[0].features[0].point);
@@ -112,7 +112,7 @@ TEST(WriteSamples, PosesKeepTheirOrientation) {
 
 TEST(WriteSamples, WhatIsWrittenReadsBackExactly) {
   const std::vector<Sample> samples = difficult_samples();
-  const std::vector<Sample> back = read_text(written(samples));
+  const std::vector<Sample> back = read_back(written(samples));
   ASSERT_EQ(back.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) expect_same(samples[i], back[i]);
 }
@@ -121,7 +121,7 @@ TEST(WriteSamples, NanAndInfinityReadBack) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Sample sample{
       {"a"}, {-kInfinity}, {{"arm", {{"tip", {std::nan(""), kInfinity, 0.0}}}}}, ""};
-  const std::vector<Sample> back = read_text(written({sample}));
+  const std::vector<Sample> back = read_back(written({sample}));
   ASSERT_EQ(back.size(), 1u);
   EXPECT_EQ(back[0].joint_positions[0], -kInfinity);
   const auto& point = back[0].observations[0].features[0].point;

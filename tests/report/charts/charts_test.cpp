@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <set>
 
 #include "support/report_data.hpp"
@@ -12,9 +11,6 @@
 
 namespace kinecal {
 namespace {
-
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-const double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Parses all and expects what holds for every chart.
 void expect_sound(const std::vector<Chart>& all) {
@@ -95,7 +91,8 @@ TEST(Charts, NamesOfAnyKindAreShownAndNeverMarkup) {
 }
 
 TEST(Charts, BadNumbersAreLeftOut) {
-  for (const double bad : {kNan, kInfinity, -kInfinity, 0.0, 1e300, -1e300, 1e-300}) {
+  for (const double bad :
+       {test::kNan, test::kInfinity, -test::kInfinity, 0.0, 1e300, -1e300, 1e-300}) {
     ReportData data = test::report_data(6);
     for (ReportedBlock& block : data.blocks) {
       block.sigma = block.rms_before = bad;
@@ -124,8 +121,8 @@ TEST(Charts, BadNumbersAreLeftOut) {
 
 TEST(Charts, ABadNumberAmongGoodOnesHidesOnlyItself) {
   ReportData data = test::report_data(20);
-  data.blocks[0].features[5].after = kNan;
-  data.blocks[0].features[6].before = kInfinity;
+  data.blocks[0].features[5].after = test::kNan;
+  data.blocks[0].features[6].before = test::kInfinity;
   data.blocks[0].features[7].sample = 4711;  // no such sample
   data.blocks[0].features[8].sample = -1;
   const std::vector<Chart> all = charts(data);
@@ -159,7 +156,7 @@ TEST(Charts, OfManyFeaturesTheWorstAreDrawnAndItIsSaid) {
 TEST(Charts, TheWorstMarksAndAnEvenChoiceAreTaken) {
   std::vector<double> sizes(1000, 1.0);
   for (const std::size_t i : {3u, 500u, 999u}) sizes[i] = 9.0;
-  sizes[7] = kNan;
+  sizes[7] = test::kNan;
   const std::vector<std::size_t> chosen = detail::chosen_marks(sizes, 100);
   EXPECT_EQ(chosen.size(), 100u);
   EXPECT_THAT(chosen, testing::IsSupersetOf({3u, 500u, 999u}));

@@ -12,7 +12,7 @@ namespace kinecal {
 namespace {
 
 /// Coordinates have one digit; on an axis of 460 units a decade is at least 90.
-constexpr double kDrawn = 0.01;
+constexpr double kDrawnTo = 0.01;
 
 TEST(ErrorCharts, MediansAndNoiseStandAtTheirValues) {
   ReportData data = test::report_data(40);
@@ -34,11 +34,11 @@ TEST(ErrorCharts, MediansAndNoiseStandAtTheirValues) {
   };
   const double median_before = detail::quantile(detail::sorted_finite(before), 0.5);
   const double median_after = detail::quantile(detail::sorted_finite(after), 0.5);
-  EXPECT_NEAR(value_of("//path[@class='before thick']"), median_before, kDrawn * median_before);
-  EXPECT_NEAR(value_of("//path[@class='after thick']"), median_after, kDrawn * median_after);
+  EXPECT_NEAR(value_of("//path[@class='before thick']"), median_before, kDrawnTo * median_before);
+  EXPECT_NEAR(value_of("//path[@class='after thick']"), median_after, kDrawnTo * median_after);
   const double expected = 1e3 * block.sigma * std::sqrt(3.0), given = 1e3 * std::sqrt(3.0) * 1e-3;
-  EXPECT_NEAR(value_of("//path[@class='sigma']"), expected, kDrawn * expected);
-  EXPECT_NEAR(value_of("//path[@class='given']"), given, kDrawn * given);
+  EXPECT_NEAR(value_of("//path[@class='sigma']"), expected, kDrawnTo * expected);
+  EXPECT_NEAR(value_of("//path[@class='given']"), given, kDrawnTo * given);
   EXPECT_THAT(chart.text("/svg/desc"), testing::HasSubstr("hand_eye: median "));
 }
 

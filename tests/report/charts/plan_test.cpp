@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "kinecal/report/charts/pose_curve.hpp"
 #include "kinecal/report/charts/position_spread.hpp"
@@ -15,9 +14,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// No coordinate is nan or inf.
 void expect_finite(const test::SvgChart& chart) {
@@ -31,7 +27,7 @@ void expect_finite(const test::SvgChart& chart) {
 PoseCurve pose_curve() {
   PoseCurve curve;
   for (int i = 1; i <= 40; ++i) {
-    curve.selected.push_back({i, i < 3 ? kInfinity : 2e-3 / std::sqrt(i)});
+    curve.selected.push_back({i, i < 3 ? test::kInfinity : 2e-3 / std::sqrt(i)});
     if (i % 5 == 0) curve.random.push_back({i, 3e-3 / std::sqrt(i)});
   }
   curve.wanted = 0.5e-3;
@@ -86,7 +82,7 @@ TEST(PoseCurve, WhatIsNotDeterminedOrFarAwayIsNoCurve) {
   PoseCurve curve;
   test::SvgChart empty(pose_curve_chart(curve));
   expect_finite(empty);
-  for (int i = 1; i < 9; ++i) curve.selected.push_back({i, kInfinity});
+  for (int i = 1; i < 9; ++i) curve.selected.push_back({i, test::kInfinity});
   curve.wanted = 1e-9;
   const test::SvgChart chart(pose_curve_chart(curve));
   expect_finite(chart);
@@ -106,8 +102,9 @@ TEST(Spread, IntervalIsThatOfChi) {
 }
 
 TEST(Spread, DotsStandAtTheirRatios) {
-  const SpreadRatios ratios{{"pan", "<tilt>", "lift"},
-                            {{"100 poses", 27, {1.1, 0.5, kNan}}, {"25 poses", 27, {0.9, 1.0, 0}}}};
+  const SpreadRatios ratios{
+      {"pan", "<tilt>", "lift"},
+      {{"100 poses", 27, {1.1, 0.5, test::kNan}}, {"25 poses", 27, {0.9, 1.0, 0}}}};
   const Chart drawn = spread_chart(ratios);
   const test::SvgChart chart(drawn);
   expect_finite(chart);
@@ -140,8 +137,9 @@ TEST(Spread, OfManyParametersThoseFarthestFromOneAreShown) {
 }
 
 TEST(PositionSpread, DotsStandAtTheirPosesAndPositions) {
-  const test::SvgChart chart(position_spread_chart(
-      {{25, 1.0e-3, 0.9e-3, 5e-3}, {50, 0.7e-3, kInfinity, 5e-3}, {100, 0.5e-3, 0.4e-3, 5e-3}}));
+  const test::SvgChart chart(position_spread_chart({{25, 1.0e-3, 0.9e-3, 5e-3},
+                                                    {50, 0.7e-3, test::kInfinity, 5e-3},
+                                                    {100, 0.5e-3, 0.4e-3, 5e-3}}));
   expect_finite(chart);
   const auto varied = chart.all("//circle[@class='after' and title]");
   ASSERT_EQ(varied.size(), 3u);

@@ -43,6 +43,7 @@ inline void report_messages(const RecordedSurvey& survey, const std::vector<View
     if (topic.camera_changes) {
       diagnostics.warning({file, 0}, about + "the camera's settings change; the first are used");
     }
+    if (!topic.image_part.empty()) diagnostics.warning({file, 0}, about + topic.image_part);
   }
 }
 

@@ -71,6 +71,7 @@ struct RecordedSurvey {
     std::size_t unstamped = 0;              ///< messages without a stamp
     std::string damage = {};                ///< of the first one
     std::optional<CameraInfo> camera = {};  ///< the first one
+    std::string image_part = {};            ///< the doubt if its image is not the full one
     bool camera_changes = false;
   };
   std::map<std::string, Topic> topics = {};  ///< by name
@@ -114,7 +115,10 @@ struct RecordedSurvey {
           !std::all_of(camera.d.begin(), camera.d.end(), is_number)) {
         throw std::runtime_error("its K, P or D has something that is not a number");
       }
-      if (!topic.camera) topic.camera = camera;
+      if (!topic.camera) {
+        topic.camera = camera;
+        topic.image_part = doubt_image_part(image_part_of(content), camera);
+      }
       const CameraInfo& first = *topic.camera;
       topic.camera_changes |= camera.k != first.k || camera.p != first.p || camera.d != first.d ||
                               camera.width != first.width || camera.height != first.height;

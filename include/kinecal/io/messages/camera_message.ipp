@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "kinecal/io/cameras/image_part.ipp"
 #include "kinecal/io/messages/message_fields.ipp"
 #include "kinecal/samples/sample.hpp"
 
@@ -31,6 +32,17 @@ void copy_numbers(const MessageFields& message, std::string_view field, Numbers&
   copy_numbers(message, "r", camera.r);
   copy_numbers(message, "p", camera.p);
   return camera;
+}
+
+[[nodiscard]] inline ImagePart image_part_of(const MessageFields& message) {
+  ImagePart part;
+  part.binning_x = number_at(message, "binning_x");
+  part.binning_y = number_at(message, "binning_y");
+  part.x = number_at(message, "roi.x_offset");
+  part.y = number_at(message, "roi.y_offset");
+  part.width = number_at(message, "roi.width");
+  part.height = number_at(message, "roi.height");
+  return part;
 }
 
 }  // namespace kinecal::detail
