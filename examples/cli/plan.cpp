@@ -19,6 +19,7 @@
 #include "plan_page.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
+#include "remaining_error.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -277,7 +278,8 @@ void check_remaining(const StudyInput& input, const PoseChoice& choice, const Po
                      double wanted, PlanFindings& findings) {
   if (!std::isfinite(set.position)) return;
   const double tolerated = tolerated_error(set.position, std::max(wanted, set.position));
-  const RemainingError remaining = remaining_error(input, choice, set.chosen, tolerated);
+  const RemainingError remaining =
+      remaining_error(input, with_existing(choice, set.chosen), tolerated);
   if (!(remaining.position > tolerated)) return;
   findings.reached = false;
   findings.curve.enough.reset();

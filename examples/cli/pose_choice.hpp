@@ -31,25 +31,13 @@ void drop_poses_of_have(StudyInput& input, double least_distance);
 
 [[nodiscard]] PoseChoice pose_choice(const StudyInput& input);
 
+/// These samples and those that exist already.
+[[nodiscard]] std::vector<int> with_existing(const PoseChoice& choice,
+                                             const std::vector<int>& chosen);
+
 /// Expected standard deviation of the pose that is judged with these samples and those that exist,
 /// metres; infinite if they determine less than all poses do.
 [[nodiscard]] double expected_position(const PoseChoice& choice, const std::vector<int>& chosen);
-
-/// What calibrations of drawn robots leave of the pose that is judged, if nothing is measured wrongly.
-struct RemainingError {
-  int robots = 0;                   ///< that were calibrated; 0: none could be simulated
-  double position = 0.0;            ///< RMS of the robots, metres
-  std::vector<std::string> priors;  ///< without which it is gone; none if that does not help
-  std::vector<std::string> held;  ///< parameters that are held, but simulated elsewhere: the cause
-};
-
-/// Calibrates drawn robots without noise, with these samples and those that exist.
-/// @param tolerated  metres; a cause is sought if more remains
-[[nodiscard]] RemainingError remaining_error(const StudyInput& input, const PoseChoice& choice,
-                                             const std::vector<int>& chosen, double tolerated);
-
-/// What remains, and why: a line.
-[[nodiscard]] std::string remaining_text(const RemainingError& remaining);
 
 /// What may remain so that a spread becomes no more than a tenth worse than what is asked for, metres.
 [[nodiscard]] double tolerated_error(double spread, double wanted);

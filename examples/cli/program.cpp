@@ -778,6 +778,15 @@ std::string command_line(int argc, char** argv) {
   return line;
 }
 
+/// Runs a command with the line by which it was called.
+template <class Options>
+std::function<int(const Options&)> with_line(const std::string& line, int (*run)(const Options&)) {
+  return [line, run](Options options) {
+    options.command = line;
+    return run(options);
+  };
+}
+
 /// @param line  the command line, for reports
 void add_commands(Commands& commands, const std::string& line) {
   commands.add<InitOptions>(
@@ -789,10 +798,7 @@ void add_commands(Commands& commands, const std::string& line) {
       add_check, check);
   commands.add<CalibrateOptions>(
       "calibrate", "calibrate the robot and write its corrected URDF and camera files",
-      add_calibrate, [line](CalibrateOptions options) {
-        options.command = line;
-        return calibrate(options);
-      });
+      add_calibrate, with_line(line, calibrate));
   commands.add<ResultOptions>("calibrate-log",
                               "calibrate with recordings that do not fit into memory, file after "
                               "file, in several processes",
@@ -827,13 +833,13 @@ void add_commands(Commands& commands, const std::string& line) {
       add_simulate, simulate);
   commands.add<StudyOptions>(
       "study", "calibrate simulated robots many times: how well it repeats, with how many poses",
-      add_study, study);
+      add_study, with_line(line, study));
   commands.add<SelectPosesOptions>(
       "select-poses", "choose few poses of many, so that a calibration is as good as possible",
       add_select_poses, select_poses);
   commands.add<PlanOptions>(
       "plan", "find how many poses, and which, an accuracy needs, and how long they take", add_plan,
-      plan);
+      with_line(line, plan));
   commands.add<ConvertOptions>("convert", "write samples or poses in another format", add_convert,
                                convert);
   commands.add<CameraOptions>("camera", "show a camera file, and write it as camera_info",

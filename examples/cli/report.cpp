@@ -47,7 +47,21 @@ InputFile input_file(const std::string& role, const std::string& name) {
   return input;
 }
 
-/// All files that a calibration read; of a folder, those in it.
+/// Adds a file; of a folder, those in it.
+void add_input(const std::string& role, const std::string& name, std::vector<InputFile>& files) {
+  if (!fs::is_directory(name)) {
+    files.push_back(input_file(role, name));
+    return;
+  }
+  std::vector<std::string> inside;
+  for (const auto& file : fs::directory_iterator(name)) {
+    if (file.is_regular_file()) inside.push_back(file.path().string());
+  }
+  std::sort(inside.begin(), inside.end());
+  for (const std::string& file : inside) files.push_back(input_file(role, file));
+}
+
+/// All files that a calibration read.
 std::vector<InputFile> input_files(const CalibrateOptions& options, const Input& input) {
   std::vector<InputFile> files;
   if (!options.urdf.empty()) {
@@ -57,20 +71,9 @@ std::vector<InputFile> input_files(const CalibrateOptions& options, const Input&
   }
   files.push_back(
       {"configuration", options.config, input.config_text.size(), sha256_text(input.config_text)});
-  for (const std::string& samples : options.samples) {
-    if (!fs::is_directory(samples)) {
-      files.push_back(input_file("samples", samples));
-      continue;
-    }
-    std::vector<std::string> inside;
-    for (const auto& file : fs::directory_iterator(samples)) {
-      if (file.is_regular_file()) inside.push_back(file.path().string());
-    }
-    std::sort(inside.begin(), inside.end());
-    for (const std::string& file : inside) files.push_back(input_file("samples", file));
-  }
+  for (const std::string& samples : options.samples) add_input("samples", samples, files);
   for (const std::string& camera : options.cameras) {
-    files.push_back(input_file("camera", camera_file(camera)));
+    add_input("camera", camera_file(camera), files);
   }
   return files;
 }
@@ -115,6 +118,13 @@ std::string page(const CalibrateOptions& options, const Input& input, const Fit&
 }
 
 }  // namespace
+
+std::string study_inputs(const StudyInput& input) {
+  std::vector<InputFile> files;
+  for (const auto& [role, name] : input.files) add_input(role, name, files);
+  return "<section id=\"inputs\"><h2>Inputs</h2>\n" +
+         detail::html_inputs(files, version(), input.command) + "</section>\n";
+}
 
 bool is_page(const std::string& file) {
   const std::string extension = fs::path(file).extension().string();

@@ -7,11 +7,15 @@
 #include "commands.hpp"
 #include "fit.hpp"
 #include "input.hpp"
+#include "study_input.hpp"
 
 namespace kinecal::cli {
 
 /// True for the name of a page: it ends in .html or .htm.
 [[nodiscard]] bool is_page(const std::string& file);
+
+/// What a study or plan read, and the command that repeats it: a section of its page.
+[[nodiscard]] std::string study_inputs(const StudyInput& input);
 
 /// Checks that no report would replace an input of the calibration.
 /// @throws OutputError  if one would

@@ -12,6 +12,7 @@
 #include "output_file.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
+#include "remaining_error.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -75,7 +76,7 @@ std::string selected_text(const StudyInput& input, const PoseChoice& choice,
     return what + " is not determined: they determine less than all poses do; choose more\n";
   }
   const double tolerated = tolerated_error(selected, selected);
-  const RemainingError remaining = remaining_error(input, choice, chosen, tolerated);
+  const RemainingError remaining = remaining_error(input, with_existing(choice, chosen), tolerated);
   if (!(remaining.position > tolerated)) {
     return what + " will be known to " + millimetres(selected) + " (one standard deviation)\n";
   }

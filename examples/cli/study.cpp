@@ -34,7 +34,7 @@ constexpr const char *kTrials = "trials.csv", *kTables = "study.txt", *kJson = "
 std::string identity(const StudyOptions& options, const StudyInput& input,
                      const std::vector<int>& poses) {
   std::string text;
-  for (const std::string& file : input.files) {
+  for (const auto& [role, file] : input.files) {
     if (std::filesystem::is_regular_file(file)) text += detail::read_text_file(file);
   }
   std::string counts;

@@ -209,11 +209,16 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   set_drawn(files, places, *input);
   if (files.seed > 0) input->plan.setup.seed = static_cast<std::uint64_t>(files.seed);
   set_up(files, *input);
-  for (const std::string& file :
-       {files.urdf, files.config, files.scene, files.pose_file, files.have}) {
-    if (!file.empty()) input->files.push_back(file);
+  input->command = files.command;
+  const std::pair<std::string, std::string> single[] = {{"URDF", files.urdf},
+                                                        {"configuration", files.config},
+                                                        {"scene", files.scene},
+                                                        {"poses", files.pose_file},
+                                                        {"poses of samples", files.have}};
+  for (const auto& file : single) {
+    if (!file.second.empty()) input->files.push_back(file);
   }
-  input->files.insert(input->files.end(), files.samples.begin(), files.samples.end());
+  for (const std::string& samples : files.samples) input->files.emplace_back("samples", samples);
   return input;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -21,14 +22,15 @@ struct StudyInput {
   Robot robot;
   Config config;
   SimulationPlan plan;
-  std::string urdf_text;           ///< content of the URDF
-  std::vector<CapturePose> poses;  ///< one for each sample
-  std::vector<Sample> samples;     ///< recorded ones, or those of the poses
-  Calibration calibration;         ///< of these samples
-  StudySetup setup;                ///< without truth and noise of a job
-  std::vector<std::string> files;  ///< that were read
-  std::size_t have = 0;            ///< the last samples, which exist already
-  bool keep_ruined = true;         ///< calibrate with all samples
+  std::string urdf_text;                                   ///< content of the URDF
+  std::vector<CapturePose> poses;                          ///< one for each sample
+  std::vector<Sample> samples;                             ///< recorded ones, or those of the poses
+  Calibration calibration;                                 ///< of these samples
+  StudySetup setup;                                        ///< without truth and noise of a job
+  std::vector<std::pair<std::string, std::string>> files;  ///< that were read: role and name
+  std::string command;                                     ///< as the user typed it
+  std::size_t have = 0;     ///< the last samples, which exist already
+  bool keep_ruined = true;  ///< calibrate with all samples
   /// Values of all parameters by the configuration: those of its simulated target can differ.
   std::vector<double> configured;
 };

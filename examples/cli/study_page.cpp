@@ -12,6 +12,7 @@
 #include "kinecal/report/charts/position_spread.hpp"
 #include "kinecal/report/charts/spread.hpp"
 #include "kinecal/report/html.hpp"
+#include "report.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -131,10 +132,10 @@ std::string study_page(const StudyInput& input, const StudyResult& result) {
       "<header class=\"verdict {}\">\n<h1>{}: <strong>{}</strong></h1>\n"
       "<div>{}</div>\n</header>\n<main>\n"
       "<section id=\"repeatability\"><h2>Repeatability</h2>\n{}</section>\n"
-      "<section id=\"tables\"><h2>Tables</h2>\n{}</section>\n</main>\n",
+      "<section id=\"tables\"><h2>Tables</h2>\n{}</section>\n{}</main>\n",
       failed == 0 && text.linear ? "good" : "care", detail::html_text(input.robot.name()), title,
       detail::html_paragraphs(text.about + text.sums + text.linearity), charts_of(input, result),
-      tables_of(text));
+      tables_of(text), study_inputs(input));
   return html_file({input.robot.name() + ": " + title, version(), body, ""});
 }
 

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "kinecal/report/charts/spread.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
+#include "remaining_error.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -184,11 +186,13 @@ std::string sums(const StudyInput& input, const StudyResult& result) {
       1e3 * std::sqrt(before / std::max(1.0, static_cast<double>(result.before.size()))),
       1e3 * std::sqrt(after / std::max(1, trials)), 1e3 * most);
   if (systematic > result.limit && ruined == 0) {
-    text += fmt::format(
-        "Even without noise {} {} remain: what the configuration frees cannot describe these "
-        "robots "
-        "or this target\n",
-        in_reading_unit(systematic, unit), reading_unit(unit));
+    constexpr double kNothing = 1e-4;  // metres
+    std::vector<int> all(input.setup.samples.size());
+    std::iota(all.begin(), all.end(), 0);
+    const RemainingError remaining = remaining_error(input, all, kNothing);
+    text += fmt::format("Even without noise {} {} remain\n", in_reading_unit(systematic, unit),
+                        reading_unit(unit));
+    if (remaining.robots > 0) text += remaining_text(remaining);
   }
   if (ruined > 0) {
     text += fmt::format("{} ruined, {} left out\n",

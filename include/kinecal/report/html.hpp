@@ -48,6 +48,11 @@ namespace detail {
 [[nodiscard]] std::string html_table(const std::vector<std::vector<std::string>>& rows,
                                      std::string_view columns);
 
+/// The files that were read, and the command that repeats it.
+/// @param version  "kinecal 0.1.0"
+[[nodiscard]] std::string html_inputs(const std::vector<InputFile>& inputs,
+                                      const std::string& version, const std::string& command);
+
 }  // namespace detail
 
 }  // namespace kinecal

@@ -34,6 +34,16 @@ inline constexpr std::size_t kMostOfTitle = 120;  ///< characters
          "points. A click on a sample in a chart or table shows it here.</figcaption></figure>\n";
 }
 
+KINECAL_INLINE std::string html_inputs(const std::vector<InputFile>& inputs,
+                                       const std::string& version, const std::string& command) {
+  std::vector<std::vector<std::string>> rows = {{"input", "file", "SHA-256", "bytes"}};
+  for (const InputFile& input : inputs) {
+    rows.push_back({input.role, input.name, input.sha256, fmt::format("{}", input.bytes)});
+  }
+  return fmt::format("{}<p>{}, repeated by</p>\n<pre class=\"command\"><code>{}</code></pre>\n",
+                     html_table(rows, "tttn"), html_text(version), html_text(command));
+}
+
 KINECAL_INLINE std::string html_lines(std::string_view text) {
   std::string html;
   for (std::size_t at = 0; at < text.size();) {

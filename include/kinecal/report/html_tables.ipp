@@ -120,16 +120,10 @@ namespace kinecal::detail {
 
 /// What was read, how to repeat it, the report as text.
 [[nodiscard]] inline std::string inputs_section(const ReportData& data) {
-  std::vector<std::vector<std::string>> rows = {{"input", "file", "SHA-256", "bytes"}};
-  for (const InputFile& input : data.inputs) {
-    rows.push_back({input.role, input.name, input.sha256, fmt::format("{}", input.bytes)});
-  }
   return fmt::format(
-      "<section id=\"inputs\"><h2>Inputs</h2>\n{}<p>{}, repeated by</p>\n"
-      "<pre class=\"command\"><code>{}</code></pre>\n"
+      "<section id=\"inputs\"><h2>Inputs</h2>\n{}"
       "<details><summary>The report as text</summary><pre>{}</pre></details></section>\n",
-      html_table(rows, "tttn"), html_text(data.version), html_text(data.command),
-      html_lines(data.summary));
+      html_inputs(data.inputs, data.version, data.command), html_lines(data.summary));
 }
 
 }  // namespace kinecal::detail

@@ -70,6 +70,13 @@ TEST_F(UrdfUnits, LimitsInDegreesAreADoubt) {
                                                     "like it); is it in degrees?")));
 }
 
+TEST_F(UrdfUnits, LimitsTheWrongWayRoundAreNamed) {
+  replace(urdf, "lower=\"-1.2\" upper=\"1.4\"", "lower=\"1.4\" upper=\"-1.2\"");
+  EXPECT_THAT(found().warnings,
+              ElementsAre(AllOf(HasSubstr("arm.urdf:30: the limits of joint"),
+                                HasSubstr("lower 1.4 is above upper -1.2; are they exchanged?"))));
+}
+
 TEST_F(UrdfUnits, XacroIsAnErrorWithItsLine) {
   replace(urdf, "<robot name=\"arm\">",
           "<robot name=\"arm\" xmlns:xacro=\"http://ros.org/wiki/xacro\">");

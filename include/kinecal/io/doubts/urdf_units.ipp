@@ -147,6 +147,19 @@ inline void check_limits(const UrdfText& source, const std::vector<const Joint*>
           large[0].joint, large[0].value, more_joints(large.size())));
 }
 
+/// Limits the wrong way round are limits of nothing.
+inline void check_order_of_limits(const UrdfText& source, const std::vector<const Joint*>& joints,
+                                  Diagnostics& diagnostics) {
+  for (const Joint* joint : joints) {
+    if (!joint->limits || !(joint->limits->lower > joint->limits->upper)) continue;
+    diagnostics.warning(
+        source.place(source.joint(joint->name).child("limit")),
+        fmt::format("the limits of joint '{}' are not used: lower {:.6g} is above upper {:.6g}; "
+                    "are they exchanged?",
+                    joint->name, joint->limits->lower, joint->limits->upper));
+  }
+}
+
 KINECAL_INLINE void check_urdf_units(const Config& config, const Robot& robot,
                                      const std::string& text, const std::string& name_for_messages,
                                      Diagnostics& diagnostics) {
@@ -156,6 +169,7 @@ KINECAL_INLINE void check_urdf_units(const Config& config, const Robot& robot,
   check_lengths(source, joints, diagnostics);
   check_angles(source, joints, diagnostics);
   check_limits(source, joints, diagnostics);
+  check_order_of_limits(source, joints, diagnostics);
 }
 
 }  // namespace kinecal::detail
