@@ -135,12 +135,16 @@ KINECAL_INLINE void Drawing::hatching(Place corner, double width, double height,
 
 KINECAL_INLINE void Drawing::axis_x(const PlotArea& area, const Axis& x, std::string_view name,
                                     bool whole) {
-  constexpr double kBelow = 16.0;
+  constexpr double kBelow = 16.0, kApart = 4.0;
+  double labelled_to = -HUGE_VAL;
   for (const Tick& tick : x.ticks()) {
     if (whole && std::abs(tick.value - std::round(tick.value)) > 1e-6) continue;
-    const double at = x.at(tick.value);
-    line({at, area.top}, {at, area.bottom}, tick.label.empty() ? "grid minor" : "grid");
-    if (!tick.label.empty()) text({at, area.bottom + kBelow}, tick.label, "tick", Anchor::middle);
+    const double at = x.at(tick.value), half = 0.5 * kSmallFont * text_width(tick.label);
+    const bool labelled = !tick.label.empty() && at - half >= labelled_to + kApart;
+    line({at, area.top}, {at, area.bottom}, labelled ? "grid" : "grid minor");
+    if (!labelled) continue;
+    text({at, area.bottom + kBelow}, tick.label, "tick", Anchor::middle);
+    labelled_to = at + half;
   }
   line({area.left, area.bottom}, {area.right, area.bottom}, "axis");
   text({area.right, area.bottom + 2.0 * kBelow + 1.0}, name, "name", Anchor::end);
@@ -148,10 +152,15 @@ KINECAL_INLINE void Drawing::axis_x(const PlotArea& area, const Axis& x, std::st
 
 KINECAL_INLINE void Drawing::axis_y(const PlotArea& area, const Axis& y, std::string_view name) {
   const int most = std::max(3, static_cast<int>((area.bottom - area.top) / 36.0));
+  constexpr double kLine = 12.0;
+  double last = HUGE_VAL;
   for (const Tick& tick : y.ticks(most)) {
     const double at = y.at(tick.value);
-    line({area.left, at}, {area.right, at}, tick.label.empty() ? "grid minor" : "grid");
-    if (!tick.label.empty()) text({area.left - 5.0, at + 4.0}, tick.label, "tick", Anchor::end);
+    const bool labelled = !tick.label.empty() && std::abs(last - at) >= kLine;
+    line({area.left, at}, {area.right, at}, labelled ? "grid" : "grid minor");
+    if (!labelled) continue;
+    text({area.left - 5.0, at + 4.0}, tick.label, "tick", Anchor::end);
+    last = at;
   }
   text({2.0, area.top - 9.0}, name, "name");
 }

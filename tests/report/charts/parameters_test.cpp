@@ -131,6 +131,12 @@ TEST(ConvergenceCharts, ACostThatRisesBeginsAnotherCurve) {
   const test::SvgChart chart(convergence_charts(test::report_data())[0]);
   EXPECT_EQ(chart.all("//path[@class='after thick']").size(), 3u) << "one, and two of the camera";
   EXPECT_THAT(chart.text("/svg/desc"), HasSubstr("camera: from 1200 to 518.8 in 6 iterations."));
+  const auto numbers = chart.all("//text[@class='tick'][@text-anchor='middle']");
+  ASSERT_FALSE(numbers.empty());
+  EXPECT_EQ(std::count_if(numbers.begin(), numbers.end(),
+                          [](pugi::xml_node at) { return std::string(at.text().get()) == "0"; }),
+            2)
+      << "each step counts from zero";
 }
 
 TEST(StartCharts, TheMinimumThatWasTakenIsMarked) {

@@ -68,9 +68,19 @@ namespace kinecal::detail {
   return std::nullopt;
 }
 
+/// The name of a link; nothing, and an error, if the robot has no such link.
+[[nodiscard]] inline std::optional<std::string> read_link(ConfigMap& map, const std::string& key,
+                                                          const Robot& robot) {
+  std::optional<std::string> link = map.text(key);
+  if (!link || robot.has_link(*link)) return link;
+  map.error(map.find(key)->place, key + ": no link '" + *link + "' in the URDF" +
+                                      did_you_mean(*link, robot.link_names()));
+  return std::nullopt;
+}
+
 inline void read_camera(ConfigMap& map, SimulationPlan& plan) {
   SimulatedCamera& camera = plan.setup.camera;
-  camera.frame = map.text("frame").value_or(camera.frame);
+  camera.frame = read_link(map, "frame", plan.setup.robot).value_or(camera.frame);
   plan.setup.camera_name = map.text("name").value_or(plan.setup.camera_name);
   plan.camera_type = read_word(map, "type", {"camera3d", "camera2d"}).value_or("");
   if (const auto file = map.text("info")) {
@@ -96,7 +106,7 @@ inline void read_target(ConfigMap& map, SimulationPlan& plan) {
   SimulatedTarget& target = plan.target;
   target.type =
       read_word(map, "type", {"leds", "checkerboard", "apriltag", "ground"}).value_or(target.type);
-  target.link = map.text("link").value_or("");
+  target.link = read_link(map, "link", plan.setup.robot).value_or("");
   target.columns = map.count("columns", target.columns);
   target.rows = map.count("rows", target.rows);
   target.size = map.positive("size", target.size);

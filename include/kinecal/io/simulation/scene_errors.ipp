@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "kinecal/io/config/config_map.ipp"
@@ -19,7 +21,12 @@ namespace kinecal::detail {
                                    {"intrinsics", &errors.intrinsics},
                                    {"z_offset", &errors.z_offset},
                                    {"z_scaling", &errors.z_scaling}}) {
+    constexpr double kMost = 1.0;  // radians, metres, or all of it
     *value = map.number(key, *value);
+    if (*value >= 0.0 && *value <= kMost) continue;
+    map.error(map.find(key)->place,
+              fmt::format("{} is {}, not between 0 and {} (radians, metres, or a share)", key,
+                          *value, kMost));
   }
   if (auto values = map.map("values", "values")) {
     for (const ConfigEntry& entry : values->entries()) {

@@ -55,6 +55,22 @@ inline void draw_runs(Drawing& drawing, const StepResult& step, double first, co
   drawing.close_group();
 }
 
+/// The numbers of a step's iterations below the axis, from zero at its start.
+/// @param last   number of its last iteration
+/// @param first  where the step starts on the axis
+inline void number_iterations(Drawing& drawing, std::size_t last, double first,
+                              const PlotArea& area, const Axis& x) {
+  constexpr double kApart = 45.0;
+  const double room = x.at(first + static_cast<double>(last)) - x.at(first);
+  const double step =
+      std::max(1.0, round_step(static_cast<double>(last), static_cast<int>(room / kApart)));
+  for (double number = 0.0; number <= static_cast<double>(last); number += step) {
+    const double at = x.at(first + number);
+    drawing.line({at, area.bottom}, {at, area.bottom + 4.0}, "axis");
+    drawing.text({at, area.bottom + 17.0}, fmt::format("{:.0f}", number), "tick", Anchor::middle);
+  }
+}
+
 [[nodiscard]] inline std::string step_name(const StepResult& step, std::size_t number) {
   return step.name.empty() ? fmt::format("step {}", number) : step.name;
 }
@@ -62,7 +78,7 @@ inline void draw_runs(Drawing& drawing, const StepResult& step, double first, co
 [[nodiscard]] inline std::string draw_convergence(const Chart& chart,
                                                   const std::vector<StepResult>& steps) {
   const PlotArea area{56.0, 44.0, kChartWidth - 12.0, 236.0};
-  Drawing drawing(chart.name, chart.title, area.bottom + 26.0);
+  Drawing drawing(chart.name, chart.title, area.bottom + 38.0);
   double iterations = 0.0, first = 0.0;
   for (const StepResult& step : steps) iterations += static_cast<double>(step.costs.size());
   const Axis x = Axis::exact(-0.5, std::max(1.0, iterations - 0.5), area.left, area.right);
@@ -79,6 +95,7 @@ inline void draw_runs(Drawing& drawing, const StepResult& step, double first, co
       drawing.name({begin + 4.0, area.top - 9.0}, step_name(steps[i], i + 1), end - begin - 6.0,
                    "small");
     }
+    number_iterations(drawing, costs.size() - 1, first, area, x);
     draw_runs(drawing, steps[i], first, x, y);
     description += fmt::format(" {}: from {} to {} in {} iterations.",
                                shortened(step_name(steps[i], i + 1), 60), figure(costs.front(), 4),
@@ -86,7 +103,7 @@ inline void draw_runs(Drawing& drawing, const StepResult& step, double first, co
     first += static_cast<double>(costs.size());
   }
   drawing.line({area.left, area.bottom}, {area.right, area.bottom}, "axis");
-  drawing.text({area.right, area.bottom + 18.0}, "iterations", "name", Anchor::end);
+  drawing.text({area.right, area.bottom + 33.0}, "iterations", "name", Anchor::end);
   return drawing.str(description);
 }
 
