@@ -118,6 +118,43 @@ TEST(ViewMessage, DepthIsInMetres) {
   EXPECT_TRUE(std::isnan(depth(1, 0)));
 }
 
+/// A message of compressedDepth by RVL: settings, size, then words of eight groups.
+DepthImage rvl(const std::string& format, int width, int height,
+               const std::vector<std::uint32_t>& words, float a = 0.0F, float b = 0.0F) {
+  const std::uint32_t size[] = {static_cast<std::uint32_t>(width),
+                                static_cast<std::uint32_t>(height)};
+  const float settings[] = {0.0F, a, b};
+  std::string data(sizeof settings + sizeof size + 4 * words.size(), '\0');
+  std::memcpy(data.data(), settings, sizeof settings);
+  std::memcpy(data.data() + sizeof settings, size, sizeof size);
+  std::memcpy(data.data() + sizeof settings + sizeof size, words.data(), 4 * words.size());
+  return depth_image(fields("format", std::string_view(format), "data", as_bytes(data)));
+}
+
+TEST(ViewMessage, RunsOfDepthAreRead) {
+  // 1 without; 2 with: 1000 is 2000 by sign, 0 2 7 3 in octal; then 3 less, which is 5; 1 without, 0
+  // with.
+  const std::string of = "16UC1; compressedDepth rvl";
+  const DepthImage depth = rvl(of, 2, 2, {0x12'8A'F3'51, 0x00'00'00'00});
+  EXPECT_TRUE(std::isnan(depth(0, 0)));
+  EXPECT_FLOAT_EQ(depth(1, 0), 1.0F);
+  EXPECT_FLOAT_EQ(depth(0, 1), 0.997F);
+  EXPECT_TRUE(std::isnan(depth(1, 1)));
+  const DepthImage inverse =
+      rvl("32FC1; compressedDepth rvl", 2, 2, {0x12'8A'F3'51, 0}, 1000.0F, 0.0F);
+  EXPECT_FLOAT_EQ(inverse(1, 0), 1.0F);
+  EXPECT_FLOAT_EQ(inverse(0, 1), 1000.0F / 997.0F);
+  EXPECT_THAT(test::error_of([&] { (void)rvl(of, 2, 2, {0x128AF351}); }), testing::Not(""));
+  EXPECT_THAT(test::error_of([&] { (void)rvl(of, 1, 1, {0x12000000}); }),
+              HasSubstr("does not fit"));
+  EXPECT_THAT(test::error_of([&] { (void)rvl(of, 1, 1, {0}); }), HasSubstr("does not fit"));
+  EXPECT_THAT(test::error_of([&] {
+                (void)rvl(of, 1, 1, {0xFFFFFFFF, 0xFFFFFFFF});
+              }),
+              HasSubstr("32 bits"));
+  EXPECT_THAT(test::error_of([&] { (void)rvl(of, -1, 1, {0}); }), HasSubstr("4294967295 x 1"));
+}
+
 #ifdef KINECAL_HAVE_PNG
 TEST(ViewMessage, CompressedDepthOfMetresIsAnInverse) {
   Image<std::uint16_t> inverse(3, 1);

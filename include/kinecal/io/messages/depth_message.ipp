@@ -11,6 +11,7 @@
 
 #include "kinecal/io/images/read_image.hpp"
 #include "kinecal/io/messages/message_rows.ipp"
+#include "kinecal/io/messages/rvl_depth.ipp"
 #include "kinecal/io/messages/view_message.hpp"
 #include "kinecal/io/printable.hpp"
 
@@ -24,16 +25,13 @@ namespace kinecal::detail {
   return std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
-/// A PNG of 16 bits, after the settings that the transport compressedDepth puts before it: a number
-/// of 4 bytes, then a and b of 32FC1, whose pixels are a / depth + b.
+/// A PNG of 16 bits, or the same by RVL, after the settings that the transport compressedDepth puts
+/// before it: a number of 4 bytes, then a and b of 32FC1, whose pixels are a / depth + b.
 [[nodiscard]] inline DepthImage compressed_depth(std::string_view file, std::string_view format) {
   constexpr std::size_t kSettings = 12;
   constexpr float kMetre = 1000.0F;
   const bool metres = format.starts_with("32FC1");
-  if (format.find("rvl") != std::string_view::npos) {
-    throw std::runtime_error("compressed depth of format '" + printable(format) +
-                             "' is not supported; expected PNG");
-  }
+  const bool rvl = format.find("rvl") != std::string_view::npos;
   float a = 0.0F, b = 0.0F;
   if (metres || format.find("compressedDepth") != std::string_view::npos) {
     ByteReader settings(as_bytes(file));
@@ -42,7 +40,7 @@ namespace kinecal::detail {
     b = settings.number<float>();
     file.remove_prefix(kSettings);
   }
-  DepthImage depth = decode_depth(file, "the image");
+  DepthImage depth = rvl ? decode_rvl(file) : decode_depth(file, "the image");
   if (!metres) return depth;
   for (float& z : depth.pixels) {
     const float near = std::round(z * kMetre) - b;
