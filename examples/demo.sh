@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 
 cmake/install_packages.sh
 cmake --preset release -B build/demo -DKINECAL_BUILD_TESTS=OFF -DKINECAL_BUILD_BENCHMARKS=OFF \
-  -DKINECAL_X86_64_LEVELS=OFF -DKINECAL_WARNINGS_AS_ERRORS=OFF -DCMAKE_UNITY_BUILD=ON >/dev/null
+  -DKINECAL_X86_64_LEVELS=OFF -DKINECAL_WARNINGS_AS_ERRORS=OFF >/dev/null
 cmake --build build/demo --target kinecal_program generate_example_samples
 
 robot=examples/mobile_manipulator

@@ -114,7 +114,7 @@ TEST_F(RecordedViewsTest, WarnsOfImagesThatAreNotTheFullOnes) {
     record({.encoding = encoding, .binning = 2});
     EXPECT_EQ(open().standstills(), 3u);
     ASSERT_EQ(diagnostics_.warnings.size(), 1u);
-    EXPECT_THAT(diagnostics_.warnings[0].text,
+    EXPECT_THAT(diagnostics_.warnings[0],
                 AllOf(HasSubstr("/cam/camera_info"), HasSubstr("binning 2 x 2")));
     diagnostics_ = {};
   }

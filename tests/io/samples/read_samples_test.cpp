@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-struct Reading {
+struct ReadText {
   std::string path;
   std::vector<Sample> samples;
   Diagnostics diagnostics;
@@ -33,9 +33,9 @@ struct Reading {
   [[nodiscard]] std::string at(int line) const { return path + ":" + std::to_string(line) + ": "; }
 };
 
-Reading read_text(const std::string& text) {
+ReadText read_text(const std::string& text) {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  Reading reading;
+  ReadText reading;
   reading.path = ::testing::TempDir() + "read_samples_" + test->name() + ".yaml";
   std::ofstream(reading.path, std::ios::binary) << text;
   reading.samples = read_samples(reading.path, reading.diagnostics);
@@ -62,7 +62,7 @@ std::string with_camera(const std::string& camera_info, const std::string& param
 
 /// The text is refused with one message: the line of the file, and the words.
 void expect_error(const std::string& text, int line, const std::vector<std::string>& words) {
-  const Reading reading = read_text(text);
+  const ReadText reading = read_text(text);
   ASSERT_EQ(reading.diagnostics.errors.size(), 1u)
       << ::testing::PrintToString(reading.diagnostics.errors);
   EXPECT_THAT(reading.diagnostics.errors[0], StartsWith(reading.at(line)));
@@ -96,7 +96,7 @@ TEST(ReadSamples, OfAFileThatWasCutOffTheCompleteSamplesAreRead) {
 }
 
 TEST(ReadSamples, EachDocumentIsASampleThatKnowsItsLine) {
-  const Reading reading = read_text(kSample + "# a comment\n" + kSample);
+  const ReadText reading = read_text(kSample + "# a comment\n" + kSample);
   EXPECT_THAT(reading.diagnostics.errors, IsEmpty());
   EXPECT_THAT(reading.diagnostics.warnings, IsEmpty());
   ASSERT_EQ(reading.samples.size(), 2u);
@@ -121,7 +121,7 @@ TEST(ReadSamples, CameraIsReadWithTheKeysOfRos1AndOfRos2) {
     for (std::size_t i = 0; i < 4; ++i) {
       camera_info += std::string(i > 0 ? ", " : "") + keys[i] + ": " + values[i];
     }
-    const Reading reading = read_text(
+    const ReadText reading = read_text(
         with_camera(camera_info + "}",
                     "    parameters: [{name: z_scaling, value: 1.25}, {name: other, value: "
                     "word}, {name: z_offset_mm, value: -1.5}]\n"));
@@ -150,7 +150,7 @@ TEST(ReadSamples, BlockStyleAndCarriageReturnsAreTheSameAsFlowStyle) {
   for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) {
     text.insert(i, "\r");
   }
-  const Reading reading = read_text(text);
+  const ReadText reading = read_text(text);
   ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
   EXPECT_THAT(reading.diagnostics.warnings, IsEmpty());
   EXPECT_THAT(reading.samples.at(0).joint_names, ElementsAre("a", "b"));
@@ -161,7 +161,7 @@ TEST(ReadSamples, BlockStyleAndCarriageReturnsAreTheSameAsFlowStyle) {
 }
 
 TEST(ReadSamples, UnknownKeysAreSkippedHoweverDeep) {
-  const Reading reading = read_text(
+  const ReadText reading = read_text(
       kJoints + "x: {joint_states: [{position: [word]}, &i 1, *i], observations: 3}\n" + kArm +
       "  cloud: {fields: [{name: x, offset: 0}], data: [1, 2], position: {x: word}}\n"
       "  image: ~\n"
@@ -173,7 +173,7 @@ TEST(ReadSamples, UnknownKeysAreSkippedHoweverDeep) {
 }
 
 TEST(ReadSamples, NanAndInfinityAreKept) {
-  const Reading reading = read_text(
+  const ReadText reading = read_text(
       "joint_states: {name: [a, b, c, d, e], position: [nan, .nan, -inf, .inf, +1.5e+1]}\n" + kArm +
       "---\n");
   ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
@@ -192,14 +192,14 @@ TEST(ReadSamples, CameraOfASensorThatIsNotACameraIsUnset) {
       ", R: " + zeros + ", P: [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], binning_x: 0}";
   for (const std::string& camera_info : {message, std::string("{}"), std::string("~"),
                                          std::string("{height: 0, width: 0, K: [], P: []}")}) {
-    const Reading reading = read_text(with_camera(camera_info, "    parameters: []\n"));
+    const ReadText reading = read_text(with_camera(camera_info, "    parameters: []\n"));
     ASSERT_THAT(reading.diagnostics.errors, IsEmpty()) << camera_info;
     EXPECT_FALSE(reading.samples.at(0).observations.at(0).camera) << camera_info;
   }
 }
 
 TEST(ReadSamples, DepthParametersWithoutACameraAreAWarning) {
-  const Reading reading =
+  const ReadText reading =
       read_text(with_camera("{}", "    parameters: [{name: z_scaling, value: 1.01}]\n"));
   EXPECT_THAT(reading.diagnostics.errors, IsEmpty());
   EXPECT_THAT(reading.diagnostics.warnings,
@@ -212,18 +212,18 @@ TEST(ReadSamples, BinningAndARegionAreAWarningOnceForASensor) {
                                          ", binning_x: 2, binning_y: 2, "
                                          "roi: {x_offset: 1, y_offset: 0, height: 2, width: 2, "
                                          "do_rectify: false}}");
-  const Reading reading = read_text(sample + sample);
+  const ReadText reading = read_text(sample + sample);
   ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
   EXPECT_THAT(reading.diagnostics.warnings,
               ElementsAre(HasSubstr("sensor 'head': camera_info has binning 2 x 2 and a region of "
                                     "interest of 2 x 2 pixels at 1, 0, which is not used")));
-  const Reading full = read_text(with_camera("{width: 4, height: 4, p: " + kTwelve +
-                                             ", binning_x: 1, roi: {width: 4, height: 4}}"));
+  const ReadText full = read_text(with_camera("{width: 4, height: 4, p: " + kTwelve +
+                                              ", binning_x: 1, roi: {width: 4, height: 4}}"));
   EXPECT_THAT(full.diagnostics.warnings, IsEmpty());
 }
 
 TEST(ReadSamples, EmptyKAndRAreZeros) {
-  const Reading reading = read_text(with_camera("{width: 4, K: [], P: " + kTwelve + "}"));
+  const ReadText reading = read_text(with_camera("{width: 4, K: [], P: " + kTwelve + "}"));
   ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
   const CameraInfo& camera = reading.samples.at(0).observations.at(0).camera.value();
   EXPECT_EQ(camera.k, (std::array<double, 9>{}));
@@ -314,10 +314,10 @@ TEST(ReadSamples, ADecimalCommaIsNamed) {
 }
 
 TEST(ReadSamples, AFrameLosesTheSlashOfOldRos) {
-  const Reading reading = read_text(kJoints +
-                                    "observations:\n- sensor_name: arm\n  features:\n"
-                                    "  - {header: {frame_id: /tool}, point: {x: 1, y: 2, z: 3}}\n"
-                                    "---\n");
+  const ReadText reading = read_text(kJoints +
+                                     "observations:\n- sensor_name: arm\n  features:\n"
+                                     "  - {header: {frame_id: /tool}, point: {x: 1, y: 2, z: 3}}\n"
+                                     "---\n");
   ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
   EXPECT_EQ(reading.samples.at(0).observations.at(0).features.at(0).frame, "tool");
 }
@@ -325,7 +325,7 @@ TEST(ReadSamples, AFrameLosesTheSlashOfOldRos) {
 TEST(ReadSamples, FileWithoutSamplesIsAnError) {
   EXPECT_THAT(read_text("").diagnostics.errors, ElementsAre(HasSubstr("the file is empty")));
   for (const char* text : {"\n\n", "# nothing\n", "---\n", "---\n---\n"}) {
-    const Reading reading = read_text(text);
+    const ReadText reading = read_text(text);
     EXPECT_THAT(reading.diagnostics.errors, ElementsAre(reading.path + ": no samples in this file"))
         << text;
   }
@@ -339,7 +339,7 @@ TEST(ReadSamples, TextThatIsNotASampleIsAnErrorWithItsLine) {
 TEST(ReadSamples, SampleWithoutJointStatesOrObservationsIsAnError) {
   expect_error(kSample + kArm + "---\n", 6, {"sample without 'joint_states'"});
   expect_error(kSample + kJoints + "---\n", 6, {"sample without 'observations'"});
-  const Reading empty = read_text("joint_states:\n" + kArm + "---\n");
+  const ReadText empty = read_text("joint_states:\n" + kArm + "---\n");
   EXPECT_THAT(empty.diagnostics.errors,
               ElementsAre(empty.at(1) + "joint_states without 'name'",
                           empty.at(1) + "joint_states without 'position'"));
@@ -394,7 +394,7 @@ TEST(ReadSamples, AFeatureMayHaveAnId) {
            first + "}, {point: {x: 1, y: 2, z: 3}, id: 7}]\n  ext_camera_info:\n    parameters: " +
            parameters + "\n---\n";
   };
-  const auto ids = [](const Reading& reading) {
+  const auto ids = [](const ReadText& reading) {
     EXPECT_THAT(reading.diagnostics.errors, IsEmpty());
     std::vector<std::optional<int>> all;
     for (const Feature& f : reading.samples.at(0).observations[0].features) all.push_back(f.id);
@@ -425,7 +425,7 @@ TEST(ReadSamples, AFeatureMayHaveASigma) {
            "observations:\n- sensor_name: arm\n  features: [{point: {x: 1, y: 2, z: 3}, " + sigma +
            "}, {point: {x: 1, y: 2, z: 3}}]\n---\n";
   };
-  const Reading reading = read_text(features("sigma: 0.002"));
+  const ReadText reading = read_text(features("sigma: 0.002"));
   ASSERT_EQ(reading.samples.size(), 1u);
   const auto& found = reading.samples[0].observations[0].features;
   EXPECT_EQ(found.at(0).sigma, 0.002);
@@ -438,8 +438,8 @@ TEST(ReadSamples, ASampleMayHaveConditionsOfAnyName) {
   const auto with = [](const std::string& conditions) {
     return kJoints + "conditions: " + conditions + "\n" + kArm + "---\n";
   };
-  const Reading reading = read_text(with("{temperature: 23.5, load: -1.2e3, point: .nan}") +
-                                    kSample + with("{}") + with(""));
+  const ReadText reading = read_text(with("{temperature: 23.5, load: -1.2e3, point: .nan}") +
+                                     kSample + with("{}") + with(""));
   ASSERT_THAT(reading.diagnostics.errors, IsEmpty());
   ASSERT_EQ(reading.samples.size(), 4u);
   const auto& found = reading.samples[0].conditions;
@@ -463,7 +463,7 @@ TEST(ReadSamples, SensorThatOccursTwiceInASampleIsAnError) {
 }
 
 TEST(ReadSamples, MissingSeparatorIsAnError) {
-  const Reading reading = read_text(kJoints + kArm + kJoints + kArm + "---\n");
+  const ReadText reading = read_text(kJoints + kArm + kJoints + kArm + "---\n");
   ASSERT_FALSE(reading.diagnostics.errors.empty());
   EXPECT_THAT(reading.diagnostics.errors[0],
               AllOf(StartsWith(reading.at(5)), HasSubstr("'joint_states' occurs twice"),
@@ -506,7 +506,7 @@ TEST(ReadSamples, DeepNestingIsAnErrorAndNotAStackOverflow) {
   for (const std::string open : {"[", "{a: ", "- "}) {
     std::string text = kSample + kJoints + kArm + "cloud:\n  ";
     for (int i = 0; i < 100000; ++i) text += open;
-    const Reading reading = read_text(text);
+    const ReadText reading = read_text(text);
     ASSERT_FALSE(reading.diagnostics.errors.empty()) << open;
     EXPECT_THAT(reading.diagnostics.errors.back(),
                 AllOf(StartsWith(reading.path + ":"), HasSubstr("nested too deeply")));
@@ -519,7 +519,7 @@ TEST(ReadSamples, BinaryFilesEndWithAnError) {
   // A stray ',' or ']' makes the parser find empty documents without end.
   for (const std::string& text : {all, std::string(100, '\0'), std::string(",\x09Wa"),
                                   std::string("]"), std::string("}"), kSample + ", a"}) {
-    const Reading reading = read_text(text);
+    const ReadText reading = read_text(text);
     ASSERT_FALSE(reading.diagnostics.errors.empty());
     EXPECT_THAT(reading.diagnostics.errors[0], StartsWith(reading.path + ":"));
   }
@@ -532,7 +532,7 @@ TEST(ReadSamples, FileThatIsCutOffAnywhereIsNeverSilent) {
       "    point:\n      x: 1.25\n      y: 2.25\n      z: 3.25\n---\n";
   for (const std::string& sample : {kSample, block}) {
     for (std::size_t length = 1; length + 4 < sample.size(); ++length) {
-      const Reading reading = read_text(sample + sample.substr(0, length));
+      const ReadText reading = read_text(sample + sample.substr(0, length));
       const Diagnostics& d = reading.diagnostics;
       ASSERT_FALSE(d.errors.empty() && d.warnings.empty()) << sample.substr(0, length);
       const std::string& message = d.errors.empty() ? d.warnings[0] : d.errors[0];
@@ -546,7 +546,7 @@ TEST(ReadSamples, NumberThatMayBeCutOffIsAnError) {
                            "observations:\n- sensor_name: arm\n  features:\n  - point:\n"
                            "      x: 1.25\n      y: 2.25\n      z: 3.2";
   expect_error(kSample + text, 6, {"the file ends within a line of this sample"});
-  const Reading complete = read_text(kSample + text + "5\n");
+  const ReadText complete = read_text(kSample + text + "5\n");
   EXPECT_THAT(complete.diagnostics.errors, IsEmpty());
   EXPECT_EQ(complete.samples.size(), 2u);
   EXPECT_THAT(complete.diagnostics.warnings,
@@ -554,8 +554,8 @@ TEST(ReadSamples, NumberThatMayBeCutOffIsAnError) {
 }
 
 TEST(ReadSamples, AllErrorsOfAFileAreReportedTogether) {
-  const Reading reading = read_text("joint_states: {name: [a], position: [x]}\n" + kArm + "---\n" +
-                                    kSample + kArm + "---\n");
+  const ReadText reading = read_text("joint_states: {name: [a], position: [x]}\n" + kArm + "---\n" +
+                                     kSample + kArm + "---\n");
   EXPECT_THAT(reading.diagnostics.errors,
               ElementsAre(StartsWith(reading.at(1)), StartsWith(reading.at(11))));
   ASSERT_EQ(reading.samples.size(), 1u);
@@ -565,7 +565,7 @@ TEST(ReadSamples, AllErrorsOfAFileAreReportedTogether) {
 TEST(ReadSamples, ManyErrorsAreNotListedWithoutEnd) {
   std::string text;
   for (int i = 0; i < 1000; ++i) text += kJoints + "---\n";
-  const Reading reading = read_text(text);
+  const ReadText reading = read_text(text);
   ASSERT_EQ(reading.diagnostics.errors.size(), 21u);
   EXPECT_THAT(reading.diagnostics.errors[20], HasSubstr("more than 20 errors"));
 }

@@ -18,18 +18,18 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-struct FileReading {
+struct ReadPieces {
   std::string samples;  ///< as they are written, and where they came from
   std::vector<std::string> errors, warnings;
-  bool operator==(const FileReading&) const = default;
+  bool operator==(const ReadPieces&) const = default;
 };
 
-std::ostream& operator<<(std::ostream& out, const FileReading& r) {
+std::ostream& operator<<(std::ostream& out, const ReadPieces& r) {
   return out << r.samples << ::testing::PrintToString(r.errors)
              << ::testing::PrintToString(r.warnings);
 }
 
-FileReading read_pieces(const std::string& text, std::size_t piece_bytes, std::size_t threads) {
+ReadPieces read_pieces(const std::string& text, std::size_t piece_bytes, std::size_t threads) {
   std::istringstream in(text);
   detail::SampleFile file(in, "s.yaml", piece_bytes);
   file.read(threads);
@@ -44,8 +44,8 @@ FileReading read_pieces(const std::string& text, std::size_t piece_bytes, std::s
 constexpr std::size_t kAll = 1 << 20;  ///< bytes of a piece that holds the whole file
 
 /// In one piece or many, on one thread or several: the same.
-FileReading read_in_every_way(const std::string& text) {
-  FileReading whole = read_pieces(text, kAll, 1);
+ReadPieces read_in_every_way(const std::string& text) {
+  ReadPieces whole = read_pieces(text, kAll, 1);
   for (const std::size_t bytes : {1, 7, 100, 250, 1000}) {
     for (const std::size_t threads : {1, 4}) {
       EXPECT_EQ(read_pieces(text, bytes, threads), whole)
@@ -74,7 +74,7 @@ std::string many_samples(int count) {
 }
 
 TEST(SampleFile, SamplesStandInTheOrderOfTheFile) {
-  const FileReading reading = read_in_every_way(many_samples(200));
+  const ReadPieces reading = read_in_every_way(many_samples(200));
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.warnings, IsEmpty());
   std::size_t at = 0;
@@ -87,8 +87,8 @@ TEST(SampleFile, SamplesStandInTheOrderOfTheFile) {
 
 TEST(SampleFile, FirstErrorOfTheFileIsTheFirstThatIsReported) {
   const std::string mistake = "joint_states: {name: [a], position: [x]}\n" + kOneArm + "---\n";
-  const FileReading reading = read_in_every_way(many_samples(30) + mistake + many_samples(30) +
-                                                mistake + "---\n" + kTwoJoints + "---\n");
+  const ReadPieces reading = read_in_every_way(many_samples(30) + mistake + many_samples(30) +
+                                               mistake + "---\n" + kTwoJoints + "---\n");
   EXPECT_THAT(reading.errors, ElementsAre(HasSubstr("s.yaml:151: position: 'x' is not a number"),
                                           HasSubstr("s.yaml:306: position: 'x' is not a number"),
                                           HasSubstr("s.yaml:312: sample without 'observations'")));
@@ -100,7 +100,7 @@ TEST(SampleFile, NothingIsReportedAfterTextThatIsNotYaml) {
        {open + kOneArm + "---\n", std::string(", a\n---\n"), std::string("\"a\n---\n"),
         std::string("a: [\n---\n"), std::string("]\n"), std::string("*a\n---\n"),
         std::string("a\nb: c\n---\n"), std::string("\tx: [}\n"), std::string("? [\n---\n---\n")}) {
-    const FileReading reading =
+    const ReadPieces reading =
         read_in_every_way(many_samples(20) + not_yaml + many_samples(20) + open + "---\n");
     ASSERT_FALSE(reading.errors.empty());
     EXPECT_THAT(reading.errors.back(), AllOf(StartsWith("s.yaml:10"), HasSubstr("not YAML"),
@@ -111,7 +111,7 @@ TEST(SampleFile, NothingIsReportedAfterTextThatIsNotYaml) {
 }
 
 TEST(SampleFile, SampleBeforeTextThatIsNotYamlMayBeInAnotherPiece) {
-  const FileReading reading = read_in_every_way(kOneSample + kOneSample + ", a\n");
+  const ReadPieces reading = read_in_every_way(kOneSample + kOneSample + ", a\n");
   EXPECT_THAT(reading.errors, ElementsAre(AllOf(StartsWith("s.yaml:11: not YAML"),
                                                 HasSubstr("the last sample begins at line 6;"))));
 }
@@ -120,8 +120,8 @@ TEST(SampleFile, OutputOfARecordingToolIsNamed) {
   const std::string lost = "A message was lost!!!\n\ttotal count change:1\n\ttotal count: 1---\n";
   const std::string silent =
       "WARNING: no messages received and simulated time is active.\nIs /clock being published?\n";
-  const FileReading reading = read_in_every_way(silent + kOneSample + lost + kOneSample + silent +
-                                                silent + many_samples(20) + lost + kOneSample);
+  const ReadPieces reading = read_in_every_way(silent + kOneSample + lost + kOneSample + silent +
+                                               silent + many_samples(20) + lost + kOneSample);
   const std::string says = " are output of the tool that recorded the file; delete them";
   EXPECT_THAT(reading.errors,
               ElementsAre("s.yaml:1: lines 1 to 2" + says, "s.yaml:8: lines 8 to 10" + says,
@@ -132,7 +132,7 @@ TEST(SampleFile, OutputOfARecordingToolIsNamed) {
 TEST(SampleFile, OnlyTheLastSampleMayBeCutOff) {
   const std::string wrong = "joint_states: {name: [a], position: [x]}\n" + kOneArm;
   const std::string not_yaml = "joint_states: {name: [a], position: [x]\n" + kOneArm;
-  const auto asks = [](const FileReading& reading) {
+  const auto asks = [](const ReadPieces& reading) {
     return !reading.errors.empty() && reading.errors.back().ends_with("; is the file cut off?");
   };
   EXPECT_TRUE(asks(read_in_every_way(kOneSample + wrong)));
@@ -166,7 +166,7 @@ TEST(SampleFile, DocumentsEndAndBeginInEveryWayOfYaml) {
       {crlf, 3},
   };
   for (const auto& [text, count] : texts) {
-    const FileReading reading = read_in_every_way(text);
+    const ReadPieces reading = read_in_every_way(text);
     EXPECT_THAT(reading.errors, IsEmpty()) << text;
     EXPECT_THAT(reading.warnings, IsEmpty()) << text;
     int found = 0;
@@ -201,7 +201,7 @@ TEST(SampleFile, ManyErrorsEndAtTheSamePlaceOnAnyNumberOfThreads) {
   for (int i = 0; i < 500; ++i) text += kTwoJoints + "---\n";
   for (const std::size_t bytes : {std::size_t{1}, std::size_t{300}, kAll}) {
     for (const std::size_t threads : {1, 2, 8}) {
-      const FileReading reading = read_pieces(text, bytes, threads);
+      const ReadPieces reading = read_pieces(text, bytes, threads);
       ASSERT_EQ(reading.errors.size(), 21u);
       EXPECT_THAT(reading.errors[0], StartsWith("s.yaml:51: sample without 'observations'"));
       EXPECT_THAT(reading.errors[20], StartsWith("s.yaml:91: more than 20 errors"));
