@@ -44,7 +44,7 @@ CameraInfo small_camera() {
 }
 
 /// What is recorded beside the usual.
-struct Recorded {
+struct TourRecording {
   Encoding encoding = Encoding::cdr;
   bool joints = true, camera_info = true;
   int binning = 0;
@@ -67,7 +67,7 @@ class RecordedViewsTest : public test::FolderTest {
                                           {"c.yaml", 2}}};
   Diagnostics diagnostics_;
 
-  void record(const Recorded& how = {}, const std::string& name = "a.mcap") {
+  void record(const TourRecording& how = {}, const std::string& name = "a.mcap") {
     Recorder to(path(name), how.encoding);
     to.camera_ahead = how.camera_ahead;
     test::play(

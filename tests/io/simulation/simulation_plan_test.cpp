@@ -28,7 +28,7 @@ SimulationPlan plan_of(const Robot& robot, const std::string& target) {
 }
 
 /// A plan from the text of a scene; and its errors.
-std::pair<SimulationPlan, Diagnostics> read_text(const std::string& text) {
+std::pair<SimulationPlan, Diagnostics> plan_of_text(const std::string& text) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "scene.yaml").string();
   std::ofstream(path) << text;
@@ -91,7 +91,7 @@ TEST(SimulationPlan, EachLedOfFetchLightsWhereItIs) {
 }
 
 TEST(SimulationPlan, AScenesWordsAreTaken) {
-  const auto [plan, diagnostics] = read_text(R"(
+  const auto [plan, diagnostics] = plan_of_text(R"(
 seed: 7
 camera: {name: eye, type: camera3d, blur: 1.5, image: rectified, holes: false}
 target: {type: leds, link: gripper_link, xyz: [0, 0, 0.04], rpy: [3.14159265, 0, 0],
@@ -122,7 +122,7 @@ TEST(SimulationPlan, WrongWordsAreErrorsWithTheirLines) {
   const std::string text =
       "camera: {tpye: camera3d}\ntarget: {type: led}\nerrors: {joint: wide}\n"
       "motion: {speed: -1}\nfaults: {dark_led: none}\nposes: 0.5\n";
-  const Diagnostics diagnostics = read_text(text).second;
+  const Diagnostics diagnostics = plan_of_text(text).second;
   std::string all;
   for (const std::string& error : diagnostics.errors) all += error + "\n";
   EXPECT_THAT(all, HasSubstr("scene.yaml:1: camera: unknown key 'tpye'; did you mean 'type'?"));
@@ -130,18 +130,18 @@ TEST(SimulationPlan, WrongWordsAreErrorsWithTheirLines) {
   for (int line = 3; line <= 6; ++line) {
     EXPECT_THAT(all, HasSubstr("scene.yaml:" + std::to_string(line) + ": "));
   }
-  EXPECT_THAT(read_text("errors: {values: {elbow_flx_joint: 1}}").second.errors.at(0),
+  EXPECT_THAT(plan_of_text("errors: {values: {elbow_flx_joint: 1}}").second.errors.at(0),
               HasSubstr("did you mean 'elbow_flex_joint'?"));
-  EXPECT_THAT(read_text("target: {type: leds, leds: []}").second.errors.at(0),
+  EXPECT_THAT(plan_of_text("target: {type: leds, leds: []}").second.errors.at(0),
               HasSubstr("leds is empty; give the point of at least one LED"));
-  EXPECT_THAT(read_text("seed: 1\nerrors: {joint: 3}").second.errors.at(0),
+  EXPECT_THAT(plan_of_text("seed: 1\nerrors: {joint: 3}").second.errors.at(0),
               HasSubstr("scene.yaml:2: errors: joint is 3, not between 0 and 1"));
 }
 
 TEST(SimulationPlan, ALinkThatDoesNotExistIsNamed) {
   for (const char* text :
        {"camera: {frame: head_camera_rgb_optical_fram}", "target: {link: gripper_lnk}"}) {
-    EXPECT_THAT(read_text(text).second.errors.at(0),
+    EXPECT_THAT(plan_of_text(text).second.errors.at(0),
                 AllOf(HasSubstr("scene.yaml:1: "), HasSubstr("did you mean")));
   }
 }

@@ -52,7 +52,8 @@ std::string connection(std::uint32_t number, const std::string& topic, const std
   return detail::ros1_record(header, data.text());
 }
 
-std::string message(std::uint32_t connection, std::uint32_t seconds, const std::string& data) {
+std::string of_connection(std::uint32_t connection, std::uint32_t seconds,
+                          const std::string& data) {
   Ros1Text header;
   header.number("conn", connection).op(Ros1Op::message);
   header.number("time", std::uint64_t{seconds});
@@ -162,7 +163,7 @@ TEST(Ros1Bag, WholeMessagesOfAChunkThatIsCutOffAreRead) {
 
 /// While a chunk is being recorded its sizes are 0, and its records follow.
 TEST(Ros1Bag, AChunkThatIsStillOpenIsReadWhereItCanBe) {
-  const std::string records = connection(7, "/a", "std_msgs/String") + message(7, 1, "one");
+  const std::string records = connection(7, "/a", "std_msgs/String") + of_connection(7, 1, "one");
   const BagContents read = read_bag(open_bag(chunk("none", 0, "") + records));
   EXPECT_THAT(read.messages, ElementsAre(Recorded{"a", 1'000'000'000, "one"}));
   EXPECT_THAT(read.errors, IsEmpty());
@@ -175,7 +176,7 @@ TEST(Ros1Bag, AChunkThatIsStillOpenIsReadWhereItCanBe) {
 }
 
 TEST(Ros1Bag, MessagesOutsideOfChunksAreRead) {
-  const std::string records = message(3, 4, "x") + message(3, 5, "");
+  const std::string records = of_connection(3, 4, "x") + of_connection(3, 5, "");
   const std::string defined = connection(3, "a", "std_msgs/String");
   const std::string bag = bag_header(kFirstRecord + records.size(), 1, 0) + records + defined;
   const BagContents read = read_bag(bag);
@@ -188,8 +189,8 @@ TEST(Ros1Bag, MessagesOutsideOfChunksAreRead) {
 
 TEST(Ros1Bag, ConnectionsThatSayTheSameAreOneTopic) {
   const std::string records = connection(0, "/a", "T/A") + connection(1, "a", "T/A") +
-                              connection(2, "a", "T/B") + message(0, 1, "x") + message(1, 2, "y") +
-                              message(2, 3, "z");
+                              connection(2, "a", "T/B") + of_connection(0, 1, "x") +
+                              of_connection(1, 2, "y") + of_connection(2, 3, "z");
   const BagContents read = read_bag(open_bag(records));
   EXPECT_THAT(read.errors, IsEmpty());
   EXPECT_EQ(read.messages.size(), 3u);
@@ -198,8 +199,9 @@ TEST(Ros1Bag, ConnectionsThatSayTheSameAreOneTopic) {
 }
 
 TEST(Ros1Bag, ErrorsOfMessagesHaveTheirPlace) {
-  const std::string records = connection(0, "a", "T/A") + message(5, 1, "x") + message(5, 1, "x") +
-                              connection(0, "a", "T/B") + message(0, 1, "y");
+  const std::string records = connection(0, "a", "T/A") + of_connection(5, 1, "x") +
+                              of_connection(5, 1, "x") + connection(0, "a", "T/B") +
+                              of_connection(0, 1, "y");
   const BagContents outside = read_bag(open_bag(records));
   EXPECT_THAT(
       outside.errors,
@@ -213,9 +215,9 @@ TEST(Ros1Bag, ErrorsOfMessagesHaveTheirPlace) {
 }
 
 TEST(Ros1Bag, ARecordOfUnknownKindIsLeftOutAndNoOther) {
-  std::string unknown = message(0, 1, "x");
+  std::string unknown = of_connection(0, 1, "x");
   unknown[unknown.find("op=") + 3] = '\x55';
-  const std::string records = connection(0, "a", "T/A") + unknown + message(0, 1, "y");
+  const std::string records = connection(0, "a", "T/A") + unknown + of_connection(0, 1, "y");
   for (const std::string& all : {records, chunk("none", std::uint32_t(records.size()), records)}) {
     const BagContents read = read_bag(open_bag(all));
     EXPECT_THAT(read.errors, ElementsAre(HasSubstr("a record of unknown kind")));
@@ -230,7 +232,7 @@ TEST(Ros1Bag, WhatIsNotABagIsAnError) {
   EXPECT_THAT(error("joint_states: {}\n"), HasSubstr("is not a ROS 1 bag"));
   EXPECT_THAT(error("#ROSBAG V1.2\nx"), HasSubstr("'rosbag fix'"));
   EXPECT_THAT(error("#ROSBAG V2.0\n"), HasSubstr("cut off before its first message"));
-  EXPECT_THAT(error(std::string(detail::kRos1Magic) + message(0, 0, "")),
+  EXPECT_THAT(error(std::string(detail::kRos1Magic) + of_connection(0, 0, "")),
               HasSubstr("byte 13: the bag header is missing"));
   EXPECT_THAT(error(bag_header(0, 0, 0, "rosbag/AesCbcEncryptor")), HasSubstr("encrypted"));
 }
@@ -339,7 +341,7 @@ TEST(Ros1Bag, DefinitionsHaveNoMoreBytesThanArePlausible) {
     Ros1Text header, data;
     header.number("conn", i).op(Ros1Op::connection).field("topic", "a");
     data.field("type", "T/A").field("message_definition", std::string(5 << 20, char('a' + i)));
-    records += detail::ros1_record(header, data.text()) + message(i, 1, "x");
+    records += detail::ros1_record(header, data.text()) + of_connection(i, 1, "x");
   }
   const BagContents read = read_bag(open_bag(records));
   EXPECT_EQ(read.topics.size(), 6u);
@@ -371,7 +373,7 @@ TEST(Ros1Bag, AMissingLibraryIsReportedOnce) {
 
 TEST(Ros1Bag, TooManyErrorsEndTheReading) {
   std::string records;
-  for (std::uint32_t i = 0; i < 100; ++i) records += message(i, 0, "");
+  for (std::uint32_t i = 0; i < 100; ++i) records += of_connection(i, 0, "");
   const BagContents read = read_bag(open_bag(records));
   ASSERT_EQ(read.errors.size(), 21u);
   EXPECT_THAT(read.errors[20], HasSubstr("more than 20 errors"));
