@@ -17,7 +17,7 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kFetch = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/";
+const std::string kFetchFolder = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/";
 
 class Study : public test::ProgramTest {
  protected:
@@ -29,7 +29,7 @@ class Study : public test::ProgramTest {
   }
   /// Of the example robot, with few poses.
   [[nodiscard]] test::Outcome call(const std::string& command, const std::string& arguments) const {
-    return run(std::string(KINECAL_PROGRAM " ") + command + " --urdf " + kFetch +
+    return run(std::string(KINECAL_PROGRAM " ") + command + " --urdf " + kFetchFolder +
                "fetch.urdf --target leds " + arguments);
   }
 };
@@ -105,8 +105,8 @@ TEST_F(Study, CtrlCPrintsWhatIsDoneAndTheSameCommandGoesOn) {
   for (double seconds = 4.0; seconds > 0.05; seconds *= 0.7) {
     fs::remove_all(folder_ / "part");
     stopped = run("timeout --foreground --preserve-status -s INT " + std::to_string(seconds) +
-                  " " KINECAL_PROGRAM " study --urdf " + kFetch + "fetch.urdf --target leds " +
-                  what + "-o part");
+                  " " KINECAL_PROGRAM " study --urdf " + kFetchFolder +
+                  "fetch.urdf --target leds " + what + "-o part");
     if (stopped.code == 130 && stopped.out.find("Interrupted") != std::string::npos) break;
   }
   EXPECT_EQ(stopped.code, 130);
@@ -123,7 +123,7 @@ TEST_F(Study, GoesOnWhereItWasKilled) {
   for (double seconds = 0.03; seconds < 300.0; seconds *= 1.5) {
     const test::Outcome part =
         run("timeout -s KILL " + std::to_string(seconds) + " " KINECAL_PROGRAM " study --urdf " +
-            kFetch + "fetch.urdf --target leds " + what + "-o part");
+            kFetchFolder + "fetch.urdf --target leds " + what + "-o part");
     if (part.code == 0) break;
     ++kills;
   }
@@ -142,15 +142,15 @@ TEST_F(Study, SeveralProcessesShareAStudy) {
   std::string all;
   for (const char* rank : {"0", "1", "2"}) {
     all += "OMPI_COMM_WORLD_SIZE=3 OMPI_COMM_WORLD_RANK=" + std::string(rank) +
-           " " KINECAL_PROGRAM " study --urdf " + kFetch + "fetch.urdf --target leds " + what +
-           "-o three & ";
+           " " KINECAL_PROGRAM " study --urdf " + kFetchFolder + "fetch.urdf --target leds " +
+           what + "-o three & ";
   }
   EXPECT_EQ(run("(" + all + "wait)").code, 0);
   EXPECT_EQ(read("one/trials.csv"), read("three/trials.csv"));
   EXPECT_EQ(read("one/study.json"), read("three/study.json"));
   const test::Outcome alone =
       run("OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=2 " KINECAL_PROGRAM " study --urdf " +
-          kFetch + "fetch.urdf -o x");
+          kFetchFolder + "fetch.urdf -o x");
   EXPECT_EQ(alone.code, 1);
   EXPECT_THAT(alone.err, HasSubstr("OMPI_COMM_WORLD_RANK is 2"));
 }
@@ -173,7 +173,7 @@ TEST_F(Study, RuinedSamplesAreLeftOut) {
 
 TEST_F(Study, RecordedSamplesAreMeasuredAnew) {
   const test::Outcome outcome =
-      run(KINECAL_PROGRAM " study --urdf " + kFetch + "fetch.urdf --config " + kFetch +
+      run(KINECAL_PROGRAM " study --urdf " + kFetchFolder + "fetch.urdf --config " + kFetchFolder +
           "calibrate.yaml --samples missing.yaml");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("missing.yaml"));
@@ -255,7 +255,7 @@ TEST_F(Study, PosesThatExistAreNotChosenAgain) {
 
 TEST_F(Study, PlanAndSelectPosesSayWhatAPriorLeavesWithoutNoise) {
   // So strong that they hold the camera where the URDF has it.
-  ASSERT_EQ(run("cp " + kFetch + "calibrate.yaml prior.yaml").code, 0);
+  ASSERT_EQ(run("cp " + kFetchFolder + "calibrate.yaml prior.yaml").code, 0);
   ASSERT_EQ(run("sed -i 's/_scale: .*/_scale: 500.0/' prior.yaml").code, 0);
   const std::string what = "--config prior.yaml --candidates 30 ";
   const test::Outcome outcome =

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/evaluate.hpp"
 #include "support/scene.hpp"

@@ -51,11 +51,11 @@ TEST(RobotHeader, HoldsFetchBitByBit) {
 }
 
 TEST(RobotHeader, TheJointsAreConstant) {
-  constexpr auto& kJoints = every_joint_v2::Robot::kJoints;
-  static_assert(kJoints.size() == 8);
-  static_assert(kJoints[2].name == "elbow" && kJoints[2].limits->upper == 0.1 + 0.2);
-  static_assert(kJoints[4].mimic->joint == "finger \"left\"" && !kJoints[4].mimic->joint.empty());
-  static_assert(kJoints[5].name ==
+  constexpr auto& joints = every_joint_v2::Robot::kJoints;
+  static_assert(joints.size() == 8);
+  static_assert(joints[2].name == "elbow" && joints[2].limits->upper == 0.1 + 0.2);
+  static_assert(joints[4].mimic->joint == "finger \"left\"" && !joints[4].mimic->joint.empty());
+  static_assert(joints[5].name ==
                 "Kamera \xC3\xBC"
                 "brig");
 }

@@ -24,7 +24,6 @@ using detail::Ros1Text;
 using test::bag_of;
 using test::BagContents;
 using test::compressions_of_ros1;
-using test::read_bag;
 using test::Recorded;
 using test::some_messages;
 using ::testing::AllOf;
@@ -96,11 +95,11 @@ std::vector<std::pair<std::size_t, std::size_t>> ends_of_chunks(const std::strin
 TEST(Ros1Bag, WhatIsNotWantedIsLeftOut) {
   const std::vector<Recorded> messages = some_messages(50);
   for (const Compression c : compressions_of_ros1()) {
-    const BagContents robot = read_bag(bag_of(messages, c), {"robot_description"});
+    const BagContents robot = test::read_bag(bag_of(messages, c), {"robot_description"});
     EXPECT_THAT(robot.messages, ElementsAre(messages[0]));
     EXPECT_EQ(robot.topics.size(), 2u);
-    EXPECT_EQ(read_bag(bag_of(messages, c), {"joint_states"}).messages.size(), 49u);
-    EXPECT_THAT(read_bag(bag_of(messages, c), {"other"}).messages, IsEmpty());
+    EXPECT_EQ(test::read_bag(bag_of(messages, c), {"joint_states"}).messages.size(), 49u);
+    EXPECT_THAT(test::read_bag(bag_of(messages, c), {"other"}).messages, IsEmpty());
   }
 }
 
@@ -111,17 +110,17 @@ TEST(Ros1Bag, ChunksThatHoldNothingWantedAreNotRead) {
   const auto ends = ends_of_chunks(bag);
   ASSERT_GT(ends.size(), 3u);
   for (std::size_t i = 1; i < ends.size(); ++i) bag.replace(ends[i].first - 50, 50, 50, '\xff');
-  const BagContents robot = read_bag(bag, {"robot_description"});
+  const BagContents robot = test::read_bag(bag, {"robot_description"});
   EXPECT_THAT(robot.errors, IsEmpty());
   EXPECT_THAT(robot.messages, ElementsAre(messages[0]));
-  EXPECT_EQ(read_bag(bag).errors.size(), ends.size() - 1);
+  EXPECT_EQ(test::read_bag(bag).errors.size(), ends.size() - 1);
 }
 
 TEST(Ros1Bag, FromFrontToEndItIsTheSameAsWithItsIndex) {
   for (const Compression c : compressions_of_ros1()) {
     const std::string bag = bag_of(some_messages(50), c);
     for (const std::string& damaged : {without_index(bag), bag.substr(0, bag.size() - 1)}) {
-      const BagContents read = read_bag(damaged);
+      const BagContents read = test::read_bag(damaged);
       EXPECT_EQ(read.messages, some_messages(50));
       EXPECT_THAT(read.errors, IsEmpty());
       EXPECT_THAT(read.warnings,
@@ -137,7 +136,7 @@ TEST(Ros1Bag, ABagCutOffAnywhereGivesItsWholeChunks) {
     const std::string bag = bag_of(messages, c);
     const auto ends = ends_of_chunks(bag);
     for (std::size_t size = 0; size < bag.size(); ++size) {
-      const BagContents read = read_bag(bag.substr(0, size));
+      const BagContents read = test::read_bag(bag.substr(0, size));
       if (size < kFirstRecord) {
         EXPECT_EQ(read.errors.size(), 1u) << size;
         continue;
@@ -158,19 +157,19 @@ TEST(Ros1Bag, ABagCutOffAnywhereGivesItsWholeChunks) {
 TEST(Ros1Bag, WholeMessagesOfAChunkThatIsCutOffAreRead) {
   const std::string bag = bag_of(some_messages(40), Compression::none, 1 << 20);
   ASSERT_EQ(ends_of_chunks(bag).size(), 1u);
-  EXPECT_EQ(read_bag(bag.substr(0, ends_of_chunks(bag)[0].first - 1)).messages.size(), 39u);
+  EXPECT_EQ(test::read_bag(bag.substr(0, ends_of_chunks(bag)[0].first - 1)).messages.size(), 39u);
 }
 
 /// While a chunk is being recorded its sizes are 0, and its records follow.
 TEST(Ros1Bag, AChunkThatIsStillOpenIsReadWhereItCanBe) {
   const std::string records = connection(7, "/a", "std_msgs/String") + of_connection(7, 1, "one");
-  const BagContents read = read_bag(open_bag(chunk("none", 0, "") + records));
+  const BagContents read = test::read_bag(open_bag(chunk("none", 0, "") + records));
   EXPECT_THAT(read.messages, ElementsAre(Recorded{"a", 1'000'000'000, "one"}));
   EXPECT_THAT(read.errors, IsEmpty());
   EXPECT_EQ(read.warnings.size(), 1u);
-  const BagContents cut = read_bag(open_bag(chunk("none", 0, "") + records).substr(0, 4250));
+  const BagContents cut = test::read_bag(open_bag(chunk("none", 0, "") + records).substr(0, 4250));
   EXPECT_THAT(cut.errors, IsEmpty());
-  const BagContents packed = read_bag(open_bag(chunk("bz2", 0, "") + "BZh91AY&SY and more"));
+  const BagContents packed = test::read_bag(open_bag(chunk("bz2", 0, "") + "BZh91AY&SY and more"));
   EXPECT_THAT(packed.errors, IsEmpty());
   EXPECT_EQ(packed.warnings.size(), 1u);
 }
@@ -179,19 +178,19 @@ TEST(Ros1Bag, MessagesOutsideOfChunksAreRead) {
   const std::string records = of_connection(3, 4, "x") + of_connection(3, 5, "");
   const std::string defined = connection(3, "a", "std_msgs/String");
   const std::string bag = bag_header(kFirstRecord + records.size(), 1, 0) + records + defined;
-  const BagContents read = read_bag(bag);
+  const BagContents read = test::read_bag(bag);
   EXPECT_THAT(read.errors, IsEmpty());
   EXPECT_THAT(read.warnings, IsEmpty());
   EXPECT_THAT(read.messages,
               ElementsAre(Recorded{"a", 4'000'000'000, "x"}, Recorded{"a", 5'000'000'000, ""}));
-  EXPECT_THAT(read_bag(bag, {"b"}).messages, IsEmpty());
+  EXPECT_THAT(test::read_bag(bag, {"b"}).messages, IsEmpty());
 }
 
 TEST(Ros1Bag, ConnectionsThatSayTheSameAreOneTopic) {
   const std::string records = connection(0, "/a", "T/A") + connection(1, "a", "T/A") +
                               connection(2, "a", "T/B") + of_connection(0, 1, "x") +
                               of_connection(1, 2, "y") + of_connection(2, 3, "z");
-  const BagContents read = read_bag(open_bag(records));
+  const BagContents read = test::read_bag(open_bag(records));
   EXPECT_THAT(read.errors, IsEmpty());
   EXPECT_EQ(read.messages.size(), 3u);
   ASSERT_EQ(read.topics.size(), 2u);
@@ -202,14 +201,14 @@ TEST(Ros1Bag, ErrorsOfMessagesHaveTheirPlace) {
   const std::string records = connection(0, "a", "T/A") + of_connection(5, 1, "x") +
                               of_connection(5, 1, "x") + connection(0, "a", "T/B") +
                               of_connection(0, 1, "y");
-  const BagContents outside = read_bag(open_bag(records));
+  const BagContents outside = test::read_bag(open_bag(records));
   EXPECT_THAT(
       outside.errors,
       ElementsAre(AllOf(StartsWith("a.bag: byte 4"), HasSubstr("of connection 5")),
                   AllOf(StartsWith("a.bag: byte 4"), HasSubstr("stands in the bag twice"))));
   EXPECT_EQ(outside.messages.size(), 1u);
   const auto size = static_cast<std::uint32_t>(records.size());
-  const BagContents inside = read_bag(open_bag(chunk("none", size, records)));
+  const BagContents inside = test::read_bag(open_bag(chunk("none", size, records)));
   EXPECT_EQ(inside.errors.size(), 2u);
   EXPECT_EQ(inside.messages.size(), 1u);
 }
@@ -219,14 +218,14 @@ TEST(Ros1Bag, ARecordOfUnknownKindIsLeftOutAndNoOther) {
   unknown[unknown.find("op=") + 3] = '\x55';
   const std::string records = connection(0, "a", "T/A") + unknown + of_connection(0, 1, "y");
   for (const std::string& all : {records, chunk("none", std::uint32_t(records.size()), records)}) {
-    const BagContents read = read_bag(open_bag(all));
+    const BagContents read = test::read_bag(open_bag(all));
     EXPECT_THAT(read.errors, ElementsAre(HasSubstr("a record of unknown kind")));
     EXPECT_THAT(read.messages, ElementsAre(Recorded{"a", 1'000'000'000, "y"}));
   }
 }
 
 TEST(Ros1Bag, WhatIsNotABagIsAnError) {
-  const auto error = [](const std::string& text) { return read_bag(text).errors.at(0); };
+  const auto error = [](const std::string& text) { return test::read_bag(text).errors.at(0); };
   EXPECT_EQ(error(""), "a.bag: is empty");
   EXPECT_EQ(error("#ROSBAG"), "a.bag: is cut off within its first line");
   EXPECT_THAT(error("joint_states: {}\n"), HasSubstr("is not a ROS 1 bag"));
@@ -268,7 +267,7 @@ TEST(Ros1Bag, WhatTheUsersFunctionsThrowPassesThrough) {
 /// The second chunk of a bag is damaged.
 /// @param lost  messages of that chunk; those of the others are all read
 void expect_loss(const std::string& damaged, std::size_t lost, const std::string& expected_error) {
-  const BagContents read = read_bag(damaged);
+  const BagContents read = test::read_bag(damaged);
   ASSERT_FALSE(read.errors.empty()) << expected_error;
   EXPECT_THAT(read.errors[0], HasSubstr(expected_error));
   EXPECT_THAT(read.warnings, IsEmpty());
@@ -306,7 +305,7 @@ TEST(Ros1Bag, AnIndexThatIsWrongIsNotTrusted) {
     std::string text, wrong = bag;
     detail::append_number(text, place);
     wrong.replace(bag.find("index_pos=") + 10, 8, text);
-    const BagContents read = read_bag(wrong);
+    const BagContents read = test::read_bag(wrong);
     EXPECT_EQ(read.messages, some_messages(50)) << place;
     EXPECT_THAT(read.errors, IsEmpty()) << place;
     EXPECT_EQ(read.warnings.size(), 1u) << place;
@@ -317,7 +316,7 @@ TEST(Ros1Bag, ChunkInfosThatPointElsewhereLoseNoMessage) {
   std::string bag = bag_of(some_messages(50));
   const std::size_t info = bag.rfind("chunk_pos=") + 10;
   bag[info] = static_cast<char>(bag[info] + 3);
-  const BagContents read = read_bag(bag);
+  const BagContents read = test::read_bag(bag);
   EXPECT_EQ(read.messages, some_messages(50));
   EXPECT_FALSE(read.errors.empty());
 }
@@ -328,11 +327,11 @@ TEST(Ros1Bag, IncompleteChunkInfosLoseNoMessage) {
        at = bag.rfind("chunk_pos=", at - 1), ++i) {
     bag.replace(bag.find("count=", at) + 6, 4, 4, '\0');
   }
-  const BagContents all = read_bag(bag);
+  const BagContents all = test::read_bag(bag);
   EXPECT_EQ(all.messages, some_messages(50));
   EXPECT_THAT(all.errors, IsEmpty());
   EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("more topics than its chunk info lists")));
-  EXPECT_THAT(read_bag(bag, {"robot_description"}).warnings, IsEmpty());
+  EXPECT_THAT(test::read_bag(bag, {"robot_description"}).warnings, IsEmpty());
 }
 
 TEST(Ros1Bag, DefinitionsHaveNoMoreBytesThanArePlausible) {
@@ -343,7 +342,7 @@ TEST(Ros1Bag, DefinitionsHaveNoMoreBytesThanArePlausible) {
     data.field("type", "T/A").field("message_definition", std::string(5 << 20, char('a' + i)));
     records += detail::ros1_record(header, data.text()) + of_connection(i, 1, "x");
   }
-  const BagContents read = read_bag(open_bag(records));
+  const BagContents read = test::read_bag(open_bag(records));
   EXPECT_EQ(read.topics.size(), 6u);
   EXPECT_EQ(read.messages.size(), 6u);
   ASSERT_EQ(read.errors.size(), 4u);
@@ -356,7 +355,8 @@ TEST(Ros1Bag, ABombIsAnError) {
     const std::vector<std::byte> packed = detail::pack(std::vector<std::byte>(48 << 20), c);
     const std::string data(reinterpret_cast<const char*>(packed.data()), packed.size());
     for (const std::uint32_t size : {1000U, 1U << 25, 0xffffffffU}) {
-      const BagContents read = read_bag(open_bag(chunk(std::string(to_string(c)), size, data)));
+      const BagContents read =
+          test::read_bag(open_bag(chunk(std::string(to_string(c)), size, data)));
       EXPECT_THAT(read.errors, ElementsAre(HasSubstr("byte 4117: the chunk "))) << size;
     }
   }
@@ -366,7 +366,7 @@ TEST(Ros1Bag, AMissingLibraryIsReportedOnce) {
   for (const Compression c : {Compression::bz2, Compression::lz4}) {
     if (is_available(c)) continue;
     const std::string packed = chunk(std::string(to_string(c)), 100, "12345");
-    EXPECT_THAT(read_bag(open_bag(packed + packed)).errors,
+    EXPECT_THAT(test::read_bag(open_bag(packed + packed)).errors,
                 ElementsAre("a.bag: byte 4117: the chunk " + detail::not_available(c)));
   }
 }
@@ -374,7 +374,7 @@ TEST(Ros1Bag, AMissingLibraryIsReportedOnce) {
 TEST(Ros1Bag, TooManyErrorsEndTheReading) {
   std::string records;
   for (std::uint32_t i = 0; i < 100; ++i) records += of_connection(i, 0, "");
-  const BagContents read = read_bag(open_bag(records));
+  const BagContents read = test::read_bag(open_bag(records));
   ASSERT_EQ(read.errors.size(), 21u);
   EXPECT_THAT(read.errors[20], HasSubstr("more than 20 errors"));
 }
@@ -387,7 +387,7 @@ TEST(Ros1Bag, DamageAnywhereDoesNoHarm) {
       for (const int bits : {0x01, 0x7f, 0xff}) {
         std::string damaged = bag;
         damaged[i] = static_cast<char>(damaged[i] ^ bits);
-        EXPECT_LE(read_bag(damaged).messages.size(), 100u);
+        EXPECT_LE(test::read_bag(damaged).messages.size(), 100u);
       }
     }
   }
@@ -398,12 +398,12 @@ TEST(Ros1Bag, BagsThatTheFuzzerBeginsWithAreRead) {
   std::size_t count = 0;
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
     std::ifstream in(file.path(), std::ios::binary);
-    (void)read_bag(in);
+    (void)test::read_bag(in);
     ++count;
   }
   EXPECT_GE(count, 7u);
   std::ifstream in(folder / "none.bag", std::ios::binary);
-  EXPECT_EQ(read_bag(in).messages, some_messages(7));
+  EXPECT_EQ(test::read_bag(in).messages, some_messages(7));
 }
 
 struct Genuine {
@@ -426,7 +426,7 @@ TEST(Ros1Bag, BagsThatRosRecordedAreReadAsRosReadsThem) {
                              1500000000000000000, 1500000500000000000}}) {
     std::ifstream in(test::data_folder() / "fetch" / g.file, std::ios::binary);
     if (g.file.starts_with("synth") && !is_available(Compression::bz2)) continue;
-    const BagContents read = read_bag(in);
+    const BagContents read = test::read_bag(in);
     EXPECT_THAT(read.errors, IsEmpty()) << g.file;
     EXPECT_THAT(read.warnings, IsEmpty()) << g.file;
     ASSERT_EQ(read.messages.size(), g.count) << g.file;
