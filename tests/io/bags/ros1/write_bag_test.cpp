@@ -16,7 +16,6 @@ namespace {
 
 using test::bag_of;
 using test::compressions_of_ros1;
-using test::read_bag;
 using test::Recorded;
 using test::some_messages;
 using ::testing::HasSubstr;
@@ -26,7 +25,7 @@ TEST(WriteRos1Bag, WhatIsWrittenReadsBackWithEachCompression) {
   const std::vector<Recorded> messages = some_messages(50);
   for (const Compression c : compressions_of_ros1()) {
     for (const std::size_t chunk_bytes : {std::size_t{1}, std::size_t{300}, std::size_t{1} << 20}) {
-      const test::BagContents read = read_bag(bag_of(messages, c, chunk_bytes));
+      const test::BagContents read = test::read_bag(bag_of(messages, c, chunk_bytes));
       EXPECT_THAT(read.errors, IsEmpty()) << to_string(c);
       EXPECT_THAT(read.warnings, IsEmpty()) << to_string(c);
       EXPECT_EQ(read.messages, messages) << to_string(c) << ", " << chunk_bytes;
@@ -35,7 +34,7 @@ TEST(WriteRos1Bag, WhatIsWrittenReadsBackWithEachCompression) {
 }
 
 TEST(WriteRos1Bag, TopicsReadBackWithoutTheirSlash) {
-  const test::BagContents read = read_bag(bag_of(some_messages(3)));
+  const test::BagContents read = test::read_bag(bag_of(some_messages(3)));
   ASSERT_EQ(read.topics.size(), 2u);
   EXPECT_EQ(read.topics[0].name, "robot_description");
   EXPECT_EQ(read.topics[1].name, "joint_states");
@@ -53,7 +52,7 @@ TEST(WriteRos1Bag, LargeMessagesAndLargeBagsReadBack) {
   messages.push_back({"joint_states", 40, std::string(3'000'000, 'z')});
   messages.push_back({"joint_states", 41, ""});
   for (const Compression c : compressions_of_ros1()) {
-    const auto read = read_bag(bag_of(messages, c, Ros1BagWriter::kChunkBytes));
+    const auto read = test::read_bag(bag_of(messages, c, Ros1BagWriter::kChunkBytes));
     EXPECT_THAT(read.errors, IsEmpty());
     EXPECT_TRUE(read.messages == messages) << to_string(c);
   }
@@ -65,7 +64,7 @@ TEST(WriteRos1Bag, ABagWithoutMessagesIsWhole) {
                                    Ros1BagWriter(out).close();
                                    return out.str();
                                  }()}) {
-    const test::BagContents read = read_bag(bag);
+    const test::BagContents read = test::read_bag(bag);
     EXPECT_THAT(read.errors, IsEmpty());
     EXPECT_THAT(read.warnings, IsEmpty());
     EXPECT_THAT(read.messages, IsEmpty());
@@ -91,7 +90,7 @@ TEST(WriteRos1Bag, WhatStandsInFrontOfItStays) {
   bag.write(bag.add_topic(test::kJoints), 5, {});
   bag.close();
   EXPECT_EQ(out.str().substr(0, 13), "before#ROSBAG");
-  EXPECT_EQ(read_bag(out.str().substr(6)).messages.size(), 1u);
+  EXPECT_EQ(test::read_bag(out.str().substr(6)).messages.size(), 1u);
 }
 
 TEST(WriteRos1Bag, WrongArgumentsAreRefused) {
@@ -172,7 +171,7 @@ TEST_F(Rosbag, WritesWhatIsRead) {
     const test::Outcome copy = run("/usr/bin/python3 write.py a.bag " + std::string(to_string(c)));
     if (const std::string why = absent(copy); !why.empty()) GTEST_SKIP() << why;
     ASSERT_EQ(copy.code, 0) << copy.err;
-    const test::BagContents all = read_bag(read("copy.bag"));
+    const test::BagContents all = test::read_bag(read("copy.bag"));
     EXPECT_THAT(all.errors, IsEmpty()) << to_string(c);
     EXPECT_THAT(all.warnings, IsEmpty()) << to_string(c);
     EXPECT_EQ(all.messages, messages) << to_string(c);
