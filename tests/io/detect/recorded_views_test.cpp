@@ -115,7 +115,7 @@ TEST_F(RecordedViewsTest, WarnsOfImagesThatAreNotTheFullOnes) {
     EXPECT_EQ(open().standstills(), 3u);
     ASSERT_EQ(diagnostics_.warnings.size(), 1u);
     EXPECT_THAT(diagnostics_.warnings[0],
-                AllOf(HasSubstr("/cam/camera_info"), HasSubstr("binning 2 x 2")));
+                AllOf(HasSubstr("topic 'cam/camera_info'"), HasSubstr("binning 2 x 2")));
     diagnostics_ = {};
   }
 }

@@ -73,7 +73,7 @@ TEST_F(UrdfUnits, LimitsInDegreesAreADoubt) {
 TEST_F(UrdfUnits, LimitsTheWrongWayRoundAreNamed) {
   replace(urdf, "lower=\"-1.2\" upper=\"1.4\"", "lower=\"1.4\" upper=\"-1.2\"");
   EXPECT_THAT(found().warnings,
-              ElementsAre(AllOf(HasSubstr("arm.urdf:30: the limits of joint"),
+              ElementsAre(AllOf(HasSubstr("arm.urdf:11: the limits of joint 'lift' are not used"),
                                 HasSubstr("lower 1.4 is above upper -1.2; are they exchanged?"))));
 }
 
