@@ -20,14 +20,14 @@
 namespace kinecal {
 namespace {
 
-using testing::facing;
+using test::facing;
 
 /// A picture with ordinary blur, noise and light.
-View view_of(const std::vector<testing::Target>& targets) {
+View view_of(const std::vector<test::Target>& targets) {
   View view;
   view.frame = "optical";
-  view.camera = testing::camera_640();
-  view.image = testing::picture(*view.camera, targets, {.blur = 0.8, .noise = 3.0, .shade = 0.4});
+  view.camera = test::camera_640();
+  view.image = test::picture(*view.camera, targets, {.blur = 0.8, .noise = 3.0, .shade = 0.4});
   return view;
 }
 
@@ -40,7 +40,7 @@ void check_found(const Found& found, std::size_t corners) {
 
 View checkerboard_view() {
   return view_of(
-      {{testing::checkerboard(7, 6, 0.03), facing({0, 0, 0.6}, 0.3, 0.3, 0.2, {0.09, 0.075, 0})}});
+      {{test::checkerboard(7, 6, 0.03), facing({0, 0, 0.6}, 0.3, 0.3, 0.2, {0.09, 0.075, 0})}});
 }
 
 void BM_checkerboard_control(benchmark::State& state) {
@@ -68,7 +68,7 @@ BENCHMARK(BM_checkerboard)->Unit(benchmark::kMillisecond);
 #ifdef KINECAL_HAVE_APRILTAG
 
 View tags_view() {
-  return view_of({{testing::tag_grid(6, 6),
+  return view_of({{test::tag_grid(6, 6),
                    facing({0, 0, 0.55}, std::numbers::pi + 0.2, 0.2, 0.1, {0.19, 0.19, 0})}});
 }
 
@@ -90,7 +90,7 @@ void BM_april_tags(benchmark::State& state) {
   const View view = tags_view();
   AprilTagSettings settings;
   settings.columns = settings.rows = 6;
-  settings.size = testing::kTagSize;
+  settings.size = test::kTagSize;
   settings.decimate = static_cast<double>(state.range(0));
   const AprilTagFinder finder(settings);
   check_found(finder.find(view), 144);
