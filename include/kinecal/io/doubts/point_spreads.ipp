@@ -1,5 +1,5 @@
 // How points spread about their center: a sensor that does not move against the arm that it measures.
-// By medians, so that a few points far away do not decide.
+// About the median and without the farthest tenth, so that a few points far away do not decide.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -35,8 +36,12 @@ KINECAL_INLINE double spread_of(std::span<const Vector3<double>> points) {
     center(axis) = median_of(numbers);
   }
   std::transform(points.begin(), points.end(), numbers.begin(),
-                 [&](const auto& point) { return (point - center).norm(); });
-  return median_of(std::move(numbers));
+                 [&](const auto& point) { return (point - center).squaredNorm(); });
+  std::sort(numbers.begin(), numbers.end());
+  const std::size_t near = numbers.size() - (numbers.size() + 9) / 10;
+  const double sum =
+      std::accumulate(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(near), 0.0);
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, near)));
 }
 
 /// Keeps the points of the samples in which the other model has some, too.
@@ -97,7 +102,7 @@ inline void compare_spreads(const RecordedPoints& fixed, const RecordedPoints& a
   if (std::abs(of_fixed - of_arm) <= least || (factor > 1.0 / 3.0 && factor < 3.0)) return;
   const SourceLocation place = place_of(samples, fixed.samples.front());
   const std::string text = fmt::format(
-      "points of '{}' move over {:.3g} m (median distance from their center), those of sensor '{}' "
+      "points of '{}' move over {:.3g} m (rms about their center), those of sensor '{}' "
       "over {:.3g} m",
       arm.model.name, of_arm, fixed.model.name, of_fixed);
   const std::string unit = unit_of_factor(factor);
