@@ -37,7 +37,7 @@ struct RecordedPoints {
 [[nodiscard]] std::vector<RecordedPoints> recorded_points(const Config& config, const Robot& robot,
                                                           std::span<const Sample> samples);
 
-/// Root of the mean squared distance of points to their mean, metres.
+/// Root of the mean squared distance of points to their center, without the farthest tenth, metres.
 [[nodiscard]] double spread_of(std::span<const Vector3<double>> points);
 
 /// Sum of the lengths of a chain's links and the travel of its sliding joints, metres.
