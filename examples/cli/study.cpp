@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <thread>
 
@@ -195,6 +196,14 @@ StudyResult result_of(const StudyOptions& options, const StudyInput& input,
     result.before.push_back(error_before(input.setup, robots.back().truth));
   }
   result.groups = summarize(input.setup, robots, trials, result.limit);
+  const bool ruined = std::any_of(result.groups.begin(), result.groups.end(),
+                                  [](const StudyGroup& group) { return group.ruined > 0; });
+  if (systematic_error(result) > result.limit && !ruined) {
+    constexpr double kNothing = 1e-4;  // metres
+    std::vector<int> all(input.setup.samples.size());
+    std::iota(all.begin(), all.end(), 0);
+    result.remaining = remaining_error(input, all, kNothing);
+  }
   constexpr int kPredicted = 20;  // robots; nobody reads more
   for (StudyGroup& group : result.groups) {
     if (group.robot >= kPredicted) break;

@@ -6,13 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "kinecal/report/charts/spread.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
-#include "remaining_error.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {
@@ -175,8 +173,6 @@ std::string sums(const StudyInput& input, const StudyResult& result) {
   }
   for (const double of : result.before) before += of * of;
   const std::string unit = unit_of_study(input);
-  double systematic = 0.0;
-  for (const StudyGroup& group : result.groups) systematic = std::max(systematic, group.systematic);
   text += fmt::format("{} of {} failed: mean re-projection error above {} {}, or not converged\n",
                       failed, counted(static_cast<std::size_t>(trials), "calibration"),
                       in_reading_unit(result.limit, unit), reading_unit(unit));
@@ -185,14 +181,10 @@ std::string sums(const StudyInput& input, const StudyResult& result) {
       input.setup.frame.name(), input.setup.in.name(),
       1e3 * std::sqrt(before / std::max(1.0, static_cast<double>(result.before.size()))),
       1e3 * std::sqrt(after / std::max(1, trials)), 1e3 * most);
-  if (systematic > result.limit && ruined == 0) {
-    constexpr double kNothing = 1e-4;  // metres
-    std::vector<int> all(input.setup.samples.size());
-    std::iota(all.begin(), all.end(), 0);
-    const RemainingError remaining = remaining_error(input, all, kNothing);
-    text += fmt::format("Even without noise {} {} remain\n", in_reading_unit(systematic, unit),
-                        reading_unit(unit));
-    if (remaining.robots > 0) text += remaining_text(remaining);
+  if (result.remaining) {
+    text += fmt::format("Even without noise {} {} remain\n",
+                        in_reading_unit(systematic_error(result), unit), reading_unit(unit));
+    if (result.remaining->robots > 0) text += remaining_text(*result.remaining);
   }
   if (ruined > 0) {
     text += fmt::format("{} ruined, {} left out\n",
@@ -280,6 +272,12 @@ double variance_ratio(const StudyResult& result, int robot) {
   const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
   std::nth_element(ratios.begin(), middle, ratios.end());
   return *middle;
+}
+
+double systematic_error(const StudyResult& result) {
+  double largest = 0.0;
+  for (const StudyGroup& group : result.groups) largest = std::max(largest, group.systematic);
+  return largest;
 }
 
 StudyText study_texts(const StudyInput& input, const StudyResult& result) {

@@ -2,22 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "kinecal/study/study_summary.hpp"
+#include "remaining_error.hpp"
 #include "study_input.hpp"
 
 namespace kinecal::cli {
 
 /// What a study found.
 struct StudyResult {
-  std::vector<StudyGroup> groups;  ///< by robot, then by number of poses
-  std::vector<double> before;      ///< error of each robot by the URDF, metres
-  std::size_t jobs = 0;            ///< that were to be done
-  std::size_t done = 0;            ///< that are done
-  double limit = 0.0;              ///< of the mean re-projection error
-  double solves_per_second = 0.0;  ///< and core
+  std::vector<StudyGroup> groups;                ///< by robot, then by number of poses
+  std::vector<double> before;                    ///< error of each robot by the URDF, metres
+  std::size_t jobs = 0;                          ///< that were to be done
+  std::size_t done = 0;                          ///< that are done
+  double limit = 0.0;                            ///< of the mean re-projection error
+  double solves_per_second = 0.0;                ///< and core
+  std::optional<RemainingError> remaining = {};  ///< if more than the limit remains without noise
 };
 
 /// What a study found, in words.
@@ -36,6 +39,9 @@ struct StudyText {
 
 /// The same as JSON.
 [[nodiscard]] std::string study_json(const StudyInput& input, const StudyResult& result);
+
+/// Largest mean re-projection error that remains without noise, of all groups.
+[[nodiscard]] double systematic_error(const StudyResult& result);
 
 /// Unit of the residual of the first error block that has samples: "m" or "px".
 [[nodiscard]] std::string unit_of_study(const StudyInput& input);
