@@ -22,14 +22,7 @@ namespace {
 
 using test::facing;
 
-/// A picture with ordinary blur, noise and light.
-View view_of(const std::vector<test::Target>& targets) {
-  View view;
-  view.frame = "optical";
-  view.camera = test::camera_640();
-  view.image = test::picture(*view.camera, targets, {.blur = 0.8, .noise = 3.0, .shade = 0.4});
-  return view;
-}
+constexpr test::Exposure kOrdinary{.blur = 0.8, .noise = 3.0, .shade = 0.4};
 
 void check_found(const Found& found, std::size_t corners) {
   if (found && found.observations[0].features.size() == corners) return;
@@ -39,8 +32,9 @@ void check_found(const Found& found, std::size_t corners) {
 #ifdef KINECAL_HAVE_OPENCV
 
 View checkerboard_view() {
-  return view_of(
-      {{test::checkerboard(7, 6, 0.03), facing({0, 0, 0.6}, 0.3, 0.3, 0.2, {0.09, 0.075, 0})}});
+  return test::view_of(
+      {{test::checkerboard(7, 6, 0.03), facing({0, 0, 0.6}, 0.3, 0.3, 0.2, {0.09, 0.075, 0})}},
+      kOrdinary);
 }
 
 void BM_checkerboard_control(benchmark::State& state) {
@@ -68,8 +62,9 @@ BENCHMARK(BM_checkerboard)->Unit(benchmark::kMillisecond);
 #ifdef KINECAL_HAVE_APRILTAG
 
 View tags_view() {
-  return view_of({{test::tag_grid(6, 6),
-                   facing({0, 0, 0.55}, std::numbers::pi + 0.2, 0.2, 0.1, {0.19, 0.19, 0})}});
+  return test::view_of({{test::tag_grid(6, 6),
+                         facing({0, 0, 0.55}, std::numbers::pi + 0.2, 0.2, 0.1, {0.19, 0.19, 0})}},
+                       kOrdinary);
 }
 
 void BM_april_tags_control(benchmark::State& state) {

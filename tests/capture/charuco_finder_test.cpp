@@ -15,12 +15,8 @@
 namespace kinecal {
 namespace {
 
-using kinecal::test::camera_640;
-using kinecal::test::Exposure;
 using kinecal::test::facing;
 using kinecal::test::mean_error;
-using kinecal::test::picture;
-using kinecal::test::pixel_of;
 using kinecal::test::Print;
 using kinecal::test::Target;
 using kinecal::test::view_of;

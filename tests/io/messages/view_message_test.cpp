@@ -144,6 +144,7 @@ TEST(ViewMessage, RunsOfDepthAreRead) {
       rvl("32FC1; compressedDepth rvl", 2, 2, {0x12'8A'F3'51, 0}, 1000.0F, 0.0F);
   EXPECT_FLOAT_EQ(inverse(1, 0), 1.0F);
   EXPECT_FLOAT_EQ(inverse(0, 1), 1000.0F / 997.0F);
+  EXPECT_TRUE(std::isnan(rvl(of, 1, 1, {0x01000000})(0, 0))) << "a depth of zero is none";
   EXPECT_THAT(test::error_of([&] { (void)rvl(of, 2, 2, {0x128AF351}); }), testing::Not(""));
   EXPECT_THAT(test::error_of([&] { (void)rvl(of, 1, 1, {0x12000000}); }),
               HasSubstr("does not fit"));

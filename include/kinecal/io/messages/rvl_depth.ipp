@@ -54,11 +54,10 @@ class RvlNumbers {
 /// @returns       metres of 16-bit millimetres; pixels without depth are not numbers
 /// @throws std::runtime_error  if it is truncated or does not fit its size
 [[nodiscard]] inline DepthImage decode_rvl(std::string_view stream) {
-  constexpr std::uint32_t kMostSide = 1U << 14U;
   constexpr float kMillimetre = 1e-3F;
   ByteReader bytes(as_bytes(stream));
   const auto width = bytes.number<std::uint32_t>(), height = bytes.number<std::uint32_t>();
-  if (width > kMostSide || height > kMostSide) {
+  if (std::uint64_t{width} * height > kMostPixels) {
     throw std::runtime_error("compressed depth has " + std::to_string(width) + " x " +
                              std::to_string(height) + " pixels");
   }
@@ -75,7 +74,8 @@ class RvlNumbers {
     for (std::size_t end = at + with; at < end; ++at) {
       const std::uint32_t difference = numbers.next();
       previous += (difference >> 1U) ^ (0U - (difference & 1U));
-      depth.pixels[at] = static_cast<float>(static_cast<std::uint16_t>(previous)) * kMillimetre;
+      const auto z = static_cast<std::uint16_t>(previous);
+      depth.pixels[at] = z > 0 ? static_cast<float>(z) * kMillimetre : no_point().z();
     }
   }
   return depth;
