@@ -183,20 +183,24 @@ std::unique_ptr<StudyInput> read_study(const StudyFiles& files, int poses) {
   if (!files.config.empty()) input->config = read_config(files.config, diagnostics);
   print_or_throw(diagnostics);
   const bool has_config = !files.config.empty();
+  Diagnostics of_scene;
   if (files.samples.empty() || !files.scene.empty()) {
     input->plan = read_simulation(input->robot, files.scene, files.target,
-                                  static_cast<std::uint64_t>(files.seed), diagnostics,
+                                  static_cast<std::uint64_t>(files.seed), of_scene,
                                   has_config ? &input->config : nullptr);
   }
-  if (!has_config && files.samples.empty()) {
-    input->config = parse_config(input->plan.config, "first configuration", diagnostics);
-  } else if (!has_config) {
-    diagnostics.error({"--config", 0}, "is required with samples");
+  if (!has_config && !files.samples.empty()) {
+    of_scene.error({"--config", 0}, "is required with samples");
   }
-  if (input->config.steps.empty() && has_config) {
-    diagnostics.error({files.config, 0}, "has no steps");
+  if (has_config && input->config.steps.empty()) {
+    of_scene.error({files.config, 0}, "has no steps");
   }
-  print_or_throw(diagnostics);
+  print_or_throw(of_scene);
+  if (!has_config) {
+    Diagnostics of_first;
+    input->config = parse_config(input->plan.config, "first configuration", of_first);
+    print_or_throw(of_first);
+  }
   ParameterTable places;
   if (files.samples.empty()) {
     places = take_poses(files, poses, *input);

@@ -188,6 +188,16 @@ TEST_F(Study, PosesInWhichNothingIsSeenAreNamed) {
   EXPECT_THAT(outcome.err, HasSubstr("the camera sees the target in none of the poses"));
 }
 
+TEST_F(Study, AWrongSceneIsTheOnlyError) {
+  write("wrong.yaml", "errors: {joint: 3}\n");
+  const test::Outcome outcome =
+      run(KINECAL_PROGRAM " study --scene wrong.yaml --urdf " + kFetchFolder + "fetch.urdf");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.err,
+            "error: wrong.yaml:1: errors: joint is 3, not between 0 and 1 (radians, metres, or a "
+            "share)\n");
+}
+
 TEST_F(Study, SelectPosesIsBetterThanRandomSetsAndWritesPoses) {
   const test::Outcome outcome =
       call("select-poses", "--candidates 30 --count 12 --random 50 --simulate 5 -o few.yaml");
