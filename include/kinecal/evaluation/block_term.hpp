@@ -131,10 +131,10 @@ class BlockTerm : public Term<S> {
                                         const Twists& twists, BatchRows<S>& out,
                                         S* jacobian) const {
     if constexpr (kMayBeDifference) {
-      for (std::size_t i = run.first; i < run.end; ++i) {
-        store(i, block_(*views[0].values(i), *views[1].values(i)), Block::weight(views, i), out);
-      }
-      write_differences(views, run, twists, jacobian);
+      write_differences(views, run, twists, jacobian,
+                        [&](std::size_t i, const Vector3<S>& a, const Vector3<S>& b) {
+                          store(i, block_(a, b), Block::weight(views, i), out);
+                        });
     }
   }
 

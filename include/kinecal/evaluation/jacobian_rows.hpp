@@ -34,11 +34,17 @@ void write_rows(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, S* 
 
 /// Writes the Jacobian of r = p_a - p_b for the features of a run: its columns are velocities of the
 /// points.
-/// @param out  (3 features x columns), row-major
-template <class S>
+/// @param out    (3 features x columns), row-major
+/// @param visit  callable (feature, p_a, p_b), called for each feature
+template <class S, class Visit>
 void write_differences(const TermViews<S>& views, const FeatureRun& run,
-                       const std::array<BodyTwists<S>, 2>& twists, S* out) {
+                       const std::array<BodyTwists<S>, 2>& twists, S* out, Visit&& visit) {
+  // Copies: the compiler would read them again after each number that is written.
+  const BodyTwists<S> of_a = twists[0], of_b = twists[1];
   const std::size_t width = run.columns.size();
+  const std::size_t own_a = views[0].own().free.size(), own_b = views[1].own().free.size();
+  const Vector3<S>*points_a = views[0].values(0), *points_b = views[1].values(0);
+  const Vector3<S>*changes_a = views[0].changes(run.first), *changes_b = views[1].changes(run.first);
   const auto write = [&out, width](const Vector3<S>& v) {
     out[0] = v.x();
     out[width] = v.y();
@@ -46,16 +52,15 @@ void write_differences(const TermViews<S>& views, const FeatureRun& run,
     ++out;
   };
   const auto opposite = [](const Vector3<S>& v) { return Vector3<S>(-v.x(), -v.y(), -v.z()); };
-  const std::size_t own_a = views[0].own().free.size(), own_b = views[1].own().free.size();
   for (std::size_t i = run.first; i < run.end; ++i, out += 2 * width) {
-    const Vector3<S>*change_a = views[0].changes(i), *change_b = views[1].changes(i);
-    for (std::size_t k = 0; k < own_a; ++k) write(change_a[k]);
-    for (std::size_t k = 0; k < own_b; ++k) write(opposite(change_b[k]));
-    const Vector3<S> a = *views[0].values(i), b = *views[1].values(i);
-    for (const Twist<S>& twist : twists[0].rotational) write(twist.velocity(a));
-    for (const Twist<S>& twist : twists[1].rotational) write(twist.opposite_velocity(b));
-    for (const Vector3<S>& v : twists[0].translational) write(v);
-    for (const Vector3<S>& v : twists[1].translational) write(opposite(v));
+    const Vector3<S> a = points_a[i], b = points_b[i];
+    visit(i, a, b);
+    for (std::size_t k = 0; k < own_a; ++k) write(*changes_a++);
+    for (std::size_t k = 0; k < own_b; ++k) write(opposite(*changes_b++));
+    for (const Twist<S>& twist : of_a.rotational) write(twist.velocity(a));
+    for (const Twist<S>& twist : of_b.rotational) write(twist.opposite_velocity(b));
+    for (const Vector3<S>& v : of_a.translational) write(v);
+    for (const Vector3<S>& v : of_b.translational) write(opposite(v));
   }
 }
 

@@ -38,12 +38,12 @@ class SensorCode {
   /// @param chosen   the free parameters to differentiate by
   /// @param values   out: num_values() vectors of each feature
   /// @param changes  out: num_variables() vectors of each chosen parameter of each feature
-  virtual void place(const BatchObservation<S>& seen, std::span<const Pose<S>> poses,
+  virtual void place(BatchObservation<S> seen, std::span<const Pose<S>> poses,
                      std::span<const double> own, std::span<const int> chosen, Vector3<S>* values,
                      Vector3<S>* changes) const = 0;
 
   /// Predicts where a camera sees a point of its frame; metres.
-  virtual void predict(const BatchObservation<S>& seen, const Vector3<S>& p,
+  virtual void predict(BatchObservation<S> seen, const Vector3<S>& p,
                        std::span<const double> own, std::span<const int> chosen, bool derivatives,
                        PredictedPixel<S>& out) const = 0;
 };
@@ -71,7 +71,7 @@ class SensorCodeOf final : public SensorCode<S> {
   [[nodiscard]] std::size_t num_variables() const override { return Vectors::kVariables.size(); }
   [[nodiscard]] bool measures() const override { return kParametersOf<M> > 0; }
 
-  KINECAL_FLATTEN void place(const BatchObservation<S>& seen, std::span<const Pose<S>> poses,
+  KINECAL_FLATTEN void place(BatchObservation<S> seen, std::span<const Pose<S>> poses,
                              std::span<const double> own, std::span<const int> chosen,
                              Vector3<S>* values, Vector3<S>* changes) const override {
     if constexpr (kGivesDerivatives) {
@@ -100,7 +100,7 @@ class SensorCodeOf final : public SensorCode<S> {
     }
   }
 
-  void predict(const BatchObservation<S>& seen, const Vector3<S>& p, std::span<const double> own,
+  void predict(BatchObservation<S> seen, const Vector3<S>& p, std::span<const double> own,
                std::span<const int> chosen, bool derivatives,
                PredictedPixel<S>& out) const override {
     if constexpr (PredictingSensor<M>) {
@@ -125,16 +125,16 @@ class SensorCodeOf final : public SensorCode<S> {
   static constexpr bool kGivesDerivatives = requires { typename M::template Corrected<S>; };
   using Vectors = VectorsOf<placed_quantity<M>().value_or(Quantity::point)>;
 
-  [[nodiscard]] static Vector3<S> point(const BatchObservation<S>& seen, std::size_t i) {
+  [[nodiscard]] static Vector3<S> point(BatchObservation<S> seen, std::size_t i) {
     const S* m = seen.measured(i);
     return {m[0], m[1], m[2]};
   }
-  [[nodiscard]] static std::array<S, kSettingsOf<M>> settings(const BatchObservation<S>& seen) {
+  [[nodiscard]] static std::array<S, kSettingsOf<M>> settings(BatchObservation<S> seen) {
     std::array<S, kSettingsOf<M>> all;
     std::copy_n(seen.settings(), kSettingsOf<M>, all.begin());
     return all;
   }
-  [[nodiscard]] static Measurement<M, S> measurement(const BatchObservation<S>& seen,
+  [[nodiscard]] static Measurement<M, S> measurement(BatchObservation<S> seen,
                                                      std::size_t i) {
     Measurement<M, S> m{.point = point(seen, i), .settings = settings(seen)};
     if constexpr (kIsOriented<M>) std::copy_n(seen.measured(i) + 3, 9, m.rotation.data());

@@ -87,7 +87,7 @@ class SensorView {
              const SensorState& state, bool places, bool derivatives);
 
   /// Evaluates the sensor for the next batch of samples.
-  void update(const BatchObservation<S>& seen);
+  void update(BatchObservation<S> seen);
 
  private:
   void start_chain(std::size_t c);
@@ -135,7 +135,7 @@ void SensorView<S>::start(const MountedSensor& sensor, const SensorEvaluation<S>
 }
 
 template <class S>
-void SensorView<S>::update(const BatchObservation<S>& seen) {
+void SensorView<S>::update(BatchObservation<S> seen) {
   observation_ = seen;
   for (std::size_t c = 0, end = poses_.size(); c < end; ++c) {
     if (!seen.has_joints(c)) continue;
