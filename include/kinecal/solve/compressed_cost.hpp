@@ -18,6 +18,7 @@
 #include <ceres/cost_function.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
@@ -51,11 +52,16 @@ class CompressedCost final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
+  /// The decrease of the cost that a Gauss-Newton step promises from where the Jacobian was last
+  /// evaluated: half the squared Newton decrement.
+  [[nodiscard]] double promised_decrease() const { return promised_decrease_; }
+
  private:
   // Ceres evaluates one cost function on one thread at a time.
   AnyEvaluator& evaluator_;
   const FreeSet& free_;
   mutable Eigen::VectorXd values_;
+  mutable double promised_decrease_ = std::numeric_limits<double>::infinity();
   Losses losses_;
   Blocks blocks_;
 };

@@ -74,6 +74,7 @@ KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, do
   }
   const EquivalentResidual equivalent(normal);
   r = equivalent.residual;
+  promised_decrease_ = 0.5 * r.head(free_.size()).squaredNorm();
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (jacobians[b] == nullptr) continue;
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

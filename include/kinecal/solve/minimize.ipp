@@ -49,14 +49,16 @@ inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const So
     problem_options.evaluation_callback = &stack.emplace(problem, free, values, x.data(), losses);
   }
   ceres::Problem ceres_problem(problem_options);
+  const CompressedCost* compressed = nullptr;
   if (stack) {
     stack->add_to(ceres_problem, x.data());
   } else {
-    ceres_problem.AddResidualBlock(new detail::CompressedCost(evaluator, values, losses), nullptr,
-                                   x.data());
+    auto* cost = new CompressedCost(evaluator, values, losses);
+    ceres_problem.AddResidualBlock(cost, nullptr, x.data());
+    compressed = cost;
   }
   set_bounds(ceres_problem, problem.table(), free, x.data());
-  take_steps(ceres_problem, x, options, minimum);
+  take_steps(ceres_problem, x, options, compressed, minimum);
   if (!minimum.usable) return;
   for (int c = 0; c < free.size(); ++c) {
     values(free.parameters()[static_cast<std::size_t>(c)]) = x[static_cast<std::size_t>(c)];

@@ -9,20 +9,27 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/solve.hpp"
 
 namespace kinecal::detail {
 
-class ProgressCallback final : public ceres::IterationCallback {
+/// Reports the progress, and stops where even an undamped step promises nothing.
+class StepCallback final : public ceres::IterationCallback {
  public:
-  explicit ProgressCallback(const SolveOptions& options) : options_(options) {}
+  /// @param cost  of the problem, if it has just this one
+  StepCallback(const SolveOptions& options, const CompressedCost* cost)
+      : options_(options), cost_(cost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.progress) options_.progress(summary.iteration, summary.cost);
-    return ceres::SOLVER_CONTINUE;
+    const bool promises = cost_ == nullptr || cost_->promised_decrease() >
+                                                  options_.function_tolerance * summary.cost;
+    return promises ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
 
  private:
   const SolveOptions& options_;
+  const CompressedCost* cost_;
 };
 
 [[nodiscard]] inline ceres::Solver::Options ceres_options(const SolveOptions& options) {
@@ -47,7 +54,7 @@ enum class Steps {
 /// steps follow a valley in a tenth of the iterations that bold ones need, which jump from side to side;
 /// but where many directions are barely observable they creep, and may stop short of the minimum.  So
 /// careful steps come first, and bold ones have the last word: from where careful ones ended, or from
-/// the start if they did not.
+/// the start if they did not.  Nothing is left to say where even an undamped step promises nothing.
 inline void set_steps(Steps steps, ceres::Solver::Options& options) {
   constexpr double kCareful = 1e4, kBold = 1e6;
   options.use_nonmonotonic_steps = steps == Steps::bold;
@@ -57,6 +64,7 @@ inline void set_steps(Steps steps, ceres::Solver::Options& options) {
 /// The outcome of several runs of Ceres.
 struct Minimum {
   bool usable = false, converged = false;
+  bool promises = true;            ///< false: at the end an undamped step promises no decrease
   std::string message;             ///< of the last run
   double cost = 0.0;               ///< at the end of the last run
   std::vector<double> costs = {};  ///< of each iteration of all runs
@@ -68,8 +76,10 @@ struct Minimum {
 /// Adds a run to the outcome.
 inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   minimum.usable = summary.IsSolutionUsable();
-  minimum.converged = summary.termination_type == ceres::CONVERGENCE;
-  minimum.message = summary.message;
+  minimum.promises = summary.termination_type != ceres::USER_SUCCESS;
+  minimum.converged = summary.termination_type == ceres::CONVERGENCE || !minimum.promises;
+  minimum.message = minimum.promises ? summary.message
+                                     : "a Gauss-Newton step promises no decrease of the cost";
   minimum.cost = summary.final_cost;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   for (const ceres::IterationSummary& iteration : summary.iterations) {
@@ -81,12 +91,13 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
 
 /// Runs Ceres from x to a minimum.
 /// @param x        in: the start; out: where it ended
+/// @param cost     of the problem, if it has just this one
 /// @param minimum  this run is added to it
 inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const SolveOptions& options,
-                       Minimum& minimum) {
+                       const CompressedCost* cost, Minimum& minimum) {
   ceres::Solver::Options solver = ceres_options(options);
-  ProgressCallback progress(options);
-  solver.callbacks.push_back(&progress);
+  StepCallback callback(options, cost);
+  solver.callbacks.push_back(&callback);
   const std::vector<double> start = x;
   const std::size_t costs = minimum.costs.size();
   constexpr int kMostCareful = 20;  // iterations
@@ -103,7 +114,7 @@ inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const So
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     add_run(summary, minimum);
-    if (!minimum.usable) return;
+    if (!minimum.usable || !minimum.promises) return;
   }
 }
 
