@@ -25,8 +25,8 @@ struct WalkStart {
 template <class S>
 struct CompiledWalk {
   /// Walks from the first moving joint on and sets the tip's pose.
-  /// @param joints  states of all joints
-  using Walk = void (*)(const WalkStart<S>&, JointStates<S> joints, Pose<S>& tip);
+  /// @param joints  numbers of JointStates
+  using Walk = void (*)(const WalkStart<S>&, const S* joints, Pose<S>& tip);
 
   std::string tip;                    ///< of the chain
   std::vector<JointIndices> columns;  ///< for which with_twists is compiled
@@ -47,14 +47,13 @@ template <class S, class C, class F>
 struct WalkOf {
   static constexpr bool kModels = have_models(kColumnsOf<C, F>);
 
-  KINECAL_FLATTEN static void pose_only(const WalkStart<S>& start, JointStates<S> joints,
-                                        Pose<S>& tip) {
+  KINECAL_FLATTEN static void pose_only(const WalkStart<S>& start, const S* joints, Pose<S>& tip) {
     PoseWalker<S> walker;
     copy_numbers(start.pose, walker.pose);
     go_on(start, joints, walker);
     copy_numbers(walker.pose, tip);
   }
-  KINECAL_FLATTEN static void with_twists(const WalkStart<S>& start, JointStates<S> joints,
+  KINECAL_FLATTEN static void with_twists(const WalkStart<S>& start, const S* joints,
                                           Pose<S>& tip) {
     TwistWalker<S, StaticColumns<C, F>> walker({}, start.turn, start.shift, start.pose);
     go_on(start, joints, walker);
@@ -63,8 +62,9 @@ struct WalkOf {
 
  private:
   template <class W>
-  static void go_on(const WalkStart<S>& start, JointStates<S> joints, W& walker) {
-    walk_on<kModels>(C{}, C::kFirstMotion, joints, std::span(start.corrections, C::kSize), walker);
+  static void go_on(const WalkStart<S>& start, const S* joints, W& walker) {
+    walk_on<kModels>(C{}, C::kFirstMotion, JointStates<S, kModels>{joints},
+                     std::span(start.corrections, C::kSize), walker);
   }
 };
 

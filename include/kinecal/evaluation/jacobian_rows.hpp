@@ -44,7 +44,8 @@ void write_differences(const TermViews<S>& views, const FeatureRun& run,
   const std::size_t width = run.columns.size();
   const std::size_t own_a = views[0].own().free.size(), own_b = views[1].own().free.size();
   const Vector3<S>*points_a = views[0].values(0), *points_b = views[1].values(0);
-  const Vector3<S>*changes_a = views[0].changes(run.first), *changes_b = views[1].changes(run.first);
+  const Vector3<S>*changes_a = views[0].changes(run.first),
+        *changes_b = views[1].changes(run.first);
   const auto write = [&out, width](const Vector3<S>& v) {
     out[0] = v.x();
     out[width] = v.y();

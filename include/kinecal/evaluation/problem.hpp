@@ -32,9 +32,7 @@ class BasicProblem final : public AnyProblem {
     }
   }
   /// The same, for a sensor of the built-in types.
-  void add_built_in(const BuiltInSensor& sensor, const Mount& mount) override {
-    std::visit([&](const auto& of_type) { add_sensor(of_type, mount); }, sensor);
-  }
+  void add_built_in(const BuiltInSensor& sensor, const Mount& mount) override;
 
   /// Adds an error block between sensors that have been added.
   /// @throws  as AnyProblem::add_built_in()
@@ -50,9 +48,7 @@ class BasicProblem final : public AnyProblem {
   }
   /// The same, for a block of the built-in types.
   void add_built_in(const std::string& name, const BuiltInBlock& block,
-                    const std::vector<std::string>& sensors, const TermOptions& options) override {
-    std::visit([&](const auto& of_type) { add_block(name, of_type, sensors, options); }, block);
-  }
+                    const std::vector<std::string>& sensors, const TermOptions& options) override;
 
   /// The terms of the error blocks, in the order in which blocks were added.
   [[nodiscard]] const std::vector<std::unique_ptr<detail::Term<S>>>& terms() const {
@@ -72,9 +68,7 @@ class BasicProblem final : public AnyProblem {
   [[nodiscard]] const std::vector<detail::Batches<S>>& batches() const { return batches_; }
 
   [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
-                                                        int threads = 1) const override {
-    return std::make_unique<Evaluator<S>>(*this, free, threads);
-  }
+                                                        int threads = 1) const override;
 
  private:
   void add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
@@ -87,6 +81,25 @@ class BasicProblem final : public AnyProblem {
   std::vector<std::unique_ptr<detail::Term<S>>> terms_;
   std::vector<detail::Batches<S>> batches_;  ///< by layout
 };
+
+// Outside of the class: not inline, so that only instances.hpp compiles them.
+
+template <class S>
+void BasicProblem<S>::add_built_in(const BuiltInSensor& sensor, const Mount& mount) {
+  std::visit([&](const auto& of_type) { add_sensor(of_type, mount); }, sensor);
+}
+
+template <class S>
+void BasicProblem<S>::add_built_in(const std::string& name, const BuiltInBlock& block,
+                                   const std::vector<std::string>& sensors,
+                                   const TermOptions& options) {
+  std::visit([&](const auto& of_type) { add_block(name, of_type, sensors, options); }, block);
+}
+
+template <class S>
+std::unique_ptr<AnyEvaluator> BasicProblem<S>::evaluator(const FreeSet& free, int threads) const {
+  return std::make_unique<Evaluator<S>>(*this, free, threads);
+}
 
 /// A problem evaluated in packets as wide as the instruction set it is compiled for.
 using Problem = BasicProblem<Packet>;

@@ -43,8 +43,8 @@ class SensorCode {
                      Vector3<S>* changes) const = 0;
 
   /// Predicts where a camera sees a point of its frame; metres.
-  virtual void predict(BatchObservation<S> seen, const Vector3<S>& p,
-                       std::span<const double> own, std::span<const int> chosen, bool derivatives,
+  virtual void predict(BatchObservation<S> seen, const Vector3<S>& p, std::span<const double> own,
+                       std::span<const int> chosen, bool derivatives,
                        PredictedPixel<S>& out) const = 0;
 };
 
@@ -134,8 +134,7 @@ class SensorCodeOf final : public SensorCode<S> {
     std::copy_n(seen.settings(), kSettingsOf<M>, all.begin());
     return all;
   }
-  [[nodiscard]] static Measurement<M, S> measurement(BatchObservation<S> seen,
-                                                     std::size_t i) {
+  [[nodiscard]] static Measurement<M, S> measurement(BatchObservation<S> seen, std::size_t i) {
     Measurement<M, S> m{.point = point(seen, i), .settings = settings(seen)};
     if constexpr (kIsOriented<M>) std::copy_n(seen.measured(i) + 3, 9, m.rotation.data());
     return m;

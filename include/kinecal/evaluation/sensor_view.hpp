@@ -175,7 +175,7 @@ template <class S>
 template <bool kModels>
 KINECAL_FLATTEN void SensorView<S>::walk_chain(std::size_t c) {
   const RuntimeChain& chain = sensor_->chains()[c];
-  const JointStates<S> joints = observation_.joints(c);
+  const JointStates<S, kModels> joints{observation_.joints(c)};
   const std::span<const JointCorrection<double>> corrections = state_->corrections[c];
   const WalkStart<S>& start = starts_[c];
   if (!derivatives_) {

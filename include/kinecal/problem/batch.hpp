@@ -33,14 +33,18 @@ struct ObservationLayout {
 };
 
 /// The joint states of a chain in a batch, by index of the joint.
-template <class S>
+/// @tparam kModels  some joint of the chain has parameters of joint models
+template <class S, bool kModels>
 struct JointStates {
-  const S* numbers;  ///< position, cosine and sine of each joint
+  /// Of each joint: position, cosine and sine; without models only what its motion depends on: cosine
+  /// and sine if it turns, else the position, and a number that is not used.
+  const S* numbers;
 
-  /// The state of a joint.
+  /// The state of a joint; without models its position is that of a joint that slides.
   [[nodiscard]] JointState<S> operator[](std::size_t joint) const {
-    const S* of_joint = numbers + 3 * joint;
-    return {of_joint[0], of_joint[1], of_joint[2]};
+    const S* of_joint = numbers + (kModels ? 3 : 2) * joint;
+    if constexpr (kModels) return {of_joint[0], of_joint[1], of_joint[2]};
+    return {of_joint[0], of_joint[0], of_joint[1]};
   }
 };
 
@@ -68,10 +72,8 @@ struct BatchObservation {
   [[nodiscard]] bool has_joints(std::size_t chain) const {
     return layout->joints[chain] != ObservationLayout::kNoJoints;
   }
-  /// The joint states of a chain that leads to a feature.
-  [[nodiscard]] JointStates<S> joints(std::size_t chain) const {
-    return {numbers + layout->joints[chain]};
-  }
+  /// The numbers of JointStates of a chain that leads to a feature.
+  [[nodiscard]] const S* joints(std::size_t chain) const { return numbers + layout->joints[chain]; }
 };
 
 /// What a term takes of the samples of a batch besides the observations of its sensors.

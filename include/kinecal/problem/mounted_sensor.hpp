@@ -70,7 +70,7 @@ class MountedSensor {
       all.settings = sensor_->settings(seen);
       for (const Feature& feature : seen.features) {
         const std::size_t chain = chain_to(feature.frame);
-        if (!all.joints[chain]) all.joints[chain] = joints(sample, chains_[chain]);
+        if (!all.joints[chain]) all.joints[chain] = joints(sample, chain);
         all.chain.push_back(chain);
         add_feature(feature, all);
       }
@@ -142,8 +142,10 @@ class MountedSensor {
         did_you_mean(frame, known));
   }
 
-  /// Position, cosine and sine of each joint of a chain.
-  [[nodiscard]] std::vector<double> joints(const Sample& sample, const RuntimeChain& chain) const {
+  /// The numbers of JointStates of a chain.
+  [[nodiscard]] std::vector<double> joints(const Sample& sample, std::size_t c) const {
+    const RuntimeChain& chain = chains_[c];
+    const bool models = have_models(chain_parameters_[c]);
     const auto states = measured_joint_states(chain, [&](const std::string& joint) {
       const std::optional<double> position = sample.position(joint);
       if (!position) {
@@ -156,8 +158,12 @@ class MountedSensor {
       return *position;
     });
     std::vector<double> numbers;
-    for (const auto& state : states) {
-      numbers.insert(numbers.end(), {state.position, state.cos, state.sin});
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const JointState<double>& state = states[i];
+      if (models) numbers.push_back(state.position);
+      const bool turning = models || turns(chain.joints[i].type);
+      numbers.push_back(turning ? state.cos : state.position);
+      numbers.push_back(state.sin);
     }
     return numbers;
   }

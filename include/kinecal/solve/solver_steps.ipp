@@ -22,8 +22,8 @@ class StepCallback final : public ceres::IterationCallback {
       : options_(options), cost_(cost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.progress) options_.progress(summary.iteration, summary.cost);
-    const bool promises = cost_ == nullptr || cost_->promised_decrease() >
-                                                  options_.function_tolerance * summary.cost;
+    const bool promises =
+        cost_ == nullptr || cost_->promised_decrease() > options_.function_tolerance * summary.cost;
     return promises ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
 
@@ -78,8 +78,8 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   minimum.usable = summary.IsSolutionUsable();
   minimum.promises = summary.termination_type != ceres::USER_SUCCESS;
   minimum.converged = summary.termination_type == ceres::CONVERGENCE || !minimum.promises;
-  minimum.message = minimum.promises ? summary.message
-                                     : "a Gauss-Newton step promises no decrease of the cost";
+  minimum.message =
+      minimum.promises ? summary.message : "a Gauss-Newton step promises no decrease of the cost";
   minimum.cost = summary.final_cost;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   for (const ceres::IterationSummary& iteration : summary.iterations) {
