@@ -24,10 +24,7 @@ class BlockTerm : public Term<S> {
   /// @param sensors     indices of the sensors in the problem
   /// @param parameters  table indices of the block's own parameters
   BlockTerm(std::string name, B block, std::vector<int> sensors, std::vector<int> parameters,
-            TermOptions options)
-      : Term<S>(std::move(name), std::move(sensors), std::move(parameters), std::move(options)),
-        block_(std::move(block)),
-        is_difference_(kinecal::is_difference(block_)) {}
+            TermOptions options);
 
   [[nodiscard]] int feature_size() const override { return kSize; }
 
@@ -147,6 +144,13 @@ class BlockTerm : public Term<S> {
   B block_;
   bool is_difference_;
 };
+
+template <ErrorBlock B, class S>
+BlockTerm<B, S>::BlockTerm(std::string name, B block, std::vector<int> sensors,
+                           std::vector<int> parameters, TermOptions options)
+    : Term<S>(std::move(name), std::move(sensors), std::move(parameters), std::move(options)),
+      block_(std::move(block)),
+      is_difference_(kinecal::is_difference(block_)) {}
 
 template <ErrorBlock B, class S>
 int BlockTerm<B, S>::count(Observations seen) const {

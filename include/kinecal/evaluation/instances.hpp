@@ -1,8 +1,8 @@
-// What the library kinecal::core has compiled: the evaluation of the built-in error blocks, in
-// packets and in double.
+// What the library kinecal::core has compiled: the evaluation of the built-in sensors and error
+// blocks, in packets and in double.
 //
-// instances/ holds a file for each that is compiled by itself.  An error block of another type is
-// compiled where it is used, a crate's walks and sizes, too.
+// instances/ holds a file for each that is compiled by itself.  A sensor or an error block of another
+// type is compiled where it is used, a crate's walks, too.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,6 +10,10 @@
 
 namespace kinecal {
 
+extern template class detail::SensorCodeOf<ChainPoint, Packet>;
+extern template class detail::SensorCodeOf<ChainPose, Packet>;
+extern template class detail::SensorCodeOf<DepthCamera, Packet>;
+extern template class detail::SensorCodeOf<PinholeCamera, Packet>;
 extern template class detail::SensorView<Packet>;
 extern template class detail::LocalSums<Packet>;
 extern template class detail::PointWrenches<Packet>;
@@ -27,6 +31,10 @@ extern template class detail::BlockTerm<PoseToPose, Packet>;
 extern template class detail::BlockTerm<RayToRay, Packet>;
 extern template class detail::BlockTerm<PointToRay, Packet>;
 
+extern template class detail::SensorCodeOf<ChainPoint, double>;
+extern template class detail::SensorCodeOf<ChainPose, double>;
+extern template class detail::SensorCodeOf<DepthCamera, double>;
+extern template class detail::SensorCodeOf<PinholeCamera, double>;
 extern template class detail::SensorView<double>;
 extern template class detail::LocalSums<double>;
 extern template class detail::PointWrenches<double>;

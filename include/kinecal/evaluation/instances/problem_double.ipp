@@ -4,6 +4,10 @@
 
 namespace kinecal {
 
+template class detail::SensorCodeOf<ChainPoint, double>;
+template class detail::SensorCodeOf<ChainPose, double>;
+template class detail::SensorCodeOf<DepthCamera, double>;
+template class detail::SensorCodeOf<PinholeCamera, double>;
 template class detail::SensorView<double>;
 template class detail::LocalSums<double>;
 template class detail::PointWrenches<double>;

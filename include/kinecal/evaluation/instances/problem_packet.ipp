@@ -4,6 +4,10 @@
 
 namespace kinecal {
 
+template class detail::SensorCodeOf<ChainPoint, Packet>;
+template class detail::SensorCodeOf<ChainPose, Packet>;
+template class detail::SensorCodeOf<DepthCamera, Packet>;
+template class detail::SensorCodeOf<PinholeCamera, Packet>;
 template class detail::SensorView<Packet>;
 template class detail::LocalSums<Packet>;
 template class detail::PointWrenches<Packet>;
