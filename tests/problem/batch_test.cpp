@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 
 #include "kinecal/errors.hpp"
@@ -56,13 +57,23 @@ void expect_lane(const detail::BatchObservation<S>& batch, int i,
     ASSERT_EQ(batch.has_joints(c), one.joints[c].has_value());
     if (!one.joints[c]) continue;
     const std::vector<double>& joints = *one.joints[c];
-    for (std::size_t j = 0; 3 * j < joints.size(); ++j) {
-      const JointState<S> state = batch.joints(c)[j];
-      EXPECT_EQ(lane(state.position, i), joints[3 * j]);
-      EXPECT_EQ(lane(state.cos, i), joints[3 * j + 1]);
-      EXPECT_EQ(lane(state.sin, i), joints[3 * j + 2]);
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      EXPECT_EQ(lane(batch.joints(c)[k], i), joints[k]);
     }
   }
+}
+
+TEST(JointStates, HaveWhatAJointMovesByAndWithModelsItsPosition) {
+  const std::array numbers = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+  const JointState<double> turning = detail::JointStates<double, false>{numbers.data()}[1];
+  EXPECT_EQ(turning.cos, 0.3);
+  EXPECT_EQ(turning.sin, 0.4);
+  const JointState<double> sliding = detail::JointStates<double, false>{numbers.data()}[2];
+  EXPECT_EQ(sliding.position, 0.5);
+  const JointState<double> modelled = detail::JointStates<double, true>{numbers.data()}[1];
+  EXPECT_EQ(modelled.position, 0.4);
+  EXPECT_EQ(modelled.cos, 0.5);
+  EXPECT_EQ(modelled.sin, 0.6);
 }
 
 TEST(Batches, HoldASampleInEachLane) {

@@ -36,15 +36,14 @@ struct ObservationLayout {
 /// @tparam kModels  some joint of the chain has parameters of joint models
 template <class S, bool kModels>
 struct JointStates {
-  /// Of each joint: position, cosine and sine; without models only what its motion depends on: cosine
-  /// and sine if it turns, else the position, and a number that is not used.
+  /// Of each joint: position, cosine, sine; without models what it moves by: cosine and sine if it
+  /// turns, else position and nothing.
   const S* numbers;
 
   /// The state of a joint; without models its position is that of a joint that slides.
   [[nodiscard]] JointState<S> operator[](std::size_t joint) const {
     const S* of_joint = numbers + (kModels ? 3 : 2) * joint;
-    if constexpr (kModels) return {of_joint[0], of_joint[1], of_joint[2]};
-    return {of_joint[0], of_joint[0], of_joint[1]};
+    return {of_joint[0], of_joint[kModels ? 1 : 0], of_joint[kModels ? 2 : 1]};
   }
 };
 
