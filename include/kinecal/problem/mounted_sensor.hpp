@@ -142,7 +142,7 @@ class MountedSensor {
         did_you_mean(frame, known));
   }
 
-  /// The numbers of JointStates of a chain.
+  /// The numbers of JointStates of chain c.
   [[nodiscard]] std::vector<double> joints(const Sample& sample, std::size_t c) const {
     const RuntimeChain& chain = chains_[c];
     const bool models = have_models(chain_parameters_[c]);
@@ -161,8 +161,7 @@ class MountedSensor {
     for (std::size_t i = 0; i < states.size(); ++i) {
       const JointState<double>& state = states[i];
       if (models) numbers.push_back(state.position);
-      const bool turning = models || turns(chain.joints[i].type);
-      numbers.push_back(turning ? state.cos : state.position);
+      numbers.push_back(models || turns(chain.joints[i].type) ? state.cos : state.position);
       numbers.push_back(state.sin);
     }
     return numbers;

@@ -26,8 +26,9 @@ enum class CostForm { compressed, stacked };
 /// How to solve a step.
 struct SolveOptions {
   int max_num_iterations = 1000;  ///< the step does not converge if it needs more
-  /// Iterations end when one lowers the cost by less than this fraction of it.  The default is
-  /// small: an iteration takes little time, and costs are compared to many digits.
+  /// Iterations end when one lowers the cost by less than this fraction of it, or a Gauss-Newton step
+  /// promises less.  The default is small: an iteration takes little time, and costs are compared to
+  /// many digits.
   double function_tolerance = 1e-14;
   CostForm form = CostForm::compressed;  ///< how Ceres gets the samples
   int threads = 0;                       ///< zero: one per core; the result does not depend on it

@@ -64,7 +64,6 @@ inline void set_steps(Steps steps, ceres::Solver::Options& options) {
 /// The outcome of several runs of Ceres.
 struct Minimum {
   bool usable = false, converged = false;
-  bool promises = true;            ///< false: at the end an undamped step promises no decrease
   std::string message;             ///< of the last run
   double cost = 0.0;               ///< at the end of the last run
   std::vector<double> costs = {};  ///< of each iteration of all runs
@@ -76,10 +75,10 @@ struct Minimum {
 /// Adds a run to the outcome.
 inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   minimum.usable = summary.IsSolutionUsable();
-  minimum.promises = summary.termination_type != ceres::USER_SUCCESS;
-  minimum.converged = summary.termination_type == ceres::CONVERGENCE || !minimum.promises;
+  const bool by_callback = summary.termination_type == ceres::USER_SUCCESS;
+  minimum.converged = summary.termination_type == ceres::CONVERGENCE || by_callback;
   minimum.message =
-      minimum.promises ? summary.message : "a Gauss-Newton step promises no decrease of the cost";
+      by_callback ? "a Gauss-Newton step promises no decrease of the cost" : summary.message;
   minimum.cost = summary.final_cost;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   for (const ceres::IterationSummary& iteration : summary.iterations) {
@@ -114,7 +113,7 @@ inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const So
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     add_run(summary, minimum);
-    if (!minimum.usable || !minimum.promises) return;
+    if (!minimum.usable || summary.termination_type == ceres::USER_SUCCESS) return;
   }
 }
 
