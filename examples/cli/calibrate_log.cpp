@@ -401,6 +401,8 @@ int calibrate_log(const ResultOptions& options) {
   const ProcessGroup group = process_group();
   if (options.output.empty()) throw InputError("--output is required");
   check_files_differ(options.samples);
+  // Without a file it has nothing to do, and might begin when the others have ended.
+  if (group.rank > 0 && group.rank >= std::ssize(options.samples)) return kDone;
   check_results(options);
   const auto start = std::chrono::steady_clock::now();
   const Interruption interruption;

@@ -88,6 +88,19 @@ TEST_F(FileSet, RemovesOnlyTheEmptyFoldersThatItMade) {
   EXPECT_EQ(read("x/y/a"), "1");
 }
 
+/// Processes that share a calibration begin together: each checks that it can write.
+TEST_F(FileSet, RunsThatRemoveAnEmptyFolderDoNotDisturbEachOther) {
+  std::vector<std::thread> runs;
+  for (int r = 0; r < 4; ++r) {
+    runs.emplace_back([&] {
+      for (int i = 0; i < 100; ++i) EXPECT_NO_THROW(OutputFolder(folder_ / "x/y"));
+    });
+  }
+  for (std::thread& run : runs) run.join();
+  OutputFolder(folder_ / "x/y").write({{"a", "1"}});
+  EXPECT_EQ(read("x/y/a"), "1");
+}
+
 TEST_F(FileSet, TwoWritersNeverMixTheirFilesNorLeaveAGap) {
   OutputFolder(folder_).write({{"a", "0"}, {"b", "0"}});
   const auto write = [&](const std::string& content) {

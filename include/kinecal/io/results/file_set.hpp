@@ -9,6 +9,10 @@
 
 namespace kinecal {
 
+namespace detail {
+class StagingFolder;
+}  // namespace detail
+
 /// A folder into which a set of files will be written.  The constructor checks that this is
 /// possible, before any work is done, and creates the folder if it is missing.
 class OutputFolder {
@@ -29,6 +33,10 @@ class OutputFolder {
   void write(const std::vector<OutputFile>& files);
 
  private:
+  void create();
+  /// A temporary folder in the folder, which is created if it is missing.
+  [[nodiscard]] detail::StagingFolder stage();
+
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> created_;
 };

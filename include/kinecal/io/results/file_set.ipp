@@ -51,6 +51,22 @@ inline void put_back(const std::filesystem::path& kept, const std::filesystem::p
 
 KINECAL_INLINE OutputFolder::OutputFolder(std::filesystem::path folder)
     : folder_(std::move(folder)) {
+  const detail::StagingFolder can_be_written = stage();
+}
+
+KINECAL_INLINE detail::StagingFolder OutputFolder::stage() {
+  constexpr int kTries = 50;  // a run that made the folder removes it while it is empty
+  for (int i = 1;; ++i) {
+    try {
+      create();
+      return detail::StagingFolder(folder_);
+    } catch (const OutputError&) {
+      if (i == kTries) throw;
+    }
+  }
+}
+
+KINECAL_INLINE void OutputFolder::create() {
   const std::filesystem::path absolute = std::filesystem::absolute(folder_).lexically_normal();
   std::filesystem::path path;
   for (const auto& part : absolute) {
@@ -64,7 +80,6 @@ KINECAL_INLINE OutputFolder::OutputFolder(std::filesystem::path folder)
   if (!std::filesystem::is_directory(folder_)) {
     throw OutputError(folder_.string() + ": is not a folder");
   }
-  const detail::StagingFolder can_be_written(folder_);
 }
 
 KINECAL_INLINE OutputFolder::~OutputFolder() {
@@ -76,7 +91,7 @@ KINECAL_INLINE OutputFolder::~OutputFolder() {
 
 KINECAL_INLINE void OutputFolder::write(const std::vector<OutputFile>& files) {
   for (const OutputFile& file : files) detail::check_target(folder_ / file.name);
-  const detail::StagingFolder staging(folder_);
+  const detail::StagingFolder staging = stage();
   for (const OutputFile& file : files) {
     detail::write_durably(staging.path() / file.name, file.content, folder_ / file.name);
   }
