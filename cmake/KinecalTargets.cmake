@@ -20,7 +20,8 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET GLOBAL yaml-0.1)
 
-# Files of one folder are one translation unit, those of io a few: what they share is compiled once.
+# Files of one folder are one translation unit, those below problem one with it, those of io a few: what
+# they share is compiled once.
 function(kinecal_group_units)
   set(files_of_io 0)
   foreach(unit IN LISTS ARGV)
@@ -31,6 +32,8 @@ function(kinecal_group_units)
       string(APPEND group _${CMAKE_MATCH_1})
     elseif(group STREQUAL trust)
       set(group solve)
+    elseif(group MATCHES "^(kinematics|parameters|samples|sensors)$")
+      set(group problem)
     else()
       string(REGEX REPLACE "_.*" "" group ${group})
     endif()

@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "kinecal/errors.hpp"
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "kinecal/solve.hpp"
 #include "simulation.hpp"
 

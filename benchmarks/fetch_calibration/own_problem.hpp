@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinecal/errors/point_to_point.hpp"
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "work.hpp"
 
 namespace kinecal::bench {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "input.hpp"
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/camera_info.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "commands.hpp"
-#include "kinecal/evaluation/make_problem.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal::cli {

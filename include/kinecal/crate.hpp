@@ -7,5 +7,4 @@
 #include "kinecal/crate/crate_checks.hpp"
 #include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/crate/parameter_checks.hpp"
-#include "kinecal/crate/type_list.hpp"
 #include "kinecal/crate/use_checks.hpp"

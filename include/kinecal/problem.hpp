@@ -5,8 +5,5 @@
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/problem/any_term.hpp"
 #include "kinecal/problem/batch.hpp"
-#include "kinecal/problem/feature_label.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
-#include "kinecal/problem/paired_features.hpp"
-#include "kinecal/problem/prior_term.hpp"
 #include "kinecal/problem/sample_numbers.hpp"

@@ -2,5 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/samples/paired_features.hpp"
 #include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/samples/sample.hpp"

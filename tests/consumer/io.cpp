@@ -1,7 +1,7 @@
 // Reads a URDF and makes a problem of it: links kinecal-io, kinecal-solve and kinecal-core.
 #include <cstdio>
 
-#include "kinecal/evaluation/make_problem.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/solve.hpp"
 

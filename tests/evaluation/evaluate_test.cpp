@@ -1,5 +1,3 @@
-#include "kinecal/evaluation/evaluate.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <limits>
 
 #include "kinecal/errors.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "support/sums.hpp"
 
 namespace kinecal {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/io/results/result_files.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kinecal/errors.hpp"
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "support/scene.hpp"
 
 namespace kinecal {

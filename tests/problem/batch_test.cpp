@@ -141,6 +141,18 @@ TEST(Batches, OfDoublesHoldOneSample) {
   }
 }
 
+TEST(Batches, HoldAWeightOfEachFeatureOnlyIfOneIsMissing) {
+  std::vector<detail::SampleNumbers> seen = seen_in_samples(1);
+  detail::Batches<double> whole({}, seen[0]);
+  whole.add(0, seen[0]);
+  seen[0].sensors[1]->usable[2] = 0.0;
+  detail::Batches<double> missing({}, seen[0]);
+  missing.add(0, seen[0]);
+  expect_lane(missing.observation(0, 1), 0, *seen[0].sensors[1], 1.0);
+  EXPECT_EQ(missing.numbers(0).size(), whole.numbers(0).size() + 3) << "four in place of one";
+  EXPECT_TRUE(missing.numbers(1).empty()) << "there is one batch only";
+}
+
 TEST(Batches, AFeatureThatIsNotANumberRepeatsAnotherWithWeightZero) {
   const Problem problem = test::scene_problem();
   const std::vector<double> zero(static_cast<std::size_t>(problem.table().size()), 0.0);

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kinecal/evaluation/make_problem.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/noisy_scene.hpp"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/errors.hpp"
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "support/scene.hpp"
 
 namespace kinecal {

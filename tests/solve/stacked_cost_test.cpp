@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/errors.hpp"
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "kinecal/solve/compressed_cost.hpp"
 #include "kinecal/solve/solve.hpp"
 #include "support/sums.hpp"

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "kinecal/evaluation/make_problem.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust.hpp"
 #include "support/scene.hpp"

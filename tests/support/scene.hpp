@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "support/oracle.hpp"
 #include "support/robots.hpp"
 

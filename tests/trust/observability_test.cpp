@@ -7,7 +7,7 @@
 #include <set>
 
 #include "kinecal/errors.hpp"
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/problem.hpp"
 #include "kinecal/solve/stack.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"

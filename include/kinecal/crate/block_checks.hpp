@@ -3,7 +3,6 @@
 #pragma once
 
 #include "kinecal/crate/crate_parts.hpp"
-#include "kinecal/crate/type_list.hpp"
 #include "kinecal/kinematics/known_name.hpp"
 #include "kinecal/kinematics/sentence.hpp"
 

@@ -1,19 +1,21 @@
 // Evaluating a problem, independent of the scalar: residuals with their Jacobian, or the normal
-// equations.
+// equations; once, or many times.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "kinecal/evaluation/normal_equations.hpp"
-#include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
-
-class AnyProblem;
 
 /// A residual that is undefined, such as that of a point behind a camera.
 struct UndefinedResidual {
@@ -53,4 +55,40 @@ class AnyEvaluator {
                                                          Losses losses = Losses::as_given) = 0;
 };
 
+/// Evaluates all residuals once: see AnyEvaluator::evaluate().
+/// @param free  the columns of the Jacobian; nullptr: residuals only
+[[nodiscard]] std::optional<UndefinedResidual> evaluate(const AnyProblem& problem,
+                                                        std::span<const double> values,
+                                                        const FreeSet* free,
+                                                        const RowVisitor& visit,
+                                                        Linearization at = Linearization::measured);
+
+/// The first residual that is undefined for these values, if any.
+[[nodiscard]] std::optional<UndefinedResidual> undefined_residual(const AnyProblem& problem,
+                                                                  std::span<const double> values);
+
+/// The normal equations once: see AnyEvaluator::normal_equations().
+/// @param free  the parameters to differentiate by; nullptr: the cost only
+[[nodiscard]] NormalEquations normal_equations(const AnyProblem& problem,
+                                               std::span<const double> values, const FreeSet* free,
+                                               Losses losses = Losses::as_given, int threads = 1);
+
+/// A problem that the library evaluates in packets, as wide as its instruction set allows.
+/// Parameters as those of the constructor of AnyProblem.
+[[nodiscard]] std::unique_ptr<AnyProblem> make_problem(Robot robot, std::string base,
+                                                       ParameterTable table,
+                                                       std::set<std::string> frames);
+
+/// How the library evaluates problems.
+struct Evaluation {
+  std::string_view instruction_set;  ///< what its packets are compiled for: "x86-64-v3"
+  int lanes = 1;                     ///< samples evaluated at a time
+};
+/// How the library that this program is linked with evaluates problems.
+[[nodiscard]] Evaluation evaluation_of_library();
+
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/evaluation/problem.hpp"  // includes any_evaluator.ipp
+#endif

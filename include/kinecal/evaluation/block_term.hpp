@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "kinecal/evaluation/block_rows.hpp"
-#include "kinecal/evaluation/jacobian_rows.hpp"
+#include "kinecal/evaluation/feature_rows.hpp"
 #include "kinecal/evaluation/term.hpp"
 
 namespace kinecal::detail {

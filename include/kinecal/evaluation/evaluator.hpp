@@ -13,6 +13,7 @@
 
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/evaluation/parallel.hpp"
+#include "kinecal/evaluation/prefetch.hpp"
 #include "kinecal/evaluation/term.hpp"
 
 namespace kinecal {
@@ -178,12 +179,15 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
   for (std::size_t layout = 0; layout < runs_.size(); ++layout) {
     const detail::Batches<S>& batches = problem_.batches()[layout];
     const std::size_t size = batches.size();
+    const detail::Prefetch<S> prefetch(batches, std::ssize(states_) + std::ssize(batches.terms()));
     for (std::size_t b = std::max(first, before); b < std::min(end, before + size); ++b) {
-      batches.prefetch(b + 1 - before);
+      auto next = prefetch.of(b + 1 - before);
       for (std::size_t s = 0; s < states_.size(); ++s) {
+        next.load_part();
         if (batches.has(s)) worker.views[s].update(batches.observation(b - before, s));
       }
       for (std::size_t n = 0; n < batches.terms().size(); ++n) {
+        next.load_part();
         const auto t = static_cast<std::size_t>(batches.terms()[n]);
         visit(batches.terms()[n], *problem_.terms()[t],
               detail::TermViews<S>{worker.of_terms[t], &own_[t], runs_[layout][n],

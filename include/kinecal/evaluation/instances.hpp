@@ -1,8 +1,7 @@
-// What the library kinecal::core has compiled: the evaluation of the built-in sensors and error
-// blocks, in packets and in double.
+// What the library kinecal::core has compiled, in packets and in double: problems, and with them the
+// evaluation of the built-in sensors and error blocks (instances/).
 //
-// instances/ holds a file for each that is compiled by itself.  A sensor or an error block of another
-// type is compiled where it is used, a crate's walks, too.
+// A sensor or an error block of another type is compiled where it is used, a crate's walks, too.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,46 +9,18 @@
 
 namespace kinecal {
 
-extern template class detail::SensorCodeOf<ChainPoint, Packet>;
-extern template class detail::SensorCodeOf<ChainPose, Packet>;
-extern template class detail::SensorCodeOf<DepthCamera, Packet>;
-extern template class detail::SensorCodeOf<PinholeCamera, Packet>;
 extern template class detail::SensorView<Packet>;
 extern template class detail::LocalSums<Packet>;
 extern template class detail::PointWrenches<Packet>;
 extern template class detail::FeatureWrenches<Packet>;
 extern template class Evaluator<Packet>;
 extern template class BasicProblem<Packet>;
-extern template class detail::BlockTerm<PointToPoint, Packet>;
-extern template class detail::BlockTerm<PointToPixel, Packet>;
-extern template class detail::BlockTerm<PointToPlane, Packet>;
-extern template class detail::BlockTerm<PlaneToPlane, Packet>;
-extern template class detail::BlockTerm<PointDistance, Packet>;
-extern template class detail::BlockTerm<PointToLine, Packet>;
-extern template class detail::BlockTerm<PointToSphere, Packet>;
-extern template class detail::BlockTerm<PoseToPose, Packet>;
-extern template class detail::BlockTerm<RayToRay, Packet>;
-extern template class detail::BlockTerm<PointToRay, Packet>;
 
-extern template class detail::SensorCodeOf<ChainPoint, double>;
-extern template class detail::SensorCodeOf<ChainPose, double>;
-extern template class detail::SensorCodeOf<DepthCamera, double>;
-extern template class detail::SensorCodeOf<PinholeCamera, double>;
 extern template class detail::SensorView<double>;
 extern template class detail::LocalSums<double>;
 extern template class detail::PointWrenches<double>;
 extern template class detail::FeatureWrenches<double>;
 extern template class Evaluator<double>;
 extern template class BasicProblem<double>;
-extern template class detail::BlockTerm<PointToPoint, double>;
-extern template class detail::BlockTerm<PointToPixel, double>;
-extern template class detail::BlockTerm<PointToPlane, double>;
-extern template class detail::BlockTerm<PlaneToPlane, double>;
-extern template class detail::BlockTerm<PointDistance, double>;
-extern template class detail::BlockTerm<PointToLine, double>;
-extern template class detail::BlockTerm<PointToSphere, double>;
-extern template class detail::BlockTerm<PoseToPose, double>;
-extern template class detail::BlockTerm<RayToRay, double>;
-extern template class detail::BlockTerm<PointToRay, double>;
 
 }  // namespace kinecal

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "kinecal/problem/prior_term.hpp"
+#include "kinecal/problem/any_term.hpp"
 
 namespace kinecal {
 

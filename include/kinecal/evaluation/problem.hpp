@@ -20,18 +20,15 @@ class BasicProblem final : public AnyProblem {
   /// @throws  as AnyProblem::add_built_in()
   template <Sensor M>
   void add_sensor(const M& sensor, const Mount& mount,
-                  std::vector<detail::CompiledWalk<S>> walks = {}) {
-    this->mount(any_sensor(sensor), mount);
-    auto& of_sensor = evaluations_.emplace_back();
-    of_sensor.code = std::make_unique<detail::SensorCodeOf<M, S>>(sensor);
-    for (const RuntimeChain& chain : sensors().back().chains()) {  // in the order of the chains
-      const auto walk = std::find_if(walks.begin(), walks.end(),
-                                     [&](const auto& w) { return w.tip == chain.tip; });
-      if (walk == walks.end()) break;
-      of_sensor.walks.push_back(*walk);
+                  const std::vector<detail::CompiledWalk<S>>& walks = {}) {
+    if constexpr (detail::kIsOneOf<M, BuiltInSensor>) {
+      add_built_in(sensor, mount);
+    } else {
+      add_sensor_of_type(sensor, mount);
     }
+    set_walks(walks);
   }
-  /// The same, for a sensor of the built-in types.
+  /// The same, for a sensor of the built-in types, which the library has compiled.
   void add_built_in(const BuiltInSensor& sensor, const Mount& mount) override;
 
   /// Adds an error block between sensors that have been added.
@@ -39,14 +36,13 @@ class BasicProblem final : public AnyProblem {
   template <ErrorBlock B>
   void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
-    std::vector<int> indices =
-        sensors_of_block(name, sensors, kQuantities<B>, kParametersOfBlock<B>);
-    std::vector<int> own;
-    if constexpr (kParametersOfBlock < B >> 0) own = parameters_of_block(name, B::kParameters);
-    terms_.push_back(std::make_unique<detail::BlockTerm<B, S>>(name, block, std::move(indices),
-                                                               std::move(own), options));
+    if constexpr (detail::kIsOneOf<B, BuiltInBlock>) {
+      add_built_in(name, block, sensors, options);
+    } else {
+      add_block_of_type(name, block, sensors, options);
+    }
   }
-  /// The same, for a block of the built-in types.
+  /// The same, for a block of the built-in types, which the library has compiled.
   void add_built_in(const std::string& name, const BuiltInBlock& block,
                     const std::vector<std::string>& sensors, const TermOptions& options) override;
 
@@ -71,11 +67,24 @@ class BasicProblem final : public AnyProblem {
                                                         int threads = 1) const override;
 
  private:
-  void add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
-                    const detail::SampleNumbers& seen) override {
-    if (layout == batches_.size()) batches_.emplace_back(of_sample.terms, seen);
-    batches_[layout].add(num_samples(), seen);
+  template <class M>
+  void add_sensor_of_type(const M& sensor, const Mount& mount) {
+    this->mount(any_sensor(sensor), mount);
+    evaluations_.push_back({std::make_unique<detail::SensorCodeOf<M, S>>(sensor), {}});
   }
+  template <class B>
+  void add_block_of_type(const std::string& name, const B& block,
+                         const std::vector<std::string>& sensors, const TermOptions& options) {
+    std::vector<int> indices =
+        sensors_of_block(name, sensors, kQuantities<B>, kParametersOfBlock<B>);
+    std::vector<int> own;
+    if constexpr (kParametersOfBlock < B >> 0) own = parameters_of_block(name, B::kParameters);
+    terms_.push_back(std::make_unique<detail::BlockTerm<B, S>>(name, block, std::move(indices),
+                                                               std::move(own), options));
+  }
+  void set_walks(const std::vector<detail::CompiledWalk<S>>& walks);
+  void add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
+                    const detail::SampleNumbers& seen) override;
 
   std::vector<detail::SensorEvaluation<S>> evaluations_;  ///< of each sensor
   std::vector<std::unique_ptr<detail::Term<S>>> terms_;
@@ -86,14 +95,32 @@ class BasicProblem final : public AnyProblem {
 
 template <class S>
 void BasicProblem<S>::add_built_in(const BuiltInSensor& sensor, const Mount& mount) {
-  std::visit([&](const auto& of_type) { add_sensor(of_type, mount); }, sensor);
+  std::visit([&](const auto& of_type) { add_sensor_of_type(of_type, mount); }, sensor);
 }
 
 template <class S>
 void BasicProblem<S>::add_built_in(const std::string& name, const BuiltInBlock& block,
                                    const std::vector<std::string>& sensors,
                                    const TermOptions& options) {
-  std::visit([&](const auto& of_type) { add_block(name, of_type, sensors, options); }, block);
+  std::visit([&](const auto& of_type) { add_block_of_type(name, of_type, sensors, options); },
+             block);
+}
+
+template <class S>
+void BasicProblem<S>::set_walks(const std::vector<detail::CompiledWalk<S>>& walks) {
+  for (const RuntimeChain& chain : sensors().back().chains()) {  // in the order of the chains
+    const auto walk =
+        std::find_if(walks.begin(), walks.end(), [&](const auto& w) { return w.tip == chain.tip; });
+    if (walk == walks.end()) return;
+    evaluations_.back().walks.push_back(*walk);
+  }
+}
+
+template <class S>
+void BasicProblem<S>::add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
+                                   const detail::SampleNumbers& seen) {
+  if (layout == batches_.size()) batches_.emplace_back(of_sample.terms, seen);
+  batches_[layout].add(num_samples(), seen);
 }
 
 template <class S>
@@ -106,6 +133,8 @@ using Problem = BasicProblem<Packet>;
 
 }  // namespace kinecal
 
-#ifndef KINECAL_HEADER_ONLY
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/evaluation/any_evaluator.ipp"
+#else
 #include "kinecal/evaluation/instances.hpp"
 #endif

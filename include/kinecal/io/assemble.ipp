@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/make_problem.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/io/add_blocks.ipp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/config/config_free.ipp"

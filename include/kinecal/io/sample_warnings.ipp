@@ -17,7 +17,7 @@
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
 #include "kinecal/problem/any_term.hpp"
-#include "kinecal/problem/paired_features.hpp"
+#include "kinecal/samples/paired_features.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {

@@ -15,13 +15,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "kinecal/kinematics/chain_fold.hpp"
 #include "kinecal/kinematics/robot.hpp"
 
 namespace kinecal {
@@ -72,61 +70,23 @@ struct RuntimeChain {
 
 /// The joints from a link up to the root, the link's parent joint first.
 /// @throws RobotError  if the link does not exist or is below itself
-[[nodiscard]] inline std::vector<const Joint*> joints_to_root(const Robot& robot,
-                                                              const std::string& link) {
-  std::vector<const Joint*> way;
-  for (const Joint* joint = robot.parent_joint(link); joint != nullptr;
-       joint = robot.parent_joint(joint->parent)) {
-    way.push_back(joint);
-    if (way.size() > robot.joints().size()) {
-      throw RobotError("link '" + link + "' is below itself");
-    }
-  }
-  return way;
-}
+[[nodiscard]] std::vector<const Joint*> joints_to_root(const Robot& robot, const std::string& link);
 
 /// The chain from `base` to `tip`, any two links of the robot.
 /// @param corrected  names of the joints with a frame correction; fixed ones among them are kept
 /// @throws RobotError  if a link does not exist (with the nearest name), if the two links are not
 ///                     connected, or if a joint between them is floating or planar
-[[nodiscard]] inline RuntimeChain make_chain(const Robot& robot, const std::string& base,
-                                             const std::string& tip,
-                                             const std::set<std::string>& corrected = {}) {
-  (void)robot.parent_joint(base);
-  (void)robot.parent_joint(tip);
-  const std::vector<Joint>& joints = robot.joints();
-  const auto way = detail::find_way(joints, base, tip, std::vector<std::size_t>(2 * joints.size()));
-  if (!way.ends) throw RobotError("link '" + base + "' or '" + tip + "' is below itself");
-  if (!way.is_connected) {
-    throw RobotError("links '" + base + "' and '" + tip + "' are not connected in robot '" +
-                     robot.name() + "'");
-  }
-  for (std::size_t n = 0; n < way.size; ++n) {
-    const Joint& joint = joints[way.joints[n]];
-    if (detail::is_passable(joint.type)) continue;
-    throw RobotError("joint '" + joint.name + "' between '" + base + "' and '" + tip + "' is " +
-                     std::string(to_string(joint.type)) +
-                     "; chains take fixed, revolute, continuous and prismatic joints");
-  }
-  RuntimeChain chain{base, tip, {}, {}};
-  chain.tail = detail::fold(
-      joints, way, [&](const std::string& name) { return corrected.contains(name); },
-      [&](const Joint& joint, const Pose<double>& fixed, bool is_corrected, bool reversed) {
-        chain.joints.push_back({joint.name, joint.type, fixed, joint.axis, is_corrected, reversed,
-                                drive(robot, joint)});
-      });
-  return chain;
-}
+[[nodiscard]] RuntimeChain make_chain(const Robot& robot, const std::string& base,
+                                      const std::string& tip,
+                                      const std::set<std::string>& corrected = {});
 
 /// The same chain with a virtual frame beyond its tip: a fixed joint of that name with a correction
 /// and an identity origin.  It stands for a frame that no URDF has: a checkerboard, a marker, a
 /// tracker.
-[[nodiscard]] inline RuntimeChain with_virtual_frame(RuntimeChain chain, const std::string& frame) {
-  chain.joints.push_back({frame, JointType::fixed, chain.tail, Vector3<double>(1.0, 0.0, 0.0), true,
-                          false, Mimic{frame, 1.0, 0.0}});
-  chain.tail = {};
-  chain.tip = frame;
-  return chain;
-}
+[[nodiscard]] RuntimeChain with_virtual_frame(RuntimeChain chain, const std::string& frame);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/kinematics/chain.ipp"
+#endif

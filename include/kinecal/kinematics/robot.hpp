@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
-#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "kinecal/kinematics/chain_fold.hpp"
 #include "kinecal/kinematics/joint.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -29,11 +26,7 @@ class Robot {
   /// Indexes and checks the joints; axes become unit vectors.
   /// @throws RobotError  if a joint name or child link occurs twice, a joint mimics one that does
   ///                     not exist or itself, or a moving joint has an axis of length zero
-  Robot(std::string name, std::vector<Joint> joints)
-      : name_(std::move(name)), joints_(std::move(joints)) {
-    for (std::size_t i = 0; i < joints_.size(); ++i) add_to_indices(i);
-    for (const Joint& joint : joints_) check_mimic(joint);
-  }
+  Robot(std::string name, std::vector<Joint> joints);
 
   [[nodiscard]] const std::string& name() const { return name_; }             ///< of the robot
   [[nodiscard]] const std::vector<Joint>& joints() const { return joints_; }  ///< in given order
@@ -45,78 +38,22 @@ class Robot {
 
   /// The joint with this name.
   /// @throws RobotError  if it does not exist, with the nearest name
-  [[nodiscard]] const Joint& joint(const std::string& name) const {
-    const auto it = by_name_.find(name);
-    if (it == by_name_.end()) {
-      throw RobotError("no joint '" + name + "' in robot '" + name_ + "'" +
-                       did_you_mean(name, joint_names()));
-    }
-    return joints_[it->second];
-  }
+  [[nodiscard]] const Joint& joint(const std::string& name) const;
 
   /// The joint whose child is this link; nullptr for the root.
   /// @throws RobotError  if the link does not exist, with the nearest name
-  [[nodiscard]] const Joint* parent_joint(const std::string& link) const {
-    const auto it = links_.find(link);
-    if (it == links_.end()) {
-      throw RobotError("no link '" + link + "' in robot '" + name_ + "'" +
-                       did_you_mean(link, link_names()));
-    }
-    return it->second < 0 ? nullptr : &joints_[static_cast<std::size_t>(it->second)];
-  }
+  [[nodiscard]] const Joint* parent_joint(const std::string& link) const;
 
   /// Names of all joints, in their order.
-  [[nodiscard]] std::vector<std::string> joint_names() const {
-    std::vector<std::string> names;
-    for (const Joint& joint : joints_) names.push_back(joint.name);
-    return names;
-  }
+  [[nodiscard]] std::vector<std::string> joint_names() const;
 
   /// Names of all links, sorted.
-  [[nodiscard]] std::vector<std::string> link_names() const {
-    std::vector<std::string> names;
-    for (const auto& [link, joint] : links_) names.push_back(link);
-    return names;
-  }
+  [[nodiscard]] std::vector<std::string> link_names() const;
 
  private:
-  void add_to_indices(std::size_t i) {
-    Joint& joint = joints_[i];
-    if (!by_name_.emplace(joint.name, i).second) {
-      throw RobotError("joint '" + joint.name + "' occurs twice");
-    }
-    links_.try_emplace(joint.parent, -1);
-    int& parent_joint = links_.try_emplace(joint.child, -1).first->second;
-    if (parent_joint >= 0) {
-      throw RobotError("link '" + joint.child + "' is the child of two joints, '" +
-                       joints_[static_cast<std::size_t>(parent_joint)].name + "' and '" +
-                       joint.name + "'");
-    }
-    parent_joint = static_cast<int>(i);
-    if (!moves(joint.type)) return;
-    const double length = std::hypot(joint.axis.x(), joint.axis.y(), joint.axis.z());
-    if (!(length > 0.0)) throw RobotError("joint '" + joint.name + "' has an axis of length zero");
-    if (std::abs(length - 1.0) > kUnitLength) joint.axis /= length;
-  }
+  void add_to_indices(std::size_t i);
 
-  void check_mimic(const Joint& first) const {
-    const Joint* joint = &first;
-    for (std::size_t steps = 0; joint->mimic; ++steps) {
-      if (steps > joints_.size()) {
-        throw RobotError("joint '" + first.name + "' mimics itself in a circle");
-      }
-      if (!has_joint(joint->mimic->joint)) {
-        throw RobotError("joint '" + joint->name + "' mimics '" + joint->mimic->joint +
-                         "', which does not exist" +
-                         did_you_mean(joint->mimic->joint, joint_names()));
-      }
-      joint = &this->joint(joint->mimic->joint);
-    }
-  }
-
-  /// A vector divided by its length is this close to length 1.  It is not divided a second time, so
-  /// that a joint copied to another robot stays the same, bit for bit.
-  static constexpr double kUnitLength = 4.0 * std::numeric_limits<double>::epsilon();
+  void check_mimic(const Joint& first) const;
 
   std::string name_;
   std::vector<Joint> joints_;
@@ -126,8 +63,10 @@ class Robot {
 
 /// The joint that drives a mimic joint, through all mimic joints in between, with their multipliers
 /// and offsets combined.  A joint that does not mimic drives itself.
-[[nodiscard]] inline Mimic drive(const Robot& robot, const Joint& joint) {
-  return detail::drive_of(robot.joints(), joint);
-}
+[[nodiscard]] Mimic drive(const Robot& robot, const Joint& joint);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/kinematics/robot.ipp"
+#endif

@@ -11,6 +11,7 @@
 
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/chain_checks.hpp"
+#include "kinecal/kinematics/chain_fold.hpp"
 #include "kinecal/kinematics/static_pose.hpp"
 #include "kinecal/kinematics/static_robot.hpp"
 

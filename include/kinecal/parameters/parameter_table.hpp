@@ -8,11 +8,10 @@
 #include <Eigen/Core>
 #include <map>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/linkage.hpp"
 #include "kinecal/parameters/parameter.hpp"
 
 namespace kinecal {
@@ -23,33 +22,17 @@ class ParameterTable {
   /// Adds a parameter.
   /// @returns  its index
   /// @throws std::invalid_argument  if the table has the name already
-  int add(const Parameter& parameter) {
-    const int index = size();
-    if (!indices_.emplace(parameter.name, index).second) {
-      throw std::invalid_argument("parameter '" + parameter.name + "' occurs twice");
-    }
-    parameters_.push_back(parameter);
-    return index;
-  }
+  int add(const Parameter& parameter);
 
   /// Number of parameters.
   [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
 
   /// Index of a parameter; -1 if the table does not have it.
-  [[nodiscard]] int find(const std::string& name) const {
-    const auto it = indices_.find(name);
-    return it == indices_.end() ? -1 : it->second;
-  }
+  [[nodiscard]] int find(const std::string& name) const;
 
   /// Index of a parameter.
   /// @throws std::invalid_argument  if the table does not have it, with the nearest name
-  [[nodiscard]] int index(const std::string& name) const {
-    const int found = find(name);
-    if (found >= 0) return found;
-    std::vector<std::string> names;
-    for (const auto& [known, i] : indices_) names.push_back(known);
-    throw std::invalid_argument("no parameter '" + name + "'" + did_you_mean(name, names));
-  }
+  [[nodiscard]] int index(const std::string& name) const;
 
   /// A parameter by index or by name.
   /// @throws std::invalid_argument  if the table does not have the name, with the nearest name
@@ -67,7 +50,7 @@ class ParameterTable {
   [[nodiscard]] auto begin() const { return parameters_.begin(); }  ///< first parameter
   [[nodiscard]] auto end() const { return parameters_.end(); }      ///< behind the last one
 
-  /// (size) current values.
+  /// (size) current values.  Inline, as Eigen allocates differently with other instruction sets.
   [[nodiscard]] Eigen::VectorXd values() const {
     Eigen::VectorXd all(size());
     for (int i = 0; i < size(); ++i) all(i) = (*this)[i].value;
@@ -80,19 +63,8 @@ class ParameterTable {
 };
 
 /// Adds the parameters that a sensor or error block declares, as far as a table does not have them.
-inline void add_parameters(ParameterTable& table, std::string_view owner,
-                           std::span<const ParameterInfo> infos) {
-  for (const ParameterInfo& info : infos) {
-    const std::string name = parameter_name(owner, info.name);
-    if (table.find(name) >= 0) continue;
-    table.add({.name = name,
-               .unit = std::string(info.unit),
-               .initial = info.initial,
-               .value = info.initial,
-               .lower = info.lower,
-               .upper = info.upper});
-  }
-}
+void add_parameters(ParameterTable& table, std::string_view owner,
+                    std::span<const ParameterInfo> infos);
 
 /// Which parameters are free: the columns of the Jacobian.
 class FreeSet {
@@ -100,22 +72,7 @@ class FreeSet {
   /// @param parameters  indices in the table, in the order of the columns
   /// @param table_size  number of parameters in the table
   /// @throws std::invalid_argument  if the table has no parameter with an index, or it occurs twice
-  FreeSet(std::vector<int> parameters, int table_size)
-      : parameters_(std::move(parameters)), columns_(static_cast<std::size_t>(table_size), -1) {
-    for (std::size_t c = 0; c < parameters_.size(); ++c) {
-      const int parameter = parameters_[c];
-      if (parameter < 0 || parameter >= table_size) {
-        throw std::invalid_argument("a free set has parameter " + std::to_string(parameter) +
-                                    " of a table of " + std::to_string(table_size));
-      }
-      int& column = columns_[static_cast<std::size_t>(parameter)];
-      if (column >= 0) {
-        throw std::invalid_argument("a free set has parameter " + std::to_string(parameter) +
-                                    " twice");
-      }
-      column = static_cast<int>(c);
-    }
-  }
+  FreeSet(std::vector<int> parameters, int table_size);
 
   /// Number of columns.
   [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
@@ -135,3 +92,7 @@ class FreeSet {
 };
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/parameters/parameter_table.ipp"
+#endif

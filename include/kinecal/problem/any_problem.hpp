@@ -28,9 +28,7 @@
 #include "kinecal/errors/ray_to_ray.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_term.hpp"
-#include "kinecal/problem/feature_label.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
-#include "kinecal/problem/prior_term.hpp"
 #include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
 
@@ -44,6 +42,14 @@ using BuiltInSensor = std::variant<ChainPoint, ChainPose, DepthCamera, PinholeCa
 using BuiltInBlock =
     std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
                  PointToSphere, PoseToPose, RayToRay, PointToRay>;
+
+namespace detail {
+/// True for a type of a variant.
+template <class T, class Variant>
+inline constexpr bool kIsOneOf = false;
+template <class T, class... Ts>
+inline constexpr bool kIsOneOf<T, std::variant<Ts...>> = (std::is_same_v<T, Ts> || ...);
+}  // namespace detail
 
 /// A calibration problem.  Add sensors, then error blocks and priors, then samples.
 class AnyProblem {
@@ -190,6 +196,13 @@ class AnyProblem {
   };
   std::map<detail::SampleLayout, OfLayout> layouts_;
 };
+
+#ifndef KINECAL_HEADER_ONLY
+extern template std::shared_ptr<const AnySensor> any_sensor(ChainPoint);
+extern template std::shared_ptr<const AnySensor> any_sensor(ChainPose);
+extern template std::shared_ptr<const AnySensor> any_sensor(DepthCamera);
+extern template std::shared_ptr<const AnySensor> any_sensor(PinholeCamera);
+#endif
 
 }  // namespace kinecal
 

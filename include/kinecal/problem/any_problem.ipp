@@ -6,11 +6,18 @@
 #include <stdexcept>
 
 #include "kinecal/problem/any_problem.hpp"
-#include "kinecal/problem/paired_features.hpp"
 #include "kinecal/problem/parameter_owners.ipp"
 #include "kinecal/problem/term_applies.ipp"
+#include "kinecal/samples/paired_features.hpp"
 
 namespace kinecal {
+
+#ifndef KINECAL_HEADER_ONLY
+template std::shared_ptr<const AnySensor> any_sensor(ChainPoint);
+template std::shared_ptr<const AnySensor> any_sensor(ChainPose);
+template std::shared_ptr<const AnySensor> any_sensor(DepthCamera);
+template std::shared_ptr<const AnySensor> any_sensor(PinholeCamera);
+#endif
 
 KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTable table,
                                       std::set<std::string> frames)
@@ -185,10 +192,13 @@ KINECAL_INLINE void AnyProblem::forget_unused(detail::SampleLayout& layout,
     for (const int s : term(t).sensors()) used[static_cast<std::size_t>(s)] = true;
   }
   layout.chains.resize(sensors_.size());
+  layout.misses_some.resize(sensors_.size());
   for (std::size_t s = 0; s < used.size(); ++s) {
     auto& of_sensor = seen.sensors[s];
     if (!used[s]) of_sensor.reset();
-    if (of_sensor) layout.chains[s] = of_sensor->chain;
+    if (!of_sensor) continue;
+    layout.chains[s] = of_sensor->chain;
+    layout.misses_some[s] = of_sensor->misses_some();
   }
 }
 

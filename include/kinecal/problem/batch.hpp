@@ -24,10 +24,9 @@ namespace kinecal::detail {
 struct ObservationLayout {
   std::vector<std::size_t> chain;   ///< of each feature
   std::vector<std::size_t> joints;  ///< first number of each chain's joints, or kNoJoints
-  std::size_t usable = 0;           ///< first number
-  std::size_t measured = 0;         ///< first number
-  std::size_t settings = 0;         ///< first number
-  std::size_t width = 3;            ///< numbers of each feature in `measured`
+  std::size_t measured = 0, settings = 0, usable = 0;  ///< first number of each
+  std::size_t usable_step = 0;  ///< one, or zero if no feature is missing: one number for all
+  std::size_t width = 3;        ///< numbers of each feature in `measured`
 
   static constexpr std::size_t kNoJoints = static_cast<std::size_t>(-1);  ///< no feature is there
 };
@@ -59,7 +58,7 @@ struct BatchObservation {
   [[nodiscard]] std::size_t chain(std::size_t feature) const { return layout->chain[feature]; }
   /// One if a feature was observed, else zero; lane by lane.
   [[nodiscard]] const S& usable(std::size_t feature) const {
-    return numbers[layout->usable + feature];
+    return numbers[layout->usable + feature * layout->usable_step];
   }
   /// The numbers of a feature: 3, or 12 with an orientation (column by column).
   [[nodiscard]] const S* measured(std::size_t feature) const {
@@ -99,7 +98,9 @@ class Batches {
       }
       layout->settings = reserve(seen->settings);
       layout->measured = reserve(seen->measured);
-      layout->usable = reserve(seen->usable);
+      layout->usable = size_;
+      layout->usable_step = seen->misses_some() ? 1 : 0;
+      size_ += seen->misses_some() ? seen->usable.size() : 1;
       if (!seen->chain.empty()) layout->width = seen->measured.size() / seen->chain.size();
     }
     for (const TermNumbers& term : first.terms) {
@@ -116,8 +117,8 @@ class Batches {
     S* const batch = numbers_.data() + (numbers_.size() - size_);
     samples_.push_back(sample);
     for (std::size_t s = 0; s < seen.sensors.size(); ++s) {
-      const auto& of_sensor = seen.sensors[s];
-      if (!of_sensor) continue;
+      if (!seen.sensors[s]) continue;
+      const ObservationNumbers* of_sensor = &*seen.sensors[s];
       const ObservationLayout& layout = *layouts_[s];
       for (std::size_t c = 0; c < layout.joints.size(); ++c) {
         if (of_sensor->joints[c]) set(*of_sensor->joints[c], lane, batch + layout.joints[c]);
@@ -125,7 +126,7 @@ class Batches {
       set(of_sensor->settings, lane, batch + layout.settings);
       set(of_sensor->measured, lane, batch + layout.measured);
       for (std::size_t i = 0; i < layout.chain.size(); ++i) {
-        S& usable = batch[layout.usable + i];
+        S& usable = batch[layout.usable + i * layout.usable_step];
         if (lane == 0) usable = S(0.0);
         set_lane(usable, lane, of_sensor->usable[i]);
       }
@@ -150,13 +151,10 @@ class Batches {
   }
   /// True if a sensor observed something.
   [[nodiscard]] bool has(std::size_t sensor) const { return layouts_[sensor].has_value(); }
-  /// Begins to load a batch from memory, while another one is evaluated; if all of them do not fit
-  /// into a cache.  Inline: g++ takes a function that only prefetches for one without effect.
-  [[gnu::always_inline]] void prefetch(std::size_t batch) const {
-    constexpr std::size_t kLine = 64, kCache = 1 << 20;  // bytes
-    if (batch >= size() || numbers_.size() * sizeof(S) < kCache) return;
-    const auto* bytes = reinterpret_cast<const char*>(numbers_.data() + batch * size_);
-    for (std::size_t i = 0; i < size_ * sizeof(S); i += kLine) __builtin_prefetch(bytes + i);
+  /// The numbers of a batch; empty if there is no such batch.
+  [[nodiscard]] std::span<const S> numbers(std::size_t batch) const {
+    return batch < size() ? std::span(numbers_).subspan(batch * size_, size_)
+                          : std::span<const S>();
   }
   /// What a sensor observed in the samples of a batch.
   [[nodiscard]] BatchObservation<S> observation(std::size_t batch, std::size_t sensor) const {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <optional>
 #include <vector>
@@ -17,6 +18,11 @@ struct ObservationNumbers {
   std::vector<double> settings;  ///< see AnySensor::settings()
   /// Of each chain to a feature: the numbers of JointStates.
   std::vector<std::optional<std::vector<double>>> joints;
+
+  /// True if some feature is NaN.
+  [[nodiscard]] bool misses_some() const {
+    return std::find(usable.begin(), usable.end(), 0.0) != usable.end();
+  }
 };
 
 /// What a term takes of one sample besides the observations of its sensors.
@@ -35,6 +41,7 @@ struct SampleNumbers {
 /// What samples must have in common to share batches.
 struct SampleLayout {
   std::vector<std::optional<std::vector<std::size_t>>> chains;  ///< of each feature, by sensor
+  std::vector<bool> misses_some;                                ///< by sensor: a feature is NaN
   std::vector<int> terms;                                       ///< indices of the terms that apply
   std::vector<int> weighted;  ///< those of them in which a feature has a sigma of its own
 

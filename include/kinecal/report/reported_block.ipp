@@ -12,7 +12,7 @@
 #include <map>
 
 #include "kinecal/errors/plane_to_plane.hpp"
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/report_data.hpp"
 
 namespace kinecal::detail {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/problem/feature_label.hpp"
+#include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/residual_rows.ipp"
 #include "kinecal/report/residuals_csv.hpp"
 

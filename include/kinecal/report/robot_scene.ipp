@@ -9,7 +9,7 @@
 #include <limits>
 #include <map>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/report/scene_features.ipp"
 #include "kinecal/report/scene_robot.ipp"

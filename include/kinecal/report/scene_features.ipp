@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/report/scene_points.ipp"
 #include "kinecal/trust/reading.hpp"

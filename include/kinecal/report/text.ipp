@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kinecal/evaluation/make_problem.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/text.hpp"
 
 namespace kinecal {

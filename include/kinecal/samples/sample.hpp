@@ -9,6 +9,7 @@
 #include <chrono>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -43,11 +44,28 @@ struct CameraInfo {
   double z_scaling = 1.0;        ///< of the depth driver: z = (z0 + z_offset) * z_scaling
 };
 
+/// What a feature of a sample is called in messages and tables: its place and its id.
+struct FeatureLabel {
+  int place = 0;               ///< from 0, in the list of the observation
+  std::optional<int> id = {};  ///< Feature::id, if it has one
+
+  /// "feature 3", counted from 1, or "the feature with id 17".
+  [[nodiscard]] std::string text() const {
+    return id ? "the feature with id " + std::to_string(*id)
+              : "feature " + std::to_string(place + 1);
+  }
+};
+
 /// What one sensor observed in a sample.
 struct Observation {
   std::string sensor;                     ///< name of the sensor
   std::vector<Feature> features;          ///< with ids, or in an order that all sensors share
   std::optional<CameraInfo> camera = {};  ///< of cameras only
+};
+
+/// A sample that cannot be used with a robot and its sensors.
+struct SampleError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
 };
 
 /// One pose of the robot and what its sensors observed there.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "kinecal/linkage.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
@@ -118,22 +119,11 @@ template <Sensor M>
 /// Adds the parameters of a sensor that a table does not have yet.
 /// @param samples  the first observation of the sensor gives their initial values: a camera starts
 ///                 from the settings that its driver had while recording
-inline void add_sensor_parameters(ParameterTable& table, const AnySensor& sensor,
-                                  const Mount& mount, std::span<const Sample> samples) {
-  std::vector<double> settings;
-  for (const Sample& sample : samples) {
-    const Observation* seen = sample.observation(mount.name);
-    if (seen == nullptr) continue;
-    try {
-      settings = sensor.settings(*seen);
-      break;
-    } catch (const SettingsError&) {  // the sample will be refused with its reason
-    }
-  }
-  const std::vector<double> initial = sensor.initial(settings);
-  std::vector<ParameterInfo> infos(sensor.parameters().begin(), sensor.parameters().end());
-  for (std::size_t i = 0; i < infos.size(); ++i) infos[i].initial = initial[i];
-  add_parameters(table, mount.parameter_prefix(), infos);
-}
+void add_sensor_parameters(ParameterTable& table, const AnySensor& sensor, const Mount& mount,
+                           std::span<const Sample> samples);
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/sensors/any_sensor.ipp"
+#endif

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <span>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/spectrum.hpp"
 
 namespace kinecal::detail {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/determined_spectrum.ipp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/solve/spectrum.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/statistics.hpp"
 
 namespace kinecal {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/trust/capture_causes.hpp"
 
 namespace kinecal::detail {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/solve/determined_spectrum.ipp"
 #include "kinecal/solve/statistics.hpp"
 #include "kinecal/trust/loss_curvature.ipp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/registry.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include "kinecal/evaluation/evaluate.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/rising.hpp"

@@ -48,5 +48,5 @@ struct ComparedSensors {
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/problem/paired_features.ipp"
+#include "kinecal/samples/paired_features.ipp"
 #endif

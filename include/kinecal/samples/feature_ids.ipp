@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/problem/mounted_sensor.hpp"
+#include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
 

@@ -1,4 +1,4 @@
-#include "kinecal/problem/paired_features.hpp"
+#include "kinecal/samples/paired_features.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

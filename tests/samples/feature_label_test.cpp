@@ -1,6 +1,6 @@
-#include "kinecal/problem/feature_label.hpp"
-
 #include <gtest/gtest.h>
+
+#include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "kinecal/problem/feature_ids.ipp"
-#include "kinecal/problem/paired_features.hpp"
+#include "kinecal/samples/feature_ids.ipp"
+#include "kinecal/samples/paired_features.hpp"
 
 namespace kinecal {
 

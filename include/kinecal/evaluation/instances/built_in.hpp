@@ -1,0 +1,39 @@
+// The evaluation of the built-in sensors and error blocks: a file for each is compiled by itself.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/evaluation/problem.hpp"
+
+namespace kinecal {
+
+extern template class detail::SensorCodeOf<ChainPoint, Packet>;
+extern template class detail::SensorCodeOf<ChainPose, Packet>;
+extern template class detail::SensorCodeOf<DepthCamera, Packet>;
+extern template class detail::SensorCodeOf<PinholeCamera, Packet>;
+extern template class detail::BlockTerm<PointToPoint, Packet>;
+extern template class detail::BlockTerm<PointToPixel, Packet>;
+extern template class detail::BlockTerm<PointToPlane, Packet>;
+extern template class detail::BlockTerm<PlaneToPlane, Packet>;
+extern template class detail::BlockTerm<PointDistance, Packet>;
+extern template class detail::BlockTerm<PointToLine, Packet>;
+extern template class detail::BlockTerm<PointToSphere, Packet>;
+extern template class detail::BlockTerm<PoseToPose, Packet>;
+extern template class detail::BlockTerm<RayToRay, Packet>;
+extern template class detail::BlockTerm<PointToRay, Packet>;
+
+extern template class detail::SensorCodeOf<ChainPoint, double>;
+extern template class detail::SensorCodeOf<ChainPose, double>;
+extern template class detail::SensorCodeOf<DepthCamera, double>;
+extern template class detail::SensorCodeOf<PinholeCamera, double>;
+extern template class detail::BlockTerm<PointToPoint, double>;
+extern template class detail::BlockTerm<PointToPixel, double>;
+extern template class detail::BlockTerm<PointToPlane, double>;
+extern template class detail::BlockTerm<PlaneToPlane, double>;
+extern template class detail::BlockTerm<PointDistance, double>;
+extern template class detail::BlockTerm<PointToLine, double>;
+extern template class detail::BlockTerm<PointToSphere, double>;
+extern template class detail::BlockTerm<PoseToPose, double>;
+extern template class detail::BlockTerm<RayToRay, double>;
+extern template class detail::BlockTerm<PointToRay, double>;
+
+}  // namespace kinecal

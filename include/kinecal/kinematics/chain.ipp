@@ -1,0 +1,60 @@
+// Definitions of chain.hpp: the way from one link to another.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/chain_fold.hpp"
+
+namespace kinecal {
+
+KINECAL_INLINE std::vector<const Joint*> joints_to_root(const Robot& robot,
+                                                        const std::string& link) {
+  std::vector<const Joint*> way;
+  for (const Joint* joint = robot.parent_joint(link); joint != nullptr;
+       joint = robot.parent_joint(joint->parent)) {
+    way.push_back(joint);
+    if (way.size() > robot.joints().size()) {
+      throw RobotError("link '" + link + "' is below itself");
+    }
+  }
+  return way;
+}
+
+KINECAL_INLINE RuntimeChain make_chain(const Robot& robot, const std::string& base,
+                                       const std::string& tip,
+                                       const std::set<std::string>& corrected) {
+  (void)robot.parent_joint(base);
+  (void)robot.parent_joint(tip);
+  const std::vector<Joint>& joints = robot.joints();
+  const auto way = detail::find_way(joints, base, tip, std::vector<std::size_t>(2 * joints.size()));
+  if (!way.ends) throw RobotError("link '" + base + "' or '" + tip + "' is below itself");
+  if (!way.is_connected) {
+    throw RobotError("links '" + base + "' and '" + tip + "' are not connected in robot '" +
+                     robot.name() + "'");
+  }
+  for (std::size_t n = 0; n < way.size; ++n) {
+    const Joint& joint = joints[way.joints[n]];
+    if (detail::is_passable(joint.type)) continue;
+    throw RobotError("joint '" + joint.name + "' between '" + base + "' and '" + tip + "' is " +
+                     std::string(to_string(joint.type)) +
+                     "; chains take fixed, revolute, continuous and prismatic joints");
+  }
+  RuntimeChain chain{base, tip, {}, {}};
+  chain.tail = detail::fold(
+      joints, way, [&](const std::string& name) { return corrected.contains(name); },
+      [&](const Joint& joint, const Pose<double>& fixed, bool is_corrected, bool reversed) {
+        chain.joints.push_back({joint.name, joint.type, fixed, joint.axis, is_corrected, reversed,
+                                drive(robot, joint)});
+      });
+  return chain;
+}
+
+KINECAL_INLINE RuntimeChain with_virtual_frame(RuntimeChain chain, const std::string& frame) {
+  chain.joints.push_back({frame, JointType::fixed, chain.tail, Vector3<double>(1.0, 0.0, 0.0), true,
+                          false, Mimic{frame, 1.0, 0.0}});
+  chain.tail = {};
+  chain.tip = frame;
+  return chain;
+}
+
+}  // namespace kinecal

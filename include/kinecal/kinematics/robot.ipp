@@ -1,0 +1,96 @@
+// Definitions of robot.hpp: names and their checks.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "kinecal/kinematics/chain_fold.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/kinematics/robot.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// A vector divided by its length is this close to length 1.  It is not divided a second time, so
+/// that a joint copied to another robot stays the same, bit for bit.
+inline constexpr double kUnitLength = 4.0 * std::numeric_limits<double>::epsilon();
+
+}  // namespace detail
+
+KINECAL_INLINE Robot::Robot(std::string name, std::vector<Joint> joints)
+    : name_(std::move(name)), joints_(std::move(joints)) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) add_to_indices(i);
+  for (const Joint& joint : joints_) check_mimic(joint);
+}
+
+KINECAL_INLINE const Joint& Robot::joint(const std::string& name) const {
+  const auto it = by_name_.find(name);
+  if (it == by_name_.end()) {
+    throw RobotError("no joint '" + name + "' in robot '" + name_ + "'" +
+                     did_you_mean(name, joint_names()));
+  }
+  return joints_[it->second];
+}
+
+KINECAL_INLINE const Joint* Robot::parent_joint(const std::string& link) const {
+  const auto it = links_.find(link);
+  if (it == links_.end()) {
+    throw RobotError("no link '" + link + "' in robot '" + name_ + "'" +
+                     did_you_mean(link, link_names()));
+  }
+  return it->second < 0 ? nullptr : &joints_[static_cast<std::size_t>(it->second)];
+}
+
+KINECAL_INLINE std::vector<std::string> Robot::joint_names() const {
+  std::vector<std::string> names;
+  for (const Joint& joint : joints_) names.push_back(joint.name);
+  return names;
+}
+
+KINECAL_INLINE std::vector<std::string> Robot::link_names() const {
+  std::vector<std::string> names;
+  for (const auto& [link, joint] : links_) names.push_back(link);
+  return names;
+}
+
+KINECAL_INLINE void Robot::add_to_indices(std::size_t i) {
+  Joint& joint = joints_[i];
+  if (!by_name_.emplace(joint.name, i).second) {
+    throw RobotError("joint '" + joint.name + "' occurs twice");
+  }
+  links_.try_emplace(joint.parent, -1);
+  int& parent_joint = links_.try_emplace(joint.child, -1).first->second;
+  if (parent_joint >= 0) {
+    throw RobotError("link '" + joint.child + "' is the child of two joints, '" +
+                     joints_[static_cast<std::size_t>(parent_joint)].name + "' and '" + joint.name +
+                     "'");
+  }
+  parent_joint = static_cast<int>(i);
+  if (!moves(joint.type)) return;
+  const double length = std::hypot(joint.axis.x(), joint.axis.y(), joint.axis.z());
+  if (!(length > 0.0)) throw RobotError("joint '" + joint.name + "' has an axis of length zero");
+  if (std::abs(length - 1.0) > detail::kUnitLength) joint.axis /= length;
+}
+
+KINECAL_INLINE void Robot::check_mimic(const Joint& first) const {
+  const Joint* joint = &first;
+  for (std::size_t steps = 0; joint->mimic; ++steps) {
+    if (steps > joints_.size()) {
+      throw RobotError("joint '" + first.name + "' mimics itself in a circle");
+    }
+    if (!has_joint(joint->mimic->joint)) {
+      throw RobotError("joint '" + joint->name + "' mimics '" + joint->mimic->joint +
+                       "', which does not exist" +
+                       did_you_mean(joint->mimic->joint, joint_names()));
+    }
+    joint = &this->joint(joint->mimic->joint);
+  }
+}
+
+KINECAL_INLINE Mimic drive(const Robot& robot, const Joint& joint) {
+  return detail::drive_of(robot.joints(), joint);
+}
+
+}  // namespace kinecal

@@ -1,0 +1,151 @@
+// Definitions of mounted_sensor.hpp: a sample's observation as numbers.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "kinecal/problem/mounted_sensor.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// Replaces NaN features, whose weight is zero, by another one: zero times NaN is NaN.
+inline void replace_unusable(ObservationNumbers& all) {
+  const auto first = std::find(all.usable.begin(), all.usable.end(), 1.0);
+  if (first == all.usable.end()) return;  // no error block uses the observation then
+  const auto width = std::ssize(all.measured) / std::ssize(all.usable);
+  const auto stand_in = all.measured.begin() + (first - all.usable.begin()) * width;
+  for (std::ptrdiff_t i = 0; i < std::ssize(all.usable); ++i) {
+    if (all.usable[static_cast<std::size_t>(i)] > 0.0) continue;
+    std::copy_n(stand_in, width, all.measured.begin() + i * width);
+  }
+}
+
+}  // namespace detail
+
+KINECAL_INLINE MountedSensor::MountedSensor(const Robot& robot, const std::string& base,
+                                            Mount mount, std::shared_ptr<const AnySensor> sensor,
+                                            const ParameterTable& table,
+                                            const std::set<std::string>& frames)
+    : mount_(std::move(mount)), sensor_(std::move(sensor)) {
+  const RuntimeChain chain = make_chain(robot, base, mount_.frame, frames);
+  add_chain(chain, table);
+  for (const std::string& frame : frames) {
+    if (!robot.has_joint(frame)) add_chain(with_virtual_frame(chain, frame), table);
+  }
+  for (const ParameterInfo& info : sensor_->parameters()) {
+    parameters_.push_back(table.find(parameter_name(mount_.parameter_prefix(), info.name)));
+  }
+}
+
+KINECAL_INLINE detail::ObservationNumbers MountedSensor::numbers(const Sample& sample,
+                                                                 const Observation& seen) const {
+  detail::ObservationNumbers all;
+  all.joints.resize(chains_.size());
+  try {
+    all.settings = sensor_->settings(seen);
+    for (const Feature& feature : seen.features) {
+      const std::size_t chain = chain_to(feature.frame);
+      if (!all.joints[chain]) all.joints[chain] = joints(sample, chain);
+      all.chain.push_back(chain);
+      add_feature(feature, all);
+    }
+  } catch (const SettingsError& e) {
+    throw SampleError("sensor '" + mount_.name + "': " + e.what());
+  }
+  add_sigmas(seen, all);
+  detail::replace_unusable(all);
+  return all;
+}
+
+KINECAL_INLINE void MountedSensor::add_chain(const RuntimeChain& chain,
+                                             const ParameterTable& table) {
+  chain_by_frame_.emplace(chain.tip, chains_.size());
+  chains_.push_back(chain);
+  chain_parameters_.push_back(kinecal::chain_parameters(chain, table));
+}
+
+KINECAL_INLINE void MountedSensor::add_feature(const Feature& feature,
+                                               detail::ObservationNumbers& all) const {
+  bool usable = feature.point.allFinite();
+  Matrix3<double> rotation = Matrix3<double>::Identity();
+  if (sensor_->is_oriented()) {
+    if (!feature.rotation) throw SettingsError("a feature has no orientation");
+    usable = usable && feature.rotation->allFinite();
+    rotation = *feature.rotation;
+  }
+  const Vector3<double> point =
+      usable ? sensor_->measurement(feature.point, all.settings) : feature.point;
+  all.usable.push_back(usable ? 1.0 : 0.0);
+  all.measured.insert(all.measured.end(), point.begin(), point.end());
+  if (sensor_->is_oriented()) {
+    all.measured.insert(all.measured.end(), rotation.data(), rotation.data() + rotation.size());
+  }
+}
+
+KINECAL_INLINE void MountedSensor::add_sigmas(const Observation& seen,
+                                              detail::ObservationNumbers& all) const {
+  const auto& features = seen.features;
+  const auto has_one = [](const Feature& feature) { return feature.sigma.has_value(); };
+  if (std::none_of(features.begin(), features.end(), has_one)) return;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const double sigma = features[i].sigma.value_or(0.0), variance = sigma * sigma;
+    if (features[i].sigma && !(sigma > 0.0 && std::isnormal(variance))) {
+      std::ostringstream message;
+      const FeatureLabel label{static_cast<int>(i), features[i].id};
+      message << "sensor '" << mount_.name << "': the sigma of " << label.text()
+              << " must be positive and finite, is " << sigma;
+      throw SampleError(message.str());
+    }
+    all.variance.push_back(variance);
+  }
+}
+
+KINECAL_INLINE std::size_t MountedSensor::chain_to(const std::string& frame) const {
+  if (frame.empty()) return 0;  // a header without frame_id: the sensor's own frame
+  const auto it = chain_by_frame_.find(frame);
+  const bool own = sensor_->in_own_frame();
+  if (it != chain_by_frame_.end() && !(own && it->second != 0)) return it->second;
+  std::vector<std::string> known;
+  for (const auto& [name, chain] : chain_by_frame_) known.push_back(name);
+  throw SampleError(
+      "sensor '" + mount_.name + "': a feature is in frame '" + frame +
+      "', which is not the sensor's frame '" + mount_.frame + "'" +
+      (own ? "; correct the frame of the sensor's model, or the frame_id of the feature"
+           : ", nor a free or fixed frame; declare it under fixed_frames, if its "
+             "pose in '" +
+                 mount_.frame +
+                 "' is known, or free_frames; or correct "
+                 "the frame_id of the feature") +
+      did_you_mean(frame, known));
+}
+
+KINECAL_INLINE std::vector<double> MountedSensor::joints(const Sample& sample,
+                                                         std::size_t c) const {
+  const RuntimeChain& chain = chains_[c];
+  const bool models = have_models(chain_parameters_[c]);
+  const auto states = measured_joint_states(chain, [&](const std::string& joint) {
+    const std::optional<double> position = sample.position(joint);
+    if (!position) {
+      throw SampleError("joint '" + joint + "' is not in the sample; sensor '" + mount_.name +
+                        "' needs it" + did_you_mean(joint, sample.joint_names));
+    }
+    if (!std::isfinite(*position)) {
+      throw SampleError("the position of joint '" + joint + "' is not a number");
+    }
+    return *position;
+  });
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const JointState<double>& state = states[i];
+    if (models) numbers.push_back(state.position);
+    numbers.push_back(models || turns(chain.joints[i].type) ? state.cos : state.position);
+    numbers.push_back(state.sin);
+  }
+  return numbers;
+}
+
+}  // namespace kinecal
