@@ -29,15 +29,11 @@
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_term.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
-#include "kinecal/sensors/chain_point.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
 
 namespace kinecal {
 
 class AnyEvaluator;
 
-/// The sensors that the library has compiled.
-using BuiltInSensor = std::variant<ChainPoint, ChainPose, DepthCamera, PinholeCamera>;
 /// The error blocks that the library has compiled.
 using BuiltInBlock =
     std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
@@ -196,13 +192,6 @@ class AnyProblem {
   };
   std::map<detail::SampleLayout, OfLayout> layouts_;
 };
-
-#ifndef KINECAL_HEADER_ONLY
-extern template std::shared_ptr<const AnySensor> any_sensor(ChainPoint);
-extern template std::shared_ptr<const AnySensor> any_sensor(ChainPose);
-extern template std::shared_ptr<const AnySensor> any_sensor(DepthCamera);
-extern template std::shared_ptr<const AnySensor> any_sensor(PinholeCamera);
-#endif
 
 }  // namespace kinecal
 

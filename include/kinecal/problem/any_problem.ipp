@@ -12,13 +12,6 @@
 
 namespace kinecal {
 
-#ifndef KINECAL_HEADER_ONLY
-template std::shared_ptr<const AnySensor> any_sensor(ChainPoint);
-template std::shared_ptr<const AnySensor> any_sensor(ChainPose);
-template std::shared_ptr<const AnySensor> any_sensor(DepthCamera);
-template std::shared_ptr<const AnySensor> any_sensor(PinholeCamera);
-#endif
-
 KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTable table,
                                       std::set<std::string> frames)
     : robot_(std::move(robot)),

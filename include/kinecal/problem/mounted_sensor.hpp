@@ -9,12 +9,15 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/problem/sample_numbers.hpp"
 #include "kinecal/sensors/any_sensor.hpp"
+#include "kinecal/sensors/chain_point.hpp"
+#include "kinecal/sensors/pinhole_camera.hpp"
 
 namespace kinecal {
 
@@ -62,6 +65,16 @@ class MountedSensor {
   std::vector<std::vector<JointIndices>> chain_parameters_;
   std::map<std::string, std::size_t> chain_by_frame_;
 };
+
+/// The sensors that the library has compiled.
+using BuiltInSensor = std::variant<ChainPoint, ChainPose, DepthCamera, PinholeCamera>;
+
+#ifndef KINECAL_HEADER_ONLY
+extern template std::shared_ptr<const AnySensor> any_sensor(ChainPoint);
+extern template std::shared_ptr<const AnySensor> any_sensor(ChainPose);
+extern template std::shared_ptr<const AnySensor> any_sensor(DepthCamera);
+extern template std::shared_ptr<const AnySensor> any_sensor(PinholeCamera);
+#endif
 
 }  // namespace kinecal
 

@@ -10,6 +10,13 @@
 
 namespace kinecal {
 
+#ifndef KINECAL_HEADER_ONLY
+template std::shared_ptr<const AnySensor> any_sensor(ChainPoint);
+template std::shared_ptr<const AnySensor> any_sensor(ChainPose);
+template std::shared_ptr<const AnySensor> any_sensor(DepthCamera);
+template std::shared_ptr<const AnySensor> any_sensor(PinholeCamera);
+#endif
+
 namespace detail {
 
 /// Replaces NaN features, whose weight is zero, by another one: zero times NaN is NaN.

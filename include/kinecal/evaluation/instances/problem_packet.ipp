@@ -1,6 +1,6 @@
 // A problem and its evaluator in packets.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/evaluation/instances/built_in.hpp"
+#include "kinecal/evaluation/instances/built_in.ipp"
 
 namespace kinecal {
 
