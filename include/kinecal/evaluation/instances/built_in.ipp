@@ -1,4 +1,4 @@
-// The evaluation of the built-in sensors and error blocks: a file for each is compiled by itself.
+// What the files of this folder instantiate; each of them includes this first.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,6 +1,6 @@
 // The error block PointToRay in double.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/evaluation/problem.hpp"
+#include "kinecal/evaluation/instances/built_in.ipp"
 
 namespace kinecal {
 
