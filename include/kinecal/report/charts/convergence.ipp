@@ -62,12 +62,12 @@ inline void number_iterations(Drawing& drawing, std::size_t last, double first,
                               const PlotArea& area, const Axis& x) {
   constexpr double kApart = 45.0;
   const double room = x.at(first + static_cast<double>(last)) - x.at(first);
-  const double step =
-      std::max(1.0, round_step(static_cast<double>(last), static_cast<int>(room / kApart)));
-  for (double number = 0.0; number <= static_cast<double>(last); number += step) {
-    const double at = x.at(first + number);
+  const auto step = static_cast<std::size_t>(
+      std::max(1.0, round_step(static_cast<double>(last), static_cast<int>(room / kApart))));
+  for (std::size_t number = 0; number <= last; number += step) {
+    const double at = x.at(first + static_cast<double>(number));
     drawing.line({at, area.bottom}, {at, area.bottom + 4.0}, "axis");
-    drawing.text({at, area.bottom + 17.0}, fmt::format("{:.0f}", number), "tick", Anchor::middle);
+    drawing.text({at, area.bottom + 17.0}, fmt::format("{}", number), "tick", Anchor::middle);
   }
 }
 
