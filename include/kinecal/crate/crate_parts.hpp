@@ -108,6 +108,12 @@ struct TypeList {
   using As = To<Ts...>;
   template <class T>
   using With = std::conditional_t<kContains<T>, TypeList, TypeList<Ts..., T>>;
+
+  /// Calls f(std::type_identity<T>()) for each type, in their order.
+  template <class F>
+  static constexpr void for_each(F&& f) {
+    (f(std::type_identity<Ts>()), ...);
+  }
 };
 
 /// The types of both lists, each once: first those of A, then the others of B.
