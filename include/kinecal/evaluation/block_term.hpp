@@ -54,6 +54,20 @@ class BlockTerm : public Term<S> {
   static constexpr bool kMayBeDifference = PointPairBlock<B> && kSize == 3 && kTakesFeaturesOnly<B>;
   using Rows = typename Block::Rows;
 
+  [[nodiscard]] static auto difference_sides(const Views& views, const FeatureRun& run,
+                                             const Twists& twists) {
+    const std::size_t features = run.end - run.first;
+    std::array<DifferenceSide<S>, 2> sides;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const std::size_t own = views[s].own().free.size();
+      sides[s] = {{views[s].values(run.first), features},
+                  {views[s].changes(run.first), own * features},
+                  own,
+                  twists[s]};
+    }
+    return sides;
+  }
+
   /// Adds the features of a run by their moments.
   /// @returns  false, without adding anything, if the block is not a difference
   bool add_difference(const Views& views, const FeatureRun& run, const Twists& twists,
@@ -61,14 +75,7 @@ class BlockTerm : public Term<S> {
     if constexpr (kMayBeDifference) {
       if (!is_difference_) return false;
       const std::size_t features = run.end - run.first;
-      typename PointWrenches<S>::Sides sides;
-      for (std::size_t s = 0; s < 2; ++s) {
-        const std::size_t own = views[s].own().free.size();
-        sides[s] = {{views[s].values(run.first), features},
-                    {views[s].changes(run.first), own * features},
-                    own,
-                    twists[s]};
-      }
+      const auto sides = difference_sides(views, run, twists);
       sums.weights.resize(features);
       sums.residuals.resize(features);
       for (std::size_t i = 0; i < features; ++i) {
@@ -112,26 +119,37 @@ class BlockTerm : public Term<S> {
     return sums.by_chains.emplace(place, run.chains, LocalSums<S>(run.columns))->second;
   }
 
-  /// Residual and Jacobian of a feature.
-  /// @param jacobian  (kSize x width), row-major, out
-  KINECAL_FLATTEN void write_feature(const Views& views, std::size_t i, Linearization at,
-                                     const Twists& twists, BatchRows<S>& out, S* jacobian,
-                                     std::size_t width) const {
+  /// Residuals and Jacobian of a run of features.
+  /// @param jacobian  (kSize x columns) of each feature, column-major, out
+  KINECAL_FLATTEN void write_run(const Views& views, const FeatureRun& run, Linearization at,
+                                 const Twists& twists, BatchRows<S>& out, S* jacobian) const {
     Rows rows;
-    Block::template rows<true>(block_, views, i, at, rows);
-    store(i, rows.residual, rows.weight, out);
-    write_rows(rows, twists, jacobian, width);
+    for (std::size_t i = run.first; i < run.end; ++i, jacobian += kSize * run.columns.size()) {
+      Block::template rows<true>(block_, views, i, at, rows);
+      store(i, rows.residual, rows.weight, out);
+      write_columns(rows, twists, jacobian);
+    }
   }
 
-  /// Residuals and Jacobian of a run of a block that is a difference.
+  /// The same for a block that is a difference.
   KINECAL_FLATTEN void write_difference(const Views& views, const FeatureRun& run,
                                         const Twists& twists, BatchRows<S>& out,
                                         S* jacobian) const {
     if constexpr (kMayBeDifference) {
-      write_differences(views, run, twists, jacobian,
-                        [&](std::size_t i, const Vector3<S>& a, const Vector3<S>& b) {
-                          store(i, block_(a, b), Block::weight(views, i), out);
-                        });
+      const auto sides = difference_sides(views, run, twists);
+      const std::size_t features = run.end - run.first, columns = run.columns.size();
+      for (std::size_t k = 0; k < features; ++k) {
+        store(run.first + k, block_(sides[0].points[k], sides[1].points[k]),
+              Block::weight(views, run.first + k), out);
+      }
+      std::size_t k = 0;
+      constexpr std::size_t kAtOnce = kLanes<S> > 1 ? 4 : 1;
+      for (; k + kAtOnce <= features; k += kAtOnce, jacobian += kAtOnce * 3 * columns) {
+        write_differences<kAtOnce>(sides, k, columns, jacobian);
+      }
+      for (; k < features; ++k, jacobian += 3 * columns) {
+        write_differences<1>(sides, k, columns, jacobian);
+      }
     }
   }
 
@@ -212,15 +230,12 @@ void BlockTerm<B, S>::evaluate(const Views& views, bool derivatives, Linearizati
   S* jacobian = out.jacobian.data();
   for (const FeatureRun& run : views.runs) {
     const Twists of_run = twists(views, run.chains);
-    const std::size_t width = run.columns.size();
     if (is_difference_ && at == Linearization::measured) {
       write_difference(views, run, of_run, out, jacobian);
-      jacobian += (run.end - run.first) * kSize * width;
     } else {
-      for (std::size_t i = run.first; i < run.end; ++i, jacobian += kSize * width) {
-        write_feature(views, i, at, of_run, out, jacobian, width);
-      }
+      write_run(views, run, at, of_run, out, jacobian);
     }
+    jacobian += (run.end - run.first) * kSize * run.columns.size();
   }
 }
 

@@ -123,60 +123,84 @@ struct TermViews {
   }
 };
 
-/// Writes by_own, and by_body xi for all twists.
-/// @param out  (M x width), row-major
+/// Writes the derivatives of a feature, column after column: by_own, and by_body xi for all twists.
+/// @param out  (M x columns), column-major
 template <class S, int M, int Bodies, class Twists>
-void write_rows(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, S* out,
-                std::size_t width) {
-  for (int m = 0; m < M; ++m, out += width) {
-    S* column = out;
-    for (std::size_t c = 0; c < rows.own; ++c) *column++ = rows.by_own[c](m);
-    for (std::size_t s = 0; s < static_cast<std::size_t>(Bodies); ++s) {
-      const Eigen::Matrix<S, 1, 6> l = rows.by_body[s].row(m);
-      for (const Twist<S>& t : twists[s].rotational) {
-        *column++ = (l(0) * t.linear.x() + l(1) * t.linear.y() + l(2) * t.linear.z()) +
-                    (l(3) * t.angular.x() + l(4) * t.angular.y() + l(5) * t.angular.z());
+void write_columns(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, S* out) {
+  for (std::size_t c = 0; c < rows.own; ++c) {
+    for (int m = 0; m < M; ++m) *out++ = rows.by_own[c](m);
+  }
+  for (std::size_t s = 0; s < static_cast<std::size_t>(Bodies); ++s) {
+    const Eigen::Matrix<S, M, 6>& l = rows.by_body[s];
+    for (const Twist<S>& t : twists[s].rotational) {
+      for (int m = 0; m < M; ++m) {
+        *out++ = (l(m, 0) * t.linear.x() + l(m, 1) * t.linear.y() + l(m, 2) * t.linear.z()) +
+                 (l(m, 3) * t.angular.x() + l(m, 4) * t.angular.y() + l(m, 5) * t.angular.z());
       }
     }
-    for (std::size_t s = 0; s < static_cast<std::size_t>(Bodies); ++s) {
-      const Eigen::Matrix<S, 1, 3> l = rows.by_body[s].row(m).template head<3>();
-      for (const Vector3<S>& v : twists[s].translational) {
-        *column++ = l(0) * v.x() + l(1) * v.y() + l(2) * v.z();
+  }
+  for (std::size_t s = 0; s < static_cast<std::size_t>(Bodies); ++s) {
+    const Eigen::Matrix<S, M, 6>& l = rows.by_body[s];
+    for (const Vector3<S>& v : twists[s].translational) {
+      for (int m = 0; m < M; ++m) {
+        *out++ = l(m, 0) * v.x() + l(m, 1) * v.y() + l(m, 2) * v.z();
       }
     }
   }
 }
 
-/// Writes the Jacobian of r = p_a - p_b for the features of a run: its columns are velocities of the
-/// points.
-/// @param out    (3 features x columns), row-major
-/// @param visit  callable (feature, p_a, p_b), called for each feature
-template <class S, class Visit>
-void write_differences(const TermViews<S>& views, const FeatureRun& run,
-                       const std::array<BodyTwists<S>, 2>& twists, S* out, Visit&& visit) {
-  // Copies: the compiler would read them again after each number that is written.
-  const BodyTwists<S> of_a = twists[0], of_b = twists[1];
-  const std::size_t width = run.columns.size();
-  const std::size_t own_a = views[0].own().free.size(), own_b = views[1].own().free.size();
-  const Vector3<S>*points_a = views[0].values(0), *points_b = views[1].values(0);
-  const Vector3<S>*changes_a = views[0].changes(run.first),
-        *changes_b = views[1].changes(run.first);
-  const auto write = [&out, width](const Vector3<S>& v) {
-    out[0] = v.x();
-    out[width] = v.y();
-    out[2 * width] = v.z();
-    ++out;
-  };
+/// One side of a difference r = p_a - p_b: points in the base, and how parameters move them.
+template <class S>
+struct DifferenceSide {
+  std::span<const Vector3<S>> points;  ///< of each feature, metres
+  /// Derivatives of each point by the sensor's own parameters, feature by feature: metres per unit.
+  std::span<const Vector3<S>> changes;
+  std::size_t own = 0;   ///< number of those parameters
+  BodyTwists<S> twists;  ///< of the body of the points
+};
+
+/// Writes the derivatives of a difference, column after column: velocities of the points.  Each twist
+/// is loaded once for all features.
+/// @param first  index of the first feature
+/// @param out    (3 x columns) of each of kFeatures features, column-major
+template <std::size_t kFeatures, class S>
+void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_t first,
+                       std::size_t columns, S* out) {
+  // Copied number by number, into registers: a copy of a whole vector goes through memory.
+  const auto copy = [](const Vector3<S>& v) { return Vector3<S>(v.x(), v.y(), v.z()); };
   const auto opposite = [](const Vector3<S>& v) { return Vector3<S>(-v.x(), -v.y(), -v.z()); };
-  for (std::size_t i = run.first; i < run.end; ++i, out += 2 * width) {
-    const Vector3<S> a = points_a[i], b = points_b[i];
-    visit(i, a, b);
-    for (std::size_t k = 0; k < own_a; ++k) write(*changes_a++);
-    for (std::size_t k = 0; k < own_b; ++k) write(opposite(*changes_b++));
-    for (const Twist<S>& twist : of_a.rotational) write(twist.velocity(a));
-    for (const Twist<S>& twist : of_b.rotational) write(twist.opposite_velocity(b));
-    for (const Vector3<S>& v : of_a.translational) write(v);
-    for (const Vector3<S>& v : of_b.translational) write(opposite(v));
+  const auto write = [&out, stride = 3 * columns](const auto& column_of) {
+    for (std::size_t f = 0; f < kFeatures; ++f) {
+      const Vector3<S> v = column_of(f);
+      for (int k = 0; k < 3; ++k) out[f * stride + std::size_t(k)] = v(k);
+    }
+    out += 3;
+  };
+  for (std::size_t s = 0; s < 2; ++s) {
+    const std::size_t own = sides[s].own;
+    const Vector3<S>* change = sides[s].changes.data() + first * own;
+    for (std::size_t k = 0; k < own; ++k, ++change) {
+      if (s == 0) write([&](std::size_t f) { return copy(change[f * own]); });
+      if (s == 1) write([&](std::size_t f) { return opposite(change[f * own]); });
+    }
+  }
+  std::array<std::array<Vector3<S>, kFeatures>, 2> p;
+  for (std::size_t s = 0; s < 2; ++s) {
+    for (std::size_t f = 0; f < kFeatures; ++f) p[s][f] = copy(sides[s].points[first + f]);
+  }
+  for (const Twist<S>& of_a : sides[0].twists.rotational) {
+    const Twist<S> twist{copy(of_a.linear), copy(of_a.angular)};
+    write([&](std::size_t f) { return twist.velocity(p[0][f]); });
+  }
+  for (const Twist<S>& of_b : sides[1].twists.rotational) {
+    const Twist<S> twist{copy(of_b.linear), copy(of_b.angular)};
+    write([&](std::size_t f) { return twist.opposite_velocity(p[1][f]); });
+  }
+  for (const Vector3<S>& of_a : sides[0].twists.translational) {
+    write([v = copy(of_a)](std::size_t) { return v; });
+  }
+  for (const Vector3<S>& of_b : sides[1].twists.translational) {
+    write([v = opposite(of_b)](std::size_t) { return v; });
   }
 }
 

@@ -19,19 +19,9 @@
 #include <vector>
 
 #include "kinecal/evaluation/dot_products.hpp"
-#include "kinecal/kinematics/twist_walker.hpp"
+#include "kinecal/evaluation/feature_rows.hpp"
 
 namespace kinecal::detail {
-
-/// One side of a difference: points in the base, and how parameters move them.
-template <class S>
-struct DifferenceSide {
-  std::span<const Vector3<S>> points;  ///< of each feature, metres
-  /// Derivatives of each point by the sensor's own parameters, feature by feature: metres per unit.
-  std::span<const Vector3<S>> changes;
-  std::size_t own = 0;   ///< number of those parameters
-  BodyTwists<S> twists;  ///< of the body of the points
-};
 
 /// What resists motions of features that are only subtracted; the interface is that of FeatureWrenches.
 template <class S>

@@ -35,7 +35,8 @@ class Prefetch {
   }
   /// To load a batch, if there is one.
   [[nodiscard]] Rest of(std::size_t batch) const {
-    const auto bytes = std::as_bytes(batches_.numbers(part_ > 0 ? batch : batches_.size()));
+    if (part_ == 0) return {nullptr, nullptr, 0};
+    const auto bytes = std::as_bytes(batches_.numbers(batch));
     const char* first = reinterpret_cast<const char*>(bytes.data());
     return {first, first + bytes.size(), part_};
   }

@@ -248,6 +248,14 @@ template <class S>
     asm("" : "+x"(lanes));
 #endif
     return S(lanes);
+  } else if constexpr (std::is_same_v<S, double>) {
+    double number = x;
+#if defined(__AVX512F__)
+    asm("" : "+v"(number));
+#elif defined(__SSE2__)
+    asm("" : "+x"(number));
+#endif
+    return number;
   } else {
     return x;
   }
