@@ -47,9 +47,8 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
     of_rows.add(general);
     typename detail::PointWrenches<S>::Sides sides;
     for (std::size_t s = 0; s < 2; ++s) {
-      const std::size_t own = views[s].own().free.size(), count = weights.size();
-      sides[s] = {
-          {views[s].values(first), count}, {views[s].changes(first), own * count}, own, twists[s]};
+      sides[s] = {views[s].values(first), views[s].changes(first), views[s].own().free.size(),
+                  twists[s]};
     }
     detail::PointWrenches<S> of_points;
     of_points.set(sides, weights, residuals);

@@ -152,9 +152,9 @@ void write_columns(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, 
 /// One side of a difference r = p_a - p_b: points in the base, and how parameters move them.
 template <class S>
 struct DifferenceSide {
-  std::span<const Vector3<S>> points;  ///< of each feature, metres
+  const Vector3<S>* points;  ///< of each feature, metres
   /// Derivatives of each point by the sensor's own parameters, feature by feature: metres per unit.
-  std::span<const Vector3<S>> changes;
+  const Vector3<S>* changes;
   std::size_t own = 0;   ///< number of those parameters
   BodyTwists<S> twists;  ///< of the body of the points
 };
@@ -178,7 +178,7 @@ void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_
   };
   for (std::size_t s = 0; s < 2; ++s) {
     const std::size_t own = sides[s].own;
-    const Vector3<S>* change = sides[s].changes.data() + first * own;
+    const Vector3<S>* change = sides[s].changes + first * own;
     for (std::size_t k = 0; k < own; ++k, ++change) {
       if (s == 0) write([&](std::size_t f) { return copy(change[f * own]); });
       if (s == 1) write([&](std::size_t f) { return opposite(change[f * own]); });

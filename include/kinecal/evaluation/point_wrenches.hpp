@@ -109,7 +109,7 @@ class PointWrenches {
     const S share = S(1.0) / select(some, sum, S(1.0));
     share_of_root_ = select(some, root_ * share, S(1.0));
     for (std::size_t s = 0; s < 2; ++s) {
-      const Vector3<S>* p = sides[s].points.data();
+      const Vector3<S>* p = sides[s].points;
       Vector3<S> center = Vector3<S>::Zero();
       for (std::size_t i = 0; i < features_; ++i) add_scaled(center, p[i], weights[i]);
       center = scaled(center, share);
@@ -152,7 +152,7 @@ class PointWrenches {
     std::size_t column = 1;
     for (std::size_t s = 0; s < 2; ++s) {
       for (std::size_t c = 0; c < sides[s].own; ++c) {
-        set_own(column++, sides[s].changes.data() + c, sides[s].own, s == 1);
+        set_own(column++, sides[s].changes + c, sides[s].own, s == 1);
       }
     }
     return columns_.data() + column;
