@@ -56,8 +56,8 @@ class BlockTerm : public Term<S> {
 
   [[nodiscard]] static auto difference_sides(const Views& views, const FeatureRun& run,
                                              const Twists& twists) {
-    std::array<DifferenceSide<S>, 2> sides;
-    for (std::size_t s = 0; s < 2; ++s) {
+    std::array<DifferenceSide<S>, kBodies> sides;
+    for (std::size_t s = 0; s < kBodies; ++s) {
       sides[s] = {views[s].values(run.first), views[s].changes(run.first),
                   views[s].own().free.size(), twists[s]};
     }
@@ -139,7 +139,7 @@ class BlockTerm : public Term<S> {
               Block::weight(views, run.first + k), out);
       }
       std::size_t k = 0;
-      constexpr std::size_t kAtOnce = kLanes < S >> 1 ? 4 : 1;
+      constexpr std::size_t kAtOnce = kLanes<S> == 1 ? 1 : 4;
       for (; k + kAtOnce <= features; k += kAtOnce, jacobian += kAtOnce * 3 * columns) {
         write_differences<kAtOnce>(sides, k, columns, jacobian);
       }
