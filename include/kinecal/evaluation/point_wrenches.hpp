@@ -1,4 +1,4 @@
-// What resists motions, for points that are only subtracted: r = p_a - p_b.
+// What resists motions, for points that are only subtracted: r = p_a - p_b; and the Jacobian.
 //
 // With derivatives I and -I, the sums over the features are moments of the points.  Taken about the
 // center of each side's points, translation and rotation decouple:
@@ -19,9 +19,64 @@
 #include <vector>
 
 #include "kinecal/evaluation/dot_products.hpp"
-#include "kinecal/evaluation/feature_rows.hpp"
+#include "kinecal/kinematics/twist_walker.hpp"
 
 namespace kinecal::detail {
+
+/// One side of a difference r = p_a - p_b: points in the base, and how parameters move them.
+template <class S>
+struct DifferenceSide {
+  const Vector3<S>* points;  ///< of each feature, metres
+  /// Derivatives of each point by the sensor's own parameters, feature by feature: metres per unit.
+  const Vector3<S>* changes;
+  std::size_t own = 0;   ///< number of those parameters
+  BodyTwists<S> twists;  ///< of the body of the points
+};
+
+/// Writes the derivatives of a difference, column after column: velocities of the points.  Each twist
+/// is loaded once for all features.
+/// @param first  index of the first feature
+/// @param out    (3 x columns) of each of kFeatures features, column-major
+template <std::size_t kFeatures, class S>
+void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_t first,
+                       std::size_t columns, S* out) {
+  // Copied number by number, into registers: a copy of a whole vector goes through memory.
+  const auto copy = [](const Vector3<S>& v) { return Vector3<S>(v.x(), v.y(), v.z()); };
+  const auto opposite = [](const Vector3<S>& v) { return Vector3<S>(-v.x(), -v.y(), -v.z()); };
+  const auto write = [&out, stride = 3 * columns](const auto& column_of) {
+    for (std::size_t f = 0; f < kFeatures; ++f) {
+      const Vector3<S> v = column_of(f);
+      for (int k = 0; k < 3; ++k) out[f * stride + std::size_t(k)] = v(k);
+    }
+    out += 3;
+  };
+  for (std::size_t s = 0; s < 2; ++s) {
+    const std::size_t own = sides[s].own;
+    const Vector3<S>* change = sides[s].changes + first * own;
+    for (std::size_t k = 0; k < own; ++k, ++change) {
+      if (s == 0) write([&](std::size_t f) { return copy(change[f * own]); });
+      if (s == 1) write([&](std::size_t f) { return opposite(change[f * own]); });
+    }
+  }
+  std::array<std::array<Vector3<S>, kFeatures>, 2> p;
+  for (std::size_t s = 0; s < 2; ++s) {
+    for (std::size_t f = 0; f < kFeatures; ++f) p[s][f] = copy(sides[s].points[first + f]);
+  }
+  for (const Twist<S>& of_a : sides[0].twists.rotational) {
+    const Twist<S> twist{copy(of_a.linear), copy(of_a.angular)};
+    write([&](std::size_t f) { return twist.velocity(p[0][f]); });
+  }
+  for (const Twist<S>& of_b : sides[1].twists.rotational) {
+    const Twist<S> twist{copy(of_b.linear), copy(of_b.angular)};
+    write([&](std::size_t f) { return twist.opposite_velocity(p[1][f]); });
+  }
+  for (const Vector3<S>& of_a : sides[0].twists.translational) {
+    write([v = copy(of_a)](std::size_t) { return v; });
+  }
+  for (const Vector3<S>& of_b : sides[1].twists.translational) {
+    write([v = opposite(of_b)](std::size_t) { return v; });
+  }
+}
 
 /// What resists motions of features that are only subtracted; the interface is that of FeatureWrenches.
 template <class S>

@@ -235,30 +235,22 @@ template <class S>
   }
 }
 
-/// Keeps x in a register.  With SSE2 only, g++ otherwise reloads a number for each multiplication,
-/// and loops over twists take a tenth longer.
+/// Keeps x in a register, as one number.  With SSE2 only, g++ otherwise reloads a packet for each
+/// multiplication, and pairs doubles up by shuffling them: loops over twists take a tenth longer.
 template <class S>
 [[nodiscard]] S in_register(const S& x) {
-  constexpr int kN = kLanes<S>, kWidest = kLanes<Packet>;
-  if constexpr (kN > 1 && kN <= kWidest) {
-    auto lanes = x.lanes();
-#if defined(__AVX512F__)
-    asm("" : "+v"(lanes));
-#elif defined(__SSE2__)
-    asm("" : "+x"(lanes));
-#endif
-    return S(lanes);
-  } else if constexpr (std::is_same_v<S, double>) {
-    double number = x;
+  [[maybe_unused]] const auto held = [](auto number) {
 #if defined(__AVX512F__)
     asm("" : "+v"(number));
 #elif defined(__SSE2__)
     asm("" : "+x"(number));
 #endif
     return number;
-  } else {
-    return x;
-  }
+  };
+  constexpr int kN = kLanes<S>, kWidest = kLanes<Packet>;
+  if constexpr (std::is_same_v<S, double>) return held(x);
+  if constexpr (kN > 1 && kN <= kWidest) return S(held(x.lanes()));
+  return x;
 }
 
 /// a where the condition holds, else b; lane by lane.  Error blocks write it in place of `?:`.

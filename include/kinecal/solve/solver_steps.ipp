@@ -77,6 +77,10 @@ struct Minimum {
   double seconds = 0.0;
 };
 
+[[nodiscard]] inline int iterations_of(const ceres::Solver::Summary& summary) {
+  return std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
+}
+
 /// Adds a run to the outcome.
 inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   minimum.usable = summary.IsSolutionUsable();
@@ -85,7 +89,7 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   minimum.message =
       by_callback ? "a Gauss-Newton step promises no decrease of the cost" : summary.message;
   minimum.cost = summary.final_cost;
-  minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  minimum.iterations += iterations_of(summary);
   for (const ceres::IterationSummary& iteration : summary.iterations) {
     minimum.costs.push_back(iteration.cost);
   }
@@ -103,22 +107,24 @@ inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const So
   const std::vector<double> start = x;
   const std::size_t costs = minimum.costs.size();
   constexpr int kMostCareful = 20;  // iterations
+  int left = options.max_num_iterations;
   for (const Steps steps : {Steps::careful, Steps::bold}) {
     const bool is_bold = steps == Steps::bold;
     if (is_bold && !minimum.converged) {
       if (options.max_num_iterations <= kMostCareful) return;
       std::copy(start.begin(), start.end(), x.begin());
       minimum.costs.resize(costs);
+      left = options.max_num_iterations;
     }
     set_steps(steps, solver);
     StepCallback callback(steps, options, cost);
     solver.callbacks = {&callback};
-    solver.max_num_iterations =
-        is_bold ? options.max_num_iterations : std::min(kMostCareful, options.max_num_iterations);
+    solver.max_num_iterations = is_bold ? left : std::min(kMostCareful, left);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     add_run(summary, minimum);
     if (!minimum.usable) return;
+    left -= iterations_of(summary);
   }
 }
 
