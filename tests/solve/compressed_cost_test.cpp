@@ -115,58 +115,5 @@ TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
   }
 }
 
-/// Counts how often the normal equations are computed.
-class Counted final : public AnyEvaluator {
- public:
-  explicit Counted(AnyEvaluator& evaluator) : evaluator_(evaluator) {}
-  const AnyProblem& problem() const override { return evaluator_.problem(); }
-  const FreeSet& free() const override { return evaluator_.free(); }
-  std::optional<UndefinedResidual> evaluate(std::span<const double> values, bool derivatives,
-                                            const RowVisitor& visit, Linearization at) override {
-    return evaluator_.evaluate(values, derivatives, visit, at);
-  }
-  NormalEquations normal_equations(std::span<const double> values, bool derivatives,
-                                   Losses losses) override {
-    ++count;
-    return evaluator_.normal_equations(values, derivatives, losses);
-  }
-
-  int count = 0;
-
- private:
-  AnyEvaluator& evaluator_;
-};
-
-TEST(CompressedCost, KeepsTheLastJacobian) {
-  const Problem problem = noisy_problem({});
-  const FreeSet free = all_free(problem);
-  const auto n = static_cast<Eigen::Index>(free.size());
-  Evaluator<Packet> evaluator(problem, free);
-  Counted counted(evaluator);
-  const detail::CompressedCost cost(counted, Eigen::VectorXd::Zero(problem.table().size()));
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const auto at = [&](const std::vector<double>& x, bool derivatives) {
-    std::pair<Eigen::VectorXd, RowMajor> all{Eigen::VectorXd(n + 1), RowMajor::Zero(n + 1, n)};
-    const double* blocks[] = {x.data()};
-    double* jacobians[] = {all.second.data()};
-    EXPECT_TRUE(cost.Evaluate(blocks, all.first.data(), derivatives ? jacobians : nullptr));
-    return all;
-  };
-  const auto x = test::random_values(problem.table(), 0.02, 5);
-  const auto y = test::random_values(problem.table(), 0.02, 6);
-  const auto at_x = at(x, true);
-  EXPECT_GT(cost.promised_decrease(), 0.0);
-  const double promised = cost.promised_decrease();
-  (void)at(y, false);  // a step that is only tried
-  EXPECT_EQ(counted.count, 2);
-  const auto again = at(x, true);
-  EXPECT_EQ(counted.count, 2);
-  EXPECT_EQ(again, at_x);
-  EXPECT_EQ(cost.promised_decrease(), promised);
-  const auto at_y = at(y, true);
-  EXPECT_EQ(counted.count, 3);
-  EXPECT_NE(at_y.first, at_x.first);
-}
-
 }  // namespace
 }  // namespace kinecal

@@ -365,7 +365,8 @@ TEST(Solve, CountsWhatItSolved) {
     EXPECT_EQ(result.samples, 7);
     EXPECT_EQ(result.num_parameters, free.size());
     EXPECT_EQ(result.num_residuals, 7 * (4 * 3 + Prior::kRows));
-    EXPECT_EQ(called, result.iterations + 2);  // the starts of careful and of bold steps, too
+    // The start, too; that of bold steps where nobody knows that a step promises nothing more.
+    EXPECT_EQ(called, result.iterations + (form == CostForm::compressed ? 1 : 2));
     EXPECT_GE(result.evaluations, result.iterations);
     constexpr double kSums = 1e-9;  // the last iteration's cost, perhaps before a step too small
     EXPECT_NEAR(last, result.final_cost, kSums * last);

@@ -34,11 +34,9 @@ struct EquivalentResidual {
 
   /// Computes them from normal equations; derivatives are required.
   explicit EquivalentResidual(const NormalEquations& normal);
-  EquivalentResidual() = default;  ///< of nothing
 };
 
-/// The whole problem as one Ceres cost function over the free parameters.  The last Jacobian is kept: a
-/// solver that begins where another one ended does not evaluate it again.
+/// The whole problem as one Ceres cost function over the free parameters.
 class CompressedCost final : public ceres::CostFunction {
  public:
   /// Columns of the free set by Ceres' parameter block.
@@ -56,17 +54,14 @@ class CompressedCost final : public ceres::CostFunction {
 
   /// The decrease of the cost that a Gauss-Newton step promises from where the Jacobian was last
   /// evaluated: half the squared Newton decrement.
-  [[nodiscard]] double promised_decrease() const {
-    return 0.5 * last_.residual.head(free_.size()).squaredNorm();
-  }
+  [[nodiscard]] double promised_decrease() const { return promised_decrease_; }
 
  private:
   // Ceres evaluates one cost function on one thread at a time.
   AnyEvaluator& evaluator_;
   const FreeSet& free_;
   mutable Eigen::VectorXd values_;
-  mutable EquivalentResidual last_;      ///< where the Jacobian was last evaluated
-  mutable Eigen::VectorXd last_values_;  ///< of all parameters, there
+  mutable double promised_decrease_ = std::numeric_limits<double>::infinity();
   Losses losses_;
   Blocks blocks_;
 };

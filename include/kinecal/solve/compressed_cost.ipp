@@ -63,26 +63,23 @@ KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, do
       values_(free_.parameters()[column]) = parameters[b][k];
     }
   }
+  const NormalEquations normal = evaluator_.normal_equations(
+      {values_.data(), static_cast<std::size_t>(values_.size())}, derivatives, losses_);
+  if (!std::isfinite(normal.cost)) return false;
   Eigen::Map<Eigen::VectorXd> r(residuals, free_.size() + 1);
-  const bool is_known = last_values_.size() > 0 && values_ == last_values_;
-  if (!derivatives || !is_known) {
-    const NormalEquations normal = evaluator_.normal_equations(
-        {values_.data(), static_cast<std::size_t>(values_.size())}, derivatives, losses_);
-    if (!std::isfinite(normal.cost)) return false;
-    if (!derivatives) {  // only the cost is needed
-      r.setZero();
-      r(free_.size()) = std::sqrt(2.0 * normal.cost);
-      return true;
-    }
-    last_ = EquivalentResidual(normal);
-    last_values_ = values_;
+  if (!derivatives) {  // only the cost is needed
+    r.setZero();
+    r(free_.size()) = std::sqrt(2.0 * normal.cost);
+    return true;
   }
-  r = last_.residual;
+  const EquivalentResidual equivalent(normal);
+  r = equivalent.residual;
+  promised_decrease_ = 0.5 * r.head(free_.size()).squaredNorm();
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (jacobians[b] == nullptr) continue;
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<RowMajor>(jacobians[b], free_.size() + 1, std::ssize(blocks_[b])) =
-        last_.jacobian(Eigen::all, blocks_[b]);
+        equivalent.jacobian(Eigen::all, blocks_[b]);
   }
   return true;
 }

@@ -14,6 +14,24 @@
 
 namespace kinecal::detail {
 
+/// Reports the progress, and stops where even an undamped step promises nothing.
+class StepCallback final : public ceres::IterationCallback {
+ public:
+  /// @param cost  of the problem, if it has just this one
+  StepCallback(const SolveOptions& options, const CompressedCost* cost)
+      : options_(options), cost_(cost) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (options_.progress) options_.progress(summary.iteration, summary.cost);
+    const bool promises =
+        cost_ == nullptr || cost_->promised_decrease() > options_.function_tolerance * summary.cost;
+    return promises ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+
+ private:
+  const SolveOptions& options_;
+  const CompressedCost* cost_;
+};
+
 [[nodiscard]] inline ceres::Solver::Options ceres_options(const SolveOptions& options) {
   ceres::Solver::Options ceres_options;
   ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
@@ -35,36 +53,13 @@ enum class Steps {
 /// Calibrations have directions that are barely observable, at the bottom of curved valleys.  Careful
 /// steps follow a valley in a tenth of the iterations that bold ones need, which jump from side to side;
 /// but where many directions are barely observable they creep, and may stop short of the minimum.  So
-/// careful steps come first, until the minimum is near or they end, and bold ones have the last word:
-/// from where careful ones ended, or from the start if they did not.
+/// careful steps come first, and bold ones have the last word: from where careful ones ended, or from
+/// the start if they did not.  Nothing is left to say where even an undamped step promises nothing.
 inline void set_steps(Steps steps, ceres::Solver::Options& options) {
   constexpr double kCareful = 1e4, kBold = 1e6;
   options.use_nonmonotonic_steps = steps == Steps::bold;
   options.initial_trust_region_radius = steps == Steps::bold ? kBold : kCareful;
 }
-
-/// Reports the progress, and stops where even an undamped step promises nothing; careful steps where it
-/// promises so little that the cost is a quadratic function of it.
-class StepCallback final : public ceres::IterationCallback {
- public:
-  /// @param cost  of the problem, if it has just this one
-  StepCallback(Steps steps, const SolveOptions& options, const CompressedCost* cost)
-      : options_(options), cost_(cost) {
-    constexpr double kNear = 1e-6;
-    least_ = steps == Steps::bold ? options.function_tolerance
-                                  : std::max(kNear, options.function_tolerance);
-  }
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (options_.progress) options_.progress(summary.iteration, summary.cost);
-    const bool promises = cost_ == nullptr || cost_->promised_decrease() > least_ * summary.cost;
-    return promises ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-  }
-
- private:
-  const SolveOptions& options_;
-  const CompressedCost* cost_;
-  double least_;  ///< promised decrease, as a part of the cost
-};
 
 /// The outcome of several runs of Ceres.
 struct Minimum {
@@ -77,10 +72,6 @@ struct Minimum {
   double seconds = 0.0;
 };
 
-[[nodiscard]] inline int iterations_of(const ceres::Solver::Summary& summary) {
-  return std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
-}
-
 /// Adds a run to the outcome.
 inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   minimum.usable = summary.IsSolutionUsable();
@@ -89,7 +80,7 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   minimum.message =
       by_callback ? "a Gauss-Newton step promises no decrease of the cost" : summary.message;
   minimum.cost = summary.final_cost;
-  minimum.iterations += iterations_of(summary);
+  minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   for (const ceres::IterationSummary& iteration : summary.iterations) {
     minimum.costs.push_back(iteration.cost);
   }
@@ -104,27 +95,25 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
 inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const SolveOptions& options,
                        const CompressedCost* cost, Minimum& minimum) {
   ceres::Solver::Options solver = ceres_options(options);
+  StepCallback callback(options, cost);
+  solver.callbacks.push_back(&callback);
   const std::vector<double> start = x;
   const std::size_t costs = minimum.costs.size();
   constexpr int kMostCareful = 20;  // iterations
-  int left = options.max_num_iterations;
   for (const Steps steps : {Steps::careful, Steps::bold}) {
     const bool is_bold = steps == Steps::bold;
     if (is_bold && !minimum.converged) {
       if (options.max_num_iterations <= kMostCareful) return;
       std::copy(start.begin(), start.end(), x.begin());
       minimum.costs.resize(costs);
-      left = options.max_num_iterations;
     }
     set_steps(steps, solver);
-    StepCallback callback(steps, options, cost);
-    solver.callbacks = {&callback};
-    solver.max_num_iterations = is_bold ? left : std::min(kMostCareful, left);
+    solver.max_num_iterations =
+        is_bold ? options.max_num_iterations : std::min(kMostCareful, options.max_num_iterations);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     add_run(summary, minimum);
-    if (!minimum.usable) return;
-    left -= iterations_of(summary);
+    if (!minimum.usable || summary.termination_type == ceres::USER_SUCCESS) return;
   }
 }
 
