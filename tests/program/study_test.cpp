@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 
 #include "kinecal/io/poses/poses.hpp"
@@ -100,14 +101,24 @@ TEST_F(Study, TrialsDoNotDependOnThreads) {
 
 TEST_F(Study, CtrlCPrintsWhatIsDoneAndTheSameCommandGoesOn) {
   const std::string what = "--robots 2 --repeat 30 --poses 12 --threads 1 ";
+  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(call("study", what + "-o whole").code, 0);
+  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - start;
+  // Between too early, while files are read, and too late, when all is done: by halves.
   test::Outcome stopped;
-  for (double seconds = 4.0; seconds > 0.05; seconds *= 0.7) {
+  double early = 0.0, late = 2.0 * whole.count();
+  for (int attempt = 0; attempt < 60; ++attempt) {
+    if (late - early < 0.01) {  // the machine has become faster or slower
+      early = 0.0;
+      late = 2.0 * whole.count();
+    }
+    const double seconds = 0.5 * (early + late);
     fs::remove_all(folder_ / "part");
     stopped = run("timeout --foreground --preserve-status -s INT " + std::to_string(seconds) +
                   " " KINECAL_PROGRAM " study --urdf " + kFetchFolder +
                   "fetch.urdf --target leds " + what + "-o part");
     if (stopped.code == 130 && stopped.out.find("Interrupted") != std::string::npos) break;
+    (stopped.code == 0 ? late : early) = seconds;
   }
   EXPECT_EQ(stopped.code, 130);
   EXPECT_THAT(stopped.out, ContainsRegex("Interrupted: [0-9]+ of 60 calibrations are done"));
