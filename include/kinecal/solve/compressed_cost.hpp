@@ -19,6 +19,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
@@ -37,6 +38,10 @@ struct EquivalentResidual {
 };
 
 /// The whole problem as one Ceres cost function over the free parameters.
+///
+/// Ceres asks for the cost of a step first, and for the Jacobian there if the step is accepted, which
+/// most are.  Both are computed at once and kept; so another run that starts where one ended is
+/// spared its first evaluation.
 class CompressedCost final : public ceres::CostFunction {
  public:
   /// Columns of the free set by Ceres' parameter block.
@@ -62,6 +67,8 @@ class CompressedCost final : public ceres::CostFunction {
   const FreeSet& free_;
   mutable Eigen::VectorXd values_;
   mutable double promised_decrease_ = std::numeric_limits<double>::infinity();
+  mutable std::optional<EquivalentResidual> last_;
+  mutable Eigen::VectorXd last_values_;  ///< to which `last_` belongs
   Losses losses_;
   Blocks blocks_;
 };

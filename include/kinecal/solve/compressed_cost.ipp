@@ -55,31 +55,27 @@ KINECAL_INLINE CompressedCost::CompressedCost(AnyEvaluator& evaluator, Eigen::Ve
 
 KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, double* residuals,
                                              double** jacobians) const {
-  bool derivatives = false;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    derivatives = derivatives || (jacobians != nullptr && jacobians[b] != nullptr);
     for (std::size_t k = 0; k < blocks_[b].size(); ++k) {
       const auto column = static_cast<std::size_t>(blocks_[b][k]);
       values_(free_.parameters()[column]) = parameters[b][k];
     }
   }
-  const NormalEquations normal = evaluator_.normal_equations(
-      {values_.data(), static_cast<std::size_t>(values_.size())}, derivatives, losses_);
-  if (!std::isfinite(normal.cost)) return false;
-  Eigen::Map<Eigen::VectorXd> r(residuals, free_.size() + 1);
-  if (!derivatives) {  // only the cost is needed
-    r.setZero();
-    r(free_.size()) = std::sqrt(2.0 * normal.cost);
-    return true;
+  if (!last_ || values_ != last_values_) {
+    const NormalEquations normal = evaluator_.normal_equations(
+        {values_.data(), static_cast<std::size_t>(values_.size())}, true, losses_);
+    if (!std::isfinite(normal.cost)) return false;
+    last_.emplace(normal);
+    last_values_ = values_;
   }
-  const EquivalentResidual equivalent(normal);
-  r = equivalent.residual;
-  promised_decrease_ = 0.5 * r.head(free_.size()).squaredNorm();
+  Eigen::Map<Eigen::VectorXd>(residuals, free_.size() + 1) = last_->residual;
+  if (jacobians == nullptr) return true;
+  promised_decrease_ = 0.5 * last_->residual.head(free_.size()).squaredNorm();
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (jacobians[b] == nullptr) continue;
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<RowMajor>(jacobians[b], free_.size() + 1, std::ssize(blocks_[b])) =
-        equivalent.jacobian(Eigen::all, blocks_[b]);
+        last_->jacobian(Eigen::all, blocks_[b]);
   }
   return true;
 }
