@@ -43,39 +43,46 @@ void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_
   // Copied number by number, into registers: a copy of a whole vector goes through memory.
   const auto copy = [](const Vector3<S>& v) { return Vector3<S>(v.x(), v.y(), v.z()); };
   const auto opposite = [](const Vector3<S>& v) { return Vector3<S>(-v.x(), -v.y(), -v.z()); };
-  const auto write = [&out, stride = 3 * columns](const auto& column_of) {
-    for (std::size_t f = 0; f < kFeatures; ++f) {
-      const Vector3<S> v = column_of(f);
-      for (int k = 0; k < 3; ++k) out[f * stride + std::size_t(k)] = v(k);
+  const auto write = [&out, stride = 3 * columns](std::size_t count, const auto& column) {
+    for (std::size_t k = 0; k < count; ++k, out += 3) {
+      const auto of_feature = column(k);
+      for (std::size_t f = 0; f < kFeatures; ++f) {
+        const Vector3<S> v = of_feature(f);
+        S* at = out + f * stride;
+        for (int n = 0; n < 3; ++n) at[n] = v(n);
+      }
     }
-    out += 3;
   };
-  for (std::size_t s = 0; s < 2; ++s) {
-    const std::size_t own = sides[s].own;
-    const Vector3<S>* change = sides[s].changes + first * own;
-    for (std::size_t k = 0; k < own; ++k, ++change) {
-      if (s == 0) write([&](std::size_t f) { return copy(change[f * own]); });
-      if (s == 1) write([&](std::size_t f) { return opposite(change[f * own]); });
-    }
-  }
-  std::array<std::array<Vector3<S>, kFeatures>, 2> p;
-  for (std::size_t s = 0; s < 2; ++s) {
-    for (std::size_t f = 0; f < kFeatures; ++f) p[s][f] = copy(sides[s].points[first + f]);
-  }
-  for (const Twist<S>& of_a : sides[0].twists.rotational) {
-    const Twist<S> twist{copy(of_a.linear), copy(of_a.angular)};
-    write([&](std::size_t f) { return twist.velocity(p[0][f]); });
-  }
-  for (const Twist<S>& of_b : sides[1].twists.rotational) {
-    const Twist<S> twist{copy(of_b.linear), copy(of_b.angular)};
-    write([&](std::size_t f) { return twist.opposite_velocity(p[1][f]); });
-  }
-  for (const Vector3<S>& of_a : sides[0].twists.translational) {
-    write([v = copy(of_a)](std::size_t) { return v; });
-  }
-  for (const Vector3<S>& of_b : sides[1].twists.translational) {
-    write([v = opposite(of_b)](std::size_t) { return v; });
-  }
+  const auto& [a, b] = sides;
+  write(a.own, [&, change = a.changes + first * a.own](std::size_t k) {
+    return [&, k](std::size_t f) { return copy(change[f * a.own + k]); };
+  });
+  write(b.own, [&, change = b.changes + first * b.own](std::size_t k) {
+    return [&, k](std::size_t f) { return opposite(change[f * b.own + k]); };
+  });
+  std::array<Vector3<S>, kFeatures> p;
+  for (std::size_t f = 0; f < kFeatures; ++f) p[f] = copy(a.points[first + f]);
+  write(a.twists.rotational.size(), [&](std::size_t k) {
+    const Twist<S>& t = a.twists.rotational[k];
+    return [&, twist = Twist<S>{copy(t.linear), copy(t.angular)}](std::size_t f) {
+      return twist.velocity(p[f]);
+    };
+  });
+  for (std::size_t f = 0; f < kFeatures; ++f) p[f] = copy(b.points[first + f]);
+  write(b.twists.rotational.size(), [&](std::size_t k) {
+    const Twist<S>& t = b.twists.rotational[k];
+    return [&, twist = Twist<S>{copy(t.linear), copy(t.angular)}](std::size_t f) {
+      return twist.opposite_velocity(p[f]);
+    };
+  });
+  write(a.twists.translational.size(), [&](std::size_t k) {
+    const Vector3<S>& v = a.twists.translational[k];
+    return [x = v.x(), y = v.y(), z = v.z()](std::size_t) { return Vector3<S>(x, y, z); };
+  });
+  write(b.twists.translational.size(), [&](std::size_t k) {
+    const Vector3<S>& v = b.twists.translational[k];
+    return [x = -v.x(), y = -v.y(), z = -v.z()](std::size_t) { return Vector3<S>(x, y, z); };
+  });
 }
 
 /// What resists motions of features that are only subtracted; the interface is that of FeatureWrenches.

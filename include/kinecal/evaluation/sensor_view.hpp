@@ -117,6 +117,7 @@ void SensorView<S>::start(const MountedSensor& sensor, const SensorEvaluation<S>
   state_ = &state;
   places_ = places;
   derivatives_ = derivatives;
+  observation_ = {};
   num_values_ = code().num_values();
   changes_per_feature_ = derivatives ? code().num_variables() * own().free.size() : 0;
   const std::size_t chains = sensor.chains().size();
@@ -136,6 +137,10 @@ void SensorView<S>::start(const MountedSensor& sensor, const SensorEvaluation<S>
 
 template <class S>
 void SensorView<S>::update(BatchObservation<S> seen) {
+  if (places_ && seen.layout != observation_.layout) {
+    values_.resize(seen.size() * num_values_);
+    changes_.resize(seen.size() * changes_per_feature_);
+  }
   observation_ = seen;
   for (std::size_t c = 0, end = poses_.size(); c < end; ++c) {
     if (!seen.has_joints(c)) continue;
@@ -148,8 +153,6 @@ void SensorView<S>::update(BatchObservation<S> seen) {
     }
   }
   if (!places_) return;
-  values_.resize(seen.size() * num_values_);
-  changes_.resize(seen.size() * changes_per_feature_);
   const std::span<const int> chosen =
       derivatives_ ? std::span<const int>(own().free) : std::span<const int>();
   code().place(seen, poses_, own().values, chosen, values_.data(), changes_.data());
