@@ -53,7 +53,7 @@ void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_
       }
     }
   };
-  const auto& [a, b] = sides;
+  const DifferenceSide<S>&a = sides[0], &b = sides[1];
   write(a.own, [&, change = a.changes + first * a.own](std::size_t k) {
     return [&, k](std::size_t f) { return copy(change[f * a.own + k]); };
   });
