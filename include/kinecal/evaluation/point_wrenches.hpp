@@ -40,9 +40,7 @@ struct DifferenceSide {
 template <std::size_t kFeatures, class S>
 void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_t first,
                        std::size_t columns, S* out) {
-  // Copied number by number, into registers: a copy of a whole vector goes through memory.
-  const auto copy = [](const Vector3<S>& v) { return Vector3<S>(v.x(), v.y(), v.z()); };
-  const auto opposite = [](const Vector3<S>& v) { return Vector3<S>(-v.x(), -v.y(), -v.z()); };
+  // Vectors are copied number by number, into registers: a copy of a whole one goes through memory.
   const auto write = [&out, stride = 3 * columns](std::size_t count, const auto& column) {
     for (std::size_t k = 0; k < count; ++k, out += 3) {
       const auto of_feature = column(k);
@@ -53,35 +51,35 @@ void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_
       }
     }
   };
-  const DifferenceSide<S>&a = sides[0], &b = sides[1];
-  write(a.own, [&, change = a.changes + first * a.own](std::size_t k) {
-    return [&, k](std::size_t f) { return copy(change[f * a.own + k]); };
+  const auto of_side = [](auto s, const Vector3<S>& v) {
+    if constexpr (s == 0) return Vector3<S>(v.x(), v.y(), v.z());
+    if constexpr (s == 1) return Vector3<S>(-v.x(), -v.y(), -v.z());
+  };
+  unrolled<2>([&](auto s) {
+    const std::size_t own = sides[s].own;
+    const Vector3<S>* change = sides[s].changes + first * own;
+    write(own, [&](std::size_t k) {
+      return [&, k](std::size_t f) { return of_side(s, change[f * own + k]); };
+    });
   });
-  write(b.own, [&, change = b.changes + first * b.own](std::size_t k) {
-    return [&, k](std::size_t f) { return opposite(change[f * b.own + k]); };
+  constexpr Constant<0> kAsItIs;
+  unrolled<2>([&](auto s) {
+    std::array<Vector3<S>, kFeatures> p;
+    for (std::size_t f = 0; f < kFeatures; ++f) p[f] = of_side(kAsItIs, sides[s].points[first + f]);
+    const std::span<const Twist<S>> twists = sides[s].twists.rotational;
+    write(twists.size(), [&](std::size_t k) {
+      const Twist<S> twist{of_side(kAsItIs, twists[k].linear), of_side(kAsItIs, twists[k].angular)};
+      return [&p, s, twist](std::size_t f) {
+        return s == 0 ? twist.velocity(p[f]) : twist.opposite_velocity(p[f]);
+      };
+    });
   });
-  std::array<Vector3<S>, kFeatures> p;
-  for (std::size_t f = 0; f < kFeatures; ++f) p[f] = copy(a.points[first + f]);
-  write(a.twists.rotational.size(), [&](std::size_t k) {
-    const Twist<S>& t = a.twists.rotational[k];
-    return [&, twist = Twist<S>{copy(t.linear), copy(t.angular)}](std::size_t f) {
-      return twist.velocity(p[f]);
-    };
-  });
-  for (std::size_t f = 0; f < kFeatures; ++f) p[f] = copy(b.points[first + f]);
-  write(b.twists.rotational.size(), [&](std::size_t k) {
-    const Twist<S>& t = b.twists.rotational[k];
-    return [&, twist = Twist<S>{copy(t.linear), copy(t.angular)}](std::size_t f) {
-      return twist.opposite_velocity(p[f]);
-    };
-  });
-  write(a.twists.translational.size(), [&](std::size_t k) {
-    const Vector3<S>& v = a.twists.translational[k];
-    return [x = v.x(), y = v.y(), z = v.z()](std::size_t) { return Vector3<S>(x, y, z); };
-  });
-  write(b.twists.translational.size(), [&](std::size_t k) {
-    const Vector3<S>& v = b.twists.translational[k];
-    return [x = -v.x(), y = -v.y(), z = -v.z()](std::size_t) { return Vector3<S>(x, y, z); };
+  unrolled<2>([&](auto s) {
+    const std::span<const Vector3<S>> velocities = sides[s].twists.translational;
+    write(velocities.size(), [&](std::size_t k) {
+      const Vector3<S> v = of_side(s, velocities[k]);
+      return [x = v.x(), y = v.y(), z = v.z()](std::size_t) { return Vector3<S>(x, y, z); };
+    });
   });
 }
 
