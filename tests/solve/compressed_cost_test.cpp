@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
 
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
@@ -101,7 +103,8 @@ TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
     const double* blocks[] = {x.data()};
     double* jacobians[] = {jacobian.data()};
     ASSERT_TRUE(cost.Evaluate(blocks, r.data(), jacobians));
-    EXPECT_NEAR(0.5 * r.squaredNorm(), cost_at(x), 1e-12 * cost_at(x));
+    const double sum_of_rho = normal_equations(problem, x, nullptr).cost;
+    EXPECT_NEAR(0.5 * r.squaredNorm(), sum_of_rho, 1e-12 * sum_of_rho);
     const Eigen::VectorXd gradient = jacobian.transpose() * r;
     for (Eigen::Index i = 0; i < n; ++i) {
       constexpr double kStep = 1e-6;
@@ -113,6 +116,65 @@ TEST(CompressedCost, GradientWithALossIsThatOfTheRobustCost) {
           << problem.table()[static_cast<int>(i)].name;
     }
   }
+}
+
+/// Calls a cost, with a Jacobian or without.
+class Calls {
+ public:
+  explicit Calls(const detail::CompressedCost& cost)
+      : cost_(cost), r_(cost.num_residuals()), j_(r_.size() * (r_.size() - 1)) {}
+
+  bool operator()(const std::vector<double>& x, bool derivatives) {
+    const double* blocks[] = {x.data()};
+    double* jacobians[] = {j_.data()};
+    return cost_.Evaluate(blocks, r_.data(), derivatives ? jacobians : nullptr);
+  }
+  [[nodiscard]] const Eigen::VectorXd& residual() const { return r_; }
+
+ private:
+  const detail::CompressedCost& cost_;
+  Eigen::VectorXd r_, j_;
+};
+
+TEST(CompressedCost, EvaluatesSamplesOnceWhereCostAndJacobianAreAskedFor) {
+  const Problem problem = noisy_problem({});
+  const FreeSet free = all_free(problem);
+  Evaluator<Packet> evaluator(problem, free);
+  const detail::CompressedCost cost(evaluator, Eigen::VectorXd::Zero(problem.table().size()));
+  Calls call(cost);
+  const auto x = test::random_values(problem.table(), 0.02, 5);
+  const auto y = test::random_values(problem.table(), 0.02, 6);
+  EXPECT_TRUE(std::isinf(cost.promised_decrease()));
+  ASSERT_TRUE(call(x, false));
+  EXPECT_TRUE(std::isinf(cost.promised_decrease())) << "no step starts there yet";
+  ASSERT_TRUE(call(x, true));
+  EXPECT_EQ(cost.evaluations(), 1);
+  const double promised = cost.promised_decrease();
+  const Eigen::VectorXd at_x = call.residual();
+  ASSERT_TRUE(call(y, false));
+  EXPECT_EQ(cost.evaluations(), 2);
+  EXPECT_NE(call.residual(), at_x);
+  EXPECT_EQ(cost.promised_decrease(), promised) << "a step to there may be refused";
+  ASSERT_TRUE(call(x, true));
+  EXPECT_EQ(cost.evaluations(), 3);
+  EXPECT_EQ(call.residual(), at_x);
+  EXPECT_EQ(cost.promised_decrease(), promised);
+}
+
+TEST(CompressedCost, FailsWhereTheCostIsNotFiniteAndKeepsNothingOfIt) {
+  const Problem problem = noisy_problem({});
+  const FreeSet free = all_free(problem);
+  Evaluator<Packet> evaluator(problem, free);
+  const detail::CompressedCost cost(evaluator, Eigen::VectorXd::Zero(problem.table().size()));
+  Calls call(cost);
+  const auto x = test::random_values(problem.table(), 0.02, 5);
+  const std::vector<double> nowhere(x.size(), std::numeric_limits<double>::quiet_NaN());
+  ASSERT_TRUE(call(x, true));
+  const Eigen::VectorXd at_x = call.residual();
+  EXPECT_FALSE(call(nowhere, false));
+  EXPECT_FALSE(call(nowhere, true));
+  ASSERT_TRUE(call(x, false));
+  EXPECT_EQ(call.residual(), at_x);
 }
 
 }  // namespace

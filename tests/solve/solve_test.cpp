@@ -368,6 +368,9 @@ TEST(Solve, CountsWhatItSolved) {
     // The start, too; that of bold steps where nobody knows that a step promises nothing more.
     EXPECT_EQ(called, result.iterations + (form == CostForm::compressed ? 1 : 2));
     EXPECT_GE(result.evaluations, result.iterations);
+    if (form == CostForm::compressed) {  // the start, and each step once
+      EXPECT_EQ(result.evaluations, result.iterations + 1);
+    }
     constexpr double kSums = 1e-9;  // the last iteration's cost, perhaps before a step too small
     EXPECT_NEAR(last, result.final_cost, kSums * last);
   }

@@ -60,6 +60,8 @@ class CompressedCost final : public ceres::CostFunction {
   /// The decrease of the cost that a Gauss-Newton step promises from where the Jacobian was last
   /// evaluated: half the squared Newton decrement.
   [[nodiscard]] double promised_decrease() const { return promised_decrease_; }
+  /// How often all samples were evaluated.
+  [[nodiscard]] int evaluations() const { return evaluations_; }
 
  private:
   // Ceres evaluates one cost function on one thread at a time.
@@ -67,6 +69,7 @@ class CompressedCost final : public ceres::CostFunction {
   const FreeSet& free_;
   mutable Eigen::VectorXd values_;
   mutable double promised_decrease_ = std::numeric_limits<double>::infinity();
+  mutable int evaluations_ = 0;
   mutable std::optional<EquivalentResidual> last_;
   mutable Eigen::VectorXd last_values_;  ///< to which `last_` belongs
   Losses losses_;

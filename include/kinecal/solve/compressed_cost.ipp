@@ -62,6 +62,7 @@ KINECAL_INLINE bool CompressedCost::Evaluate(double const* const* parameters, do
     }
   }
   if (!last_ || values_ != last_values_) {
+    ++evaluations_;
     const NormalEquations normal = evaluator_.normal_equations(
         {values_.data(), static_cast<std::size_t>(values_.size())}, true, losses_);
     if (!std::isfinite(normal.cost)) return false;

@@ -51,7 +51,7 @@ struct StepResult {
   int num_parameters = 0;                ///< free parameters
   CostForm form = CostForm::compressed;  ///< the one that was used
   int samples = 0;                       ///< of the problem
-  int evaluations = 0;                   ///< how often Ceres evaluated all samples
+  int evaluations = 0;                   ///< how often all samples were evaluated
   StartSummary starts = {};              ///< of solve_from_starts(), if there were several
   std::vector<double> costs = {};  ///< after each iteration, from the start on; where losses are
                                    ///< not convex, that with convex ones comes first

@@ -84,7 +84,6 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   for (const ceres::IterationSummary& iteration : summary.iterations) {
     minimum.costs.push_back(iteration.cost);
   }
-  minimum.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
   minimum.seconds += summary.total_time_in_seconds;
 }
 
@@ -111,8 +110,12 @@ inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const So
     solver.max_num_iterations =
         is_bold ? options.max_num_iterations : std::min(kMostCareful, options.max_num_iterations);
     ceres::Solver::Summary summary;
+    const int evaluated = cost != nullptr ? cost->evaluations() : 0;
     ceres::Solve(solver, &problem, &summary);
     add_run(summary, minimum);
+    minimum.evaluations +=
+        cost != nullptr ? cost->evaluations() - evaluated
+                        : summary.num_residual_evaluations + summary.num_jacobian_evaluations;
     if (!minimum.usable || summary.termination_type == ceres::USER_SUCCESS) return;
   }
 }
