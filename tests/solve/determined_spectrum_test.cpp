@@ -20,6 +20,13 @@ Eigen::MatrixXd information_without(const Eigen::VectorXd& direction, unsigned s
 
 const Eigen::Vector4d kOpen(1.0, 2.0, 0.0, -1.0), kOther(1.0, -1.0, 3.0, 0.5);
 
+TEST(DeterminedSpectrum, OfNoCoordinatesIsEmpty) {
+  const detail::Spectrum spectrum(Eigen::MatrixXd(0, 0));
+  EXPECT_EQ(spectrum.singular.size(), 0);
+  EXPECT_EQ(spectrum.null, 0);
+  EXPECT_EQ(spectrum.pseudo_inverse().size(), 0);
+}
+
 TEST(DeterminedSpectrum, LosesADirectionThatOnlyTheErrorFreeProblemDetermines) {
   // The error-free problem sees kOpen, and does not see kOther.
   const Eigen::MatrixXd error_free = information_without(kOther, 1);

@@ -97,6 +97,16 @@ TEST(Judge, ComparesTheNoiseWithWhatRobotsReachWhereNoSigmaWasGiven) {
   }
 }
 
+TEST(Judge, RefusesWhatDeterminesNothing) {
+  Judged judged;
+  judged.assessments[0].uncertainty.determined = 1;
+  expect(judged.judgement(), Grade::good, "");
+  judged.assessments[0].uncertainty.determined = 0;
+  expect(judged.judgement(), Grade::do_not_use, "determine none of its 10 free parameters");
+  judged.assessments[0].parameters.clear();  // all of them ended at bounds
+  expect(judged.judgement(), Grade::good, "");
+}
+
 TEST(Judge, WantsMoreResidualsThanParameters) {
   for (const auto& [rows, verdict] : {std::pair(20, Grade::good),
                                       {19, Grade::use_with_care},

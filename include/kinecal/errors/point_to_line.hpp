@@ -24,12 +24,13 @@ class PointToLine {
   /// @param direction  (3) of the line, of any length, in the base
   /// @throws std::invalid_argument  if the direction is zero
   PointToLine(const Vector3<double>& point, const Vector3<double>& direction) : point_(point) {
-    if (!(direction.norm() > 0.0))
+    const Vector3<double> unit = direction.stableNormalized();
+    if (!(unit.norm() > 0.0))
       throw std::invalid_argument("the line's direction (a, b, c) has length zero");
     int least = 0;
-    direction.cwiseAbs().minCoeff(&least);
-    u_ = cross<double>(direction, Vector3<double>::Unit(least)).normalized();
-    v_ = cross<double>(direction, u_).normalized();
+    unit.cwiseAbs().minCoeff(&least);
+    u_ = cross<double>(unit, Vector3<double>::Unit(least)).normalized();
+    v_ = cross<double>(unit, u_).normalized();
   }
 
   /// The distance of a point, in two directions.

@@ -23,7 +23,7 @@ class PointToPlane {
   /// The plane a x + b y + c z + d = 0 in the base, metres.
   /// @throws std::invalid_argument  if (a, b, c) is zero
   PointToPlane(double a, double b, double c, double d) : normal_(a, b, c), d_(d) {
-    const double length = normal_.norm();
+    const double length = normal_.stableNorm();
     if (!(length > 0.0))
       throw std::invalid_argument("the plane's normal (a, b, c) has length zero");
     normal_ /= length;

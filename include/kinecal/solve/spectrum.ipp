@@ -26,12 +26,12 @@ KINECAL_INLINE Eigen::MatrixXd error_free_information(const AnyProblem& problem,
 KINECAL_INLINE Spectrum::Spectrum(const Eigen::MatrixXd& information)
     : scale(
           information.diagonal().unaryExpr([](double d) { return d > 0.0 ? std::sqrt(d) : 1.0; })) {
+  if (information.size() == 0) return;  // Eigen's solver takes no empty matrix
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
   singular = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   vectors = eigen.eigenvectors();
-  if (singular.size() == 0) return;
   // all of them where the Jacobian is zero
   null = (singular.array() <= kUnobservable * singular.maxCoeff()).count();
 }

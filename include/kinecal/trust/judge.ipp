@@ -13,6 +13,15 @@ namespace kinecal {
 
 namespace detail {
 
+/// A step that determines nothing leaves the robot as it was, whatever fits.
+inline void judge_determined(const Assessment& step, bool last, Judgement& judgement) {
+  if (step.parameters.empty() || step.uncertainty.determined > 0) return;
+  judgement.add(last ? Grade::do_not_use : Grade::use_with_care,
+                "step '" + step.step + "': these samples determine none of its " +
+                    std::to_string(step.parameters.size()) +
+                    " free parameters; does any error block depend on them, with what weight?");
+}
+
 inline void judge_freedom(const Assessment& step, Judgement& judgement) {
   const double parameters = std::max(1, step.uncertainty.determined);
   const double freedom = step.rows - parameters;
@@ -162,6 +171,7 @@ KINECAL_INLINE Judgement judge(const Calibration& calibration, const Calibration
     const CalibrationStep& step = calibration.steps[s];
     const bool last = s + 1 == assessments.size();
     if (last) detail::judge_noise(assessments[s], judgement);  // earlier steps fit less
+    detail::judge_determined(assessments[s], last, judgement);
     detail::judge_freedom(assessments[s], judgement);
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
