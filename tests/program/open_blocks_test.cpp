@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -101,6 +102,63 @@ error_blocks:
   EXPECT_NEAR(value("elbow_gear_ratio"), kGear, 1e-9);
   EXPECT_NEAR(value("stand_x"), 1.0, 1e-9);
   EXPECT_THAT(result.err, HasSubstr("a URDF cannot hold 'elbow_gear_ratio'"));
+}
+
+TEST_F(OpenBlocksProgram, LeavesOutAnOrientationThatIsNotANumberWithACount) {
+  int n = 0;
+  record([&](const Pose<double>& hand, Sample& sample) {
+    Matrix3<double> seen = hand.rotation;
+    if (n++ == 3) seen(0, 0) = std::nan("");
+    sample.observations = {
+        {"body", {{"hand", Vector3<double>::Zero(), Matrix3<double>::Identity()}}},
+        {"mocap", {{"base", hand.translation, seen}}}};
+  });
+  const test::Outcome result = calibrate(R"(models:
+ - {name: body, type: chain6d, frame: hand}
+ - {name: mocap, type: chain6d, frame: base}
+free_params: [elbow, elbow_gear_ratio]
+error_blocks:
+ - {name: track, type: pose_to_pose, model_a: body, model_b: mocap}
+)");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("1 feature is not a number and left out"));
+  EXPECT_THAT(result.err, HasSubstr("sensor 'mocap'"));
+  EXPECT_NEAR(value("elbow"), kOpenElbow, 1e-9);
+}
+
+/// Weights so small that their squares vanish: no crash, and no robot that only looks calibrated.
+TEST_F(OpenBlocksProgram, RefusesWhatDeterminesNothing) {
+  record([&](const Pose<double>& hand, Sample& sample) {
+    sample.observations = {{"arm", {{"hand", hand.inverse() * Vector3<double>(0.5, 0.1, 0.3)}}}};
+  });
+  for (const char* block :
+       {"type: chain3d_to_plane, sigma: 1e300", "type: point_to_line, sigma: 1e300",
+        "type: chain3d_to_plane, scale: 1e-300"}) {
+    const test::Outcome result = calibrate(std::string(R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+free_params: [shoulder, elbow]
+error_blocks:
+ - {name: known, model: arm, )") + block + "}\n");
+    EXPECT_EQ(result.code, 2) << block << result.err;
+    EXPECT_THAT(result.err + result.out, HasSubstr("none of its 2 free parameters")) << block;
+    EXPECT_FALSE(fs::exists(folder_ / "result" / "calibrated.urdf"));
+  }
+}
+
+TEST_F(OpenBlocksProgram, CalibratesOnAPlaneWhoseNormalIsLong) {
+  record([&](const Pose<double>& hand, Sample& sample) {
+    Vector3<double> p = hand * Vector3<double>(0.2, 0.1, 0.05);
+    p.z() = 0.4;
+    sample.observations = {{"arm", {{"hand", hand.inverse() * p}}}};
+  });
+  const test::Outcome result = calibrate(R"(models:
+ - {name: arm, type: chain3d, frame: hand}
+free_params: [elbow, elbow_gear_ratio]
+error_blocks:
+ - {name: table, type: chain3d_to_plane, model: arm, c: 1e200, d: -0.4e200}
+)");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(value("elbow"), kOpenElbow, 1e-8);
 }
 
 TEST_F(OpenBlocksProgram, CalibratesOnABallBarOfUnknownLength) {

@@ -6,6 +6,7 @@
 #include "kinecal/io/add_blocks.ipp"
 #include "kinecal/io/assemble.hpp"
 #include "kinecal/io/config/config_free.ipp"
+#include "kinecal/io/id_warnings.ipp"
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/io/sample_warnings.ipp"
 #include "kinecal/io/unknown_frames.ipp"
@@ -248,7 +249,7 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
     }
   }
   detail::warn_of_held_priors(config, calibration.table, diagnostics);
-  detail::warn_of_unusable(samples, diagnostics);
+  detail::warn_of_unusable(config, samples, diagnostics);
   detail::warn_of_far_points(config, samples, diagnostics);
   detail::warn_of_changing_cameras(samples, diagnostics);
   detail::warn_of_joints_with_two_positions(samples, diagnostics);

@@ -16,20 +16,37 @@
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
-#include "kinecal/problem/any_term.hpp"
-#include "kinecal/samples/paired_features.hpp"
 #include "kinecal/samples/sample.hpp"
+#include "kinecal/sensors/any_sensor.hpp"
 
 namespace kinecal::detail {
 
+/// Names of the models whose sensors are of some kind.
+/// @param is_meant  takes an AnySensor
+template <class IsMeant>
+[[nodiscard]] std::set<std::string> models_where(const Config& config, const IsMeant& is_meant) {
+  std::set<std::string> names;
+  for (const StepConfig& step : config.steps) {
+    for (const ModelConfig& model : step.models) {
+      const SensorEntry* entry = registry().sensor(model.type);
+      if (entry != nullptr && is_meant(*entry->sensor)) names.insert(model.name);
+    }
+  }
+  return names;
+}
+
 /// Warns of features that are not numbers, once for all steps.
-inline void warn_of_unusable(std::span<const Sample> samples, Diagnostics& diagnostics) {
+inline void warn_of_unusable(const Config& config, std::span<const Sample> samples,
+                             Diagnostics& diagnostics) {
+  const std::set<std::string> oriented =
+      models_where(config, [](const AnySensor& sensor) { return sensor.is_oriented(); });
   std::size_t unusable = 0;
   std::string first;
   for (const Sample& sample : samples) {
     for (const Observation& observation : sample.observations) {
       for (const Feature& feature : observation.features) {
-        if (feature.point.allFinite()) continue;
+        const bool turned = feature.rotation && oriented.contains(observation.sensor);
+        if (feature.point.allFinite() && (!turned || feature.rotation->allFinite())) continue;
         if (unusable++ == 0) first = sample.source + ", sensor '" + observation.sensor + "'";
       }
     }
@@ -45,14 +62,8 @@ inline void warn_of_unusable(std::span<const Sample> samples, Diagnostics& diagn
 inline void warn_of_far_points(const Config& config, std::span<const Sample> samples,
                                Diagnostics& diagnostics) {
   constexpr double kFar = 100.0;
-  std::set<std::string> in_pixels;
-  for (const StepConfig& step : config.steps) {
-    for (const ModelConfig& model : step.models) {
-      const SensorEntry* entry = registry().sensor(model.type);
-      if (entry != nullptr && !entry->sensor->delivers(Quantity::point))
-        in_pixels.insert(model.name);
-    }
-  }
+  const std::set<std::string> in_pixels = models_where(
+      config, [](const AnySensor& sensor) { return !sensor.delivers(Quantity::point); });
   std::size_t count = 0;
   std::string first;
   for (const Sample& sample : samples) {
@@ -134,43 +145,6 @@ inline void warn_of_joints_with_two_positions(std::span<const Sample> samples,
       "{} joint{} of a sample {} a second position that differs; the first one is used.  "
       "The first is at {}",
       count, count == 1 ? "" : "s", count == 1 ? "has" : "have", first));
-}
-
-/// Warns of samples in which the sensors of a term saw different features.
-inline void warn_of_disjoint_ids(const AnyTerm& term, const BlockConfig& block,
-                                 std::span<const Sample> samples, Diagnostics& diagnostics) {
-  std::size_t disjoint = 0;
-  std::string first;
-  for (const Sample& sample : samples) {
-    if (!term.pairs_features() || !ids_are_disjoint(sample, block.models)) continue;
-    if (disjoint++ == 0) first = sample.source;
-  }
-  if (disjoint == 0) return;
-  diagnostics.warning(
-      block.place,
-      fmt::format("error block '{}' does not use {} sample{}: its sensors observed no feature of "
-                  "the same id; the first is at {}",
-                  term.name(), disjoint, disjoint == 1 ? "" : "s", first));
-}
-
-/// Warns of samples in which some sensors of a term give ids, and others do not.
-inline void warn_of_one_sided_ids(const AnyTerm& term, const BlockConfig& block,
-                                  std::span<const Sample> samples, Diagnostics& diagnostics) {
-  if (!term.pairs_features()) return;
-  for (const Sample& sample : samples) {
-    std::string with, without;
-    for (const std::string& model : block.models) {
-      const Observation* seen = sample.observation(model);
-      if (seen == nullptr || seen->features.empty()) continue;
-      (seen->features.front().id ? with : without) = model;
-    }
-    if (with.empty() || without.empty()) continue;
-    diagnostics.warning(
-        block.place, fmt::format("error block '{}': features of '{}' have ids, those of '{}' have "
-                                 "none, so they are paired by place; the first sample is at {}",
-                                 term.name(), with, without, sample.source));
-    return;
-  }
 }
 
 /// Warns of models whose sensor is not in any sample: probably one of the names is misspelt.

@@ -704,6 +704,15 @@ TEST(ReadConfig, PlaneTakesItsModelUnderEitherKeyAndNeedsANormal) {
                           "has length zero"));
 }
 
+TEST(ReadConfig, AScaleIsPositive) {
+  for (const char* scale : {"0", "-1"}) {
+    EXPECT_THAT(
+        errors(with_block(std::string("type: chain3d_to_plane, model: arm, scale: ") + scale)),
+        ElementsAre(std::string("calibrate.yaml:10: error block 'block': scale is '") + scale +
+                    "', not a finite number greater than zero"));
+  }
+}
+
 TEST(ReadConfig, ModelsOfTheWrongKindAreErrors) {
   EXPECT_THAT(errors(with_block("type: chain3d_to_camera2d, model_3d: arm, model_2d: camera")),
               ElementsAre("calibrate.yaml:10: error block 'block': model_2d 'camera' is a camera3d;"

@@ -58,7 +58,9 @@ inline void read_block_model(ConfigMap& map, const BlockSensorEntry& of_block,
 /// Reads the numbers of a block and reports impossible ones.
 inline void read_block_numbers(ConfigMap& map, const BlockEntry& entry, BlockConfig& block) {
   for (const auto& [name, fallback] : entry.numbers) {
-    block.numbers[name] = map.number(name, fallback);
+    // The weight of all residuals; one of a part of them may be zero.
+    block.numbers[name] =
+        name == "scale" ? map.positive(name, fallback) : map.number(name, fallback);
   }
   try {
     (void)entry.parameters(block);
