@@ -90,6 +90,23 @@ TEST(Problem, NamesTheNearestParameterForAMisspeltPrior) {
   EXPECT_THAT(message("camera"), HasSubstr("'camera' is not a free joint"));  // which of them?
 }
 
+TEST(Problem, RefusesAMeanOfWhatAPriorIsNotOn) {
+  Problem problem = test::scene_problem();
+  Prior of_joint{"elbow"}, of_frame{"board"};
+  of_joint.mean[0] = of_frame.mean[1] = of_frame.mean[6] = 0.1;
+  problem.add_prior("keep", of_joint);
+  problem.add_prior("keep", of_frame);
+  of_joint.mean[1] = of_frame.mean[0] = 0.1;
+  const auto message = [&](const Prior& prior) {
+    return message_of<std::invalid_argument>([&] { problem.add_prior("keep", prior); });
+  };
+  EXPECT_EQ(message(of_joint),
+            "error block 'keep': a mean_x is given, but 'elbow' has no such parameter");
+  EXPECT_EQ(message(of_frame),
+            "error block 'keep': a mean is given, but 'board' has no such parameter");
+  EXPECT_EQ(problem.priors().size(), 2U);
+}
+
 TEST(Problem, NamesTheNearestParameterForAMisspeltFreeOne) {
   ParameterTable table = test::scene_table();
   table.add({.name = "elbw"});

@@ -16,6 +16,10 @@
 
 namespace kinecal {
 
+/// Names of the means of a prior, in the order of Prior::mean: keys of configurations.
+inline constexpr std::array<const char*, 7> kPriorMeans = {"mean",   "mean_x", "mean_y", "mean_z",
+                                                           "mean_a", "mean_b", "mean_c"};
+
 /// Keeps a joint, a frame or a single parameter near a mean.
 struct Prior {
   std::string param;            ///< name of the joint, frame or parameter

@@ -42,10 +42,6 @@ template <ErrorBlock B, class Make>
   return entry;
 }
 
-/// Keys of a prior's mean: of a joint's offset, and of a frame's x y z a b c.
-inline constexpr std::array<const char*, 7> kPriorMeans = {"mean",   "mean_x", "mean_y", "mean_z",
-                                                           "mean_a", "mean_b", "mean_c"};
-
 /// @throws std::invalid_argument  if a length is negative
 [[nodiscard]] inline double length_of(const BlockConfig& block, const char* key) {
   const double length = block.numbers.at(key);

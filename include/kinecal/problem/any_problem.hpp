@@ -72,7 +72,7 @@ class AnyProblem {
 
   /// Adds a prior.  It counts once for each sample.
   /// @throws std::invalid_argument  if the table has no parameter of its joint or frame, nor one of
-  ///                                its name; with the nearest name
+  ///                                its name, with the nearest name; or none for one of its means
   void add_prior(const std::string& name, const Prior& prior, const TermOptions& options = {});
 
   /// Adds a sample.  Sensors and blocks must have been added before.

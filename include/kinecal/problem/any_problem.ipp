@@ -35,19 +35,6 @@ KINECAL_INLINE void AnyProblem::mount(std::shared_ptr<const AnySensor> sensor, c
   }
 }
 
-KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& prior,
-                                          const TermOptions& options) {
-  const auto rows = prior.parameters(table_);
-  if (std::all_of(rows.begin(), rows.end(), [](int parameter) { return parameter < 0; })) {
-    std::vector<std::string> names(frames_.begin(), frames_.end());
-    for (const Parameter& parameter : table_) names.push_back(parameter.name);
-    throw std::invalid_argument("error block '" + name + "': param '" + prior.param +
-                                "' is not a free joint, a free frame or a parameter" +
-                                did_you_mean(prior.param, names));
-  }
-  priors_.push_back({name, prior, options});
-}
-
 namespace detail {
 
 inline void check_positions(const Sample& sample) {

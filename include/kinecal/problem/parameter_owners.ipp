@@ -1,8 +1,12 @@
-// What each parameter of a problem's table belongs to, and which of them the samples touch.
+// What each parameter of a problem's table belongs to, which of them priors are on, and which the samples
+// touch.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "kinecal/problem/any_problem.hpp"
 
@@ -23,6 +27,24 @@ KINECAL_INLINE void AnyProblem::set_owners() {
       set_owner(table_.find(parameter_name(frame, axis)), frame);
     }
   }
+}
+
+KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& prior,
+                                          const TermOptions& options) {
+  const auto rows = prior.parameters(table_);
+  if (std::all_of(rows.begin(), rows.end(), [](int parameter) { return parameter < 0; })) {
+    std::vector<std::string> names(frames_.begin(), frames_.end());
+    for (const Parameter& parameter : table_) names.push_back(parameter.name);
+    throw std::invalid_argument("error block '" + name + "': param '" + prior.param +
+                                "' is not a free joint, a free frame or a parameter" +
+                                did_you_mean(prior.param, names));
+  }
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (rows[k] >= 0 || prior.mean[k] == 0.0) continue;
+    throw std::invalid_argument("error block '" + name + "': a " + std::string(kPriorMeans[k]) +
+                                " is given, but '" + prior.param + "' has no such parameter");
+  }
+  priors_.push_back({name, prior, options});
 }
 
 KINECAL_INLINE std::vector<int> AnyProblem::parameters_of_block(

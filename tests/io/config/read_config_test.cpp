@@ -705,12 +705,14 @@ TEST(ReadConfig, PlaneTakesItsModelUnderEitherKeyAndNeedsANormal) {
 }
 
 TEST(ReadConfig, AScaleIsPositive) {
-  for (const char* scale : {"0", "-1"}) {
-    EXPECT_THAT(
-        errors(with_block(std::string("type: chain3d_to_plane, model: arm, scale: ") + scale)),
-        ElementsAre(std::string("calibrate.yaml:10: error block 'block': scale is '") + scale +
-                    "', not a finite number greater than zero"));
+  for (const std::string scale : {"0", "-1"}) {
+    EXPECT_THAT(errors(with_block("type: chain3d_to_plane, model: arm, scale: " + scale)),
+                ElementsAre("calibrate.yaml:10: error block 'block': scale is " + scale +
+                            ", not greater than zero"));
   }
+  EXPECT_THAT(
+      errors(with_block("type: plane_to_plane, model_a: arm, model_b: camera, normal_scale: 0")),
+      IsEmpty());
 }
 
 TEST(ReadConfig, ModelsOfTheWrongKindAreErrors) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/config/config_items.ipp"
 #include "kinecal/io/registry.hpp"
@@ -58,9 +60,12 @@ inline void read_block_model(ConfigMap& map, const BlockSensorEntry& of_block,
 /// Reads the numbers of a block and reports impossible ones.
 inline void read_block_numbers(ConfigMap& map, const BlockEntry& entry, BlockConfig& block) {
   for (const auto& [name, fallback] : entry.numbers) {
-    // The weight of all residuals; one of a part of them may be zero.
-    block.numbers[name] =
-        name == "scale" ? map.positive(name, fallback) : map.number(name, fallback);
+    block.numbers[name] = map.number(name, fallback);
+    // It weighs all residuals; what weighs a part of them (normal_scale) may be zero.
+    if (name == "scale" && !(block.numbers[name] > 0.0)) {
+      map.error(block.place,
+                fmt::format("scale is {}, not greater than zero", block.numbers[name]));
+    }
   }
   try {
     (void)entry.parameters(block);
