@@ -2,6 +2,7 @@
 
 #include "counting.hpp"
 #include "fetch_crate.hpp"
+#include "kinecal/evaluation/problem.ipp"
 #include "kinecal/solve/solve.hpp"
 #include "own_problem.hpp"
 #include "peak.hpp"
@@ -37,8 +38,8 @@ class OwnPath {
   /// Residuals and dense Jacobian, one pack of samples after the other.
   void evaluate(Values x, bool jacobian) {
     evaluator_.for_each_term(
-        x, jacobian, [&](int, const kinecal::detail::Term<S>& term, const auto& views, auto) {
-          term.evaluate(views, jacobian, Linearization::measured, rows_);
+        x, jacobian, [&](int, const kinecal::detail::TermCode<S>& code, const auto& views, auto) {
+          code.evaluate(views, jacobian, Linearization::measured, rows_);
           detail::hide(rows_);
         });
   }

@@ -161,12 +161,12 @@ Assessment assess_new(const Result& result, const NewSamples& fresh) {
   const AnyProblem& problem = fresh.problem();
   Assessment found;
   for (int t = 0; t < problem.num_terms(); ++t) {
-    const std::string& name = problem.term(t).name();
+    const std::string& name = problem.term(t).name;
     const auto noise =
         std::find_if(result.noise.begin(), result.noise.end(),
                      [&](const BlockNoise& of) { return of.block == name && of.sigma > 0.0; });
     if (noise == result.noise.end() && problem.samples_of(t) == 0) {
-      found.noise.push_back({.block = name, .unit = problem.term(t).options().unit, .sigma = 1.0});
+      found.noise.push_back({.block = name, .unit = problem.term(t).options.unit, .sigma = 1.0});
       continue;
     }
     if (noise == result.noise.end()) {
@@ -180,7 +180,7 @@ Assessment assess_new(const Result& result, const NewSamples& fresh) {
   }
   found.captures.resize(static_cast<std::size_t>(problem.num_samples()));
   (void)evaluate(problem, fresh.values, nullptr, [&](int t, int sample, const TermResiduals& rows) {
-    const int size = problem.term(t).feature_size();
+    const int size = problem.term(t).feature_size;
     const BlockNoise& noise = found.noise[static_cast<std::size_t>(t)];
     CaptureError& worst = found.captures[static_cast<std::size_t>(sample)];
     worst.sample = sample;
@@ -208,19 +208,19 @@ std::string fit_text(const Result& result, const NewSamples& fresh) {
   for (int t = 0; t < problem.num_terms(); ++t) {
     const auto& distances = norms[static_cast<std::size_t>(t)];
     if (distances.empty()) continue;
-    const AnyTerm& term = problem.term(t);
-    const std::string& unit = term.options().unit;
+    const Term& term = problem.term(t);
+    const std::string& unit = term.options.unit;
     const auto text = [&](double value) { return in_reading_unit(value, unit); };
-    const FittedBlock& then = fitted_block(result, term.name());
+    const FittedBlock& then = fitted_block(result, term.name);
     const double now = root_mean_square(distances);
     double sigma = 0.0;
     for (const BlockNoise& noise : result.noise) {
-      if (noise.block == term.name()) sigma = noise.sigma;
+      if (noise.block == term.name) sigma = noise.sigma;
     }
-    table.add({term.name(), fmt::format("{}", distances.size()), reading_unit(unit), text(now),
+    table.add({term.name, fmt::format("{}", distances.size()), reading_unit(unit), text(now),
                text(then.distance), then.held_out ? text(*then.held_out) : "-",
                text(*std::max_element(distances.begin(), distances.end())),
-               text(now / std::sqrt(static_cast<double>(term.feature_size()))), text(sigma)});
+               text(now / std::sqrt(static_cast<double>(term.feature_size))), text(sigma)});
   }
   return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
          table.str();
@@ -233,13 +233,13 @@ std::string fit_json(const Result& result, const NewSamples& fresh) {
   for (int t = 0; t < problem.num_terms(); ++t) {
     const auto& distances = norms[static_cast<std::size_t>(t)];
     if (distances.empty()) continue;
-    const AnyTerm& term = problem.term(t);
-    const FittedBlock& then = fitted_block(result, term.name());
+    const Term& term = problem.term(t);
+    const FittedBlock& then = fitted_block(result, term.name);
     list +=
         fmt::format(R"({}{{"name": {}, "unit": {}, "features": {}, "distance": {}, "worst": {}, )"
                     R"("calibration": {}, "held_out": {}}})",
-                    list.empty() ? "\n    " : ",\n    ", detail::json_string(term.name()),
-                    detail::json_string(term.options().unit), distances.size(),
+                    list.empty() ? "\n    " : ",\n    ", detail::json_string(term.name),
+                    detail::json_string(term.options.unit), distances.size(),
                     detail::json_number(root_mean_square(distances)),
                     detail::json_number(*std::max_element(distances.begin(), distances.end())),
                     detail::json_number(then.distance),

@@ -252,7 +252,7 @@ std::string linearity(const StudyResult& result) {
 std::string unit_of_study(const StudyInput& input) {
   const AnyProblem& problem = *input.calibration.steps.back().problem;
   for (int t = 0; t < problem.num_terms(); ++t) {
-    if (problem.samples_of(t) > 0) return problem.term(t).options().unit;
+    if (problem.samples_of(t) > 0) return problem.term(t).options.unit;
   }
   return "m";
 }

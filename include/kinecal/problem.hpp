@@ -3,7 +3,6 @@
 #pragma once
 
 #include "kinecal/problem/any_problem.hpp"
-#include "kinecal/problem/any_term.hpp"
 #include "kinecal/problem/batch.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
-#include "kinecal/problem/sample_numbers.hpp"
+#include "kinecal/problem/term.hpp"

@@ -162,14 +162,11 @@ constexpr int kMostLines = 200, kMostLinesOfAnException = 300;
 
 /// Sorted by name; what has become short enough is removed from here.
 constexpr LongSource kLongSources[] = {
-    {"crate/crate.hpp", "one class template: all that a Crate is"},
     {"errors/error_block.hpp", "the concept: every kind of block, its inputs and its size"},
     {"evaluation/block_rows.hpp",
      "one class template: from every kind of block to the one format of rows"},
     {"evaluation/block_term.hpp",
      "one class template: a term evaluates, sums and lays out its rows alike"},
-    {"evaluation/evaluator.hpp", "one class template: packs to views, rows and sums"},
-    {"evaluation/point_wrenches.hpp", "the derivation of the moments and its one class"},
     {"geometry/jet.hpp", "one scalar with all its operators and functions"},
     {"geometry/packet.hpp", "a scalar and its functions for every instruction set"},
     {"io/assemble.ipp", "from all of a configuration to problems, in one pass"},

@@ -111,7 +111,7 @@ void expect_the_same(const FreeSet& free) {
     expected.add_sample(sample);
     found.add_sample(sample);
   }
-  ASSERT_EQ(found.terms().size(), expected.terms().size());
+  ASSERT_EQ(found.num_terms(), expected.num_terms());
   for (int t = 0; t < 4; ++t) EXPECT_GT(found.samples_of(t), 0);
   const std::vector<double> x = test::random_values(expected.table(), 0.05, 3);
   test::expect_same(normal_equations(found, x, &free), normal_equations(expected, x, &free), 1e-12);
@@ -205,8 +205,9 @@ TEST(Crate, StartsCamerasWhereTheirDriversWere) {
 TEST(Crate, SaysWhatKindItsBlocksAre) {
   const Problem problem = crate().problem(All().table({}));
   std::vector<std::string> kinds;
-  for (const auto& term : problem.terms()) {
-    kinds.push_back(term->name() + " " + term->options().type + " " + term->options().unit);
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const Term& term = problem.term(t);
+    kinds.push_back(term.name + " " + term.options.type + " " + term.options.unit);
   }
   EXPECT_THAT(kinds,
               testing::ElementsAre("hand_eye chain3d_to_chain3d m", "floor chain3d_to_plane m",

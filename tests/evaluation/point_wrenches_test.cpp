@@ -28,8 +28,7 @@ void expect_products_of_rows(const std::vector<std::string>& sensors, const Free
         [&](const detail::FeatureRun& r) { return r.first <= first && first < r.end; });
     ASSERT_NE(run, views.runs.end());
     const detail::BodyChains& chains = run->chains;
-    const std::array twists = {BodyTwists<S>(views[0].twists(chains[0])),
-                               BodyTwists<S>(views[1].twists(chains[1]))};
+    const std::array twists = {&views[0].twists(chains[0]), &views[1].twists(chains[1])};
     detail::FeatureWrenches<S> general;
     general.start(twists, views.num_own());
     std::vector<S> weights;

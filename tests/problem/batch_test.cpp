@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "kinecal/errors.hpp"
 #include "support/scene.hpp"
@@ -13,11 +14,33 @@ namespace {
 
 constexpr int kLanesOfPacket = kLanes<Packet>;
 
+/// What the arm, the camera and the eye saw in a sample.
+using Seen = std::array<std::optional<detail::ObservationNumbers>, 3>;
+
+/// It as a row.
+detail::SampleRow row_of(const Seen& seen) {
+  detail::SampleRow row;
+  for (const auto& of_sensor : seen) row.add_sensor(of_sensor ? &*of_sensor : nullptr);
+  return row;
+}
+
+template <class S>
+detail::Batches<S> batches_of(const std::vector<Seen>& all) {
+  detail::Batches<S> batches(row_of(all[0]).layout);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const detail::SampleRow row = row_of(all[n]);
+    EXPECT_EQ(row.layout, batches.layout());
+    EXPECT_EQ(row.numbers.size(), row.layout.size);
+    batches.add(10 + 3 * static_cast<int>(n), row.numbers);
+  }
+  return batches;
+}
+
 /// What camera and eye saw in samples that differ in all their numbers; the arm is absent.
-std::vector<detail::SampleNumbers> seen_in_samples(int count) {
+std::vector<Seen> seen_in_samples(int count) {
   const Problem problem = test::scene_problem();
   const auto x = test::random_values(problem.table(), 0.02, 5);
-  std::vector<detail::SampleNumbers> all;
+  std::vector<Seen> all;
   for (Sample& sample : test::exact_samples(problem, x, count)) {
     const double n = static_cast<double>(all.size());
     for (Observation& observation : sample.observations) {
@@ -28,10 +51,9 @@ std::vector<detail::SampleNumbers> seen_in_samples(int count) {
       observation.camera->z_scaling = 1.0 + 0.02 * n;
       if (observation.sensor == "eye") observation.camera->d = {0.01 * (n + 1), 0.02, 0.0, n, 0.0};
     }
-    detail::SampleNumbers& seen = all.emplace_back();
-    seen.sensors.resize(3);
+    Seen& seen = all.emplace_back();
     for (std::size_t s = 1; s < 3; ++s) {
-      seen.sensors[s] = problem.sensors()[s].numbers(sample, sample.observations[s]);
+      seen[s] = problem.sensors()[s].numbers(sample, sample.observations[s]);
     }
   }
   return all;
@@ -77,78 +99,79 @@ TEST(JointStates, HaveWhatAJointMovesByAndWithModelsItsPosition) {
 }
 
 TEST(Batches, HoldASampleInEachLane) {
-  const std::vector<detail::SampleNumbers> seen = seen_in_samples(2 * kLanesOfPacket + 1);
-  detail::Batches<Packet> batches({3, 5}, seen[0]);
-  for (int n = 0; n < std::ssize(seen); ++n) {
-    batches.add(10 + 3 * n, seen[static_cast<std::size_t>(n)]);
-  }
-  EXPECT_EQ(batches.terms(), (std::vector<int>{3, 5}));
+  const std::vector<Seen> seen = seen_in_samples(2 * kLanesOfPacket + 1);
+  const detail::Batches<Packet> batches = batches_of<Packet>(seen);
   ASSERT_EQ(batches.size(), 3u);
   EXPECT_EQ(batches.samples(2).size(), 1u);
-  EXPECT_FALSE(batches.has(0)) << "nothing was seen by the arm";
+  EXPECT_FALSE(batches.layout().sensors[0]) << "nothing was seen by the arm";
   for (std::size_t b = 0; b < 2; ++b) {
     ASSERT_EQ(std::ssize(batches.samples(b)), kLanesOfPacket);
     for (int i = 0; i < kLanesOfPacket; ++i) {
       const std::size_t n = b * kLanesOfPacket + static_cast<std::size_t>(i);
       EXPECT_EQ(batches.samples(b)[static_cast<std::size_t>(i)], 10 + 3 * static_cast<int>(n));
       for (const std::size_t s : {1u, 2u}) {
-        ASSERT_TRUE(batches.has(s));
-        expect_lane(batches.observation(b, s), i, *seen[n].sensors[s], 1.0);
+        ASSERT_TRUE(batches.layout().sensors[s]);
+        expect_lane(batches.observation(b, s), i, *seen[n][s], 1.0);
       }
     }
   }
 }
 
 TEST(Batches, HoldFactorsWhereFeaturesHaveSigmasAndConditions) {
-  std::vector<detail::SampleNumbers> seen = seen_in_samples(kLanesOfPacket + 1);
+  const std::vector<Seen> seen = seen_in_samples(kLanesOfPacket + 1);
+  std::optional<detail::Batches<Packet>> batches;
   for (std::size_t n = 0; n < seen.size(); ++n) {
     const auto number = static_cast<double>(n);
-    seen[n].terms = {{{}, {20.0 + number}}, {{1.0, 2.0 + number}, {}}};
+    detail::SampleRow row = row_of(seen[n]);
+    row.add_term(3, {}, {20.0 + number});
+    row.add_term(5, {1.0, 2.0 + number}, {});
+    if (!batches) batches.emplace(row.layout);
+    EXPECT_EQ(row.layout, batches->layout());
+    batches->add(static_cast<int>(n), row.numbers);
   }
-  detail::Batches<Packet> batches({3, 5}, seen[0]);
-  for (int n = 0; n < std::ssize(seen); ++n) batches.add(n, seen[static_cast<std::size_t>(n)]);
-  EXPECT_EQ(batches.of_term(0, 0).factors, nullptr);
+  const std::vector<detail::TermLayout>& terms = batches->layout().terms;
+  ASSERT_EQ(terms.size(), 2u);
+  EXPECT_EQ(terms[0].term, 3);
+  EXPECT_EQ(terms[1].term, 5);
+  EXPECT_EQ(batches->of_term(0, terms[0]).factors, nullptr);
   for (int i = 0; i < kLanesOfPacket; ++i) {
-    EXPECT_EQ(lane(batches.of_term(0, 0).conditions[0], i), 20.0 + i);
-    EXPECT_EQ(lane(batches.of_term(0, 1).factors[0], i), 1.0);
-    EXPECT_EQ(lane(batches.of_term(0, 1).factors[1], i), 2.0 + i);
-    EXPECT_EQ(lane(batches.of_term(1, 1).factors[1], i), 2.0 + kLanesOfPacket) << "repeated";
+    EXPECT_EQ(lane(batches->of_term(0, terms[0]).conditions[0], i), 20.0 + i);
+    EXPECT_EQ(lane(batches->of_term(0, terms[1]).factors[0], i), 1.0);
+    EXPECT_EQ(lane(batches->of_term(0, terms[1]).factors[1], i), 2.0 + i);
+    EXPECT_EQ(lane(batches->of_term(1, terms[1]).factors[1], i), 2.0 + kLanesOfPacket)
+        << "repeated";
   }
 }
 
 /// They must be numbers and defined wherever the first sample is.
 TEST(Batches, LanesWithoutASampleRepeatTheFirstWithWeightZero) {
-  const std::vector<detail::SampleNumbers> seen = seen_in_samples(1);
-  detail::Batches<Packet> batches({}, seen[0]);
-  batches.add(0, seen[0]);
+  const std::vector<Seen> seen = seen_in_samples(1);
+  const detail::Batches<Packet> batches = batches_of<Packet>(seen);
   for (const std::size_t s : {1u, 2u}) {
-    expect_lane(batches.observation(0, s), 0, *seen[0].sensors[s], 1.0);
+    expect_lane(batches.observation(0, s), 0, *seen[0][s], 1.0);
     for (int i = 1; i < kLanesOfPacket; ++i) {
-      expect_lane(batches.observation(0, s), i, *seen[0].sensors[s], 0.0);
+      expect_lane(batches.observation(0, s), i, *seen[0][s], 0.0);
     }
   }
 }
 
 TEST(Batches, OfDoublesHoldOneSample) {
-  const std::vector<detail::SampleNumbers> seen = seen_in_samples(2);
-  detail::Batches<double> batches({}, seen[0]);
-  batches.add(4, seen[0]);
-  batches.add(5, seen[1]);
+  const std::vector<Seen> seen = seen_in_samples(2);
+  const detail::Batches<double> batches = batches_of<double>(seen);
   ASSERT_EQ(batches.size(), 2u);
   for (const std::size_t b : {0u, 1u}) {
-    EXPECT_EQ(batches.samples(b)[0], static_cast<int>(4 + b));
-    expect_lane(batches.observation(b, 1), 0, *seen[b].sensors[1], 1.0);
+    EXPECT_EQ(batches.samples(b)[0], static_cast<int>(10 + 3 * b));
+    expect_lane(batches.observation(b, 1), 0, *seen[b][1], 1.0);
   }
 }
 
 TEST(Batches, HoldAWeightOfEachFeatureOnlyIfOneIsMissing) {
-  std::vector<detail::SampleNumbers> seen = seen_in_samples(1);
-  detail::Batches<double> whole({}, seen[0]);
-  whole.add(0, seen[0]);
-  seen[0].sensors[1]->usable[2] = 0.0;
-  detail::Batches<double> missing({}, seen[0]);
-  missing.add(0, seen[0]);
-  expect_lane(missing.observation(0, 1), 0, *seen[0].sensors[1], 1.0);
+  std::vector<Seen> seen = seen_in_samples(1);
+  const detail::Batches<double> whole = batches_of<double>(seen);
+  seen[0][1]->usable[2] = 0.0;
+  const detail::Batches<double> missing = batches_of<double>(seen);
+  expect_lane(missing.observation(0, 1), 0, *seen[0][1], 1.0);
+  EXPECT_NE(missing.layout(), whole.layout());
   EXPECT_EQ(missing.numbers(0).size(), whole.numbers(0).size() + 3) << "four in place of one";
   EXPECT_TRUE(missing.numbers(1).empty()) << "there is one batch only";
 }
@@ -211,8 +234,8 @@ TEST(Batches, WhatNoBlockTakesDoesNotKeepSamplesApart) {
   for (const Sample& sample : samples) problem.add_sample(sample);
   ASSERT_EQ(problem.batches().size(), 1u);
   EXPECT_EQ(problem.batches()[0].size(), 1u);
-  EXPECT_FALSE(problem.batches()[0].has(0));
-  EXPECT_TRUE(problem.batches()[0].has(1));
+  EXPECT_FALSE(problem.batches()[0].layout().sensors[0]);
+  EXPECT_TRUE(problem.batches()[0].layout().sensors[1]);
 }
 
 }  // namespace

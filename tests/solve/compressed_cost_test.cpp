@@ -23,7 +23,7 @@ Stacked stack(const Problem& problem, std::span<const double> values, const Free
   Stacked all;
   all.jacobian.resize(0, free.size());
   (void)evaluate(problem, values, &free, [&](int t, int, const TermResiduals& out) {
-    const double weight = problem.terms()[static_cast<std::size_t>(t)]->options().weight;
+    const double weight = problem.term(t).options.weight;
     const Eigen::Index rows = all.residual.size();
     all.residual.conservativeResize(rows + out.residual.size());
     all.jacobian.conservativeResize(rows + out.residual.size(), Eigen::NoChange);

@@ -9,7 +9,7 @@
 #include "kinecal/errors/error_block.hpp"
 #include "kinecal/errors/prior.hpp"
 #include "kinecal/kinematics/static_chain.hpp"
-#include "kinecal/problem/any_term.hpp"
+#include "kinecal/problem/term.hpp"
 #include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
 

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,11 +12,30 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/evaluation/normal_equations.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
+
+/// The normal equations, summed over the features of all error blocks, each with its weight w and loss rho:
+///
+///   cost = 1/2 sum rho(|w r|^2)    gradient = sum rho' w^2 J^T r    hessian = sum rho' w^2 J^T J
+struct NormalEquations {
+  double cost = 0.0;         ///< not finite if a residual is undefined
+  Eigen::VectorXd gradient;  ///< (parameters); empty if only the cost was asked for
+  Eigen::MatrixXd hessian;   ///< (parameters x parameters), symmetric
+
+  /// All zero.
+  explicit NormalEquations(int parameters)
+      : gradient(Eigen::VectorXd::Zero(parameters)),
+        hessian(Eigen::MatrixXd::Zero(parameters, parameters)) {}
+
+  /// Adds those of other samples.
+  NormalEquations& operator+=(const NormalEquations& other);
+  /// Adds the residuals of a prior, which count once for each sample.
+  void add_prior(const TermOptions& options, const TermResiduals& residuals, int samples,
+                 Losses losses);
+};
 
 /// A residual that is undefined, such as that of a point behind a camera.
 struct UndefinedResidual {

@@ -13,6 +13,30 @@ const bool KINECAL_LIBRARY_CHECK = true;
 }  // namespace KINECAL_INSTRUCTION_SET
 #endif
 
+KINECAL_INLINE NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
+  cost += other.cost;
+  gradient += other.gradient;
+  hessian += other.hessian;
+  return *this;
+}
+
+KINECAL_INLINE void NormalEquations::add_prior(const TermOptions& options,
+                                               const TermResiduals& residuals, int samples,
+                                               Losses losses) {
+  const double w2 = options.weight * options.weight;
+  const auto loss = options.loss_for(losses)(w2 * residuals.residual.squaredNorm());
+  cost += 0.5 * samples * loss.rho;
+  if (residuals.jacobian.cols() == 0) return;
+  const double factor = samples * w2 * loss.derivative;
+  for (Eigen::Index row = 0; row < residuals.jacobian.rows(); ++row) {
+    for (Eigen::Index column = 0; column < residuals.jacobian.cols(); ++column) {
+      const double derivative = residuals.jacobian(row, column);
+      gradient(column) += factor * derivative * residuals.residual(row);
+      hessian(column, column) += factor * derivative * derivative;
+    }
+  }
+}
+
 KINECAL_INLINE std::unique_ptr<AnyProblem> make_problem(Robot robot, std::string base,
                                                         ParameterTable table,
                                                         std::set<std::string> frames) {

@@ -2,49 +2,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
 #include <tuple>
 
 #include "kinecal/errors/error_block.hpp"
+#include "kinecal/evaluation/local_sums.hpp"
 #include "kinecal/evaluation/plane_rows.hpp"
-#include "kinecal/problem/any_term.hpp"
+#include "kinecal/problem/term.hpp"
 
 namespace kinecal::detail {
 
-/// Solves A x = b for a symmetric positive definite A, lane by lane; not a number where A is
-/// singular.  Source: Golub and Van Loan, Matrix Computations, 4.1 (L D L^T).
-template <class S, int N>
-[[nodiscard]] Eigen::Matrix<S, N, 1> solve_positive(Eigen::Matrix<S, N, N> a,
-                                                    Eigen::Matrix<S, N, 1> b) {
-  for (int k = 0; k < N; ++k) {
-    const S inverse = S(1.0) / a(k, k);
-    for (int i = k + 1; i < N; ++i) {
-      const S factor = a(i, k) * inverse;
-      for (int j = k + 1; j < N; ++j) a(i, j) -= factor * a(k, j);
-      b(i) -= factor * b(k);
-    }
-  }
-  for (int k = N - 1; k >= 0; --k) {
-    for (int j = k + 1; j < N; ++j) b(k) -= a(k, j) * b(j);
-    b(k) /= a(k, k);
-  }
-  return b;
-}
-
-/// The shortest step of V variables that makes r + D x zero, or the least r if V < M.
+/// The shortest step of V variables that makes r + D x zero, or the least r if V < M; lane by lane.  Zero
+/// for variables on which r does not depend.
 template <class S, int M, int V>
-[[nodiscard]] Eigen::Matrix<S, V, 1> shortest_step(const Eigen::Matrix<S, M, 1>& r,
-                                                   const Eigen::Matrix<S, M, V>& d) {
-  if constexpr (M <= V) {
-    const Eigen::Matrix<S, M, M> normal = d * d.transpose();
-    const Eigen::Matrix<S, M, 1> scaled = solve_positive<S, M>(normal, r);
-    return -(d.transpose() * scaled);
-  } else {
-    const Eigen::Matrix<S, V, V> normal = d.transpose() * d;
-    const Eigen::Matrix<S, V, 1> gradient = d.transpose() * r;
-    return -solve_positive<S, V>(normal, gradient);
+[[nodiscard]] Eigen::Matrix<S, V, 1> shortest_step(const Eigen::Matrix<S, M, 1>& residual,
+                                                   const Eigen::Matrix<S, M, V>& derivatives) {
+  Eigen::Matrix<S, V, 1> step;
+  for (int i = 0; i < kLanes<S>; ++i) {
+    const Eigen::Matrix<double, M, 1> r = lane_of(residual, i);
+    const Eigen::Matrix<double, M, V> d = lane_of(derivatives, i);
+    Eigen::Matrix<double, V, 1> x;
+    if constexpr (M <= V) {
+      x = d.transpose() * Eigen::Matrix<double, M, M>(d * d.transpose()).ldlt().solve(r);
+    } else {
+      x = Eigen::Matrix<double, V, V>(d.transpose() * d).ldlt().solve(d.transpose() * r);
+    }
+    for (int k = 0; k < V; ++k) set_lane(step(k), i, -x(k));
   }
+  return step;
 }
 
 /// Computes the rows of features of an error block of type B.
@@ -155,10 +142,7 @@ class BlockRows {
       if (at == Linearization::error_free) take_residual_away(block, views, values, moved);
       const auto r = call_jets(block, values, views);
       rows.residual = values_of(r);
-      [&]<std::size_t... I>(std::index_sequence<I...>) {
-        (add_sensor<I>(views[I], i, values[I], r, rows), ...);
-      }
-      (std::make_index_sequence<kBodies>{});
+      unrolled<kBodies>([&](auto s) { add_sensor<s>(views[s], i, values[s], r, rows); });
       add_own(views, r, kFirst[kBodies], rows);
     }
   }
@@ -172,13 +156,10 @@ class BlockRows {
     for (std::size_t v = 0; v < kChanges.size(); ++v) {
       by[v] = derivatives_by<3>(r, kFirst[I] + 3 * static_cast<int>(v));
     }
-    if constexpr (kChanges.size() == 1) {
-      rows.set_point(I, values[0], by[0]);
-    } else {
-      rows.by_body[I].setZero();
-      for (std::size_t v = 0; v < kChanges.size(); ++v) {
-        rows.add_vector(I, kChanges[v], values[v], by[v]);
-      }
+    static_assert(kChanges[0] == Change::point);
+    rows.set_point(I, values[0], by[0]);
+    for (std::size_t v = 1; v < kChanges.size(); ++v) {
+      rows.add_vector(I, kChanges[v], values[v], by[v]);
     }
     const Vector3<S>* change = view.changes(i);
     for (std::size_t k = 0; k < view.own().free.size(); ++k, change += kChanges.size()) {
@@ -198,10 +179,9 @@ class BlockRows {
     std::size_t measuring = 0;
     while (measuring + 1 < kBodies && !views[measuring].code().measures()) ++measuring;
     const auto r = call_jets(block, values, views);
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (void)((I == measuring ? (move<I>(r, values[I], moved), true) : false) || ...);
-    }
-    (std::make_index_sequence<kBodies>{});
+    unrolled<kBodies>([&](auto s) {
+      if (s == measuring) move<s>(r, values[s], moved);
+    });
     values[measuring] = moved.data();
   }
   template <std::size_t I, class R>
@@ -212,9 +192,8 @@ class BlockRows {
     constexpr int kFrom =
         kFirst[I] + (kInput == Quantity::ray || kInput == Quantity::reading ? 3 : 0);
     constexpr int kCount = kInput == Quantity::pose ? 6 : kInput == Quantity::reading ? 1 : 3;
-    auto step = shortest_step<S, kSize, kCount>(values_of(r), derivatives_by<kCount>(r, kFrom));
-    const S zero = (step - step).sum();  // NaN where the residual does not depend on it
-    for (int k = 0; k < kCount; ++k) step(k) = select(zero == S(0.0), step(k), S(0.0));
+    const Eigen::Matrix<S, kCount, 1> step =
+        shortest_step<S, kSize, kCount>(values_of(r), derivatives_by<kCount>(r, kFrom));
     if constexpr (kInput == Quantity::reading) {
       moved[1].x() += step(0);
     } else if constexpr (kInput == Quantity::pose) {

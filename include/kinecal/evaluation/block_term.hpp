@@ -4,51 +4,32 @@
 
 #include <algorithm>
 
+#include "kinecal/errors/difference.hpp"
 #include "kinecal/evaluation/block_rows.hpp"
-#include "kinecal/evaluation/feature_rows.hpp"
-#include "kinecal/evaluation/term.hpp"
+#include "kinecal/evaluation/term_code.hpp"
 
 namespace kinecal::detail {
 
 /// The term of an error block, for any number of columns.  Functions that are expensive to compile
-/// are defined outside of the class: they are not inline, so instances.hpp can compile them once.
+/// are defined outside of the class: they are not inline, so the library can compile them once.
 template <ErrorBlock B, class S>
-class BlockTerm : public Term<S> {
+class BlockTerm final : public TermCode<S> {
  public:
-  static constexpr int kSize = kResiduals<B>;  ///< residuals of one feature
-  /// The term's sensors as they see a batch of samples.
-  using typename Term<S>::Views;
-  /// What the sensors of the term observed in one sample.
-  using Observations = AnyTerm::Observations;
+  using typename TermCode<S>::Views;
 
-  /// @param sensors     indices of the sensors in the problem
-  /// @param parameters  table indices of the block's own parameters
-  BlockTerm(std::string name, B block, std::vector<int> sensors, std::vector<int> parameters,
-            TermOptions options);
-
-  [[nodiscard]] int feature_size() const override { return kSize; }
-
-  [[nodiscard]] std::span<const Quantity> quantities() const override { return kQuantities<B>; }
-
-  [[nodiscard]] std::span<const std::string_view> conditions() const override {
-    return kConditionsOfBlock<B>;
-  }
-
-  [[nodiscard]] bool pairs_features() const override { return !PlanePairBlock<B>; }
-
-  [[nodiscard]] int count(Observations seen) const override;
+  explicit BlockTerm(B block)
+      : block_(std::move(block)), is_difference_(kinecal::is_difference(block_)) {}
 
   void add_cost(const Views& views, const Loss& loss, TermSums<S>& sums) const override;
-
   void add_normal_equations(const Views& views, const Loss& loss, TermSums<S>& sums) const override;
-
   void evaluate(const Views& views, bool derivatives, Linearization at,
                 BatchRows<S>& out) const override;
 
  private:
-  using Block = BlockRows<B, S>;                          ///< computes rows of one feature
-  static constexpr std::size_t kBodies = Block::kBodies;  ///< number of sensors
-  using Twists = std::array<BodyTwists<S>, kBodies>;      ///< of the columns of each sensor
+  using Block = BlockRows<B, S>;  ///< computes rows of one feature
+  static constexpr int kSize = Block::kSize;
+  static constexpr std::size_t kBodies = Block::kBodies;
+  using Twists = std::array<const ChainTwists<S>*, kBodies>;  ///< of the columns of each sensor
 
   /// Whether the residual may be the difference of two points, which is summed faster.
   static constexpr bool kMayBeDifference = PointPairBlock<B> && kSize == 3 && kTakesFeaturesOnly<B>;
@@ -89,7 +70,8 @@ class BlockTerm : public Term<S> {
   /// @returns  the feature's weight in the normal equations
   S add_cost(const Views& views, std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual,
              const S& weight, const Loss& loss, TermSums<S>& sums) const {
-    S w2(this->options().weight * this->options().weight);
+    const double weight_of_term = views.term->options.weight;
+    S w2(weight_of_term * weight_of_term);
     if (const S* factors = views.numbers.factors) w2 *= factors[i] * factors[i];
     S squared(0.0);
     for (int m = 0; m < kSize; ++m) squared += residual(m) * residual(m);
@@ -101,9 +83,7 @@ class BlockTerm : public Term<S> {
 
   [[nodiscard]] static Twists twists(const Views& views, const BodyChains& chains) {
     Twists result;
-    for (std::size_t s = 0; s < kBodies; ++s) {
-      result[s] = BodyTwists<S>(views[s].twists(chains[s]));
-    }
+    for (std::size_t s = 0; s < kBodies; ++s) result[s] = &views[s].twists(chains[s]);
     return result;
   }
 
@@ -158,23 +138,6 @@ class BlockTerm : public Term<S> {
   B block_;
   bool is_difference_;
 };
-
-template <ErrorBlock B, class S>
-BlockTerm<B, S>::BlockTerm(std::string name, B block, std::vector<int> sensors,
-                           std::vector<int> parameters, TermOptions options)
-    : Term<S>(std::move(name), std::move(sensors), std::move(parameters), std::move(options)),
-      block_(std::move(block)),
-      is_difference_(kinecal::is_difference(block_)) {}
-
-template <ErrorBlock B, class S>
-int BlockTerm<B, S>::count(Observations seen) const {
-  if constexpr (PlanePairBlock<B>) return 1;
-  int n = 0;
-  for (std::size_t i = 0; i < seen[0]->usable.size(); ++i) {
-    n += std::all_of(seen.begin(), seen.end(), [i](auto* o) { return o->usable[i] > 0.0; });
-  }
-  return n;
-}
 
 template <ErrorBlock B, class S>
 void BlockTerm<B, S>::add_cost(const Views& views, const Loss& loss, TermSums<S>& sums) const {

@@ -1,7 +1,7 @@
-// The walk of one chain, compiled for that chain and its free parameters.
+// The walk of a chain to its tip, for a batch of samples.
 //
-// The compiler knows the chains of a crate.  A problem that a crate fills uses these walks in place
-// of those of a RuntimeChain; both give the same result.
+// The compiler knows the chains of a crate and their free parameters.  A problem that a crate fills
+// uses walks that are compiled for them in place of those of a RuntimeChain; both give the same result.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,24 +15,62 @@ namespace kinecal::detail {
 template <class S>
 struct WalkStart {
   Pose<S> pose;                                          ///< before the first moving joint
-  std::size_t joint = 0;                                 ///< index of that joint
-  const JointCorrection<double>* corrections = nullptr;  ///< of all joints
+  const RuntimeChain* chain = nullptr;                   ///< the chain
+  std::size_t joint = 0;                                 ///< index of the first moving joint
+  std::span<const JointCorrection<double>> corrections;  ///< of all joints
+  std::span<const JointIndices> columns;                 ///< of the free parameters of all joints
   Twist<S>* turn = nullptr;     ///< where the next rotational twist is written, if any
   Vector3<S>* shift = nullptr;  ///< where the next translational twist is written, if any
 };
 
-/// The walk of one chain as functions.
+/// A walk from the first moving joint on as a function, which sets the tip's pose.
+/// @param joints  numbers of JointStates
+template <class S>
+using Walk = void (*)(const WalkStart<S>&, const S* joints, Pose<S>& tip);
+
+/// Walks a chain from the first moving joint on.
+/// @tparam kTwists  compute the twists of the free parameters, too
+/// @tparam kModels  some joint has parameters of joint models
+/// @param columns  of the free parameters of each joint
+/// @param first    index of the first moving joint
+template <bool kTwists, bool kModels, class Chain, class Columns, class S>
+void walk_to_tip(const Chain& chain, const Columns& columns, std::size_t first,
+                 const WalkStart<S>& start, const S* joints, Pose<S>& tip) {
+  const JointStates<S, kModels> states{joints};
+  if constexpr (kTwists) {
+    TwistWalker<S, Columns> walker(columns, start.turn, start.shift, start.pose);
+    walk_on<kModels>(chain, first, states, start.corrections, walker);
+    copy_numbers(walker.walker.pose, tip);
+  } else {
+    PoseWalker<S> walker;
+    copy_numbers(start.pose, walker.pose);
+    walk_on<kModels>(chain, first, states, start.corrections, walker);
+    copy_numbers(walker.pose, tip);
+  }
+}
+
+template <class S, bool kTwists, bool kModels>
+KINECAL_FLATTEN void walk_runtime_chain(const WalkStart<S>& start, const S* joints, Pose<S>& tip) {
+  walk_to_tip<kTwists, kModels>(*start.chain, start.columns, start.joint, start, joints, tip);
+}
+
+/// The walk of a chain that is known at run time.
+template <class S>
+[[nodiscard]] Walk<S> runtime_walk(bool twists, bool models) {
+  constexpr Walk<S> kWalks[2][2] = {
+      {&walk_runtime_chain<S, false, false>, &walk_runtime_chain<S, false, true>},
+      {&walk_runtime_chain<S, true, false>, &walk_runtime_chain<S, true, true>}};
+  return kWalks[twists ? 1 : 0][models ? 1 : 0];
+}
+
+/// The walks of a chain that the compiler knows.
 template <class S>
 struct CompiledWalk {
-  /// Walks from the first moving joint on and sets the tip's pose.
-  /// @param joints  numbers of JointStates
-  using Walk = void (*)(const WalkStart<S>&, const S* joints, Pose<S>& tip);
-
   std::string tip;                    ///< of the chain
   std::vector<JointIndices> columns;  ///< for which with_twists is compiled
   bool models;                        ///< whether both know joint models
-  Walk pose_only;                     ///< computes the pose
-  Walk with_twists;                   ///< computes the pose and the twists of free parameters
+  Walk<S> pose_only;                  ///< computes the pose
+  Walk<S> with_twists;                ///< computes the pose and the twists of free parameters
 };
 
 /// The columns of each joint as constants.
@@ -43,43 +81,23 @@ struct StaticColumns {
   }
 };
 
-template <class S, class C, class F>
-struct WalkOf {
-  static constexpr bool kModels = have_models(kColumnsOf<C, F>);
+template <class S, bool kTwists, class C, class F>
+KINECAL_FLATTEN void walk_static_chain(const WalkStart<S>& start, const S* joints, Pose<S>& tip) {
+  constexpr bool kModels = have_models(kColumnsOf<C, F>);
+  walk_to_tip<kTwists, kModels>(C{}, StaticColumns<C, F>{}, C::kFirstMotion, start, joints, tip);
+}
 
-  KINECAL_FLATTEN static void pose_only(const WalkStart<S>& start, const S* joints, Pose<S>& tip) {
-    PoseWalker<S> walker;
-    copy_numbers(start.pose, walker.pose);
-    go_on(start, joints, walker);
-    copy_numbers(walker.pose, tip);
-  }
-  KINECAL_FLATTEN static void with_twists(const WalkStart<S>& start, const S* joints,
-                                          Pose<S>& tip) {
-    TwistWalker<S, StaticColumns<C, F>> walker({}, start.turn, start.shift, start.pose);
-    go_on(start, joints, walker);
-    copy_numbers(walker.walker.pose, tip);
-  }
-
- private:
-  template <class W>
-  static void go_on(const WalkStart<S>& start, const S* joints, W& walker) {
-    walk_on<kModels>(C{}, C::kFirstMotion, JointStates<S, kModels>{joints},
-                     std::span(start.corrections, C::kSize), walker);
-  }
-};
-
-/// Compiles the walk of a chain.
+/// Compiles the walks of a chain.
 /// @tparam C  a Chain
 /// @tparam F  a FreeParameters
 template <class S, StaticChain C, class F>
 [[nodiscard]] CompiledWalk<S> compiled_walk() {
   const auto& columns = kColumnsOf<C, F>;
-  const std::string_view tip = C::kVirtual.empty() ? C::kTip : C::kVirtual;
-  return {std::string(tip),
-          {columns.begin(), columns.end()},
-          WalkOf<S, C, F>::kModels,
-          &WalkOf<S, C, F>::pose_only,
-          &WalkOf<S, C, F>::with_twists};
+  return {.tip = std::string(C::kVirtual.empty() ? C::kTip : C::kVirtual),
+          .columns = {columns.begin(), columns.end()},
+          .models = have_models(columns),
+          .pose_only = &walk_static_chain<S, false, C, F>,
+          .with_twists = &walk_static_chain<S, true, C, F>};
 }
 
 }  // namespace kinecal::detail

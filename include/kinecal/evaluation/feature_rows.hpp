@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "kinecal/evaluation/sensor_view.hpp"
-#include "kinecal/problem/any_term.hpp"
+#include "kinecal/problem/term.hpp"
 
 namespace kinecal::detail {
 
@@ -31,27 +31,24 @@ struct FeatureRows {
                                                         ///< block
   std::size_t own = 0;                                  ///< number of them
 
-  /// Adds to the rows of a body what a vector of three numbers contributes.
-  /// @param change  how it changes with the body
-  /// @param x       (3) the vector, in the base
-  /// @param by_x    (M x 3) derivative of the residual with respect to it: D
-  void add_vector(std::size_t body, Change change, const Vector3<S>& x,
-                  const Eigen::Matrix<S, M, 3>& by_x) {
-    for (int row = 0; row < M; ++row) {
-      const Vector3<S> d = by_x.row(row);
-      auto of_body = by_body[body].row(row);
-      if (change == Change::point) of_body.template head<3>() += d.transpose();
-      if (change == Change::point || change == Change::direction) {
-        of_body.template tail<3>() += cross(x, d).transpose();
-      }
-      if (change == Change::rotation) of_body.template tail<3>() += d.transpose();
-    }
-  }
   /// Sets the rows of a body with one point.
+  /// @param p         (3) in the base, metres
+  /// @param by_point  (M x 3) derivative of the residual with respect to it: D
   void set_point(std::size_t body, const Vector3<S>& p, const Eigen::Matrix<S, M, 3>& by_point) {
     for (int row = 0; row < M; ++row) {
       const Vector3<S> d = by_point.row(row);
       by_body[body].row(row) << d.transpose(), cross(p, d).transpose();
+    }
+  }
+  /// Adds what a vector contributes that only rotates with the body.
+  /// @param x     (3) the vector, in the base
+  /// @param by_x  (M x 3) derivative of the residual with respect to it
+  void add_vector(std::size_t body, Change change, const Vector3<S>& x,
+                  const Eigen::Matrix<S, M, 3>& by_x) {
+    if (change == Change::number) return;
+    for (int row = 0; row < M; ++row) {
+      const Vector3<S> d = by_x.row(row), moment = change == Change::rotation ? d : cross(x, d);
+      by_body[body].row(row).template tail<3>() += moment.transpose();
     }
   }
 };
@@ -73,43 +70,20 @@ struct FeatureRun {
 };
 
 /// The runs of a term's features in the samples of a layout.
-/// @param chains  of each feature, by sensor of the term
-/// @param states  of each sensor of the term
-/// @param own     parameters of the block itself
-[[nodiscard]] inline std::vector<FeatureRun> feature_runs(
-    std::span<const std::vector<std::size_t>* const> chains,
-    std::span<const SensorState* const> states, const OwnParameters& own, bool pairs_features) {
-  std::vector<FeatureRun> runs;
-  // A plane through all features counts as one.
-  const std::size_t features = pairs_features ? chains[0]->size() : 1;
-  for (std::size_t i = 0; i < features; ++i) {
-    BodyChains of_feature{};
-    for (std::size_t s = 0; s < chains.size(); ++s) of_feature[s] = (*chains[s])[i];
-    if (runs.empty() || runs.back().chains != of_feature) runs.push_back({i, i, of_feature, {}});
-    runs.back().end = i + 1;
-  }
-  for (FeatureRun& run : runs) {
-    const auto append = [&run](const std::vector<int>& more) {
-      run.columns.insert(run.columns.end(), more.begin(), more.end());
-    };
-    for (const SensorState* state : states) append(state->own.columns);
-    append(own.columns);
-    for (const auto twists : {&TwistColumns::rotational, &TwistColumns::translational}) {
-      for (std::size_t s = 0; s < states.size(); ++s) {
-        append(states[s]->twist_columns[run.chains[s]].*twists);
-      }
-    }
-  }
-  return runs;
-}
+/// @param sensors  of the problem
+/// @param own      parameters of the block itself
+[[nodiscard]] std::vector<FeatureRun> feature_runs(const Term& term, const SampleLayout& layout,
+                                                   std::span<const SensorState> sensors,
+                                                   const OwnParameters& own);
 
-/// A term's sensors as they see a batch, and its own parameters.
+/// A term, its sensors as they see a batch, and its own parameters.
 template <class S>
 struct TermViews {
-  std::span<const SensorView<S>* const> sensors;  ///< of the term, in its order
-  const OwnParameters* own = nullptr;             ///< of the block itself
-  std::span<const FeatureRun> runs;               ///< of the features, in their order
-  BatchTerm<S> numbers = {};                      ///< what else it takes of the batch
+  const Term* term = nullptr;                               ///< weight and names
+  std::array<const SensorView<S>*, kMostBodies> sensors{};  ///< of the term, in its order
+  const OwnParameters* own = nullptr;                       ///< of the block itself
+  std::span<const FeatureRun> runs;                         ///< of the features, in their order
+  BatchTerm<S> numbers = {};                                ///< what else it takes of the batch
 
   [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
 
@@ -118,7 +92,7 @@ struct TermViews {
   /// Number of free parameters of sensors and block on which a feature depends.
   [[nodiscard]] std::size_t num_own() const {
     std::size_t n = own->free.size();
-    for (const SensorView<S>* view : sensors) n += view->own().free.size();
+    for (std::size_t s = 0; s < term->sensors.size(); ++s) n += sensors[s]->own().free.size();
     return n;
   }
 };
@@ -132,7 +106,7 @@ void write_columns(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, 
   }
   for (std::size_t s = 0; s < static_cast<std::size_t>(Bodies); ++s) {
     const Eigen::Matrix<S, M, 6>& l = rows.by_body[s];
-    for (const Twist<S>& t : twists[s].rotational) {
+    for (const Twist<S>& t : twists[s]->rotational) {
       for (int m = 0; m < M; ++m) {
         *out++ = (l(m, 0) * t.linear.x() + l(m, 1) * t.linear.y() + l(m, 2) * t.linear.z()) +
                  (l(m, 3) * t.angular.x() + l(m, 4) * t.angular.y() + l(m, 5) * t.angular.z());
@@ -141,7 +115,7 @@ void write_columns(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, 
   }
   for (std::size_t s = 0; s < static_cast<std::size_t>(Bodies); ++s) {
     const Eigen::Matrix<S, M, 6>& l = rows.by_body[s];
-    for (const Vector3<S>& v : twists[s].translational) {
+    for (const Vector3<S>& v : twists[s]->translational) {
       for (int m = 0; m < M; ++m) {
         *out++ = l(m, 0) * v.x() + l(m, 1) * v.y() + l(m, 2) * v.z();
       }
@@ -150,3 +124,7 @@ void write_columns(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, 
 }
 
 }  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/evaluation/feature_rows.ipp"
+#endif

@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/evaluation/dot_products.hpp"
 #include "kinecal/evaluation/feature_rows.hpp"
+#include "kinecal/evaluation/local_sums.hpp"
 
 namespace kinecal::detail {
 
@@ -30,10 +30,10 @@ class FeatureWrenches {
   /// Number of rotational and of translational twists of a body.
   /// @{
   [[nodiscard]] std::size_t turns(std::size_t body) const {
-    return twists_[body].rotational.size();
+    return twists_[body]->rotational.size();
   }
   [[nodiscard]] std::size_t shifts(std::size_t body) const {
-    return twists_[body].translational.size();
+    return twists_[body]->translational.size();
   }
   /// @}
   /// Number of the sensors' own parameters.
@@ -57,13 +57,7 @@ class FeatureWrenches {
   /// Starts a sum over features.
   /// @param twists  of each body; must stay until the sums are added
   /// @param own     number of the sensors' own parameters
-  void start(std::span<const BodyTwists<S>> twists, std::size_t own) {
-    twists_ = twists;
-    own_ = own;
-    width_ = 1 + own + 6 * twists.size();
-    k_.resize(width_ * width_);
-    empty_ = true;
-  }
+  void start(std::span<const ChainTwists<S>* const> twists, std::size_t own);
   /// Adds w L^T L of a feature.
   template <int M, int Bodies>
   void add(const FeatureRows<S, M, Bodies>& rows, const S& weight) {
@@ -83,33 +77,14 @@ class FeatureWrenches {
     }
     const PacketRows<S> l{columns[0].data(), kRows, 3};
     if (empty_) {
-      set_triangle<kRows>(l, width_, l, k_.data(), width_);
+      multiply<false, kRows, 1>(l, width_, l, 1, k_.data(), width_);
     } else {
       add_products<kRows>(l, width_, l, 0, k_.data(), width_);
     }
     empty_ = false;
   }
   /// Computes the wrenches, when all features are added.
-  void finish() {
-    const std::size_t others = 1 + own_;
-    for (std::size_t i = others; i < width_; ++i) {
-      for (std::size_t j = others; j < i; ++j) k_[j * width_ + i] = row(i)[j];
-    }
-    std::size_t columns = others;
-    for (const BodyTwists<S>& body : twists_)
-      columns += body.rotational.size() + body.translational.size();
-    columns_.resize(columns * size());
-    S* column = columns_.data();
-    for (std::size_t c = 0; c < others; ++c, column += size()) {
-      for (std::size_t i = 0; i < 6 * bodies(); ++i) column[6 + i] = row(others + i)[c];
-    }
-    for (std::size_t s = 0; s < bodies(); ++s) {
-      column = set_columns<6>(s, twists_[s].rotational_numbers(), turns(s), column);
-    }
-    for (std::size_t s = 0; s < bodies(); ++s) {
-      column = set_columns<3>(s, twists_[s].translational_numbers(), shifts(s), column);
-    }
-  }
+  void finish();
 
  private:
   /// Row i of K: its lower triangle; all of it between bodies.
@@ -122,20 +97,9 @@ class FeatureWrenches {
   /// it and on the bodies after it, too.
   /// @returns  the column after the last one
   template <std::size_t D>
-  S* set_columns(std::size_t body, const S* xi, std::size_t count, S* column) const {
-    const std::size_t first = 1 + own_;
-    for (std::size_t b = 0; b < bodies(); ++b) {
-      const PacketRows<S> k{row(first + 6 * b) + first + 6 * body, width_, 3};
-      set_products<D, S>({xi, D, 3}, count, k, D == 6 && b >= body ? 6 : 3, column + 6 + 6 * b,
-                         size());
-    }
-    for (const S* end = xi + D * count; xi != end; column += size()) {
-      for (std::size_t d = 0; d < D; ++d) column[d] = *xi++;
-    }
-    return column;
-  }
+  S* set_columns(std::size_t body, const S* xi, std::size_t count, S* column) const;
 
-  std::span<const BodyTwists<S>> twists_;
+  std::span<const ChainTwists<S>* const> twists_;
   std::size_t own_ = 0, width_ = 0;
   bool empty_ = true;
   std::vector<S> k_;

@@ -6,21 +6,107 @@
 //
 //   (J^T J)(i, j) = twist_i . wrench_j on the body of i
 //
-// All numbers are packets: one sample per lane.
+// All numbers are packets: one sample per lane.  A product of rows with columns is summed tile by tile in
+// registers: each number of a tile is loaded once for several products.
 // Source: ARCHITECTURE.md, idea 6: the compressed cost.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <concepts>
 #include <utility>
 #include <vector>
 
-#include "kinecal/evaluation/dot_products.hpp"
-#include "kinecal/evaluation/normal_equations.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/geometry/packet.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
 
 namespace kinecal::detail {
+
+/// Where vectors are, whose numbers are in groups of three.
+template <class S>
+struct PacketRows {
+  const S* data;     ///< the first three numbers of the first vector
+  std::size_t size;  ///< from one vector to the next
+  std::size_t next;  ///< from three numbers to the next three
+
+  /// Number d of vector i.
+  [[nodiscard]] const S& operator()(std::size_t i, std::size_t d) const {
+    return data[i * size + d / 3 * next + d % 3];
+  }
+};
+
+template <std::size_t N>
+using Constant = std::integral_constant<std::size_t, N>;
+
+/// Calls f(0) ... f(N - 1) with constants: arrays that they index stay in registers.
+template <std::size_t N, class F>
+void unrolled(const F& f) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (f(Constant<I>{}), ...);
+  }
+  (std::make_index_sequence<N>{});
+}
+
+/// The products of R rows with some columns.
+template <bool kAdd, std::size_t D, std::size_t R, class S>
+void multiply_rows(const PacketRows<S>& rows, PacketRows<S> columns, std::size_t count, S* sums,
+                   std::size_t stride) {
+  std::array<S, R * D> held;  // in registers if there are 32
+  unrolled<R * D>([&](auto i) { held[i] = rows(i / D, i % D); });
+  for (; count > 0; --count, columns.data += columns.size, ++sums) {
+    std::array<S, R> sum;
+    if constexpr (kAdd) unrolled<R>([&](auto r) { sum[r] = sums[r * stride]; });
+    unrolled<D>([&](auto d) {
+      const S number = in_register(columns(0, d));
+      unrolled<R>([&](auto r) {
+        const S product = held[r * D + d] * number;
+        if constexpr (kAdd || d > 0) {
+          sum[r] += product;
+        } else {
+          sum[r] = product;
+        }
+      });
+    });
+    unrolled<R>([&](auto r) { sums[r * stride] = sum[r]; });
+  }
+}
+
+/// The products of some rows with columns; each row meets kMore columns more than the one before.
+/// @tparam kAdd        add them to the sums; else set the sums
+/// @tparam D           numbers of a row
+/// @param count        number of rows
+/// @param num_columns  that the first row meets
+/// @param sums         (rows x stride), row-major
+template <bool kAdd, std::size_t D, std::size_t kMore, class S>
+KINECAL_FLATTEN void multiply(PacketRows<S> rows, std::size_t count, const PacketRows<S>& columns,
+                              std::size_t num_columns, S* sums, std::size_t stride) {
+  const auto next = [&]<std::size_t R>(Constant<R>) {
+    multiply_rows<kAdd, D, R>(rows, columns, num_columns + (R - 1) * kMore, sums, stride);
+    num_columns += R * kMore;
+    rows.data += R * rows.size;
+    sums += R * stride;
+    count -= R;
+  };
+  if constexpr (kLanes<S> >= 8 && D <= 6) {  // 24 of 32 registers
+    while (count == 4 || count > 6) next(Constant<4>{});
+  }
+  if constexpr (D <= 6) {
+    while (count == 3 || count > 4) next(Constant<3>{});
+  }
+  while (count >= 2) next(Constant<2>{});
+  if (count == 1) next(Constant<1>{});
+}
+
+/// Adds the products of some rows with all columns up to their own: the lower triangle of the sums;
+/// above it they are undefined.
+/// @param first  index of the first row, and of its own column
+/// @param sums   (columns x stride), row-major
+template <std::size_t D, class S>
+void add_products(const PacketRows<S>& rows, std::size_t count, const PacketRows<S>& columns,
+                  std::size_t first, S* sums, std::size_t stride) {
+  multiply<true, D, 1>(rows, count, columns, first + 1, sums + first * stride, stride);
+}
 
 /// What resists motions: the twists of the columns, and a force and a moment of each on every body.
 /// FeatureWrenches and PointWrenches are models.
@@ -43,15 +129,10 @@ template <class S>
 class LocalSums {
  public:
   /// @param columns  of the whole Jacobian: FeatureRun::columns
-  explicit LocalSums(std::vector<int> columns)
-      : columns_(std::move(columns)), stride_(columns_.size() + 1), sums_(stride_ * stride_) {
-    set_zero();
-  }
+  explicit LocalSums(std::vector<int> columns);
 
   /// Starts a new sum.
-  void set_zero() {
-    for (std::size_t i = 0; i < stride_; ++i) std::fill_n(&sums_[i * stride_], i + 1, S(0.0));
-  }
+  void set_zero();
 
   /// Adds one batch.
   /// @param wrenches  twists, and what resists them
@@ -70,20 +151,7 @@ class LocalSums {
   }
 
   /// Adds the sum of all lanes to normal equations over the columns of the whole Jacobian.
-  void add_to(NormalEquations& total) const {
-    const S* sums = sums_.data();
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      sums += stride_;
-      const int a = columns_[i];
-      total.gradient(a) += sum_of_lanes(sums[0]);
-      for (std::size_t j = 0; j <= i; ++j) {
-        const int b = columns_[j];
-        const double h = sum_of_lanes(sums[j + 1]);
-        total.hessian(a, b) += h;
-        if (i != j) total.hessian(b, a) += h;
-      }
-    }
-  }
+  void add_to(NormalEquations& total) const;
 
  private:
   std::vector<int> columns_;

@@ -13,11 +13,6 @@
 
 namespace kinecal::detail {
 
-template <class S>
-[[nodiscard]] Vector3<double> lane_of(const Vector3<S>& p, int i) {
-  return {lane(p.x(), i), lane(p.y(), i), lane(p.z(), i)};
-}
-
 /// The planes of one lane and their derivatives.
 template <PlanePairBlock B, class S>
 class PlaneLane {
@@ -63,17 +58,18 @@ class PlaneLane {
       const int variable = 6 * static_cast<int>(s);
       const auto by_centroid = derivatives_by<3>(residual_, variable);
       const auto by_normal = derivatives_by<3>(residual_, variable + 3);
-      for (std::size_t n = 0; n < features_[s].size(); ++n) {
-        const Vector3<double>& p = points_[s][n];
+      const Plane<double>& plane = fits_[s].plane();
+      rows.set_point(s, plane.centroid, by_centroid);
+      rows.add_vector(s, Change::direction, plane.normal, by_normal);
+      const SensorView<S>& view = views_[s];
+      const std::size_t own = view.own().free.size(), first = s * views_[0].own().free.size();
+      for (std::size_t n = 0; n < features_[s].size() && own > 0; ++n) {
         const Eigen::Matrix<double, kSize, 3> by_point =
-            by_centroid * fits_[s].centroid_by_point() + by_normal * fits_[s].normal_by_point(p);
-        Rows of_point;
-        of_point.set_point(s, p, by_point);
-        rows.by_body[s] += of_point.by_body[s];
-        const SensorView<S>& view = views_[s];
-        const std::size_t first = s == 0 ? 0 : views_[0].own().free.size();
-        for (std::size_t k = 0; k < view.own().free.size(); ++k) {
-          rows.by_own[first + k] += by_point * lane_of(view.changes(features_[s][n])[k], lane_);
+            by_centroid * fits_[s].centroid_by_point() +
+            by_normal * fits_[s].normal_by_point(points_[s][n]);
+        const Vector3<S>* change = view.changes(features_[s][n]);
+        for (std::size_t k = 0; k < own; ++k) {
+          rows.by_own[first + k] += by_point * lane_of(change[k], lane_);
         }
       }
     }

@@ -46,15 +46,9 @@ class BasicProblem final : public AnyProblem {
   void add_built_in(const std::string& name, const BuiltInBlock& block,
                     const std::vector<std::string>& sensors, const TermOptions& options) override;
 
-  /// The terms of the error blocks, in the order in which blocks were added.
-  [[nodiscard]] const std::vector<std::unique_ptr<detail::Term<S>>>& terms() const {
-    return terms_;
-  }
-  /// Number of error blocks, without priors.
-  [[nodiscard]] int num_terms() const override { return static_cast<int>(terms_.size()); }
-  /// The term of an error block.
-  [[nodiscard]] const AnyTerm& term(int index) const override {
-    return *terms_[static_cast<std::size_t>(index)];
+  /// How the term of an error block is evaluated.
+  [[nodiscard]] const detail::TermCode<S>& code(int term) const {
+    return *codes_[static_cast<std::size_t>(term)];
   }
   /// How a sensor is evaluated.
   [[nodiscard]] const detail::SensorEvaluation<S>& evaluation_of(std::size_t sensor) const {
@@ -75,66 +69,46 @@ class BasicProblem final : public AnyProblem {
   template <class B>
   void add_block_of_type(const std::string& name, const B& block,
                          const std::vector<std::string>& sensors, const TermOptions& options) {
-    std::vector<int> indices =
-        sensors_of_block(name, sensors, kQuantities<B>, kParametersOfBlock<B>);
-    std::vector<int> own;
-    if constexpr (kParametersOfBlock < B >> 0) own = parameters_of_block(name, B::kParameters);
-    terms_.push_back(std::make_unique<detail::BlockTerm<B, S>>(name, block, std::move(indices),
-                                                               std::move(own), options));
+    add_term({.name = name,
+              .options = options,
+              .quantities = kQuantities<B>,
+              .conditions = kConditionsOfBlock<B>,
+              .feature_size = kResiduals<B>},
+             sensors, parameters_of(block));
+    codes_.push_back(std::make_unique<detail::BlockTerm<B, S>>(block));
   }
   void set_walks(const std::vector<detail::CompiledWalk<S>>& walks);
-  void add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
-                    const detail::SampleNumbers& seen) override;
+  void add_to_batch(std::size_t index, const detail::SampleLayout& layout,
+                    std::span<const double> numbers) override;
 
-  std::vector<detail::SensorEvaluation<S>> evaluations_;  ///< of each sensor
-  std::vector<std::unique_ptr<detail::Term<S>>> terms_;
-  std::vector<detail::Batches<S>> batches_;  ///< by layout
+  std::vector<detail::SensorEvaluation<S>> evaluations_;           ///< of each sensor
+  std::vector<std::unique_ptr<const detail::TermCode<S>>> codes_;  ///< of each term
+  std::vector<detail::Batches<S>> batches_;                        ///< by layout
 };
-
-// Outside of the class: not inline, so that only instances.hpp compiles them.
-
-template <class S>
-void BasicProblem<S>::add_built_in(const BuiltInSensor& sensor, const Mount& mount) {
-  std::visit([&](const auto& of_type) { add_sensor_of_type(of_type, mount); }, sensor);
-}
-
-template <class S>
-void BasicProblem<S>::add_built_in(const std::string& name, const BuiltInBlock& block,
-                                   const std::vector<std::string>& sensors,
-                                   const TermOptions& options) {
-  std::visit([&](const auto& of_type) { add_block_of_type(name, of_type, sensors, options); },
-             block);
-}
-
-template <class S>
-void BasicProblem<S>::set_walks(const std::vector<detail::CompiledWalk<S>>& walks) {
-  for (const RuntimeChain& chain : sensors().back().chains()) {  // in the order of the chains
-    const auto walk =
-        std::find_if(walks.begin(), walks.end(), [&](const auto& w) { return w.tip == chain.tip; });
-    if (walk == walks.end()) return;
-    evaluations_.back().walks.push_back(*walk);
-  }
-}
-
-template <class S>
-void BasicProblem<S>::add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
-                                   const detail::SampleNumbers& seen) {
-  if (layout == batches_.size()) batches_.emplace_back(of_sample.terms, seen);
-  batches_[layout].add(num_samples(), seen);
-}
-
-template <class S>
-std::unique_ptr<AnyEvaluator> BasicProblem<S>::evaluator(const FreeSet& free, int threads) const {
-  return std::make_unique<Evaluator<S>>(*this, free, threads);
-}
 
 /// A problem evaluated in packets as wide as the instruction set it is compiled for.
 using Problem = BasicProblem<Packet>;
+
+#ifndef KINECAL_HEADER_ONLY
+// Compiled once, in packets and in double, with all built-in sensors and error blocks (instances/).  A sensor
+// or an error block of another type is compiled where it is used, a crate's walks, too.
+extern template class detail::SensorView<Packet>;
+extern template class detail::LocalSums<Packet>;
+extern template class detail::PointWrenches<Packet>;
+extern template class detail::FeatureWrenches<Packet>;
+extern template class Evaluator<Packet>;
+extern template class BasicProblem<Packet>;
+extern template class detail::SensorView<double>;
+extern template class detail::LocalSums<double>;
+extern template class detail::PointWrenches<double>;
+extern template class detail::FeatureWrenches<double>;
+extern template class Evaluator<double>;
+extern template class BasicProblem<double>;
+#endif
 
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY
 #include "kinecal/evaluation/any_evaluator.ipp"
-#else
-#include "kinecal/evaluation/instances.hpp"
+#include "kinecal/evaluation/problem.ipp"
 #endif

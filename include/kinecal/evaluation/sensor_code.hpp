@@ -90,7 +90,7 @@ class SensorCodeOf final : public SensorCode<S> {
         if constexpr (kOwn > 0) {
           using J = Jet<S, static_cast<int>(kOwn)>;
           const auto placed = model_.place(m, own_jets<kOwn, J, S>(own, 0));
-          Vectors::to_base(pose, value_of_jets(placed), values);
+          Vectors::to_base(pose, placed, values);
           for (const int k : chosen) {
             Vectors::change(pose, placed, k, changes);
             changes += Vectors::kVariables.size();
@@ -138,29 +138,6 @@ class SensorCodeOf final : public SensorCode<S> {
     Measurement<M, S> m{.point = point(seen, i), .settings = settings(seen)};
     if constexpr (kIsOriented<M>) std::copy_n(seen.measured(i) + 3, 9, m.rotation.data());
     return m;
-  }
-
-  template <class J>
-  [[nodiscard]] static Vector3<S> value_of_jets(const Vector3<J>& p) {
-    return {p.x().a, p.y().a, p.z().a};
-  }
-  template <class J>
-  [[nodiscard]] static Ray<S> value_of_jets(const Ray<J>& ray) {
-    return {value_of_jets(ray.origin), value_of_jets(ray.direction), value_of_jets(ray.by_u),
-            value_of_jets(ray.by_v)};
-  }
-  template <class J>
-  [[nodiscard]] static Reading<S> value_of_jets(const Reading<J>& reading) {
-    return {value_of_jets(reading.origin), reading.value.a};
-  }
-  template <class J>
-  [[nodiscard]] static Pose<S> value_of_jets(const Pose<J>& pose) {
-    Pose<S> plain;
-    plain.translation = value_of_jets(pose.translation);
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) plain.rotation(r, c) = pose.rotation(r, c).a;
-    }
-    return plain;
   }
 
   M model_;

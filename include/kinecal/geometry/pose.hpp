@@ -75,4 +75,12 @@ void copy_numbers(const Pose<S>& from, Pose<S>& to) {
   }
 }
 
+/// One lane of a matrix of packets or numbers.
+template <class S, int R, int C>
+[[nodiscard]] Eigen::Matrix<double, R, C> lane_of(const Eigen::Matrix<S, R, C>& m, int i) {
+  Eigen::Matrix<double, R, C> of_lane;
+  for (Eigen::Index k = 0; k < m.size(); ++k) of_lane.data()[k] = lane(m.data()[k], i);
+  return of_lane;
+}
+
 }  // namespace kinecal

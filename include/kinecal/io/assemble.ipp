@@ -51,9 +51,9 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
                         std::span<const Sample> samples, Diagnostics& diagnostics) {
   int total = 0;
   for (int t = 0; t < problem.num_terms(); ++t) {
-    const AnyTerm& term = problem.term(t);
+    const Term& term = problem.term(t);
     const auto block = std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
-                                    [&](const BlockConfig& b) { return b.name == term.name(); });
+                                    [&](const BlockConfig& b) { return b.name == term.name; });
     const int count = problem.samples_of(t);
     total += count;
     warn_of_disjoint_ids(term, *block, samples, diagnostics);
@@ -61,7 +61,7 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
     if (count == 0) {
       diagnostics.warning(block->place, fmt::format("error block '{}': no sample has usable "
                                                     "features of all its sensors{}",
-                                                    term.name(), missing_ground(*block, samples)));
+                                                    term.name, missing_ground(*block, samples)));
     } else if (const int paired = problem.shared_samples(t); block->type == "chain3d_to_plane" &&
                                                              block->ground.empty() && paired > 0 &&
                                                              paired < count) {
@@ -71,13 +71,13 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
               "error block '{0}' also takes the {1} samples in which other sensors observe "
               "something together with '{2}'; write 'samples: exclusive' in it to leave them "
               "out",
-              term.name(), paired, block->models.front()));
+              term.name, paired, block->models.front()));
     } else if (is_exclusive_by_default(*block, step, samples)) {
       diagnostics.warning(
           block->place,
           fmt::format("error block '{}' takes only the samples in which '{}' observes alone; write "
                       "'samples: all' in it to take the others, too",
-                      term.name(), block->models.front()));
+                      term.name, block->models.front()));
     }
   }
   if (total == 0) {

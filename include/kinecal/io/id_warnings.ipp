@@ -9,14 +9,14 @@
 
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/diagnostics.hpp"
-#include "kinecal/problem/any_term.hpp"
+#include "kinecal/problem/term.hpp"
 #include "kinecal/samples/paired_features.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
 
 /// Warns of samples in which the sensors of a term saw different features.
-inline void warn_of_disjoint_ids(const AnyTerm& term, const BlockConfig& block,
+inline void warn_of_disjoint_ids(const Term& term, const BlockConfig& block,
                                  std::span<const Sample> samples, Diagnostics& diagnostics) {
   std::size_t disjoint = 0;
   std::string first;
@@ -29,11 +29,11 @@ inline void warn_of_disjoint_ids(const AnyTerm& term, const BlockConfig& block,
       block.place,
       fmt::format("error block '{}' does not use {} sample{}: its sensors observed no feature of "
                   "the same id; the first is at {}",
-                  term.name(), disjoint, disjoint == 1 ? "" : "s", first));
+                  term.name, disjoint, disjoint == 1 ? "" : "s", first));
 }
 
 /// Warns of samples in which some sensors of a term give ids, and others do not.
-inline void warn_of_one_sided_ids(const AnyTerm& term, const BlockConfig& block,
+inline void warn_of_one_sided_ids(const Term& term, const BlockConfig& block,
                                   std::span<const Sample> samples, Diagnostics& diagnostics) {
   if (!term.pairs_features()) return;
   for (const Sample& sample : samples) {
@@ -47,7 +47,7 @@ inline void warn_of_one_sided_ids(const AnyTerm& term, const BlockConfig& block,
     diagnostics.warning(
         block.place, fmt::format("error block '{}': features of '{}' have ids, those of '{}' have "
                                  "none, so they are paired by place; the first sample is at {}",
-                                 term.name(), with, without, sample.source));
+                                 term.name, with, without, sample.source));
     return;
   }
 }

@@ -91,32 +91,6 @@ struct ChainTwists {
   std::vector<Vector3<S>> translational;  ///< (3) linear parts of translational twists
 };
 
-/// A view of a chain's twists.
-template <class S>
-struct BodyTwists {
-  std::span<const Twist<S>> rotational;       ///< rotational twists
-  std::span<const Vector3<S>> translational;  ///< (3) linear parts of translational twists
-
-  BodyTwists() = default;
-  /// Views two lists.
-  BodyTwists(std::span<const Twist<S>> of_rotations, std::span<const Vector3<S>> of_translations)
-      : rotational(of_rotations), translational(of_translations) {}
-  /// Views all twists of a chain.
-  explicit BodyTwists(const ChainTwists<S>& twists)
-      : BodyTwists(twists.rotational, twists.translational) {}
-
-  /// The rotational twists as an array, 6 numbers each: linear, angular.
-  [[nodiscard]] const S* rotational_numbers() const {
-    static_assert(sizeof(Twist<S>) == 6 * sizeof(S));
-    return rotational.empty() ? nullptr : rotational[0].linear.data();
-  }
-  /// The translational twists as an array, 3 numbers each.
-  [[nodiscard]] const S* translational_numbers() const {
-    static_assert(sizeof(Vector3<S>) == 3 * sizeof(S));
-    return translational.empty() ? nullptr : translational[0].data();
-  }
-};
-
 /// The Jacobian's columns of a chain's twists, in the order in which the walker computes them.
 struct TwistColumns {
   std::vector<int> rotational;     ///< of the rotational twists

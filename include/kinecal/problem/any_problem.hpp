@@ -27,8 +27,8 @@
 #include "kinecal/errors/pose_to_pose.hpp"
 #include "kinecal/errors/ray_to_ray.hpp"
 #include "kinecal/linkage.hpp"
-#include "kinecal/problem/any_term.hpp"
-#include "kinecal/problem/mounted_sensor.hpp"
+#include "kinecal/problem/batch.hpp"
+#include "kinecal/problem/term.hpp"
 
 namespace kinecal {
 
@@ -94,9 +94,11 @@ class AnyProblem {
   /// The priors in the order in which they were added.
   [[nodiscard]] const std::vector<PriorTerm>& priors() const { return priors_; }
   /// Number of error blocks, without priors.
-  [[nodiscard]] virtual int num_terms() const = 0;
+  [[nodiscard]] int num_terms() const { return static_cast<int>(terms_.size()); }
   /// The term of an error block, from 0 in the order in which blocks were added.
-  [[nodiscard]] virtual const AnyTerm& term(int index) const = 0;
+  [[nodiscard]] const Term& term(int index) const {
+    return terms_[static_cast<std::size_t>(index)];
+  }
   /// Number of samples that were added.
   [[nodiscard]] int num_samples() const { return static_cast<int>(sources_.size()); }
   /// Source location of a sample: "samples.yaml:37".
@@ -139,39 +141,31 @@ class AnyProblem {
 
   /// Adds a sensor, apart from what evaluates it.
   void mount(std::shared_ptr<const AnySensor> sensor, const Mount& mount);
-  /// @throws std::logic_error  if samples have been added already
-  void check_no_samples() const;
-  /// The sensors of an error block, by name.
-  /// @param own  number of the block's own parameters
-  /// @throws std::invalid_argument  as add_built_in()
-  [[nodiscard]] std::vector<int> sensors_of_block(const std::string& name,
-                                                  const std::vector<std::string>& sensors,
-                                                  std::span<const Quantity> quantities,
-                                                  std::size_t own) const;
-  /// Table indices of the own parameters of an error block, which belong to it from now on.
-  /// @throws std::invalid_argument  if the table does not have one
-  [[nodiscard]] std::vector<int> parameters_of_block(const std::string& name,
-                                                     std::span<const ParameterInfo> infos);
+  /// Adds a term, apart from what evaluates it.
+  /// @param term     with neither sensors nor parameters
+  /// @param sensors  their names
+  /// @param own      the block's own parameters
+  /// @throws  as add_built_in()
+  void add_term(Term term, const std::vector<std::string>& sensors,
+                std::span<const ParameterInfo> own);
 
  private:
   /// Takes the sample num_samples() into batches.
-  /// @param layout  index of its layout; layouts are numbered as they occur
-  virtual void add_to_batch(std::size_t layout, const detail::SampleLayout& of_sample,
-                            const detail::SampleNumbers& seen) = 0;
+  /// @param index  of its layout; layouts are numbered as they occur
+  virtual void add_to_batch(std::size_t index, const detail::SampleLayout& layout,
+                            std::span<const double> numbers) = 0;
 
   [[nodiscard]] const MountedSensor& sensor(int s) const {
     return sensors_[static_cast<std::size_t>(s)];
   }
+  void check_no_samples() const;
   void set_owners();
   void set_owner(int parameter, const std::string& owner) {
     if (parameter >= 0) owners_[static_cast<std::size_t>(parameter)] = owner;
   }
   [[nodiscard]] int sensor_index(const std::string& name) const;
-  [[nodiscard]] bool applies(const AnyTerm& term, const Sample& sample,
-                             const detail::SampleNumbers& observed) const;
-  [[nodiscard]] std::string why_no_plane(int s, const detail::ObservationNumbers& seen) const;
-  void forget_unused(detail::SampleLayout& layout, detail::SampleNumbers& seen) const;
-  void add_touched(int s, const std::vector<std::size_t>& chains, std::set<int>& touched) const;
+  [[nodiscard]] std::vector<int> parameters_of_block(const std::string& name,
+                                                     std::span<const ParameterInfo> infos);
 
   Robot robot_;
   std::string base_;
@@ -179,6 +173,7 @@ class AnyProblem {
   std::set<std::string> frames_;
   std::vector<std::string> owners_;  ///< of each parameter
   std::vector<MountedSensor> sensors_;
+  std::vector<Term> terms_;
   std::vector<PriorTerm> priors_;
   int residuals_ = 0;                 ///< of all features
   std::vector<std::string> sources_;  ///< of each sample

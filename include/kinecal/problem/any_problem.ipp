@@ -44,8 +44,9 @@ inline void check_positions(const Sample& sample) {
                     std::to_string(positions));
 }
 
-[[nodiscard]] inline bool has_term(const detail::SampleLayout& layout, int term) {
-  return std::find(layout.terms.begin(), layout.terms.end(), term) != layout.terms.end();
+[[nodiscard]] inline bool has_term(const SampleLayout& layout, int term) {
+  return std::any_of(layout.terms.begin(), layout.terms.end(),
+                     [term](const TermLayout& place) { return place.term == term; });
 }
 
 }  // namespace detail
@@ -53,50 +54,56 @@ inline void check_positions(const Sample& sample) {
 KINECAL_INLINE std::optional<Sample> AnyProblem::paired(const Sample& sample) const {
   if (!has_ids(sample)) return std::nullopt;
   std::vector<ComparedSensors> blocks;
-  for (int t = 0; t < num_terms(); ++t) {
+  for (const Term& term : terms_) {
     ComparedSensors& block = blocks.emplace_back();
-    for (const int s : term(t).sensors()) block.names.push_back(sensor(s).mount().name);
-    block.paired = term(t).pairs_features();
+    for (const int s : term.sensors) block.names.push_back(sensor(s).mount().name);
+    block.paired = term.pairs_features();
   }
   return pair_features(sample, blocks);
 }
 
 KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   std::optional<Sample> in_order;
-  detail::SampleNumbers seen;
-  seen.sensors.resize(sensors_.size());
-  detail::SampleLayout layout;
+  detail::Observed observed(sensors_.size());
+  std::vector<int> terms;
+  detail::SampleRow row;
   try {
     detail::check_positions(sample);
     in_order = paired(sample);
+    std::vector<bool> used(sensors_.size(), false);
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const Observation* observation =
           (in_order ? *in_order : sample).observation(sensors_[s].mount().name);
       if (observation == nullptr || observation->features.empty()) continue;
-      seen.sensors[s] = sensors_[s].numbers(sample, *observation);
+      observed[s] = sensors_[s].numbers(sample, *observation);
     }
     for (int t = 0; t < num_terms(); ++t) {
-      if (!applies(term(t), sample, seen)) continue;
-      layout.terms.push_back(t);
-      seen.terms.push_back(
-          {detail::factors_of(term(t), seen), detail::conditions_of(term(t), sample)});
-      if (!seen.terms.back().factors.empty()) layout.weighted.push_back(t);
+      if (!detail::applies(term(t), sensors_, sample, observed)) continue;
+      terms.push_back(t);
+      for (const int s : term(t).sensors) used[static_cast<std::size_t>(s)] = true;
+    }
+    for (std::size_t s = 0; s < sensors_.size(); ++s) {  // what no term uses is not evaluated
+      row.add_sensor(used[s] ? &*observed[s] : nullptr);
+    }
+    for (const int t : terms) {
+      row.add_term(t, detail::factors_of(term(t), observed),
+                   detail::conditions_of(term(t), sample));
     }
   } catch (const SampleError& e) {
     throw SampleError(sample.source + ": " + e.what());
   }
-  for (const int t : layout.terms) {
-    residuals_ += term(t).count(detail::observations_of(term(t), seen)) * term(t).feature_size();
-    const std::string& first = sensor(term(t).sensors().front()).mount().name;
+  for (const int t : terms) {
+    residuals_ += static_cast<int>(detail::compared_features(term(t), observed).size()) *
+                  term(t).feature_size;
+    const std::string& first = sensor(term(t).sensors.front()).mount().name;
     const Observation* recorded = sample.observation(first);
-    auto labels = detail::labels_of(term(t), seen, *recorded,
+    auto labels = detail::labels_of(term(t), observed, *recorded,
                                     in_order ? *in_order->observation(first) : *recorded);
     if (!labels.empty()) labels_.emplace(std::pair(num_samples(), t), std::move(labels));
   }
-  forget_unused(layout, seen);
-  auto& [of_sample, of_layout] =
-      *layouts_.try_emplace(std::move(layout), OfLayout{layouts_.size()}).first;
-  add_to_batch(of_layout.index, of_sample, seen);
+  auto& [layout, of_layout] =
+      *layouts_.try_emplace(std::move(row.layout), OfLayout{layouts_.size()}).first;
+  add_to_batch(of_layout.index, layout, row.numbers);
   ++of_layout.samples;
   sources_.push_back(sample.source);
 }
@@ -128,31 +135,31 @@ KINECAL_INLINE void AnyProblem::check_no_samples() const {
   throw std::logic_error("sensors and error blocks are added before the samples");
 }
 
-KINECAL_INLINE std::vector<int> AnyProblem::sensors_of_block(
-    const std::string& name, const std::vector<std::string>& sensors,
-    std::span<const Quantity> quantities, std::size_t own) const {
+KINECAL_INLINE void AnyProblem::add_term(Term term, const std::vector<std::string>& sensors,
+                                         std::span<const ParameterInfo> own) {
   check_no_samples();
-  std::vector<int> indices;
-  for (const std::string& of_block : sensors) indices.push_back(sensor_index(of_block));
-  if (indices.size() != quantities.size()) {
-    throw std::invalid_argument("error block '" + name + "' takes " +
-                                std::to_string(quantities.size()) + " sensors, not " +
-                                std::to_string(indices.size()));
+  const std::string block = "error block '" + term.name + "'";
+  for (const std::string& name : sensors) term.sensors.push_back(sensor_index(name));
+  if (sensors.size() != term.quantities.size()) {
+    throw std::invalid_argument(block + " takes " + std::to_string(term.quantities.size()) +
+                                " sensors, not " + std::to_string(sensors.size()));
   }
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    const AnySensor& of_block = sensor(indices[i]).sensor();
-    if (of_block.delivers(quantities[i])) continue;
-    throw std::invalid_argument("error block '" + name + "': sensor '" + sensors[i] + "', a " +
+  std::size_t parameters = own.size();
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const AnySensor& of_block = sensor(term.sensors[i]).sensor();
+    parameters += of_block.parameters().size();
+    if (of_block.delivers(term.quantities[i])) continue;
+    throw std::invalid_argument(block + ": sensor '" + sensors[i] + "', a " +
                                 std::string(of_block.type()) + ", does not deliver " +
-                                std::string(to_string(quantities[i])));
+                                std::string(to_string(term.quantities[i])));
   }
-  for (const int s : indices) own += sensor(s).parameters().size();
-  if (own > kMostOwn) {
-    throw std::invalid_argument("error block '" + name +
-                                "': its sensors and the block itself have " + std::to_string(own) +
-                                " parameters; " + std::to_string(kMostOwn) + " are possible");
+  if (parameters > kMostOwn) {
+    throw std::invalid_argument(block + ": its sensors and the block itself have " +
+                                std::to_string(parameters) + " parameters; " +
+                                std::to_string(kMostOwn) + " are possible");
   }
-  return indices;
+  term.parameters = parameters_of_block(term.name, own);
+  terms_.push_back(std::move(term));
 }
 
 KINECAL_INLINE int AnyProblem::sensor_index(const std::string& name) const {
@@ -162,24 +169,6 @@ KINECAL_INLINE int AnyProblem::sensor_index(const std::string& name) const {
     if (names.back() == name) return static_cast<int>(s);
   }
   throw std::invalid_argument("no sensor '" + name + "'" + did_you_mean(name, names));
-}
-
-/// Drops the observations that no term uses, so that they are not evaluated.
-KINECAL_INLINE void AnyProblem::forget_unused(detail::SampleLayout& layout,
-                                              detail::SampleNumbers& seen) const {
-  std::vector<bool> used(sensors_.size(), false);
-  for (const int t : layout.terms) {
-    for (const int s : term(t).sensors()) used[static_cast<std::size_t>(s)] = true;
-  }
-  layout.chains.resize(sensors_.size());
-  layout.misses_some.resize(sensors_.size());
-  for (std::size_t s = 0; s < used.size(); ++s) {
-    auto& of_sensor = seen.sensors[s];
-    if (!used[s]) of_sensor.reset();
-    if (!of_sensor) continue;
-    layout.chains[s] = of_sensor->chain;
-    layout.misses_some[s] = of_sensor->misses_some();
-  }
 }
 
 }  // namespace kinecal

@@ -11,24 +11,64 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "kinecal/geometry/packet.hpp"
-#include "kinecal/kinematics/joint_state.hpp"
-#include "kinecal/problem/sample_numbers.hpp"
+#include "kinecal/problem/mounted_sensor.hpp"
 
 namespace kinecal::detail {
 
-/// Where the numbers of an observation are in a batch.
+/// In place of the first number of what is not there.
+inline constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
+
+/// Where the numbers of an observation are in a row.
 struct ObservationLayout {
-  std::vector<std::size_t> chain;   ///< of each feature
-  std::vector<std::size_t> joints;  ///< first number of each chain's joints, or kNoJoints
+  std::vector<std::size_t> chain;   ///< of each feature: the sensor's chain to it
+  std::vector<std::size_t> joints;  ///< of each chain: first number of its JointStates, or kAbsent
   std::size_t measured = 0, settings = 0, usable = 0;  ///< first number of each
   std::size_t usable_step = 0;  ///< one, or zero if no feature is missing: one number for all
   std::size_t width = 3;        ///< numbers of each feature in `measured`
 
-  static constexpr std::size_t kNoJoints = static_cast<std::size_t>(-1);  ///< no feature is there
+  auto operator<=>(const ObservationLayout&) const = default;  // NOLINT(modernize-use-nullptr)
+};
+
+/// Where the numbers are that a term takes besides the observations of its sensors.
+struct TermLayout {
+  int term = 0;                   ///< its index in the problem
+  std::size_t factors = kAbsent;  ///< first number, or kAbsent if all are one
+  std::size_t conditions = 0;     ///< first number
+
+  auto operator<=>(const TermLayout&) const = default;  // NOLINT(modernize-use-nullptr)
+};
+
+/// What the numbers of a row are.  Samples with the same layout share batches.
+struct SampleLayout {
+  std::vector<std::optional<ObservationLayout>> sensors;  ///< of those that observed something
+  std::vector<TermLayout> terms;                          ///< of the terms that apply
+  std::size_t size = 0;                                   ///< number of numbers
+
+  /// Any strict order, for a map.
+  auto operator<=>(const SampleLayout&) const = default;  // NOLINT(modernize-use-nullptr)
+};
+
+/// A sample as a row of numbers.
+struct SampleRow {
+  SampleLayout layout;          ///< what they are
+  std::vector<double> numbers;  ///< (layout.size)
+
+  /// Appends what the next sensor observed; nullptr: nothing.
+  void add_sensor(const ObservationNumbers* seen);
+  /// Appends what a term takes.
+  /// @param factors     of each feature: the block's sigma over its own; empty: all are one
+  /// @param conditions  those that the block takes, in its order
+  void add_term(int term, const std::vector<double>& factors,
+                const std::vector<double>& conditions);
+
+ private:
+  [[nodiscard]] std::size_t append(const std::vector<double>& more);
 };
 
 /// The joint states of a chain in a batch, by index of the joint.
@@ -68,7 +108,7 @@ struct BatchObservation {
   [[nodiscard]] const S* settings() const { return numbers + layout->settings; }
   /// True if a chain leads to a feature.
   [[nodiscard]] bool has_joints(std::size_t chain) const {
-    return layout->joints[chain] != ObservationLayout::kNoJoints;
+    return layout->joints[chain] != kAbsent;
   }
   /// The numbers of JointStates of a chain that leads to a feature.
   [[nodiscard]] const S* joints(std::size_t chain) const { return numbers + layout->joints[chain]; }
@@ -86,62 +126,35 @@ struct BatchTerm {
 template <class S>
 class Batches {
  public:
-  /// @param first  a sample of the layout
-  Batches(std::vector<int> terms, const SampleNumbers& first) : terms_(std::move(terms)) {
-    for (const auto& seen : first.sensors) {
-      auto& layout = layouts_.emplace_back();
-      if (!seen) continue;
-      layout.emplace();
-      layout->chain = seen->chain;
-      for (const auto& joints : seen->joints) {
-        layout->joints.push_back(joints ? reserve(*joints) : ObservationLayout::kNoJoints);
-      }
-      layout->settings = reserve(seen->settings);
-      layout->measured = reserve(seen->measured);
-      layout->usable = size_;
-      layout->usable_step = seen->misses_some() ? 1 : 0;
-      size_ += seen->misses_some() ? seen->usable.size() : 1;
-      if (!seen->chain.empty()) layout->width = seen->measured.size() / seen->chain.size();
-    }
-    for (const TermNumbers& term : first.terms) {
-      factors_.push_back(term.factors.empty() ? kNone : reserve(term.factors));
-      conditions_.push_back(reserve(term.conditions));
-    }
-  }
+  explicit Batches(SampleLayout layout) : layout_(std::move(layout)) {}
 
   /// Adds a sample.
   /// @param sample  its index in the problem
-  void add(int sample, const SampleNumbers& seen) {
+  /// @param row     its numbers, of this layout
+  void add(int sample, std::span<const double> row) {
     const int lane = static_cast<int>(samples_.size() % kLanes<S>);
-    if (lane == 0) numbers_.resize(numbers_.size() + size_);
-    S* const batch = numbers_.data() + (numbers_.size() - size_);
     samples_.push_back(sample);
-    for (std::size_t s = 0; s < seen.sensors.size(); ++s) {
-      if (!seen.sensors[s]) continue;
-      const ObservationNumbers* of_sensor = &*seen.sensors[s];
-      const ObservationLayout& layout = *layouts_[s];
-      for (std::size_t c = 0; c < layout.joints.size(); ++c) {
-        if (of_sensor->joints[c]) set(*of_sensor->joints[c], lane, batch + layout.joints[c]);
-      }
-      set(of_sensor->settings, lane, batch + layout.settings);
-      set(of_sensor->measured, lane, batch + layout.measured);
-      for (std::size_t i = 0; i < layout.chain.size(); ++i) {
-        S& usable = batch[layout.usable + i * layout.usable_step];
-        if (lane == 0) usable = S(0.0);
-        set_lane(usable, lane, of_sensor->usable[i]);
-      }
+    if (lane > 0) {
+      S* const batch = numbers_.data() + (numbers_.size() - row.size());
+      for (std::size_t i = 0; i < row.size(); ++i) set_lane(batch[i], lane, row[i]);
+      return;
     }
-    for (std::size_t t = 0; t < seen.terms.size(); ++t) {
-      if (factors_[t] != kNone) set(seen.terms[t].factors, lane, batch + factors_[t]);
-      set(seen.terms[t].conditions, lane, batch + conditions_[t]);
+    for (const double number : row) numbers_.push_back(S(number));  // in all lanes
+    S* const batch = numbers_.data() + (numbers_.size() - row.size());
+    for (const auto& seen : layout_.sensors) {
+      for (std::size_t i = 0; seen && i < seen->chain.size(); ++i) {
+        const std::size_t usable = seen->usable + i * seen->usable_step;
+        batch[usable] = S(0.0);
+        set_lane(batch[usable], 0, row[usable]);
+      }
     }
   }
 
-  /// Indices of the terms that apply.
-  [[nodiscard]] const std::vector<int>& terms() const { return terms_; }
-  /// Number of batches.
+  /// What the numbers of a batch are.
+  [[nodiscard]] const SampleLayout& layout() const { return layout_; }
+  /// Number of batches; none of samples that no term takes.
   [[nodiscard]] std::size_t size() const {
-    return numbers_.size() / std::max<std::size_t>(size_, 1);
+    return layout_.size == 0 ? 0 : numbers_.size() / layout_.size;
   }
   /// Indices in the problem of the samples of a batch, by lane.
   [[nodiscard]] std::span<const int> samples(std::size_t batch) const {
@@ -149,50 +162,29 @@ class Batches {
     return std::span(samples_).subspan(first,
                                        std::min<std::size_t>(kLanes<S>, samples_.size() - first));
   }
-  /// True if a sensor observed something.
-  [[nodiscard]] bool has(std::size_t sensor) const { return layouts_[sensor].has_value(); }
   /// The numbers of a batch; empty if there is no such batch.
   [[nodiscard]] std::span<const S> numbers(std::size_t batch) const {
-    return batch < size() ? std::span(numbers_).subspan(batch * size_, size_)
+    return batch < size() ? std::span(numbers_).subspan(batch * layout_.size, layout_.size)
                           : std::span<const S>();
   }
   /// What a sensor observed in the samples of a batch.
   [[nodiscard]] BatchObservation<S> observation(std::size_t batch, std::size_t sensor) const {
-    return {numbers_.data() + batch * size_, &*layouts_[sensor]};
+    return {numbers_.data() + batch * layout_.size, &*layout_.sensors[sensor]};
   }
   /// What a term takes of the samples of a batch.
-  /// @param i  place of the term in terms()
-  [[nodiscard]] BatchTerm<S> of_term(std::size_t batch, std::size_t i) const {
-    const S* numbers = numbers_.data() + batch * size_;
-    return {factors_[i] == kNone ? nullptr : numbers + factors_[i], numbers + conditions_[i]};
+  [[nodiscard]] BatchTerm<S> of_term(std::size_t batch, const TermLayout& term) const {
+    const S* numbers = numbers_.data() + batch * layout_.size;
+    return {term.factors == kAbsent ? nullptr : numbers + term.factors, numbers + term.conditions};
   }
 
  private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-  [[nodiscard]] std::size_t reserve(const std::vector<double>& numbers) {
-    const std::size_t first = size_;
-    size_ += numbers.size();
-    return first;
-  }
-  /// Sets a lane; the first one sets all.
-  static void set(const std::vector<double>& from, int lane, S* to) {
-    for (const double number : from) {
-      if (lane == 0) {
-        *to++ = S(number);
-      } else {
-        set_lane(*to++, lane, number);
-      }
-    }
-  }
-
-  std::vector<int> terms_;
-  std::vector<std::optional<ObservationLayout>> layouts_;  ///< by sensor
-  std::vector<std::size_t> factors_;                       ///< of each term: first number, or kNone
-  std::vector<std::size_t> conditions_;                    ///< of each term: first number
-  std::size_t size_ = 0;                                   ///< numbers of a batch
-  std::vector<S> numbers_;                                 ///< of all batches
-  std::vector<int> samples_;                               ///< of all batches, by lane
+  SampleLayout layout_;
+  std::vector<S> numbers_;    ///< of all batches
+  std::vector<int> samples_;  ///< of all batches, by lane
 };
 
 }  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/problem/batch.ipp"
+#endif

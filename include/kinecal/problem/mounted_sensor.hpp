@@ -7,6 +7,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <variant>
@@ -14,12 +15,26 @@
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
-#include "kinecal/problem/sample_numbers.hpp"
 #include "kinecal/sensors/any_sensor.hpp"
 #include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
 
 namespace kinecal {
+
+namespace detail {
+
+/// What one sensor observed in one sample.
+struct ObservationNumbers {
+  std::vector<std::size_t> chain;  ///< of each feature: the sensor's chain to it
+  std::vector<double> usable;      ///< of each feature: one, or zero if it is NaN
+  std::vector<double> variance;  ///< of each feature: its sigma squared, or zero; empty: no sigmas
+  std::vector<double> measured;  ///< of each feature: 3, or 12 with an orientation
+  std::vector<double> settings;  ///< see AnySensor::settings()
+  /// Of each chain to a feature: the numbers of JointStates (batch.hpp).
+  std::vector<std::optional<std::vector<double>>> joints;
+};
+
+}  // namespace detail
 
 /// A sensor with its chains and the table indices of its parameters.
 class MountedSensor {

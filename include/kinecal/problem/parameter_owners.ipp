@@ -47,6 +47,22 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
   priors_.push_back({name, prior, options});
 }
 
+KINECAL_INLINE void PriorTerm::evaluate(const ParameterTable& table, std::span<const double> values,
+                                        const FreeSet* free, TermResiduals& out) const {
+  out.resize(Prior::kRows, free != nullptr ? free->size() : -1);
+  const auto parameters = prior.parameters(table);
+  const auto scales = prior.scales();
+  for (std::size_t row = 0; row < parameters.size(); ++row) {
+    if (parameters[row] < 0) continue;
+    const auto r = static_cast<Eigen::Index>(row);
+    out.residual(r) =
+        scales[row] * (values[static_cast<std::size_t>(parameters[row])] - prior.mean[row]);
+    const int column = free != nullptr ? free->column(parameters[row]) : -1;
+    if (column >= 0) out.jacobian(r, column) = scales[row];
+  }
+}
+
+/// The own parameters of an error block, which belong to it from now on.
 KINECAL_INLINE std::vector<int> AnyProblem::parameters_of_block(
     const std::string& name, std::span<const ParameterInfo> infos) {
   std::vector<int> indices;
@@ -85,32 +101,36 @@ KINECAL_INLINE void AnyProblem::check(const FreeSet& free) const {
   }
 }
 
-KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
-  std::set<int> touched;
-  for (const auto& [layout, of_layout] : layouts_) {
-    for (const int t : layout.terms) {
-      touched.insert(term(t).parameters().begin(), term(t).parameters().end());
-      for (const int s : term(t).sensors()) {
-        add_touched(s, *layout.chains[static_cast<std::size_t>(s)], touched);
-      }
-    }
-  }
-  touched.erase(-1);
-  return {touched.begin(), touched.end()};
-}
+namespace detail {
 
-/// @param chains  the chains of the features that the sensor observed
-KINECAL_INLINE void AnyProblem::add_touched(int s, const std::vector<std::size_t>& chains,
-                                            std::set<int>& touched) const {
-  const MountedSensor& mounted = sensor(s);
-  touched.insert(mounted.parameters().begin(), mounted.parameters().end());
+/// Adds the parameters of a sensor and of its chains to features.
+inline void add_touched(const MountedSensor& sensor, const std::vector<std::size_t>& chains,
+                        std::set<int>& touched) {
+  touched.insert(sensor.parameters().begin(), sensor.parameters().end());
   for (const std::size_t c : chains) {
-    for (const JointIndices& joint : mounted.chain_parameters()[c]) {
+    for (const JointIndices& joint : sensor.chain_parameters()[c]) {
       touched.insert(joint.offset);
       touched.insert(joint.model.begin(), joint.model.end());
       touched.insert(joint.frame.begin(), joint.frame.end());
     }
   }
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::vector<int> AnyProblem::touched_parameters() const {
+  std::set<int> touched;
+  for (const auto& [layout, of_layout] : layouts_) {
+    for (const detail::TermLayout& place : layout.terms) {
+      const Term& used = term(place.term);
+      touched.insert(used.parameters.begin(), used.parameters.end());
+      for (const int s : used.sensors) {
+        detail::add_touched(sensor(s), layout.sensors[static_cast<std::size_t>(s)]->chain, touched);
+      }
+    }
+  }
+  touched.erase(-1);
+  return {touched.begin(), touched.end()};
 }
 
 }  // namespace kinecal

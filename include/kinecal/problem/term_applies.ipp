@@ -13,21 +13,35 @@ namespace kinecal {
 
 namespace detail {
 
-[[nodiscard]] inline std::vector<const detail::ObservationNumbers*> observations_of(
-    const AnyTerm& term, const detail::SampleNumbers& observed) {
-  std::vector<const detail::ObservationNumbers*> seen;
-  for (const int s : term.sensors()) {
-    seen.push_back(&*observed.sensors[static_cast<std::size_t>(s)]);
-  }
+/// What each sensor of a problem observed in a sample.
+using Observed = std::vector<std::optional<ObservationNumbers>>;
+
+/// What the sensors of a term observed in a sample, in their order.
+[[nodiscard]] inline std::vector<const ObservationNumbers*> observations_of(
+    const Term& term, const Observed& observed) {
+  std::vector<const ObservationNumbers*> seen;
+  for (const int s : term.sensors) seen.push_back(&*observed[static_cast<std::size_t>(s)]);
   return seen;
+}
+
+/// The features that a term can compare in a sample: those that all of its sensors observed.
+[[nodiscard]] inline std::vector<std::size_t> compared_features(const Term& term,
+                                                                const Observed& observed) {
+  if (!term.pairs_features()) return {0};  // they are one plane
+  const auto seen = observations_of(term, observed);
+  std::vector<std::size_t> features;
+  for (std::size_t i = 0; i < seen[0]->usable.size(); ++i) {
+    const auto has_it = [i](const auto* of_sensor) { return of_sensor->usable[i] > 0.0; };
+    if (std::all_of(seen.begin(), seen.end(), has_it)) features.push_back(i);
+  }
+  return features;
 }
 
 /// The block's sigma over that of each feature; empty if no feature has its own.  Variances of
 /// several sensors add up.  A pixel block takes those of the camera, which are in pixels.
-[[nodiscard]] inline std::vector<double> factors_of(const AnyTerm& term,
-                                                    const detail::SampleNumbers& observed) {
+[[nodiscard]] inline std::vector<double> factors_of(const Term& term, const Observed& observed) {
   const auto seen = observations_of(term, observed);
-  const auto quantities = term.quantities();
+  const auto quantities = term.quantities;
   const bool of_pixels =
       std::find(quantities.begin(), quantities.end(), Quantity::pixel) != quantities.end();
   std::vector<double> factors;
@@ -38,7 +52,7 @@ namespace detail {
     for (std::size_t i = 0; i < variance.size(); ++i) factors[i] += variance[i];
   }
   for (double& of_feature : factors) {
-    of_feature = of_feature > 0.0 ? term.options().sigma / std::sqrt(of_feature) : 1.0;
+    of_feature = of_feature > 0.0 ? term.options.sigma / std::sqrt(of_feature) : 1.0;
   }
   return factors;
 }
@@ -46,8 +60,7 @@ namespace detail {
 /// The features that a term compares in a sample; empty if they are 0, 1, 2 ... and have no ids.
 /// @param recorded  what its first sensor observed
 /// @param paired    the same as it was paired
-[[nodiscard]] inline std::vector<FeatureLabel> labels_of(const AnyTerm& term,
-                                                         const SampleNumbers& observed,
+[[nodiscard]] inline std::vector<FeatureLabel> labels_of(const Term& term, const Observed& observed,
                                                          const Observation& recorded,
                                                          const Observation& paired) {
   std::vector<FeatureLabel> labels;
@@ -57,13 +70,8 @@ namespace detail {
     const std::optional<int>& id = recorded.features[i].id;
     if (id) places.emplace(*id, static_cast<int>(i));
   }
-  const auto seen = observations_of(term, observed);
   bool plain = true;
-  for (std::size_t i = 0; i < paired.features.size(); ++i) {
-    const bool compared = std::all_of(seen.begin(), seen.end(), [i](const auto* of_sensor) {
-      return of_sensor->usable[i] > 0.0;
-    });
-    if (!compared) continue;
+  for (const std::size_t i : compared_features(term, observed)) {
     const std::optional<int>& id = paired.features[i].id;
     const auto place = id ? places.find(*id) : places.end();
     labels.push_back({place != places.end() ? place->second : static_cast<int>(i), id});
@@ -74,19 +82,19 @@ namespace detail {
 }
 
 /// The conditions that a term takes of a sample.
-[[nodiscard]] inline std::vector<double> conditions_of(const AnyTerm& term, const Sample& sample) {
+[[nodiscard]] inline std::vector<double> conditions_of(const Term& term, const Sample& sample) {
   std::vector<double> values;
-  for (const std::string_view wanted : term.conditions()) {
+  for (const std::string_view wanted : term.conditions) {
     const std::string name(wanted);
     const auto found = sample.conditions.find(name);
     if (found == sample.conditions.end()) {
       std::vector<std::string> names;
       for (const auto& [known, value] : sample.conditions) names.push_back(known);
-      throw SampleError("error block '" + term.name() + "': condition '" + name +
+      throw SampleError("error block '" + term.name + "': condition '" + name +
                         "' is not in the sample" + did_you_mean(name, names));
     }
     if (!std::isfinite(found->second)) {
-      throw SampleError("error block '" + term.name() + "': condition '" + name +
+      throw SampleError("error block '" + term.name + "': condition '" + name +
                         "' is not a finite number");
     }
     values.push_back(found->second);
@@ -94,55 +102,59 @@ namespace detail {
   return values;
 }
 
-}  // namespace detail
-
-KINECAL_INLINE bool AnyProblem::applies(const AnyTerm& term, const Sample& sample,
-                                        const detail::SampleNumbers& observed) const {
-  const std::string& beside = term.options().beside;
-  if (!beside.empty() && sample.observation(beside) == nullptr) return false;
-  const auto observing = std::count_if(
-      sample.observations.begin(), sample.observations.end(),
-      [&](const Observation& o) { return !o.features.empty() && o.sensor != beside; });
-  if (term.options().exclusive && observing != std::ssize(term.sensors())) return false;
-  for (const int s : term.sensors()) {
-    if (!observed.sensors[static_cast<std::size_t>(s)]) return false;
-  }
-  const auto seen = detail::observations_of(term, observed);
-  const auto name = [&](std::size_t i) { return sensor(term.sensors()[i]).mount().name; };
-  for (std::size_t i = 1; i < seen.size() && term.pairs_features(); ++i) {
-    if (seen[i]->usable.size() == seen[0]->usable.size()) continue;
-    throw SampleError("error block '" + term.name() + "': sensor '" + name(0) + "' has " +
-                      std::to_string(seen[0]->usable.size()) + " features, sensor '" + name(i) +
-                      "' has " + std::to_string(seen[i]->usable.size()) +
-                      "; give them ids, so that they are paired by id, not by place");
-  }
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (term.quantities()[i] != Quantity::plane) continue;
-    if (!seen[i]->variance.empty()) {
-      throw SampleError("error block '" + term.name() + "': a feature of sensor '" + name(i) +
-                        "' has a sigma; all features together are one plane, so the sigma of the "
-                        "block counts and features must have none");
-    }
-    if (const std::string why = why_no_plane(term.sensors()[i], *seen[i]); !why.empty()) {
-      throw SampleError("error block '" + term.name() + "': " + why);
-    }
-  }
-  return term.count(seen) > 0;
-}
-
 /// Why the features of a sensor in one sample do not determine a plane; empty if they do.
-KINECAL_INLINE std::string AnyProblem::why_no_plane(int s,
-                                                    const detail::ObservationNumbers& seen) const {
+[[nodiscard]] inline std::string why_no_plane(const AnySensor& sensor,
+                                              const ObservationNumbers& seen) {
   std::vector<Vector3<double>> points;
   for (std::size_t i = 0; i < seen.usable.size(); ++i) {
     if (seen.usable[i] == 0.0) continue;
     if (seen.chain[i] != seen.chain[0]) return "the points of a plane are in several frames";
     const double* measured = &seen.measured[3 * i];
-    points.push_back(
-        sensor(s).sensor().point({measured[0], measured[1], measured[2]}, seen.settings));
+    points.push_back(sensor.point({measured[0], measured[1], measured[2]}, seen.settings));
   }
   if (points.size() < 3) return "a plane takes three points or more";
   return PlaneFit<double>(points).determined() ? "" : "its points span no plane";
 }
+
+/// True if a term takes part in a sample.
+/// @throws SampleError  if it should, but cannot
+[[nodiscard]] inline bool applies(const Term& term, const std::vector<MountedSensor>& sensors,
+                                  const Sample& sample, const Observed& observed) {
+  const std::string& beside = term.options.beside;
+  if (!beside.empty() && sample.observation(beside) == nullptr) return false;
+  const auto observing = std::count_if(
+      sample.observations.begin(), sample.observations.end(),
+      [&](const Observation& o) { return !o.features.empty() && o.sensor != beside; });
+  if (term.options.exclusive && observing != std::ssize(term.sensors)) return false;
+  for (const int s : term.sensors) {
+    if (!observed[static_cast<std::size_t>(s)]) return false;
+  }
+  const auto seen = observations_of(term, observed);
+  const auto sensor = [&](std::size_t i) -> const MountedSensor& {
+    return sensors[static_cast<std::size_t>(term.sensors[i])];
+  };
+  const auto name = [&](std::size_t i) { return sensor(i).mount().name; };
+  for (std::size_t i = 1; i < seen.size() && term.pairs_features(); ++i) {
+    if (seen[i]->usable.size() == seen[0]->usable.size()) continue;
+    throw SampleError("error block '" + term.name + "': sensor '" + name(0) + "' has " +
+                      std::to_string(seen[0]->usable.size()) + " features, sensor '" + name(i) +
+                      "' has " + std::to_string(seen[i]->usable.size()) +
+                      "; give them ids, so that they are paired by id, not by place");
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (term.quantities[i] != Quantity::plane) continue;
+    if (!seen[i]->variance.empty()) {
+      throw SampleError("error block '" + term.name + "': a feature of sensor '" + name(i) +
+                        "' has a sigma; all features together are one plane, so the sigma of the "
+                        "block counts and features must have none");
+    }
+    if (const std::string why = why_no_plane(sensor(i).sensor(), *seen[i]); !why.empty()) {
+      throw SampleError("error block '" + term.name + "': " + why);
+    }
+  }
+  return !compared_features(term, observed).empty();
+}
+
+}  // namespace detail
 
 }  // namespace kinecal

@@ -31,9 +31,9 @@ namespace kinecal::detail {
 }
 
 /// Where the cameras of a block saw a feature.
-inline void add_sight(const AnyProblem& problem, const AnyTerm& term, const Sample& sample,
+inline void add_sight(const AnyProblem& problem, const Term& term, const Sample& sample,
                       ReportedFeature& reported, ReportedBlock& block) {
-  for (const int s : term.sensors()) {
+  for (const int s : term.sensors) {
     const MountedSensor& sensor = problem.sensors()[static_cast<std::size_t>(s)];
     const Observation* seen = sample.observation(sensor.mount().name);
     if (seen == nullptr || !seen->camera) continue;
@@ -69,12 +69,12 @@ inline void add_sight(const AnyProblem& problem, const AnyTerm& term, const Samp
 }
 
 /// An error block without features.
-[[nodiscard]] inline ReportedBlock reported_block(const AnyTerm& term, const Findings& findings) {
-  ReportedBlock block{.name = term.name(),
-                      .type = term.options().type,
-                      .unit = term.options().unit,
-                      .components = term.feature_size()};
-  for (const Quantity quantity : term.quantities()) {
+[[nodiscard]] inline ReportedBlock reported_block(const Term& term, const Findings& findings) {
+  ReportedBlock block{.name = term.name,
+                      .type = term.options.type,
+                      .unit = term.options.unit,
+                      .components = term.feature_size};
+  for (const Quantity quantity : term.quantities) {
     block.is_plane = block.is_plane || quantity == Quantity::plane;
   }
   block.is_plane = block.is_plane || block.type == "chain3d_to_plane";
@@ -99,7 +99,7 @@ inline void add_sight(const AnyProblem& problem, const AnyTerm& term, const Samp
   }
   std::map<std::pair<int, int>, std::vector<double>> before;  // by term and sample
   (void)evaluate(problem, initial, nullptr, [&](int t, int sample, const TermResiduals& residuals) {
-    before[{t, sample}] = distances(residuals, problem.term(t).feature_size());
+    before[{t, sample}] = distances(residuals, problem.term(t).feature_size);
   });
   std::vector<double> values;
   for (const Parameter& parameter : findings.result.table) values.push_back(parameter.value);

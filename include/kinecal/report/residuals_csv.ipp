@@ -18,16 +18,16 @@ KINECAL_INLINE std::string residuals_csv(const Calibration& calibration, const F
     const AnyProblem& problem = *calibration.steps[findings.result.steps.size() - 1].problem;
     const Eigen::VectorXd values = findings.result.table.values();
     const auto visit = [&](int t, int sample, const TermResiduals& residuals) {
-      const AnyTerm& term = problem.term(t);
-      const int size = term.feature_size();
-      const std::string before = fmt::format("{},{},{}", detail::csv_cell(term.name()),
+      const Term& term = problem.term(t);
+      const int size = term.feature_size;
+      const std::string before = fmt::format("{},{},{}", detail::csv_cell(term.name),
                                              findings.numbers[static_cast<std::size_t>(sample)],
                                              detail::csv_cell(problem.source(sample)));
       for (Eigen::Index row = 0; row < residuals.residual.size(); row += size) {
         const auto r = residuals.residual.segment(row, size);
         rows.push_back({before,
                         problem.feature(t, sample, row / size),
-                        term.options().unit,
+                        term.options.unit,
                         r.norm(),
                         {r.begin(), r.end()}});
       }

@@ -32,14 +32,14 @@ using SceneResiduals = std::map<std::pair<int, int>, std::vector<double>>;
 }
 
 /// Points of blocks that compare with a plane: their feet are found when all points are known.
-[[nodiscard]] inline bool is_point_to_plane(const AnyTerm& term) {
-  return term.options().type == PointToPlane::kType;
+[[nodiscard]] inline bool is_point_to_plane(const Term& term) {
+  return term.options.type == PointToPlane::kType;
 }
 
 /// True if a block's single points can be drawn: with a sphere or a plane.
-[[nodiscard]] inline bool can_be_drawn(const AnyTerm& term) {
-  return term.quantities().size() != 1 || is_point_to_plane(term) ||
-         term.options().type == PointToSphere::kType;
+[[nodiscard]] inline bool can_be_drawn(const Term& term) {
+  return term.quantities.size() != 1 || is_point_to_plane(term) ||
+         term.options.type == PointToSphere::kType;
 }
 
 /// The most features of a sample: the worst quarter, others evenly.
@@ -78,7 +78,7 @@ class SceneFeatures {
     const std::optional<Sample> paired = problem_.paired(recorded);
     std::vector<SceneFeature> features;
     for (int t = 0; t < problem_.num_terms(); ++t) {
-      const AnyTerm& term = problem_.term(t);
+      const Term& term = problem_.term(t);
       if (!can_be_drawn(term)) continue;
       const std::size_t first = features.size();
       for (std::size_t when = 0; when < 2; ++when) {
@@ -124,11 +124,10 @@ class SceneFeatures {
     }
   }
 
-  void set(const AnyTerm& term, std::size_t when, std::size_t i,
-           const std::vector<double>& residuals, const std::optional<ScenePair>& pair,
-           SceneFeature& feature) {
+  void set(const Term& term, std::size_t when, std::size_t i, const std::vector<double>& residuals,
+           const std::optional<ScenePair>& pair, SceneFeature& feature) {
     (when == 0 ? feature.before : feature.after) = pair;
-    const auto size = static_cast<std::size_t>(term.feature_size());
+    const auto size = static_cast<std::size_t>(term.feature_size);
     if (!term.pairs_features() || (i + 1) * size > residuals.size()) return;
     double squares = 0.0;
     for (std::size_t k = i * size; k < (i + 1) * size; ++k) squares += residuals[k] * residuals[k];
@@ -140,7 +139,7 @@ class SceneFeatures {
     }
     if (when == 0) return;
     feature.distance = std::sqrt(squares);
-    feature.error = reading(*feature.distance, term.options().unit);
+    feature.error = reading(*feature.distance, term.options.unit);
   }
 
   static void move(std::optional<ScenePair>& pair, const std::optional<Vector3<double>>& normal) {

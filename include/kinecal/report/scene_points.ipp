@@ -38,13 +38,13 @@ class ScenePoints {
   /// What a term compares in a sample, by feature; nullopt where it is undefined, nothing if its kind
   /// cannot be drawn.
   /// @param sample  as AnyProblem::paired()
-  [[nodiscard]] std::vector<std::optional<ScenePair>> pairs(const AnyTerm& term,
+  [[nodiscard]] std::vector<std::optional<ScenePair>> pairs(const Term& term,
                                                             const Sample& sample) const {
     using enum Quantity;
-    const auto quantities = term.quantities();
+    const auto quantities = term.quantities;
     const std::vector<Quantity> kinds(quantities.begin(), quantities.end());
     std::vector<std::vector<PlacedFeature>> seen;
-    for (const int s : term.sensors()) {
+    for (const int s : term.sensors) {
       const Observation* observation = sample.observation(sensor(s).mount().name);
       if (observation == nullptr || !is_known(sensor(s))) return {};
       seen.push_back(placed(s, *observation, sample));
@@ -60,7 +60,7 @@ class ScenePoints {
       } else if (kinds == std::vector{ray, ray}) {
         all.push_back(pair_of_rays(a, b));
       } else if (kinds == std::vector{point, point} || kinds == std::vector{pose, pose}) {
-        const bool second = !is_camera(term.sensors()[0]) && is_camera(term.sensors()[1]);
+        const bool second = !is_camera(term.sensors[0]) && is_camera(term.sensors[1]);
         all.push_back(both(term, second ? b.point : a.point, second ? a.point : b.point));
       }
     }
@@ -68,11 +68,11 @@ class ScenePoints {
   }
 
   /// The features that a term compares: those that all of its sensors saw.
-  [[nodiscard]] std::vector<std::size_t> compared(const AnyTerm& term, const Sample& sample) const {
+  [[nodiscard]] std::vector<std::size_t> compared(const Term& term, const Sample& sample) const {
     std::vector<std::size_t> all;
     std::size_t count = 0;
     std::vector<const Observation*> seen;
-    for (const int s : term.sensors()) {
+    for (const int s : term.sensors) {
       seen.push_back(sample.observation(sensor(s).mount().name));
       if (seen.back() == nullptr) return all;
       count = seen.size() == 1 ? seen[0]->features.size()
@@ -100,18 +100,17 @@ class ScenePoints {
   }
 
   /// A point that is compared with a sphere, or with a plane whose foot is found later.
-  [[nodiscard]] std::optional<ScenePair> alone(const AnyTerm& term,
-                                               const Vector3<double>& p) const {
-    if (term.options().type != PointToSphere::kType) return scene_pair(p, p);
-    const auto v = own<4>(term.parameters());
+  [[nodiscard]] std::optional<ScenePair> alone(const Term& term, const Vector3<double>& p) const {
+    if (term.options.type != PointToSphere::kType) return scene_pair(p, p);
+    const auto v = own<4>(term.parameters);
     return pair_at_distance(p, {v[0], v[1], v[2]}, v[3]);
   }
-  [[nodiscard]] std::optional<ScenePair> both(const AnyTerm& term, const Vector3<double>& measured,
+  [[nodiscard]] std::optional<ScenePair> both(const Term& term, const Vector3<double>& measured,
                                               const Vector3<double>& predicted) const {
-    if (term.options().type == PointDistance::kType) {
-      return pair_at_distance(measured, predicted, own<1>(term.parameters())[0]);
+    if (term.options.type == PointDistance::kType) {
+      return pair_at_distance(measured, predicted, own<1>(term.parameters)[0]);
     }
-    if (term.feature_size() < 3) return std::nullopt;  // points that need not coincide
+    if (term.feature_size < 3) return std::nullopt;  // points that need not coincide
     return scene_pair(measured, predicted);
   }
 

@@ -174,7 +174,7 @@ class SceneRobot {
   SceneRobot robot(problem, table, scene);
   robot.add_frames(samples);
   robot.add_cameras(samples);
-  for (int t = 0; t < problem.num_terms(); ++t) scene.blocks.push_back(problem.term(t).name());
+  for (int t = 0; t < problem.num_terms(); ++t) scene.blocks.push_back(problem.term(t).name);
   return scene;
 }
 

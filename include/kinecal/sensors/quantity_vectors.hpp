@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 
 #include "kinecal/sensors/quantity.hpp"
 
@@ -19,6 +20,16 @@ enum class Change {
   number      ///< it is not in space
 };
 
+/// A vector in S: of jets over S, their values.
+template <class S, class J>
+[[nodiscard]] Vector3<S> in_scalar(const Vector3<J>& v) {
+  if constexpr (std::same_as<S, J>) {
+    return v;
+  } else {
+    return values_of(v);
+  }
+}
+
 /// A quantity as vectors of three numbers each: values, and variables for jets.
 template <Quantity Q>
 struct VectorsOf;
@@ -30,9 +41,10 @@ struct VectorsOf<Quantity::point> {
   static constexpr std::array kVariables = {Change::point};
   static constexpr std::size_t kValues = 1;
 
-  template <class S>
-  static void to_base(const Pose<S>& frame, const Vector3<S>& p, Vector3<S>* out) {
-    out[0] = frame * p;
+  /// In the base what is in a frame.
+  template <class S, class J>
+  static void to_base(const Pose<S>& frame, const Vector3<J>& p, Vector3<S>* out) {
+    out[0] = frame * in_scalar<S>(p);
   }
   /// Changes of the variables per unit of the k-th variable of a jet in the frame.
   template <class S, class J>
@@ -57,12 +69,12 @@ struct VectorsOf<Quantity::ray> {
                                             Change::direction};
   static constexpr std::size_t kValues = 4;
 
-  template <class S>
-  static void to_base(const Pose<S>& frame, const Ray<S>& ray, Vector3<S>* out) {
-    out[0] = frame * ray.origin;
-    out[1] = rotated(frame.rotation, ray.direction);
-    out[2] = rotated(frame.rotation, ray.by_u);
-    out[3] = rotated(frame.rotation, ray.by_v);
+  template <class S, class J>
+  static void to_base(const Pose<S>& frame, const Ray<J>& ray, Vector3<S>* out) {
+    out[0] = frame * in_scalar<S>(ray.origin);
+    out[1] = rotated(frame.rotation, in_scalar<S>(ray.direction));
+    out[2] = rotated(frame.rotation, in_scalar<S>(ray.by_u));
+    out[3] = rotated(frame.rotation, in_scalar<S>(ray.by_v));
   }
   template <class S, class J>
   static void change(const Pose<S>& frame, const Ray<J>& ray, int k, Vector3<S>* out) {
@@ -90,11 +102,12 @@ struct VectorsOf<Quantity::pose> {
   static constexpr std::array kVariables = {Change::point, Change::rotation};
   static constexpr std::size_t kValues = 4;  // translation, columns of the rotation
 
-  template <class S>
-  static void to_base(const Pose<S>& frame, const Pose<S>& pose, Vector3<S>* out) {
-    const Pose<S> in_base = frame * pose;
-    out[0] = in_base.translation;
-    for (int c = 0; c < 3; ++c) out[1 + c] = in_base.rotation.col(c);
+  template <class S, class J>
+  static void to_base(const Pose<S>& frame, const Pose<J>& pose, Vector3<S>* out) {
+    out[0] = frame * in_scalar<S>(pose.translation);
+    for (int c = 0; c < 3; ++c) {
+      out[1 + c] = rotated(frame.rotation, in_scalar<S>(Vector3<J>(pose.rotation.col(c))));
+    }
   }
   template <class S, class J>
   static void change(const Pose<S>& frame, const Pose<J>& pose, int k, Vector3<S>* out) {
@@ -138,10 +151,10 @@ struct VectorsOf<Quantity::reading> {
   static constexpr std::array kVariables = {Change::point, Change::number};
   static constexpr std::size_t kValues = 2;
 
-  template <class S>
-  static void to_base(const Pose<S>& frame, const Reading<S>& reading, Vector3<S>* out) {
-    out[0] = frame * reading.origin;
-    out[1] = Vector3<S>(reading.value, S(0.0), S(0.0));
+  template <class S, class J>
+  static void to_base(const Pose<S>& frame, const Reading<J>& reading, Vector3<S>* out) {
+    out[0] = frame * in_scalar<S>(reading.origin);
+    out[1] = in_scalar<S>(Vector3<J>(reading.value, J(0.0), J(0.0)));
   }
   template <class S, class J>
   static void change(const Pose<S>& frame, const Reading<J>& reading, int k, Vector3<S>* out) {

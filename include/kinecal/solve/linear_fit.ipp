@@ -32,11 +32,11 @@ inline void collect(AnyEvaluator& evaluator, std::span<const double> values, boo
 }
 
 /// Weighted residuals of a block, and rho' of its features.
-inline void weigh(const AnyTerm& term, const TermResiduals& rows, Eigen::Ref<Eigen::VectorXd> r,
+inline void weigh(const Term& term, const TermResiduals& rows, Eigen::Ref<Eigen::VectorXd> r,
                   Eigen::Ref<Eigen::VectorXd> loss) {
-  const TermOptions& options = term.options();
+  const TermOptions& options = term.options;
   r = options.weight * rows.factor.cwiseProduct(rows.residual);
-  const int size = term.feature_size();
+  const int size = term.feature_size;
   for (Eigen::Index row = 0; row < r.size(); row += size) {
     loss.segment(row, size).setConstant(
         options.loss(r.segment(row, size).squaredNorm()).derivative);
@@ -73,11 +73,11 @@ KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, std::span<const dou
   Eigen::Index first = 0;
   for (RowBlock& block : fit.blocks) {
     const TermResiduals& from = all[static_cast<std::size_t>(block.first)];
-    const AnyTerm& term = evaluator.problem().term(block.term);
+    const Term& term = evaluator.problem().term(block.term);
     detail::weigh(term, from, fit.residual.segment(first, block.size),
                   fit.loss.segment(first, block.size));
     if (derivatives) {
-      const Eigen::VectorXd weights = term.options().weight * from.factor;
+      const Eigen::VectorXd weights = term.options.weight * from.factor;
       fit.jacobian.middleRows(first, block.size).noalias() =
           weights.asDiagonal() * (from.jacobian * basis);
     }

@@ -21,7 +21,7 @@ namespace detail {
 [[nodiscard]] inline bool all_losses_convex(const AnyProblem& problem) {
   bool convex = true;
   for (int t = 0; t < problem.num_terms(); ++t) {
-    convex = convex && problem.term(t).options().loss.is_convex();
+    convex = convex && problem.term(t).options.loss.is_convex();
   }
   for (const PriorTerm& prior : problem.priors()) {
     convex = convex && prior.options.loss.is_convex();
@@ -40,19 +40,19 @@ namespace detail {
   };
   std::vector<Features> of_terms(static_cast<std::size_t>(problem.num_terms()));
   (void)evaluator.evaluate(values, false, [&](int t, int, const TermResiduals& rows) {
-    const AnyTerm& term = problem.term(t);
-    const TermOptions& options = term.options();
+    const Term& term = problem.term(t);
+    const TermOptions& options = term.options;
     Features& features = of_terms[static_cast<std::size_t>(t)];
-    for (Eigen::Index row = 0; row < rows.residual.size(); row += term.feature_size()) {
+    for (Eigen::Index row = 0; row < rows.residual.size(); row += term.feature_size) {
       const double weight = options.weight * rows.factor(row);
-      const double squared = rows.residual.segment(row, term.feature_size()).squaredNorm();
+      const double squared = rows.residual.segment(row, term.feature_size).squaredNorm();
       ++features.all;
       if (options.loss(weight * weight * squared).derivative == 0.0) ++features.left_out;
     }
   });
   for (int t = 0; t < problem.num_terms(); ++t) {
     const auto [all, left_out] = of_terms[static_cast<std::size_t>(t)];
-    if (left_out > 0 && 2 * left_out >= all) return problem.term(t).name();
+    if (left_out > 0 && 2 * left_out >= all) return problem.term(t).name;
   }
   return {};
 }

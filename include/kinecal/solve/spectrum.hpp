@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "kinecal/evaluation/normal_equations.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 

@@ -25,7 +25,7 @@ KINECAL_INLINE std::optional<UndefinedResidual> detail::stack_rows(AnyEvaluator&
     row += rows;
   };
   auto undefined = evaluator.evaluate(values, jacobians, [&](int t, int, const auto& of_term) {
-    append(problem.term(t).options().weight, of_term);
+    append(problem.term(t).options.weight, of_term);
   });
   TermResiduals of_prior;
   for (const PriorTerm& prior : problem.priors()) {

@@ -71,9 +71,9 @@ KINECAL_INLINE void StackedResiduals::add_to(ceres::Problem& problem, double* x)
   };
   const std::span<const double> values(values_.data(), static_cast<std::size_t>(values_.size()));
   (void)evaluator_->evaluate(values, false, [&](int t, int, const TermResiduals& of_term) {
-    const AnyTerm& term = problem_.term(t);
-    const int features = static_cast<int>(of_term.residual.size()) / term.feature_size();
-    for (int i = 0; i < features; ++i) add(term.feature_size(), term.options(), 1.0);
+    const Term& term = problem_.term(t);
+    const int features = static_cast<int>(of_term.residual.size()) / term.feature_size;
+    for (int i = 0; i < features; ++i) add(term.feature_size, term.options, 1.0);
   });
   for (const PriorTerm& prior : problem_.priors()) {
     add(Prior::kRows, prior.options, problem_.num_samples());

@@ -32,7 +32,7 @@ KINECAL_INLINE std::vector<std::vector<double>> feature_norms(const AnyProblem& 
                                                               std::span<const double> values) {
   std::vector<std::vector<double>> norms(static_cast<std::size_t>(problem.num_terms()));
   (void)evaluate(problem, values, nullptr, [&](int t, int, const TermResiduals& residuals) {
-    const int size = problem.term(t).feature_size();
+    const int size = problem.term(t).feature_size;
     for (Eigen::Index row = 0; row < residuals.residual.size(); row += size) {
       norms[static_cast<std::size_t>(t)].push_back(residuals.residual.segment(row, size).norm());
     }
@@ -47,11 +47,11 @@ KINECAL_INLINE std::vector<BlockStatistics> block_statistics(const AnyProblem& p
   const auto norms_before = feature_norms(problem, before);
   const auto norms_after = feature_norms(problem, after);
   for (std::size_t t = 0; t < norms_after.size(); ++t) {
-    const AnyTerm& term = problem.term(static_cast<int>(t));
-    all.push_back({term.name(), term.options().type, term.options().unit,
+    const Term& term = problem.term(static_cast<int>(t));
+    all.push_back({term.name, term.options.type, term.options.unit,
                    static_cast<int>(norms_after[t].size()),
-                   statistics_of(norms_before[t], term.feature_size()),
-                   statistics_of(norms_after[t], term.feature_size())});
+                   statistics_of(norms_before[t], term.feature_size),
+                   statistics_of(norms_after[t], term.feature_size)});
   }
   TermResiduals residuals;
   for (const PriorTerm& prior : problem.priors()) {

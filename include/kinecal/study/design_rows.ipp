@@ -164,7 +164,7 @@ class DesignRows {
     const AnyProblem& problem = changing_.problem();
     for (int t = 0; t < problem.num_terms(); ++t) {
       if (problem.term(t).pairs_features()) continue;
-      for (const int s : problem.term(t).sensors()) {
+      for (const int s : problem.term(t).sensors) {
         if (problem.sensors()[static_cast<std::size_t>(s)].mount().name == name) return true;
       }
     }

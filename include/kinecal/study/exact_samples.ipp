@@ -61,7 +61,7 @@ class ExactSearch {
     const AnyProblem& problem = changing_.problem();
     for (int t = 0; t < problem.num_terms(); ++t) {
       if (problem.term(t).pairs_features()) continue;
-      for (const int s : problem.term(t).sensors()) {
+      for (const int s : problem.term(t).sensors) {
         if (problem.sensors()[static_cast<std::size_t>(s)].mount().name == sensor) return true;
       }
     }
@@ -85,7 +85,7 @@ class ExactSearch {
 
   /// The scale of a row: residuals of cameras are pixels.
   [[nodiscard]] double scale(int term) const {
-    const TermOptions& options = changing_.problem().term(term).options();
+    const TermOptions& options = changing_.problem().term(term).options;
     constexpr double kOfPixels = 100.0;
     return options.weight * (options.unit == "px" ? kOfPixels : 1.0);
   }
@@ -168,7 +168,7 @@ class ExactSearch {
     const auto [sample, term, place] = worst->first;
     const AnyProblem& problem = changing_.problem();
     throw StudyError(changing_.samples()[static_cast<std::size_t>(sample)].source +
-                     ": error block '" + problem.term(term).name() +
+                     ": error block '" + problem.term(term).name +
                      "': no measurement makes its residual zero for the true robot; it cannot be "
                      "simulated");
   }

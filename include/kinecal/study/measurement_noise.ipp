@@ -81,14 +81,14 @@ KINECAL_INLINE std::set<std::string> measuring_sensors(const AnyProblem& problem
   std::set<std::string> measuring;
   for (int t = 0; t < problem.num_terms(); ++t) {
     bool has_one = false;
-    for (const int s : problem.term(t).sensors()) {
+    for (const int s : problem.term(t).sensors) {
       const MountedSensor& sensor = problem.sensors()[static_cast<std::size_t>(s)];
       const std::string& name = sensor.mount().name;
       if (!sensor.sensor().in_own_frame() && !detail::features_differ(name, samples)) continue;
       measuring.insert(name);
       has_one = true;
     }
-    const auto last = static_cast<std::size_t>(problem.term(t).sensors().back());
+    const auto last = static_cast<std::size_t>(problem.term(t).sensors.back());
     if (!has_one) measuring.insert(problem.sensors()[last].mount().name);
   }
   return measuring;

@@ -73,7 +73,7 @@ inline void ruin(const StudySetup& setup, const std::set<std::string>& joints, S
   std::vector<double> sums(static_cast<std::size_t>(problem->num_terms()), 0.0), counts = sums;
   (void)problem->evaluator(FreeSet({}, problem->table().size()))
       ->evaluate(values, false, [&](int term, int, const TermResiduals& rows) {
-        const Eigen::Index size = problem->term(term).feature_size();
+        const Eigen::Index size = problem->term(term).feature_size;
         const auto t = static_cast<std::size_t>(term);
         for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
           sums[t] += rows.residual.segment(row, size).norm();

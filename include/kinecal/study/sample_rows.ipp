@@ -90,9 +90,9 @@ class ChangingSamples {
  private:
   static void add(const AnyProblem& problem, int term, int sample, const TermResiduals& of_term,
                   StudyRows& rows) {
-    const AnyTerm& is = problem.term(term);
-    const double weight = is.options().weight;
-    const Eigen::Index size = is.pairs_features() ? is.feature_size() : of_term.residual.size();
+    const Term& is = problem.term(term);
+    const double weight = is.options.weight;
+    const Eigen::Index size = is.pairs_features() ? is.feature_size : of_term.residual.size();
     for (Eigen::Index row = 0; size > 0 && row < of_term.residual.size(); row += size) {
       const int place =
           is.pairs_features() ? problem.feature(term, sample, row / size).place : kAllPlaces;

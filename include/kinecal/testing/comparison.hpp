@@ -8,6 +8,7 @@
 #include <string>
 
 #include "kinecal/geometry/jet.hpp"
+#include "kinecal/geometry/pose.hpp"
 #include "kinecal/testing/verdict.hpp"
 
 namespace kinecal::detail {
@@ -55,16 +56,6 @@ struct Named {
     return {law + a.text() + b.text()};
   }
   return kLawsHold;
-}
-
-/// One lane of a matrix of packets or numbers.
-template <class S, int R, int C>
-[[nodiscard]] Eigen::MatrixXd lane_of(const Eigen::Matrix<S, R, C>& m, int i) {
-  Eigen::MatrixXd of_lane(R, C);
-  for (int row = 0; row < R; ++row) {
-    for (int column = 0; column < C; ++column) of_lane(row, column) = lane(m(row, column), i);
-  }
-  return of_lane;
 }
 
 /// A value and its derivatives.

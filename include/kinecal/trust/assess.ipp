@@ -83,9 +83,9 @@ KINECAL_INLINE Assessment assess(const AnyProblem& problem, const FreeSet& free,
           held_out_errors(*evaluator, values, fit, folds_of(samples, folds), options.meter);
     } catch (const std::domain_error&) {  // without a fold, a point ends behind a camera
       for (int t = 0; t < problem.num_terms(); ++t) {
-        const AnyTerm& term = problem.term(t);
+        const Term& term = problem.term(t);
         found.held_out.push_back(
-            {term.name(), term.options().unit, 0, 0.0, std::numeric_limits<double>::infinity()});
+            {term.name, term.options.unit, 0, 0.0, std::numeric_limits<double>::infinity()});
       }
     }
   }

@@ -22,13 +22,13 @@ namespace detail {
                                                       const Eigen::MatrixXd& inverse) {
   std::vector<BlockNoise> noise;
   for (int t = 0; t < problem.num_terms(); ++t) {
-    const AnyTerm& term = problem.term(t);
+    const Term& term = problem.term(t);
     const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
-    const double median = DistanceBins::median(block.bins.col(2)) * term.options().weight;
+    const double median = DistanceBins::median(block.bins.col(2)) * term.options.weight;
     noise.push_back(block_noise(term, static_cast<int>(block.figures(BlockSums::features)),
                                 block.figures(BlockSums::weighted),
                                 inverse.cwiseProduct(block.information).sum(),
-                                robust_sigma({median}, term.feature_size())));
+                                robust_sigma({median}, term.feature_size)));
   }
   return noise;
 }
@@ -37,12 +37,12 @@ namespace detail {
                                                                        const ShardSums& sums) {
   std::vector<BlockStatistics> all;
   for (int t = 0; t < problem.num_terms(); ++t) {
-    const AnyTerm& term = problem.term(t);
+    const Term& term = problem.term(t);
     const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
-    all.push_back({term.name(), term.options().type, term.options().unit,
+    all.push_back({term.name, term.options.type, term.options.unit,
                    static_cast<int>(block.figures(BlockSums::features)),
-                   block.statistics(BlockSums::mean_before, 0, term.feature_size()),
-                   block.statistics(BlockSums::mean_after, 1, term.feature_size())});
+                   block.statistics(BlockSums::mean_before, 0, term.feature_size),
+                   block.statistics(BlockSums::mean_after, 1, term.feature_size)});
   }
   return all;
 }
@@ -52,7 +52,7 @@ namespace detail {
   double rows = 0.0;
   for (int t = 0; t < problem.num_terms(); ++t) {
     rows += sums.blocks[static_cast<std::size_t>(t)].figures(BlockSums::features) *
-            problem.term(t).feature_size();
+            problem.term(t).feature_size;
   }
   return rows;
 }

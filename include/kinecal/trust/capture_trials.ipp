@@ -90,12 +90,12 @@ class CaptureTrials {
 
  private:
   template <class LabelOf>
-  static void add(const AnyTerm& term, const BlockNoise& noise, const TermResiduals& residuals,
+  static void add(const Term& term, const BlockNoise& noise, const TermResiduals& residuals,
                   const LabelOf& label, TrialRows& to, std::vector<double>& rows) {
     constexpr double kRounding = 1e-9;  // of exact data, as in captures.ipp
     const double sigma = std::max(noise.robust > 0.0 ? noise.robust : noise.sigma,
                                   kRounding * std::max(noise.unit_sigma, 1e-3));
-    const int size = term.feature_size();
+    const int size = term.feature_size;
     for (Eigen::Index row = 0; row + size <= residuals.residual.size(); row += size) {
       TrialFeature feature{term.pairs_features() ? label(row / size).place : -1, size, 0.0};
       for (Eigen::Index k = row; k < row + size; ++k) {

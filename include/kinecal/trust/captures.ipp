@@ -20,7 +20,7 @@ class CaptureSearch {
   CaptureSearch(const AnyProblem& problem, const LinearFit& fit)
       : problem_(problem), fit_(fit), bad_(static_cast<std::size_t>(problem.num_samples()), false) {
     for (const RowBlock& block : fit.blocks) {
-      const int size = problem.term(block.term).feature_size();
+      const int size = problem.term(block.term).feature_size;
       for (Eigen::Index row = 0; row < block.size; row += size) {
         features_.push_back(
             {block.term, block.sample, static_cast<int>(row) / size, block.first + row, size});
@@ -149,7 +149,7 @@ class CaptureSearch {
     std::vector<CaptureError> all(bad_.size());
     for (const FeatureRows& f : features_) {
       CaptureError& of = all[static_cast<std::size_t>(f.sample)];
-      const double unit = 1.0 / problem_.term(f.term).options().weight, d = unit * distance(f);
+      const double unit = 1.0 / problem_.term(f.term).options.weight, d = unit * distance(f);
       const double so_far = times(f);
       of.sample = f.sample;
       if (so_far > of.times) {

@@ -33,7 +33,7 @@ namespace detail {
 KINECAL_INLINE std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
     const AnyProblem& problem, std::span<const Sample> samples) {
   for (int t = 0; t < problem.num_terms(); ++t) {
-    const std::vector<int>& sensors = problem.term(t).sensors();
+    const std::vector<int>& sensors = problem.term(t).sensors;
     if (problem.samples_of(t) == 0) continue;
     FrameOnRobot one = detail::frame_of_features(problem, sensors[0], samples),
                  other{problem.base()};

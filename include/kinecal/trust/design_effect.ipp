@@ -67,7 +67,7 @@ KINECAL_INLINE double design_effect(const AnyProblem& problem, const LinearFit& 
     const Eigen::VectorXd loss = fit.loss.segment(block.first, block.size);
     directions += (loss.asDiagonal() * rows).cwiseProduct(rows).sum();
     sums.add(rows, fit.residual.segment(block.first, block.size), loss,
-             problem.term(block.term).feature_size());
+             problem.term(block.term).feature_size);
   }
   if (sample >= 0) sums.end_sample();
   const double count = static_cast<double>(fit.residual.size());

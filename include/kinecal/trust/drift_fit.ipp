@@ -104,7 +104,7 @@ class DriftFit {
     return FreeSet(std::move(all), problem.table().size());
   }
   [[nodiscard]] std::size_t noise_of(int term) const {
-    const std::string& name = problem_.term(term).name();
+    const std::string& name = problem_.term(term).name;
     for (std::size_t b = 0; b < state_.noise.size(); ++b) {
       if (state_.noise[b].block == name && state_.noise[b].sigma > 0.0) return b;
     }
@@ -115,8 +115,7 @@ class DriftFit {
     std::vector<double> all;
     for (int t = 0; t < problem_.num_terms(); ++t) {
       const bool used = problem_.samples_of(t) > 0;
-      all.push_back(used ? state_.noise[noise_of(t)].sigma * problem_.term(t).options().weight
-                         : 1.0);
+      all.push_back(used ? state_.noise[noise_of(t)].sigma * problem_.term(t).options.weight : 1.0);
     }
     return all;
   }

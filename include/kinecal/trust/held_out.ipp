@@ -22,11 +22,11 @@ struct SquaredDistances {
       : sum(static_cast<std::size_t>(problem.num_terms()), 0.0), features(sum.size(), 0) {}
 
   void add(const AnyProblem& problem, const Eigen::VectorXd& residual, const RowBlock& block) {
-    const AnyTerm& term = problem.term(block.term);
-    const double unit = 1.0 / term.options().weight;
+    const Term& term = problem.term(block.term);
+    const double unit = 1.0 / term.options.weight;
     const auto t = static_cast<std::size_t>(block.term);
     sum[t] += unit * unit * residual.segment(block.first, block.size).squaredNorm();
-    features[t] += static_cast<int>(block.size) / term.feature_size();
+    features[t] += static_cast<int>(block.size) / term.feature_size;
   }
 };
 
@@ -81,12 +81,12 @@ KINECAL_INLINE std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator
   }
   std::vector<HeldOutError> errors;
   for (std::size_t t = 0; t < fitted.sum.size(); ++t) {
-    const AnyTerm& term = problem.term(static_cast<int>(t));
+    const Term& term = problem.term(static_cast<int>(t));
     const auto root = [&](const detail::SquaredDistances& of) {
       return of.features[t] > 0 ? std::sqrt(of.sum[t] / of.features[t]) : 0.0;
     };
     errors.push_back(
-        {term.name(), term.options().unit, fitted.features[t], root(fitted), root(held_out)});
+        {term.name, term.options.unit, fitted.features[t], root(fitted), root(held_out)});
   }
   return errors;
 }

@@ -41,7 +41,7 @@ namespace detail {
 /// @param squares   sum of the squared weighted residuals, with their losses
 /// @param leverage  trace of J H^-1 J^T
 /// @param robust    standard deviation of the weighted residuals: see robust_sigma()
-[[nodiscard]] BlockNoise block_noise(const AnyTerm& term, int features, double squares,
+[[nodiscard]] BlockNoise block_noise(const Term& term, int features, double squares,
                                      double leverage, double robust);
 }  // namespace detail
 

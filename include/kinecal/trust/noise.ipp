@@ -33,15 +33,15 @@ KINECAL_INLINE double detail::tail_factor(std::vector<double> distances, int com
   return std::clamp(*at / expected, 1.0, kMost);
 }
 
-KINECAL_INLINE BlockNoise detail::block_noise(const AnyTerm& term, int features, double squares,
+KINECAL_INLINE BlockNoise detail::block_noise(const Term& term, int features, double squares,
                                               double leverage, double robust) {
   BlockNoise of;
-  of.block = term.name();
-  of.unit = term.options().unit;
+  of.block = term.name;
+  of.unit = term.options.unit;
   of.features = features;
-  of.components = term.feature_size();
-  of.unit_sigma = 1.0 / term.options().weight;
-  of.given = term.options().sigma_given ? of.unit_sigma : 0.0;
+  of.components = term.feature_size;
+  of.unit_sigma = 1.0 / term.options.weight;
+  of.given = term.options.sigma_given ? of.unit_sigma : 0.0;
   const double rows = static_cast<double>(features) * of.components;
   of.freedom = rows - leverage;
   constexpr double kNoFreedom = 1e-6;  // the parameters fit every row
@@ -71,7 +71,7 @@ KINECAL_INLINE std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,
   std::vector<std::vector<double>> distances(terms);
   for (const RowBlock& block : fit.blocks) {
     const auto t = static_cast<std::size_t>(block.term);
-    const int size = problem.term(block.term).feature_size();
+    const int size = problem.term(block.term).feature_size;
     const auto jacobian = fit.jacobian.middleRows(block.first, block.size);
     const auto loss = fit.loss.segment(block.first, block.size);
     const auto r = fit.residual.segment(block.first, block.size);
@@ -85,10 +85,10 @@ KINECAL_INLINE std::vector<BlockNoise> estimate_noise(const AnyProblem& problem,
   }
   std::vector<BlockNoise> noise;
   for (std::size_t t = 0; t < terms; ++t) {
-    const AnyTerm& term = problem.term(static_cast<int>(t));
+    const Term& term = problem.term(static_cast<int>(t));
     noise.push_back(detail::block_noise(term, static_cast<int>(distances[t].size()), squares[t],
                                         leverages[t],
-                                        robust_sigma(distances[t], term.feature_size())));
+                                        robust_sigma(distances[t], term.feature_size)));
   }
   return noise;
 }

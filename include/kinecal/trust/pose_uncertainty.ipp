@@ -17,11 +17,11 @@ namespace detail {
   double squares = 0.0;
   Eigen::Index features = 0;
   for (const RowBlock& block : fit.blocks) {
-    const AnyTerm& term = problem.term(block.term);
-    if (term.options().unit != "m") continue;
-    const double weight = term.options().weight;
+    const Term& term = problem.term(block.term);
+    if (term.options.unit != "m") continue;
+    const double weight = term.options.weight;
     squares += fit.residual.segment(block.first, block.size).squaredNorm() / (weight * weight);
-    features += block.size / term.feature_size();
+    features += block.size / term.feature_size;
   }
   return features > 0 ? std::sqrt(squares / static_cast<double>(features)) : 0.0;
 }

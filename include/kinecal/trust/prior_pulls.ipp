@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/evaluation/normal_equations.hpp"
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/trust/prior_pulls.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 
@@ -23,7 +23,7 @@ KINECAL_INLINE std::vector<PriorPull> prior_pulls(const AnyProblem& problem, con
   for (const PriorTerm& prior : problem.priors()) {
     prior.evaluate(problem.table(), values, &free, rows);
     NormalEquations of_prior(free.size());
-    add_prior(of_prior, prior.options, rows, problem.num_samples(), Losses::as_given);
+    of_prior.add_prior(prior.options, rows, problem.num_samples(), Losses::as_given);
     const Eigen::MatrixXd& basis = fit.coordinates.basis;
     const Eigen::VectorXd shift = basis * (inverse * (basis.transpose() * of_prior.gradient));
     PriorPull pull{.prior = prior.name};

@@ -129,9 +129,9 @@ struct ShardSums {
 };
 
 /// Adds the sizes of residuals.
-inline void add_distances(const AnyTerm& term, const TermResiduals& rows, BlockSums::Figure mean,
+inline void add_distances(const Term& term, const TermResiduals& rows, BlockSums::Figure mean,
                           Eigen::Index column, BlockSums& block) {
-  const int size = term.feature_size();
+  const int size = term.feature_size;
   for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
     const double distance = rows.residual.segment(row, size).norm();
     block.figures(mean) += distance;
@@ -142,10 +142,10 @@ inline void add_distances(const AnyTerm& term, const TermResiduals& rows, BlockS
 }
 
 /// Adds the features of a term in a sample, and their gradient to that of the sample.
-inline void add_features(const AnyTerm& term, const TermResiduals& rows, ShardSums& sums,
+inline void add_features(const Term& term, const TermResiduals& rows, ShardSums& sums,
                          BlockSums& block, Eigen::Ref<Eigen::VectorXd> score) {
-  const TermOptions& options = term.options();
-  const int size = term.feature_size();
+  const TermOptions& options = term.options;
+  const int size = term.feature_size;
   for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
     const double weight = options.weight * rows.factor(row);
     const Eigen::VectorXd r = weight * rows.residual.segment(row, size);

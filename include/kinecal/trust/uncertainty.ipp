@@ -25,14 +25,14 @@ struct RobustSums {
   const Eigen::Index n = fit.size();
   RobustSums sums{fit.prior_hessian, fit.prior_hessian};
   for (const RowBlock& block : fit.blocks) {
-    const AnyTerm& term = problem.term(block.term);
-    const int size = term.feature_size();
+    const Term& term = problem.term(block.term);
+    const int size = term.feature_size;
     for (Eigen::Index row = block.first; row < block.first + block.size; row += size) {
       const auto j = fit.jacobian.middleRows(row, size);
       const auto r = fit.residual.segment(row, size);
       const Eigen::VectorXd g = j.transpose() * r;
       const double slope = fit.loss(row);
-      const double curvature = curvature_of(term.options().loss, r.squaredNorm());
+      const double curvature = curvature_of(term.options.loss, r.squaredNorm());
       sums.hessian.noalias() += slope * j.transpose() * j + 2.0 * curvature * g * g.transpose();
       sums.gradients.noalias() += slope * slope * g * g.transpose();
     }

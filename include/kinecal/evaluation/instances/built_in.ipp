@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/problem.hpp"
+#include "kinecal/evaluation/problem.ipp"
 
 namespace kinecal {
 

@@ -75,9 +75,9 @@ inline void add_losses(Config& config) {
       return problem.sensors()[static_cast<std::size_t>(sensor)].mount().name == camera;
     };
     const auto visit = [&](int term, int sample, const TermResiduals& rows) {
-      const std::vector<int>& sensors = problem.term(term).sensors();
+      const std::vector<int>& sensors = problem.term(term).sensors;
       if (std::none_of(sensors.begin(), sensors.end(), sees)) return;
-      const int size = fit.components = problem.term(term).feature_size();
+      const int size = fit.components = problem.term(term).feature_size;
       for (Eigen::Index row = 0; row + size <= rows.residual.size(); row += size) {
         fit.samples[static_cast<std::size_t>(sample)].push_back(
             rows.residual.segment(row, size).norm());

@@ -1,5 +1,5 @@
-// A term of the cost, independent of the scalar: an error block's name, sensors, weight and loss; and
-// priors, which depend on parameters only.
+// The terms of the cost, independent of the scalar: error blocks with their sensors, weights and losses;
+// and priors, which depend on parameters only.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,6 @@
 
 #include "kinecal/errors/loss.hpp"
 #include "kinecal/errors/prior.hpp"
-#include "kinecal/problem/sample_numbers.hpp"
 #include "kinecal/sensors/quantity.hpp"
 
 namespace kinecal {
@@ -63,45 +62,19 @@ enum class Linearization {
 /// The most parameters of its own and of its sensors on which an error block may depend.
 inline constexpr std::size_t kMostOwn = 32;
 
-/// A term, independent of the scalar: its name, its sensors, and which samples it takes.
-class AnyTerm {
- public:
-  /// What the sensors of the term observed in one sample, in their order.
-  using Observations = std::span<const detail::ObservationNumbers* const>;
-
-  /// @param sensors     indices of the sensors in the problem
-  /// @param parameters  table indices of the block's own parameters
-  AnyTerm(std::string name, std::vector<int> sensors, std::vector<int> parameters,
-          TermOptions options)
-      : name_(std::move(name)),
-        sensors_(std::move(sensors)),
-        parameters_(std::move(parameters)),
-        options_(std::move(options)) {}
-  virtual ~AnyTerm() = default;
-
-  [[nodiscard]] const std::string& name() const { return name_; }  ///< of the error block
-  /// Indices in the problem of the sensors that are compared.
-  [[nodiscard]] const std::vector<int>& sensors() const { return sensors_; }
-  /// Table indices of the block's own parameters.
-  [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
-  [[nodiscard]] const TermOptions& options() const { return options_; }  ///< weight, loss, names
-
-  /// What the block takes of each of its sensors.
-  [[nodiscard]] virtual std::span<const Quantity> quantities() const = 0;
+/// A term of the cost: an error block with the sensors that it compares.
+struct Term {
+  std::string name;                           ///< of the error block
+  TermOptions options = {};                   ///< weight, loss, names
+  std::vector<int> sensors = {};              ///< indices in the problem of those that are compared
+  std::vector<int> parameters = {};           ///< table indices of the block's own parameters
+  std::span<const Quantity> quantities = {};  ///< what the block takes of each of its sensors
   /// Names of the conditions of a sample that the block takes.
-  [[nodiscard]] virtual std::span<const std::string_view> conditions() const = 0;
-  /// Number of residuals of one feature.
-  [[nodiscard]] virtual int feature_size() const = 0;
-  /// True if feature i of each sensor is the same one.
-  [[nodiscard]] virtual bool pairs_features() const = 0;
-  /// Number of features that can be compared, given what the sensors observed.
-  [[nodiscard]] virtual int count(Observations seen) const = 0;
+  std::span<const std::string_view> conditions = {};
+  int feature_size = 1;  ///< number of residuals of one feature
 
- private:
-  std::string name_;
-  std::vector<int> sensors_;
-  std::vector<int> parameters_;
-  TermOptions options_;
+  /// True if feature i of each sensor is the same one; false if all features of a sensor are one plane.
+  [[nodiscard]] bool pairs_features() const { return quantities.front() != Quantity::plane; }
 };
 
 /// A prior with its weight and loss.
@@ -114,19 +87,7 @@ struct PriorTerm {
   /// @param values  of all parameters of the table
   /// @param free    the columns of the Jacobian; nullptr: residuals only
   void evaluate(const ParameterTable& table, std::span<const double> values, const FreeSet* free,
-                TermResiduals& out) const {
-    out.resize(Prior::kRows, free != nullptr ? free->size() : -1);
-    const auto parameters = prior.parameters(table);
-    const auto scales = prior.scales();
-    for (std::size_t row = 0; row < parameters.size(); ++row) {
-      if (parameters[row] < 0) continue;
-      const auto r = static_cast<Eigen::Index>(row);
-      out.residual(r) =
-          scales[row] * (values[static_cast<std::size_t>(parameters[row])] - prior.mean[row]);
-      const int column = free != nullptr ? free->column(parameters[row]) : -1;
-      if (column >= 0) out.jacobian(r, column) = scales[row];
-    }
-  }
+                TermResiduals& out) const;
 };
 
 }  // namespace kinecal

@@ -1,7 +1,5 @@
-// A term of the cost: an error block with the sensors it compares, its weight and its loss.
-//
-// The compiler knows the block; the term hides its type, so that one problem can hold terms of
-// different blocks.  One virtual call evaluates a whole batch of samples, so hiding costs nothing.
+// A term's functions in the scalar S, behind one interface, so that one problem can hold terms of
+// different blocks.  One virtual call evaluates a whole batch of samples, so hiding the type costs nothing.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,11 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/errors/difference.hpp"
 #include "kinecal/evaluation/feature_wrenches.hpp"
 #include "kinecal/evaluation/local_sums.hpp"
 #include "kinecal/evaluation/point_wrenches.hpp"
-#include "kinecal/problem/any_term.hpp"
 
 namespace kinecal::detail {
 
@@ -74,12 +70,13 @@ struct TermSums {
   }
 };
 
-/// A term, evaluated in S.
+/// The functions of a term in the scalar S.
 template <class S>
-class Term : public AnyTerm {
+class TermCode {
  public:
-  using Views = TermViews<S>;  ///< the term's sensors as they see a batch, and its parameters
-  using AnyTerm::AnyTerm;
+  using Views = TermViews<S>;  ///< the term, its sensors as they see a batch, and its parameters
+
+  virtual ~TermCode() = default;
 
   /// Adds the cost of a batch of samples.  It is not finite where a residual is undefined, such as
   /// that of a point behind a camera.
