@@ -58,9 +58,8 @@ template <class C>
     for (const ParameterId& id : P::kIds) {
       example.free.push_back({id.name(), std::string(id.owner), std::string(id.part)});
     }
-    constexpr bool kIsVirtual = P::kKind == ParameterKind::virtual_frame;
-    if (kIsVirtual) example.virtual_frame = P::kOwner;
-    if (kIsVirtual || P::kKind == ParameterKind::frame_offset) example.frames.emplace(P::kOwner);
+    if (P::kKind == ParameterKind::virtual_frame) example.virtual_frame = P::kOwner;
+    if (is_frame(P::kKind)) example.frames.emplace(P::kOwner);
   });
   example.problem = [crate](std::span<const Sample> samples) {
     return std::make_unique<Problem>(crate.problem(crate.table(samples)));

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/block_checks.hpp"
 #include "kinecal/crate/crate.hpp"
 #include "kinecal/crate/crate_checks.hpp"
 #include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/crate/parameter_checks.hpp"
-#include "kinecal/crate/use_checks.hpp"

@@ -122,6 +122,13 @@ Crate<Arm, Head, FrameOffset<"head_pan_joint", Axes::xyz>,
 // meant: camera
 Crate<Arm, Head, DepthIntrinsics<"camrea">, HandEye> misspelt_camera;
 
+// expect: no joint model that fits the joint has this parameter; kinematics/joint_model.hpp has their
+Crate<Arm, Head, JointModelParameters<"elbow_flex_joint", "gear_ratios">, HandEye> misspelt_model;
+
+// expect: no joint model that fits the joint has this parameter; kinematics/joint_model.hpp has their
+Crate<Arm, Head, JointModelParameters<"torso_lift_joint", "eccentric_sin">, HandEye>
+    eccentric_slide;
+
 // expect: the sensor or block in this parameter does not declare it; a Camera3d or Camera2d has
 Crate<Arm, Pinhole, DepthIntrinsics<"pinhole">, Block<"pixels", PointToPixel, "arm", "pinhole">>
     depth_of_pinhole_camera;

@@ -37,29 +37,10 @@ struct ListsOf {
 };
 template <class... Parts>
 struct ListsOf<Crate<Parts...>> {
-  using Sensors = typename AllOf<typename ListsOf<Parts>::Sensors...>::type;
-  using Parameters = typename AllOf<typename ListsOf<Parts>::Parameters...>::type;
-  using Blocks = typename AllOf<typename ListsOf<Parts>::Blocks...>::type;
-  using Priors = typename AllOf<typename ListsOf<Parts>::Priors...>::type;
-};
-
-template <class List>
-struct Frames;
-template <class... Ps>
-struct Frames<TypeList<Ps...>> {
-  [[nodiscard]] static constexpr bool contains(std::string_view name) {
-    return ((Ps::kKind == ParameterKind::frame_offset && Ps::kOwner == name) || ...);
-  }
-  [[nodiscard]] static std::set<std::string> all() {
-    std::set<std::string> names;
-    const auto add = [&](ParameterKind kind, std::string_view owner) {
-      const bool is_frame =
-          kind == ParameterKind::frame_offset || kind == ParameterKind::virtual_frame;
-      if (is_frame) names.emplace(owner);
-    };
-    (add(Ps::kKind, Ps::kOwner), ...);
-    return names;
-  }
+  using Sensors = Joined<typename ListsOf<Parts>::Sensors...>;
+  using Parameters = Joined<typename ListsOf<Parts>::Parameters...>;
+  using Blocks = Joined<typename ListsOf<Parts>::Blocks...>;
+  using Priors = Joined<typename ListsOf<Parts>::Priors...>;
 };
 
 }  // namespace detail
@@ -102,14 +83,13 @@ class Crate {
   /// @param samples  a camera's parameters start from the settings its driver had while recording
   [[nodiscard]] ParameterTable table(std::span<const Sample> samples) const {
     ParameterTable table;
-    for_each(IfRight<Sensors>{}, [&]<class P>(P*) {
+    IfRight<Sensors>::for_each([&]<class P>(std::type_identity<P>) {
       add_sensor_parameters(table, *any_sensor(typename P::Model{}), P::mount(), samples);
     });
-    for_each(IfRight<Blocks>{}, [&]<class P>(P*) {
-      const auto infos = parameters_of(std::get<P>(blocks_).error);
-      add_parameters(table, P::kName, infos);
+    IfRight<Blocks>::for_each([&]<class P>(std::type_identity<P>) {
+      add_parameters(table, P::kName, parameters_of(std::get<P>(blocks_).error));
     });
-    for_each(IfRight<Parameters>{}, [&]<class P>(P*) { add_parameter<P>(table); });
+    IfRight<Parameters>::for_each([&]<class P>(std::type_identity<P>) { add_parameter<P>(table); });
     return table;
   }
 
@@ -123,17 +103,18 @@ class Crate {
   /// The calibration problem without samples.
   template <class S = Packet>
   [[nodiscard]] BasicProblem<S> problem(ParameterTable table) const {
-    BasicProblem<S> problem(robot(), base(), std::move(table), FramesHere::all());
-    for_each(IfRight<Sensors>{}, [&]<class P>(P*) {
+    const auto& frames = Frames::kNames;
+    BasicProblem<S> problem(robot(), base(), std::move(table), {frames.begin(), frames.end()});
+    IfRight<Sensors>::for_each([&]<class P>(std::type_identity<P>) {
       problem.add_sensor(typename P::Model{}, P::mount(), walks<S, P>());
     });
-    for_each(IfRight<Blocks>{}, [&]<class P>(P*) {
+    IfRight<Blocks>::for_each([&]<class P>(std::type_identity<P>) {
       const P& part = std::get<P>(blocks_);
       const auto& names = P::kSensorNames;
       problem.add_block(std::string(P::kName), part.error, {names.begin(), names.end()},
                         part.options);
     });
-    for_each(IfRight<Priors>{}, [&]<class P>(P*) {
+    IfRight<Priors>::for_each([&]<class P>(std::type_identity<P>) {
       const P& part = std::get<P>(priors_);
       problem.add_prior(std::string(P::kName),
                         {std::string(P::kOf), part.joint_scale, part.position_scale,
@@ -150,33 +131,25 @@ class Crate {
   using IfRight =
       std::conditional_t<std::is_same_v<Check, detail::Holds>, List, detail::TypeList<>>;
 
-  using FramesHere = detail::Frames<Parameters>;
-
-  using BaseChain = typename detail::FirstChain<Sensors>::type;
+  using Frames = typename Parameters::template As<detail::FreeFrames>;
+  using BaseChain = typename Sensors::template As<detail::FirstChain>;
   using RobotOf = typename BaseChain::Robot;
 
-  template <class... Ts, class F>
-  static constexpr void for_each(detail::TypeList<Ts...>, F&& f) {
-    (f(static_cast<Ts*>(nullptr)), ...);
-  }
-
+  /// What the robot has; sensors and blocks have added their own.
   template <class P>
   static void add_parameter(ParameterTable& table) {
-    const auto add = [&](const std::string& name, const char* unit) {
-      if (table.find(name) < 0) table.add({.name = name, .unit = unit});
+    const auto add = [&](const std::string& name, std::string_view unit) {
+      if (table.find(name) < 0) table.add({.name = name, .unit = std::string(unit)});
     };
     if constexpr (P::kKind == ParameterKind::joint_offset) {
-      constexpr JointType type =
-          RobotOf::kJoints[detail::joint_index(RobotOf::kJoints, P::kOwner)].type;
-      add(std::string(P::kOwner), turns(type) ? "rad" : "m");
+      constexpr std::size_t i = detail::joint_index(RobotOf::kJoints, P::kOwner);
+      add(std::string(P::kOwner), turns(RobotOf::kJoints[i].type) ? "rad" : "m");
     } else if constexpr (P::kKind == ParameterKind::joint_model) {
       for (const ParameterId& id : P::kIds) {
-        const auto& names = kJointModelNames;
-        const auto k = std::find(names.begin(), names.end(), id.part) - names.begin();
-        add(id.name(), std::string(kJointModelUnits[static_cast<std::size_t>(k)]).c_str());
+        const auto model = std::ranges::find(kJointModelNames, id.part) - kJointModelNames.begin();
+        add(id.name(), kJointModelUnits[static_cast<std::size_t>(model)]);
       }
-    } else if constexpr (P::kKind == ParameterKind::frame_offset ||
-                         P::kKind == ParameterKind::virtual_frame) {
+    } else if constexpr (is_frame(P::kKind)) {
       for (std::size_t k = 0; k < 6; ++k) {
         add(parameter_name(P::kOwner, kFrameAxes[k]), k < 3 ? "m" : "rad");
       }
@@ -189,7 +162,7 @@ class Crate {
     std::vector<detail::CompiledWalk<S>> walks = {
         detail::compiled_walk<S, ChainWithFrames<typename Sensor::Chain>, Free>()};
     if constexpr (!kIsInOwnFrame<typename Sensor::Model>) {
-      for_each(Parameters{}, [&]<class P>(P*) {
+      Parameters::for_each([&]<class P>(std::type_identity<P>) {
         if constexpr (P::kKind == ParameterKind::virtual_frame) {
           walks.push_back(
               detail::compiled_walk<S, ChainWithFrames<typename Sensor::Chain, P>, Free>());
@@ -201,16 +174,17 @@ class Crate {
 
   /// A sensor's chain with the frame corrections of this crate.
   template <class C, class VirtualFrame = void>
-  using ChainWithFrames = detail::CorrectedChain<C, FramesHere, VirtualFrame>;
+  using ChainWithFrames = detail::CorrectedChain<C, Frames, VirtualFrame>;
 
   template <FixedString Name, class... Ts>
   [[nodiscard]] static auto& part_of(std::tuple<Ts...>& parts) {
-    using Names = detail::PartNames<detail::TypeList<Ts...>>;
-    using Found = LookedUp<kView<Name>, Names>;
+    using List = detail::TypeList<Ts...>;
+    using Found = LookedUp<kView<Name>, List>;
     [[maybe_unused]] constexpr detail::Unless<Found::kExists, detail::PartOfName<Name, Found>>
         kPartCheck = {};
     if constexpr (Found::kExists) {
-      return std::get<Names::index(Name)>(parts);
+      constexpr auto kPlace = std::find(List::kNames.begin(), List::kNames.end(), Name);
+      return std::get<kPlace - List::kNames.begin()>(parts);
     } else if constexpr (sizeof...(Ts) > 0) {
       return std::get<0>(parts);  // has options, too: no further error
     } else {

@@ -1,27 +1,99 @@
-// Compile-time checks of a crate as a whole; each fails with a sentence (sentence.hpp).
+// Compile-time checks of a crate and its error blocks; each fails with a sentence (sentence.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/use_checks.hpp"
+#include "kinecal/crate/parameter_checks.hpp"
 
 namespace kinecal::detail {
 
-struct NoRobot {
-  static constexpr std::string_view kName = "";
-  static constexpr std::array<JointData, 0> kJoints = {};
+template <class Residual, bool kIsTemplated = false>
+struct ResidualOfBlock {
+  static_assert(kIsTemplated,
+                "kinecal: this error block is not a residual templated on its scalar; write "
+                "template <class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const");
 };
-struct NoChain {
-  using Robot = NoRobot;
-  static constexpr std::string_view kBase = "";
+template <class Residual, bool kIsVector = false>
+struct VectorOfBlock {
+  static_assert(kIsVector,
+                "kinecal: the residual of this error block is not a vector of fixed size in the "
+                "scalar of its arguments; return an Eigen::Matrix<S, N, 1>");
 };
-/// The chain of the first sensor; the crate has its robot and base.
-template <class Sensors>
-struct FirstChain {
-  using type = NoChain;
+template <class Residual, bool kAreDelivered = false>
+struct ArgumentsOfBlock {
+  static_assert(kAreDelivered,
+                "kinecal: no sensors deliver the arguments of this error block; write template "
+                "<class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const, or "
+                "declare its Inputs");
 };
-template <class S, class... Ss>
-struct FirstChain<TypeList<S, Ss...>> {
-  using type = typename S::Chain;
+
+/// The result has the scalar of the points.
+template <class R, class S>
+concept InScalar = std::same_as<typename std::remove_cvref_t<R>::Scalar, S>;
+/// A block that can be called with points in a scalar.
+template <class B, class S>
+concept CalledWithPoints = requires(const B& block, const Vector3<S>& p) {
+  { block(p) } -> InScalar<S>;
+}
+|| requires(const B& block, const Vector3<S>& p) {
+  { block(p, p) } -> InScalar<S>;
+};
+
+/// What is wrong with a block that is not an ErrorBlock.
+template <class B>
+using WhyNoBlock = std::conditional_t<
+    CalledWithPoints<B, Probe>, VectorOfBlock<B>,
+    std::conditional_t<CalledWithPoints<B, double>, ResidualOfBlock<B>, ArgumentsOfBlock<B>>>;
+
+/// @tparam Found  the result of LookedUp: Known or DidYouMean
+template <class Block, FixedString Sensor, class Found, bool kIsInCrate = false>
+struct SensorOfBlock {
+  static_assert(kIsInCrate,
+                "kinecal: a sensor of this error block is not in the crate; add it or correct its "
+                "name");
+};
+template <class Block, bool kFits = false>
+struct NumberOfSensors {
+  static_assert(kFits,
+                "kinecal: this error block is given too many or too few sensors; it has one for "
+                "each argument of its residual, and two for a pixel");
+};
+template <class Block, bool kFit = false>
+struct KindsOfSensors {
+  static_assert(kFit,
+                "kinecal: this error block is given a sensor of the wrong kind, which does not "
+                "deliver what its residual takes; a camera that predicts pixels stands second");
+};
+
+/// What an error block takes of each of its sensors; nothing if it is none.
+template <class B>
+inline constexpr std::array<Quantity, 0> kTaken = {};
+template <ErrorBlock B>
+inline constexpr auto kTaken<B> = kQuantities<B>;
+
+/// True if each sensor of a block delivers what the block takes of it.
+template <class Block, class... Sensors>
+[[nodiscard]] constexpr bool kinds_fit(TypeList<Sensors...>) {
+  const auto& names = Block::kSensorNames;
+  const auto& taken = kTaken<typename Block::Error>;
+  const auto delivers_it = [](std::string_view name, Quantity quantity) {
+    return ((Sensors::kName == name && delivers<typename Sensors::Model>(quantity)) || ...);
+  };
+  return std::equal(names.begin(), names.end(), taken.begin(), taken.end(), delivers_it);
+}
+
+template <class Block, FixedString Sensor, class Found>
+using CheckSensor = Unless<Found::kExists, SensorOfBlock<Block, Sensor, Found>>;
+
+/// Checks that a block can compare its sensors.
+template <class Block, class Sensors>
+struct CheckBlock;
+template <FixedString Name, class Residual, FixedString... Of, class Sensors>
+struct CheckBlock<Block<Name, Residual, Of...>, Sensors> {
+  using B = Block<Name, Residual, Of...>;
+  using type = FirstOf<Unless<ErrorBlock<Residual>, WhyNoBlock<Residual>>,
+                       CheckSensor<B, Of, LookedUp<kView<Of>, Sensors>>...,
+                       Unless<sizeof...(Of) == kTaken<Residual>.size(), NumberOfSensors<B>>,
+                       Unless<kinds_fit<B>(Sensors()), KindsOfSensors<B>>>;
 };
 
 template <class Part, bool kIsPart = false>
@@ -65,15 +137,17 @@ struct BaseOfCrate {
                 "robots; features are compared in one base, so give all chains the same one");
 };
 
-/// False if a chain is wrong; its own check reports that.
-template <class C>
-inline constexpr bool kHasBase = LookedUp<C::kBase, LinkNames<typename C::Robot>>::kExists;
-
-template <class A, class B>
-[[nodiscard]] constexpr bool start_together() {
-  if (!kHasBase<A> || !kHasBase<B>) return true;
-  return std::is_same_v<typename A::Robot, typename B::Robot> && A::kBase == B::kBase;
-}
+/// What a crate without sensors has in place of a chain.
+struct NoChain {
+  struct Robot {
+    static constexpr std::string_view kName = "";
+    static constexpr std::array<JointData, 0> kJoints = {};
+  };
+  static constexpr std::string_view kBase = "";
+};
+/// The chain of the first sensor; the crate has its robot and base.
+template <class... Sensors>
+using FirstChain = std::tuple_element_t<0, std::tuple<typename Sensors::Chain..., NoChain>>;
 
 template <class Sensors, class Parameters, class Blocks, class Priors>
 struct CheckCrate;
@@ -83,23 +157,29 @@ struct CheckCrate<TypeList<Ss...>, TypeList<Ps...>, TypeList<Bs...>, TypeList<Qs
   using Blocks = TypeList<Bs...>;
   using Priors = TypeList<Qs...>;
   using Free = FreeParameters<Ps...>;
-  using Base = typename FirstChain<Sensors>::type;
+  using BaseChain = FirstChain<Ss...>;
 
+  /// A wrong chain has a sentence of its own.
+  template <class C>
+  static constexpr bool kStartsThere =
+      !C::kHasLinks || !BaseChain::kHasLinks ||
+      (std::is_same_v<typename C::Robot, typename BaseChain::Robot> &&
+       C::kBase == BaseChain::kBase);
   template <class P>
-  static constexpr bool kIsUsed = (moves_block<P, Bs>(Sensors{}) || ...);
+  static constexpr bool kIsUsed = (moves_block<P, Bs>(Sensors()) || ...);
 
   using type = FirstOf<  //
       Unless<(sizeof...(Ss) > 0), SensorsOfCrate<Blocks>>,
       Unless<(sizeof...(Bs) > 0), BlocksOfCrate<Sensors>>,
-      Unless<PartNames<Sensors>::differ(), NamesOfSensors<Sensors>>,
-      Unless<PartNames<Blocks>::differ(), NamesOfBlocks<Blocks>>,
-      Unless<PartNames<Priors>::differ(), NamesOfPriors<Priors>>,
+      Unless<Sensors::names_differ(), NamesOfSensors<Sensors>>,
+      Unless<Blocks::names_differ(), NamesOfBlocks<Blocks>>,
+      Unless<Priors::names_differ(), NamesOfPriors<Priors>>,
       Unless<Free::are_distinct(), NamesOfParameters<Free>>,
-      Unless<(start_together<Base, typename Ss::Chain>() && ...), BaseOfCrate<Sensors>>,
+      Unless<(kStartsThere<typename Ss::Chain> && ...), BaseOfCrate<Sensors>>,
       typename CheckBlock<typename Bs::Plain, Sensors>::type...,
-      typename CheckParameter<Ps, typename Base::Robot, Sensors, Blocks>::type...,
-      Unless<kIsUsed<Ps>, UseOfParameter<Ps>>...,  //
-      typename CheckPrior<Qs, Ps...>::type...>;
+      typename CheckParameter<Ps, typename BaseChain::Robot, Sensors, Blocks>::type...,
+      Unless<kIsUsed<Ps>, UseOfParameter<Ps>>...,
+      CheckPrior<Qs, LookedUp<Qs::kOf, NamesForPriors<Ps...>>>...>;
 };
 
 /// @tparam Found  the result of LookedUp: Known or DidYouMean
@@ -107,7 +187,6 @@ template <FixedString Name, class Found, bool kExists = false>
 struct PartOfName {
   static_assert(kExists, "kinecal: the crate has no part of this name; correct the name");
 };
-
 template <class Parameter, class Found, bool kIsFree = false>
 struct ValueOf {
   static_assert(

@@ -9,6 +9,7 @@
 #include "kinecal/errors/error_block.hpp"
 #include "kinecal/errors/prior.hpp"
 #include "kinecal/kinematics/static_chain.hpp"
+#include "kinecal/parameters/free_parameters.hpp"
 #include "kinecal/problem/term.hpp"
 #include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
@@ -99,43 +100,46 @@ concept PriorPart = requires {
 
 namespace detail {
 
+/// Parts of one sort, each once.
 template <class... Ts>
 struct TypeList {
   static constexpr std::size_t kSize = sizeof...(Ts);
-  template <class T>
-  static constexpr bool kContains = (std::is_same_v<T, Ts> || ...);
   template <template <class...> class To>
   using As = To<Ts...>;
-  template <class T>
-  using With = std::conditional_t<kContains<T>, TypeList, TypeList<Ts..., T>>;
+  /// Of sensors, blocks and priors; for LookedUp.
+  static constexpr std::array<std::string_view, kSize> kNames = {Ts::kName...};
 
+  /// True if no name occurs twice.
+  [[nodiscard]] static constexpr bool names_differ() {
+    return ((std::count(kNames.begin(), kNames.end(), Ts::kName) == 1) && ...);
+  }
   /// Calls f(std::type_identity<T>()) for each type, in their order.
   template <class F>
   static constexpr void for_each(F&& f) {
     (f(std::type_identity<Ts>()), ...);
   }
-};
 
-/// The types of both lists, each once: first those of A, then the others of B.
-template <class A, class B>
-struct Joined;
-template <class A>
-struct Joined<A, TypeList<>> {
-  using type = A;
+  /// Appends what the list does not have yet: a type, or the types of another list.
+  template <class T>
+  constexpr auto operator+(std::type_identity<T>) const {
+    return std::conditional_t<(std::is_same_v<T, Ts> || ...), TypeList, TypeList<Ts..., T>>();
+  }
+  template <class... Others>
+  constexpr auto operator+(TypeList<Others...>) const {
+    return (TypeList() + ... + std::type_identity<Others>());
+  }
 };
-template <class A, class T, class... Ts>
-struct Joined<A, TypeList<T, Ts...>> : Joined<typename A::template With<T>, TypeList<Ts...>> {};
 
 /// The types of all lists, each once.
 template <class... Lists>
-struct AllOf {
-  using type = TypeList<>;
-};
-template <class First, class... Rest>
-struct AllOf<First, Rest...> : Joined<First, typename AllOf<Rest...>::type> {};
+using Joined = decltype((TypeList<>() + ... + Lists()));
 
 template <bool kTake, class T>
 using OnlyIf = std::conditional_t<kTake, TypeList<T>, TypeList<>>;
+
+/// The frames among free parameters.
+template <class... Ps>
+using FreeFrames = typename Joined<OnlyIf<is_frame(Ps::kKind), Ps>...>::template As<FreeParameters>;
 
 }  // namespace detail
 

@@ -3,8 +3,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/crate/block_checks.hpp"
-#include "kinecal/parameters/free_parameters.hpp"
+#include "kinecal/crate/crate_parts.hpp"
+#include "kinecal/kinematics/known_name.hpp"
+#include "kinecal/kinematics/sentence.hpp"
 
 namespace kinecal::detail {
 
@@ -65,40 +66,59 @@ struct AxesOfFrame {
                 "kinecal: this frame offset does not free any axis; choose axes or leave it out");
 };
 
-/// Checks that the robot, or a sensor, has the free parameter.
+/// True if a sensor or block declares the parameter.
+template <class Part>
+[[nodiscard]] constexpr bool declares(const ParameterId& id) {
+  const auto have_it = [&](const auto& infos) {
+    for (const ParameterInfo& info : infos) {
+      if (info.name == id.part) return true;
+    }
+    return false;
+  };
+  if constexpr (requires { Part::Model::kParameters; }) return have_it(Part::Model::kParameters);
+  if constexpr (requires { Part::Error::kParameters; }) return have_it(Part::Error::kParameters);
+  return false;
+}
+/// True if the owner of a free parameter declares all of its numbers.
+template <class P, class... Owners>
+[[nodiscard]] constexpr bool are_declared(TypeList<Owners...>) {
+  return std::all_of(P::kIds.begin(), P::kIds.end(), [](const ParameterId& id) {
+    return ((Owners::kName == id.owner && declares<Owners>(id)) || ...);
+  });
+}
+
+/// Checks that the robot, or a sensor or block, has the free parameter.
 template <class P, RobotData R, class Sensors, class Blocks, ParameterKind = P::kKind>
-struct CheckParameter;
+struct CheckParameter {
+  using Owners = std::conditional_t<P::kKind == ParameterKind::block, Blocks, Sensors>;
+  using Found = LookedUp<P::kOwner, Owners>;
+  using type = FirstOf<Unless<Found::kExists, OwnerOfParameter<P, Found>>,
+                       Unless<are_declared<P>(Owners()), PartsOfParameter<P>>>;
+};
 
 template <class P, RobotData R, class Sensors, class Blocks>
 struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
   using Found = LookedUp<P::kOwner, JointNames<R>>;
-
-  [[nodiscard]] static constexpr JointData joint() {
+  static constexpr JointData kJoint = [] {
     if constexpr (Found::kExists) return R::kJoints[joint_index(R::kJoints, P::kOwner)];
-    return {};
+    return JointData();
+  }();
+  /// True for an offset, and for a parameter of a model that fits the joint.
+  [[nodiscard]] static constexpr bool fits(const ParameterId& id) {
+    if (P::kKind == ParameterKind::joint_offset) return true;
+    for (std::size_t k = 0; k < kJointModelSize; ++k) {
+      if (kJointModelNames[k] == id.part) return turns(kJoint.type) || !kJointModelRotatesOnly[k];
+    }
+    return false;
   }
   using type = FirstOf<Unless<Found::kExists, JointOfOffset<P, Found>>,
-                       Unless<moves(joint().type), MotionOfOffset<P>>,
-                       Unless<!joint().mimic.has_value(), DriveOfOffset<P>>>;
+                       Unless<moves(kJoint.type), MotionOfOffset<P>>,
+                       Unless<!kJoint.mimic.has_value(), DriveOfOffset<P>>,
+                       Unless<std::all_of(P::kIds.begin(), P::kIds.end(), fits), NameOfModel<P>>>;
 };
-
 template <class P, RobotData R, class Sensors, class Blocks>
-struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_model> {
-  using Joint = CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset>;
-
-  [[nodiscard]] static constexpr bool are_known() {
-    for (const ParameterId& id : P::kIds) {
-      bool found = false;
-      for (std::size_t k = 0; k < kJointModelSize; ++k) {
-        const bool fits = turns(Joint::joint().type) || !kJointModelRotatesOnly[k];
-        found |= kJointModelNames[k] == id.part && fits;
-      }
-      if (!found) return false;
-    }
-    return true;
-  }
-  using type = FirstOf<typename Joint::type, Unless<are_known(), NameOfModel<P>>>;
-};
+struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_model>
+    : CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {};
 
 template <class P, RobotData R, class Sensors, class Blocks>
 struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::frame_offset> {
@@ -114,44 +134,62 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::virtual_frame> {
               Unless<!P::kIds.empty(), AxesOfFrame<P>>>;
 };
 
-/// The parameters that a sensor or block declares.
-template <class M>
-[[nodiscard]] constexpr auto declared_parameters() {
-  if constexpr (requires { M::kParameters; }) {
-    return M::kParameters;
-  } else {
-    return std::array<ParameterInfo, 0>{};
-  }
-}
-/// True if the owner of a parameter declares all of its parts.
-template <class P, class Part, class M>
-[[nodiscard]] constexpr bool declares() {
-  if (Part::kName != P::kOwner) return false;
-  for (const ParameterId& id : P::kIds) {
-    bool found = false;
-    for (const ParameterInfo& info : declared_parameters<M>()) found |= info.name == id.part;
-    if (!found) return false;
-  }
-  return true;
-}
-template <class P, class... Parts>
-[[nodiscard]] constexpr bool one_declares(TypeList<Parts...>) {
-  if constexpr (P::kKind == ParameterKind::block) {
-    return (declares<P, Parts, typename Parts::Error>() || ...);
-  } else {
-    return (declares<P, Parts, typename Parts::Model>() || ...);
-  }
-}
-/// @tparam Owners  sensors or blocks
-template <class P, class Owners>
-struct CheckOwn {
-  using Found = LookedUp<P::kOwner, PartNames<Owners>>;
-  using type = FirstOf<Unless<Found::kExists, OwnerOfParameter<P, Found>>,
-                       Unless<one_declares<P>(Owners{}), PartsOfParameter<P>>>;
+template <class Parameter, bool kResidualsDepend = false>
+struct UseOfParameter {
+  static_assert(kResidualsDepend,
+                "kinecal: no residual depends on this free parameter, because no error block has a "
+                "sensor that it moves; leave it out or add such a block");
 };
-template <class P, RobotData R, class Sensors, class Blocks>
-struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::sensor> : CheckOwn<P, Sensors> {};
-template <class P, RobotData R, class Sensors, class Blocks>
-struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::block> : CheckOwn<P, Blocks> {};
+
+/// True if moving a parameter moves what a sensor observes.
+template <class P, class Sensor>
+[[nodiscard]] constexpr bool moves_sensor() {
+  using Robot = typename Sensor::Chain::Robot;
+  if (P::kKind == ParameterKind::sensor) return Sensor::kName == P::kOwner;
+  if (P::kKind == ParameterKind::virtual_frame) return !kIsInOwnFrame<typename Sensor::Model>;
+  if (!Sensor::Chain::kHasLinks) return true;  // the chain's own check reports that
+  for (const std::size_t i : Sensor::Chain::kPassed) {
+    const JointData& joint = Robot::kJoints[i];
+    const bool moves_frame = P::kKind == ParameterKind::frame_offset;
+    const auto moved = moves_frame ? joint.name : drive_of(Robot::kJoints, joint).joint;
+    if (moved == P::kOwner) return true;
+  }
+  return false;
+}
+
+/// True if a parameter is a block's own, or moves what one of its sensors observes.
+template <class P, class Block, class... Sensors>
+[[nodiscard]] constexpr bool moves_block(TypeList<Sensors...>) {
+  if (P::kKind == ParameterKind::block) return Block::kName == P::kOwner;
+  const auto& names = Block::kSensorNames;
+  return ((std::find(names.begin(), names.end(), Sensors::kName) != names.end() &&
+           moves_sensor<P, Sensors>()) ||
+          ...);
+}
+
+/// @tparam Found  the result of LookedUp: Known or DidYouMean
+template <class Prior, class Found, bool kIsFree = false>
+struct ParameterOfPrior {
+  static_assert(kIsFree,
+                "kinecal: the joint, frame or parameter in this PriorOn is not free in the crate; "
+                "correct its name or leave the prior out");
+};
+
+/// On what a prior may be, for LookedUp: the frames that are free, and each free number.
+template <class... Ps>
+struct NamesForPriors {
+  static constexpr auto kNames = [] {
+    constexpr auto kFrames = FreeFrames<Ps...>::kNames;
+    constexpr auto kNumbers = FreeParameters<Ps...>::kIds;
+    std::array<std::string_view, kFrames.size() + kNumbers.size()> names;
+    auto end = std::copy(kFrames.begin(), kFrames.end(), names.begin());
+    for (const ParameterId& id : kNumbers) *end++ = id.full_name;
+    return names;
+  }();
+};
+
+/// Checks that what a prior keeps is free.
+template <class Prior, class Found>
+using CheckPrior = Unless<Found::kExists, ParameterOfPrior<Prior, Found>>;
 
 }  // namespace kinecal::detail

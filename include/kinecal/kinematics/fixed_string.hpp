@@ -33,6 +33,15 @@ template <std::size_t N, std::size_t M>
   return std::string_view(a) == std::string_view(b);
 }
 
+/// One text after the other.
+template <std::size_t N, std::size_t M>
+[[nodiscard]] consteval FixedString<N + M - 1> operator+(const FixedString<N>& a,
+                                                         const FixedString<M>& b) {
+  char both[N + M - 1] = {};
+  std::copy_n(b.text, M, std::copy_n(a.text, N - 1, both));
+  return both;
+}
+
 /// A text as a constant with an address.
 template <FixedString Text>
 inline constexpr std::string_view kView = Text;

@@ -48,30 +48,12 @@ inline constexpr Axes Axes::abc = {false, false, false, true, true, true};
 
 /// One number of a free parameter.
 struct ParameterId {
-  std::string_view owner;  ///< joint, frame, sensor or block
-  std::string_view part;   ///< "x", "fx", ...; "" for a joint's offset
+  std::string_view owner;      ///< joint, frame, sensor or block
+  std::string_view part;       ///< "x", "fx", ...; "" for a joint's offset
+  std::string_view full_name;  ///< as in parameter.hpp: "head_pan_joint_x"
 
-  /// As in parameter.hpp: "head_pan_joint_x".
-  [[nodiscard]] std::string name() const {
-    return part.empty() ? std::string(owner) : parameter_name(owner, part);
-  }
-  /// True for equal names, even if owner and part are split differently.
-  [[nodiscard]] constexpr bool same_name(const ParameterId& other) const {
-    if (length() != other.length()) return false;
-    for (std::size_t i = 0; i < length(); ++i) {
-      if (at(i) != other.at(i)) return false;
-    }
-    return true;
-  }
-
- private:
-  [[nodiscard]] constexpr std::size_t length() const {
-    return owner.size() + (part.empty() ? 0 : 1 + part.size());
-  }
-  [[nodiscard]] constexpr char at(std::size_t i) const {
-    if (i < owner.size()) return owner[i];
-    return i == owner.size() ? '_' : part[i - owner.size() - 1];
-  }
+  /// The full name, for tables.
+  [[nodiscard]] std::string name() const { return std::string(full_name); }
 };
 
 /// What a free parameter corrects.
@@ -83,35 +65,37 @@ enum class ParameterKind {
   sensor,         ///< what a sensor declares: intrinsics, a scale factor
   block           ///< what an error block declares: the unknown length of a bar
 };
+/// True for the parameters of a frame, which has six.
+[[nodiscard]] constexpr bool is_frame(ParameterKind kind) {
+  return kind == ParameterKind::frame_offset || kind == ParameterKind::virtual_frame;
+}
 
 /// Offset of a joint: one number, radians or metres.
 template <FixedString Joint>
 struct JointOffset {
-  static constexpr ParameterKind kKind = ParameterKind::joint_offset;  ///< what it corrects
-  static constexpr std::string_view kOwner = Joint;                    ///< name of the joint
-  static constexpr std::array<ParameterId, 1> kIds = {{{Joint, ""}}};  ///< its numbers
+  static constexpr ParameterKind kKind = ParameterKind::joint_offset;         ///< what it corrects
+  static constexpr std::string_view kOwner = Joint;                           ///< name of the joint
+  static constexpr std::array<ParameterId, 1> kIds = {{{Joint, "", Joint}}};  ///< its numbers
 };
 
 namespace detail {
 
-/// The chosen parts of an owner.
-template <FixedString Owner, std::size_t Count, std::size_t N>
-[[nodiscard]] consteval std::array<ParameterId, Count> ids_of(
-    const std::array<std::string_view, N>& parts, const std::array<bool, N>& chosen) {
-  std::array<ParameterId, Count> ids{};
+template <FixedString Owner, FixedString Part>
+inline constexpr ParameterId kId = {Owner, Part, kView<Owner + FixedString("_") + Part>};
+
+/// The chosen ones of a frame's six numbers.
+template <FixedString F, Axes Chosen>
+inline constexpr auto kFrameIds = [] {
+  constexpr std::array<bool, 6> kFlags = Chosen.flags();
+  constexpr std::array kAll = {kId<F, "x">, kId<F, "y">, kId<F, "z">,
+                               kId<F, "a">, kId<F, "b">, kId<F, "c">};
+  std::array<ParameterId, std::count(kFlags.begin(), kFlags.end(), true)> ids{};
   std::size_t n = 0;
-  for (std::size_t i = 0; i < N; ++i) {
-    if (chosen[i]) ids[n++] = {Owner, parts[i]};
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (kFlags[i]) ids[n++] = kAll[i];
   }
   return ids;
-}
-
-[[nodiscard]] consteval std::size_t count(const std::array<bool, 6>& chosen) {
-  return static_cast<std::size_t>(std::count(chosen.begin(), chosen.end(), true));
-}
-
-template <FixedString Owner, Axes Chosen>
-inline constexpr auto kFrameIds = ids_of<Owner, count(Chosen.flags())>(kFrameAxes, Chosen.flags());
+}();
 
 }  // namespace detail
 
@@ -141,7 +125,7 @@ struct OwnedParameters {
   static constexpr ParameterKind kKind = Kind;       ///< what it corrects
   static constexpr std::string_view kOwner = Owner;  ///< name of the owner
   static constexpr std::array<ParameterId, sizeof...(Parts)> kIds = {
-      ParameterId{Owner, Parts}...};  ///< its numbers
+      detail::kId<Owner, Parts>...};  ///< its numbers
 };
 
 // Types of their own and no aliases: compilers print these names.
@@ -202,11 +186,11 @@ struct FreeParameters {
     return -1;
   }
 
-  /// True if no two numbers have the same name.
+  /// True if no two numbers have the same name, even if owner and part are split differently.
   [[nodiscard]] static constexpr bool are_distinct() {
     for (std::size_t i = 0; i < kSize; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        if (kIds[i].same_name(kIds[j])) return false;
+        if (kIds[i].full_name == kIds[j].full_name) return false;
       }
     }
     return true;
@@ -221,6 +205,10 @@ struct FreeParameters {
 
   /// The owners, for LookedUp.
   static constexpr std::array<std::string_view, sizeof...(Ps)> kNames = {Ps::kOwner...};
+  /// True if one of these has this owner.  So a Chain takes frames in place of their Names.
+  [[nodiscard]] static constexpr bool contains(std::string_view owner) {
+    return std::find(kNames.begin(), kNames.end(), owner) != kNames.end();
+  }
 
   /// The slot of the first number of a parameter.
   template <FreeParameter P>
