@@ -17,9 +17,12 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
+
+namespace kinecal {
+struct NormalEquations;
+}
 
 namespace kinecal::detail {
 

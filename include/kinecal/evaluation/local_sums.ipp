@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/evaluation/local_sums.hpp"
 
 namespace kinecal::detail {
