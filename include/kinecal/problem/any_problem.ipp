@@ -44,6 +44,24 @@ inline void check_positions(const Sample& sample) {
                     std::to_string(positions));
 }
 
+/// A sample as a row of what the terms take that apply.
+/// @param applying  their indices
+[[nodiscard]] inline SampleRow row_of(const std::vector<Term>& terms,
+                                      const std::vector<int>& applying, const Sample& sample,
+                                      const Observed& observed) {
+  const auto term = [&](int t) -> const Term& { return terms[static_cast<std::size_t>(t)]; };
+  std::vector<bool> used(observed.size(), false);  // the others are not evaluated
+  for (const int t : applying) {
+    for (const int s : term(t).sensors) used[static_cast<std::size_t>(s)] = true;
+  }
+  SampleRow row;
+  for (std::size_t s = 0; s < used.size(); ++s) row.add_sensor(used[s] ? &*observed[s] : nullptr);
+  for (const int t : applying) {
+    row.add_term(t, factors_of(term(t), observed), conditions_of(term(t), sample));
+  }
+  return row;
+}
+
 [[nodiscard]] inline bool has_term(const SampleLayout& layout, int term) {
   return std::any_of(layout.terms.begin(), layout.terms.end(),
                      [term](const TermLayout& place) { return place.term == term; });
@@ -70,7 +88,6 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   try {
     detail::check_positions(sample);
     in_order = paired(sample);
-    std::vector<bool> used(sensors_.size(), false);
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const Observation* observation =
           (in_order ? *in_order : sample).observation(sensors_[s].mount().name);
@@ -78,17 +95,9 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
       observed[s] = sensors_[s].numbers(sample, *observation);
     }
     for (int t = 0; t < num_terms(); ++t) {
-      if (!detail::applies(term(t), sensors_, sample, observed)) continue;
-      terms.push_back(t);
-      for (const int s : term(t).sensors) used[static_cast<std::size_t>(s)] = true;
+      if (detail::applies(term(t), sensors_, sample, observed)) terms.push_back(t);
     }
-    for (std::size_t s = 0; s < sensors_.size(); ++s) {  // what no term uses is not evaluated
-      row.add_sensor(used[s] ? &*observed[s] : nullptr);
-    }
-    for (const int t : terms) {
-      row.add_term(t, detail::factors_of(term(t), observed),
-                   detail::conditions_of(term(t), sample));
-    }
+    row = detail::row_of(terms_, terms, sample, observed);
   } catch (const SampleError& e) {
     throw SampleError(sample.source + ": " + e.what());
   }
