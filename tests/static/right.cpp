@@ -121,6 +121,9 @@ static_assert(std::is_same_v<Forwards::Free, FreeParameters<Elbow, Depth>>);
 static_assert(std::is_same_v<Forwards::Free, Backwards::Free>);
 static_assert(Backwards::Sensors::kSize == 2 && Backwards::Blocks::kSize == 2);
 
+// A number of a free parameter has a full name.
+static_assert(!std::is_constructible_v<ParameterId, const char*, const char*>);
+
 // A crate of crates has the parts of all of them, each once.
 using Reach = Crate<Arm, Head, Elbow, HandEye>;
 using Look = Crate<Head, Depth, Ground>;

@@ -20,6 +20,8 @@ class BasicProblem;
 
 namespace detail {
 
+inline constexpr std::size_t kCacheLine = 64;  ///< bytes
+
 /// How many bytes of the next batch to load while a part of a batch is evaluated, as a processor waits
 /// for ten lines of memory or so, and stops where it is to wait for more; zero if all batches fit
 /// into a cache.
@@ -27,14 +29,14 @@ namespace detail {
 /// @param parts  of a batch
 [[nodiscard]] inline std::size_t prefetched_at_once(std::size_t batches, std::size_t bytes,
                                                     std::size_t parts) {
-  constexpr std::size_t kLine = 64, kCache = 1 << 20;
-  return batches * bytes > kCache ? (bytes / kLine / parts + 1) * kLine : 0;
+  constexpr std::size_t kCache = 1 << 20;
+  return batches * bytes > kCache ? (bytes / kCacheLine / parts + 1) * kCacheLine : 0;
 }
 /// Loads some bytes, which are not left then.  Inline: g++ takes a function that only prefetches for one
 /// without effect.
 [[gnu::always_inline]] inline void prefetch(std::span<const std::byte>& left, std::size_t count) {
   const auto now = left.first(std::min(count, left.size()));
-  for (std::size_t i = 0; i < now.size(); i += 64) __builtin_prefetch(&now[i]);
+  for (std::size_t i = 0; i < now.size(); i += kCacheLine) __builtin_prefetch(&now[i]);
   left = left.subspan(now.size());
 }
 

@@ -21,8 +21,7 @@ struct SensorState {
   std::vector<TwistColumns> twist_columns;         ///< of each chain
   std::vector<bool> models;                        ///< of each chain: some joint has a model
   OwnParameters own;                               ///< of the sensor itself
-
-  bool placed;  ///< a block takes more of it than predictions
+  bool placed;                                     ///< a block takes more of it than predictions
 
   /// @param free  the columns of the Jacobian
   SensorState(const MountedSensor& sensor, const FreeSet& free, bool is_placed);
@@ -49,7 +48,7 @@ class SensorView {
 
   /// What the sensor observed in the current batch.
   [[nodiscard]] const BatchObservation<S>& observation() const { return observation_; }
-  /// The sensor's own parameters; none is free if derivatives were not asked for.
+  /// The sensor's own parameters.
   [[nodiscard]] const OwnParameters& own() const { return state_->own; }
   /// Its functions.
   [[nodiscard]] const SensorCode<S>& code() const { return *evaluation_->code; }

@@ -52,6 +52,12 @@ struct ParameterId {
   std::string_view part;       ///< "x", "fx", ...; "" for a joint's offset
   std::string_view full_name;  ///< as in parameter.hpp: "head_pan_joint_x"
 
+  ParameterId() = default;
+  /// All three: an id without its full name does not compile.
+  constexpr ParameterId(std::string_view of, std::string_view number,
+                        std::string_view name_in_tables)
+      : owner(of), part(number), full_name(name_in_tables) {}
+
   /// The full name, for tables.
   [[nodiscard]] std::string name() const { return std::string(full_name); }
 };

@@ -44,19 +44,21 @@ inline void check_positions(const Sample& sample) {
                     std::to_string(positions));
 }
 
-/// A sample as a row of what the terms take that apply.
-/// @param applying  their indices
+/// Features that terms compare in a sample, by index of the term.
+using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
+
+/// A sample as a row of what the terms take that compare some features.
 [[nodiscard]] inline SampleRow row_of(const std::vector<Term>& terms,
-                                      const std::vector<int>& applying, const Sample& sample,
+                                      const ComparedFeatures& compared, const Sample& sample,
                                       const Observed& observed) {
   const auto term = [&](int t) -> const Term& { return terms[static_cast<std::size_t>(t)]; };
   std::vector<bool> used(observed.size(), false);  // the others are not evaluated
-  for (const int t : applying) {
+  for (const auto& [t, features] : compared) {
     for (const int s : term(t).sensors) used[static_cast<std::size_t>(s)] = true;
   }
   SampleRow row;
   for (std::size_t s = 0; s < used.size(); ++s) row.add_sensor(used[s] ? &*observed[s] : nullptr);
-  for (const int t : applying) {
+  for (const auto& [t, features] : compared) {
     row.add_term(t, factors_of(term(t), observed), conditions_of(term(t), sample));
   }
   return row;
@@ -83,7 +85,7 @@ KINECAL_INLINE std::optional<Sample> AnyProblem::paired(const Sample& sample) co
 KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   std::optional<Sample> in_order;
   detail::Observed observed(sensors_.size());
-  std::vector<int> terms;
+  detail::ComparedFeatures compared;
   detail::SampleRow row;
   try {
     detail::check_positions(sample);
@@ -95,18 +97,18 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
       observed[s] = sensors_[s].numbers(sample, *observation);
     }
     for (int t = 0; t < num_terms(); ++t) {
-      if (detail::applies(term(t), sensors_, sample, observed)) terms.push_back(t);
+      auto features = detail::compared_features(term(t), sensors_, sample, observed);
+      if (!features.empty()) compared.emplace(t, std::move(features));
     }
-    row = detail::row_of(terms_, terms, sample, observed);
+    row = detail::row_of(terms_, compared, sample, observed);
   } catch (const SampleError& e) {
     throw SampleError(sample.source + ": " + e.what());
   }
-  for (const int t : terms) {
-    residuals_ += static_cast<int>(detail::compared_features(term(t), observed).size()) *
-                  term(t).feature_size;
+  for (const auto& [t, features] : compared) {
+    residuals_ += static_cast<int>(features.size()) * term(t).feature_size;
     const std::string& first = sensor(term(t).sensors.front()).mount().name;
     const Observation* recorded = sample.observation(first);
-    auto labels = detail::labels_of(term(t), observed, *recorded,
+    auto labels = detail::labels_of(term(t), features, *recorded,
                                     in_order ? *in_order->observation(first) : *recorded);
     if (!labels.empty()) labels_.emplace(std::pair(num_samples(), t), std::move(labels));
   }

@@ -24,19 +24,6 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
   return seen;
 }
 
-/// The features that a term can compare in a sample: those that all of its sensors observed.
-[[nodiscard]] inline std::vector<std::size_t> compared_features(const Term& term,
-                                                                const Observed& observed) {
-  if (!term.pairs_features()) return {0};  // they are one plane
-  const auto seen = observations_of(term, observed);
-  std::vector<std::size_t> features;
-  for (std::size_t i = 0; i < seen[0]->usable.size(); ++i) {
-    const auto has_it = [i](const auto* of_sensor) { return of_sensor->usable[i] > 0.0; };
-    if (std::all_of(seen.begin(), seen.end(), has_it)) features.push_back(i);
-  }
-  return features;
-}
-
 /// The block's sigma over that of each feature; empty if no feature has its own.  Variances of
 /// several sensors add up.  A pixel block takes those of the camera, which are in pixels.
 [[nodiscard]] inline std::vector<double> factors_of(const Term& term, const Observed& observed) {
@@ -57,10 +44,12 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
   return factors;
 }
 
-/// The features that a term compares in a sample; empty if they are 0, 1, 2 ... and have no ids.
+/// Labels of the features that a term compares in a sample; empty if they are 0, 1, 2 ... and have no ids.
+/// @param features  that it compares
 /// @param recorded  what its first sensor observed
 /// @param paired    the same as it was paired
-[[nodiscard]] inline std::vector<FeatureLabel> labels_of(const Term& term, const Observed& observed,
+[[nodiscard]] inline std::vector<FeatureLabel> labels_of(const Term& term,
+                                                         const std::vector<std::size_t>& features,
                                                          const Observation& recorded,
                                                          const Observation& paired) {
   std::vector<FeatureLabel> labels;
@@ -71,7 +60,7 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
     if (id) places.emplace(*id, static_cast<int>(i));
   }
   bool plain = true;
-  for (const std::size_t i : compared_features(term, observed)) {
+  for (const std::size_t i : features) {
     const std::optional<int>& id = paired.features[i].id;
     const auto place = id ? places.find(*id) : places.end();
     labels.push_back({place != places.end() ? place->second : static_cast<int>(i), id});
@@ -116,18 +105,20 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
   return PlaneFit<double>(points).determined() ? "" : "its points span no plane";
 }
 
-/// True if a term takes part in a sample.
-/// @throws SampleError  if it should, but cannot
-[[nodiscard]] inline bool applies(const Term& term, const std::vector<MountedSensor>& sensors,
-                                  const Sample& sample, const Observed& observed) {
+/// The features that a term compares in a sample: those that all of its sensors observed.  None if it takes
+/// no part; one for planes.
+/// @throws SampleError  if it should take part, but cannot
+[[nodiscard]] inline std::vector<std::size_t> compared_features(
+    const Term& term, const std::vector<MountedSensor>& sensors, const Sample& sample,
+    const Observed& observed) {
   const std::string& beside = term.options.beside;
-  if (!beside.empty() && sample.observation(beside) == nullptr) return false;
+  if (!beside.empty() && sample.observation(beside) == nullptr) return {};
   const auto observing = std::count_if(
       sample.observations.begin(), sample.observations.end(),
       [&](const Observation& o) { return !o.features.empty() && o.sensor != beside; });
-  if (term.options.exclusive && observing != std::ssize(term.sensors)) return false;
+  if (term.options.exclusive && observing != std::ssize(term.sensors)) return {};
   for (const int s : term.sensors) {
-    if (!observed[static_cast<std::size_t>(s)]) return false;
+    if (!observed[static_cast<std::size_t>(s)]) return {};
   }
   const auto seen = observations_of(term, observed);
   const auto sensor = [&](std::size_t i) -> const MountedSensor& {
@@ -152,7 +143,13 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
       throw SampleError("error block '" + term.name + "': " + why);
     }
   }
-  return !compared_features(term, observed).empty();
+  if (!term.pairs_features()) return {0};
+  std::vector<std::size_t> features;
+  for (std::size_t i = 0; i < seen[0]->usable.size(); ++i) {
+    const auto has_it = [i](const auto* of_sensor) { return of_sensor->usable[i] > 0.0; };
+    if (std::all_of(seen.begin(), seen.end(), has_it)) features.push_back(i);
+  }
+  return features;
 }
 
 }  // namespace detail
