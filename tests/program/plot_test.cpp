@@ -17,7 +17,7 @@ class Plot : public test::ProgramTest {
  protected:
   Plot() {
     std::string page =
-        "<!doctype html>\n<html><head><meta name=\"generator\" content=\"kinecal 0.1.0\">\n"
+        "<!doctype html>\n<html><head><meta name=\"generator\" content=\"kinecal 0.2.0\">\n"
         "<script>const any = '<svg data-chart=\"' + name;</script></head><body>\n"
         "<svg class=\"logo\"><path d=\"M0 0\"/></svg>\n"
         "<svg class=\"chart\" data-chart=\"../evil\"><title>no name of ours</title></svg>\n";
@@ -90,7 +90,7 @@ TEST_F(Plot, RefusesWhatIsNotAReport) {
   EXPECT_EQ(plot("page.html -o figures").err,
             "error: page.html: is not an HTML report of kinecal; 'kinecal calibrate --report "
             "out.html' writes one\n");
-  write("empty.html", "<meta name=\"generator\" content=\"kinecal 0.1.0\">");
+  write("empty.html", "<meta name=\"generator\" content=\"kinecal 0.2.0\">");
   EXPECT_EQ(plot("empty.html -o figures").err, "error: empty.html: holds no charts\n");
   write("cut.html", read("out.html").substr(0, 900));
   EXPECT_EQ(plot("cut.html -o figures").err, "error: cut.html: holds no charts\n");

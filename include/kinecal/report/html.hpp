@@ -17,7 +17,7 @@ namespace kinecal {
 /// A whole page.
 struct HtmlPage {
   std::string title;    ///< plain text
-  std::string version;  ///< "kinecal 0.1.0"
+  std::string version;  ///< "kinecal 0.2.0"
   std::string body;     ///< HTML
   std::string scene;    ///< JSON of the 3-D view; empty: none
 };
@@ -49,7 +49,7 @@ namespace detail {
                                      std::string_view columns);
 
 /// The files that were read, and the command that repeats it.
-/// @param version  "kinecal 0.1.0"
+/// @param version  "kinecal 0.2.0"
 [[nodiscard]] std::string html_inputs(const std::vector<InputFile>& inputs,
                                       const std::string& version, const std::string& command);
 

@@ -86,7 +86,7 @@ struct ReportData {
   std::string robot;  ///< its name
   Grade verdict = Grade::good;
   std::vector<std::string> reasons;  ///< for the verdict, the gravest first
-  std::string version;               ///< "kinecal 0.1.0"
+  std::string version;               ///< "kinecal 0.2.0"
   std::string command;               ///< that repeats it
   std::string date;                  ///< "2026-11-23"; of the calibration
   std::string recorded;              ///< when samples were recorded; empty: not known
