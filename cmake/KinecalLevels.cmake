@@ -14,17 +14,6 @@
 # alignment differs.
 # Source: ld.so(8), glibc-hwcaps; x86-64 psABI, micro-architecture levels.
 
-# The shared library of Ceres, or empty.  Debian's package has both libraries, but names the static
-# one.
-function(kinecal_shared_ceres result)
-  get_target_property(ceres Ceres::ceres LOCATION)
-  string(REGEX REPLACE "\\.a$" ".so" ceres "${ceres}")
-  if(NOT EXISTS "${ceres}")
-    set(ceres "")
-  endif()
-  set(${result} "${ceres}" PARENT_SCOPE)
-endfunction()
-
 set(KINECAL_LEVELS "")
 if(KINECAL_X86_64_LEVELS)
   kinecal_shared_ceres(KINECAL_CERES)
@@ -60,44 +49,52 @@ function(kinecal_link_levels program)
     INSTALL_RPATH "$ORIGIN/${from_bin}")
 endfunction()
 
+# What kinecal_core and kinecal_solve have in them, compiled for one level.
+function(kinecal_add_part part library level)
+  add_library(${part} OBJECT ${KINECAL_UNITS_${library}})
+  target_include_directories(${part} PRIVATE ${PROJECT_SOURCE_DIR}/include)
+  target_include_directories(${part} SYSTEM PRIVATE
+    $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_INCLUDE_DIRECTORIES>)
+  target_compile_definitions(${part} PRIVATE
+    $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_COMPILE_DEFINITIONS>)
+  target_compile_features(${part} PRIVATE cxx_std_20)
+  target_link_libraries(${part} PRIVATE Eigen3::Eigen Threads::Threads kinecal_warnings)
+  get_target_property(unit kinecal_${library} UNITY_BUILD_BATCH_SIZE)
+  get_target_property(options kinecal_${library} COMPILE_OPTIONS)
+  # g++ 12 takes what AVX-512's own headers leave undefined for a mistake (GCC bug 105593).
+  target_compile_options(${part} PRIVATE ${options} -march=${level}
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>)
+  set_target_properties(${part} PROPERTIES POSITION_INDEPENDENT_CODE ON
+                        UNITY_BUILD ${KINECAL_UNITY} UNITY_BUILD_BATCH_SIZE ${unit})
+endfunction()
+
 function(kinecal_add_level level)
   set(folder ${CMAKE_INSTALL_LIBDIR}/kinecal)
+  set(parts kinecal_core kinecal_solve)
+  set(check "")
   if(NOT level STREQUAL x86-64)
     string(APPEND folder /glibc-hwcaps/${level})
-  endif()
-  set(target kinecal_evaluation_${level})
-  if(level STREQUAL x86-64)
-    add_library(${target} SHARED $<TARGET_OBJECTS:kinecal_core> $<TARGET_OBJECTS:kinecal_solve>)
-    set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)
-  else()
-    add_library(${target} SHARED ${KINECAL_UNITS_core} ${KINECAL_UNITS_solve}
-                                 ${KINECAL_PACKET_INSTANCES})
+    set(parts kinecal_core_${level} kinecal_solve_${level})
+    kinecal_add_part(kinecal_core_${level} core ${level})
+    kinecal_add_part(kinecal_solve_${level} solve ${level})
     # The program is compiled for the baseline and refers to the baseline's check: see linkage.hpp.
     set(check ${CMAKE_CURRENT_BINARY_DIR}/kinecal_level_check.cpp)
     file(CONFIGURE OUTPUT ${check} CONTENT
       "namespace kinecal { namespace x86_64 { extern const bool kLibraryIsCompiledForThis; \
 const bool kLibraryIsCompiledForThis = true; } }\n")
-    target_sources(${target} PRIVATE ${check})
   endif()
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/include)
-  target_compile_features(${target} PRIVATE cxx_std_20)
-  target_link_libraries(${target} PRIVATE ${KINECAL_CERES} Eigen3::Eigen Threads::Threads
-                        kinecal_warnings)
-  target_include_directories(${target} SYSTEM PRIVATE
-    $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_INCLUDE_DIRECTORIES>)
-  target_compile_definitions(${target} PRIVATE
-    $<TARGET_PROPERTY:Ceres::ceres,INTERFACE_COMPILE_DEFINITIONS>)
-  # g++ 12 takes what AVX-512's own headers leave undefined for a mistake (GCC bug 105593).
-  target_compile_options(${target} PRIVATE -march=${level}
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  set(target kinecal_evaluation_${level})
+  list(TRANSFORM parts REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
+  add_library(${target} SHARED ${parts} ${check})
+  target_link_libraries(${target} PRIVATE ${KINECAL_CERES} Threads::Threads)
   target_link_options(${target} PRIVATE
     -Wl,-Bsymbolic  # never another object's inline functions
     -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/evaluation.map)
   set_target_properties(${target} PROPERTIES
+    LINKER_LANGUAGE CXX
     LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/evaluation.map
     OUTPUT_NAME kinecal_evaluation
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${folder}
-    UNITY_BUILD ON UNITY_BUILD_MODE GROUP
     INSTALL_RPATH_USE_LINK_PATH ON)
   if(KINECAL_INSTALL)
     install(TARGETS ${target} LIBRARY DESTINATION ${folder})

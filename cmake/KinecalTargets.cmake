@@ -20,42 +20,29 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET GLOBAL yaml-0.1)
 
-# Files of one folder are one translation unit, those below problem one with it, those of io a few: what
-# they share is compiled once.
-function(kinecal_group_units)
-  set(files_of_io 0)
-  foreach(unit IN LISTS ARGV)
-    cmake_path(GET unit PARENT_PATH folder)
-    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/include/kinecal)
-    string(REPLACE "/" "_" group ${folder})
-    if(unit MATCHES "/instances/.*_(packet|double)\\.ipp$")
-      string(APPEND group _${CMAKE_MATCH_1})
-    elseif(group STREQUAL trust)
-      set(group solve)
-    elseif(group MATCHES "^(kinematics|parameters|samples|sensors)$")
-      set(group problem)
-    else()
-      string(REGEX REPLACE "_.*" "" group ${group})
-    endif()
-    if(group STREQUAL io)
-      math(EXPR number "${files_of_io} / 30")
-      math(EXPR files_of_io "${files_of_io} + 1")
-      string(APPEND group _${number})
-    endif()
-    set_source_files_properties(${unit} PROPERTIES LANGUAGE CXX UNITY_GROUP ${group})
-  endforeach()
+# The shared library of Ceres, or empty.  Debian's package has both libraries, but names the static
+# one.
+function(kinecal_shared_ceres result)
+  get_target_property(ceres Ceres::ceres LOCATION)
+  string(REGEX REPLACE "\\.a$" ".so" ceres "${ceres}")
+  if(NOT EXISTS "${ceres}")
+    set(ceres "")
+  endif()
+  set(${result} "${ceres}" PARENT_SCOPE)
 endfunction()
 
-# kinecal_add_library(<name> FOLDERS <folder>... LINK <target>...
+# kinecal_add_library(<name> FOLDERS <folder>... LINK <target>... [UNIT <count>] [OPTIMIZE <flag>]
 #                     [PRIVATE_LINK <target>...] [INSTANCES <file>...])
 #
 # INSTANCES     files of explicit template instances
 # FOLDERS       of include/kinecal: their headers, and the .ipp beside a header of the same name, which
-#               are compiled once: those of one folder as one translation unit
+#               are compiled once
+# UNIT          so many sources are one translation unit with KINECAL_UNITY
+# OPTIMIZE      in place of Release's -O3, where that costs time to compile and saves none
 # LINK          what the headers include
 # PRIVATE_LINK  what only the .ipp files include
 function(kinecal_add_library name)
-  cmake_parse_arguments(ARG "" "" "FOLDERS;INSTANCES;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "UNIT;OPTIMIZE" "FOLDERS;INSTANCES;LINK;PRIVATE_LINK" ${ARGN})
   set(target kinecal_${name})
   set(include ${PROJECT_SOURCE_DIR}/include/kinecal)
   set(headers "")
@@ -81,17 +68,15 @@ function(kinecal_add_library name)
     endif()
   else()
     set(scope PUBLIC)
-    add_library(${target} STATIC ${units} ${ARG_INSTANCES})
+    add_library(${target} ${units} ${ARG_INSTANCES})
     target_link_libraries(${target} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK}
                           $<BUILD_INTERFACE:kinecal_build_options>)
+    set_source_files_properties(${units} ${ARG_INSTANCES} PROPERTIES LANGUAGE CXX)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
-                          UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-    kinecal_group_units(${ARG_INSTANCES} ${units})
-    # For tests: they compile in two thirds of the time without optimization, and run mostly what is
-    # in the libraries.
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Debug>:-O1>)
+                          UNITY_BUILD ${KINECAL_UNITY} UNITY_BUILD_BATCH_SIZE ${ARG_UNIT})
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${ARG_OPTIMIZE}>)
   endif()
-  set(KINECAL_UNITS_${name} ${units} PARENT_SCOPE)
+  set(KINECAL_UNITS_${name} ${units} ${ARG_INSTANCES} PARENT_SCOPE)
   add_library(kinecal::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   target_compile_features(${target} ${scope} cxx_std_20)
@@ -116,24 +101,22 @@ target_compile_features(kinecal_headers INTERFACE cxx_std_20)
 target_compile_definitions(kinecal_headers INTERFACE KINECAL_HEADER_ONLY)
 target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
 
-# Explicit instances, in packets and in double; a level of KinecalLevels.cmake has packets only.
-file(GLOB KINECAL_PACKET_INSTANCES CONFIGURE_DEPENDS
+# What is compiled once for all sources: evaluation in packets, of all built-in sensors and error blocks.
+file(GLOB KINECAL_INSTANCES CONFIGURE_DEPENDS
      ${PROJECT_SOURCE_DIR}/include/kinecal/evaluation/instances/*_packet.ipp)
-file(GLOB KINECAL_DOUBLE_INSTANCES CONFIGURE_DEPENDS
-     ${PROJECT_SOURCE_DIR}/include/kinecal/evaluation/instances/*_double.ipp)
 
-kinecal_add_library(core
-  INSTANCES ${KINECAL_PACKET_INSTANCES} ${KINECAL_DOUBLE_INSTANCES}
+kinecal_add_library(core UNIT 8
+  INSTANCES ${KINECAL_INSTANCES}
   FOLDERS geometry kinematics parameters samples sensors errors problem evaluation crate testing core
           linkage
   LINK Eigen3::Eigen Threads::Threads)
-kinecal_add_library(solve
+kinecal_add_library(solve UNIT 13 OPTIMIZE -O2
   FOLDERS solve trust
   LINK kinecal_core Ceres::ceres)
-kinecal_add_library(capture
+kinecal_add_library(capture UNIT 16 OPTIMIZE -O1
   FOLDERS capture study
   LINK kinecal_solve)
-kinecal_add_library(io
+kinecal_add_library(io UNIT 24 OPTIMIZE -O1
   FOLDERS io report
   LINK kinecal_capture
   PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB)
@@ -142,14 +125,24 @@ include(KinecalPage)
 if(NOT KINECAL_HEADER_ONLY)
   # What links the libraries is compiled and linked as they are.
   target_compile_options(kinecal_core PUBLIC $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)
-  target_compile_options(kinecal_core INTERFACE $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address>)
+  # g++'s address sanitizer changes how Eigen allocates.
+  target_compile_options(kinecal_core INTERFACE
+    $<$<AND:$<BOOL:${KINECAL_SANITIZE}>,$<CXX_COMPILER_ID:GNU>>:-fsanitize=address>)
   target_link_options(kinecal_core INTERFACE
     $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined>)
-  target_compile_options(kinecal_io PRIVATE $<$<BOOL:${KINECAL_FUZZ}>:-fsanitize=fuzzer-no-link>)
 endif()
 kinecal_add_library(kinecal
   FOLDERS kinecal
   LINK kinecal_io)
+
+# With shared libraries all of them, and what links them, take one Ceres, a shared one.
+if(BUILD_SHARED_LIBS)
+  kinecal_shared_ceres(ceres)
+  if(ceres)
+    set_target_properties(Ceres::ceres PROPERTIES IMPORTED_LOCATION_RELEASE ${ceres}
+                          IMPORTED_LOCATION ${ceres})
+  endif()
+endif()
 
 # Options for kinecal's own programs and tests; users do not get them.
 add_library(kinecal_warnings INTERFACE)
@@ -167,6 +160,7 @@ target_compile_options(kinecal_build_options INTERFACE
   $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=all>
   # These checks double the time to compile; the address sanitizer and the processor find the same.
   $<$<BOOL:${KINECAL_SANITIZE}>:-fno-sanitize=null,alignment,object-size,vptr>
-  $<$<BOOL:${KINECAL_SANITIZE}>:-fno-omit-frame-pointer>)
+  $<$<BOOL:${KINECAL_SANITIZE}>:-fno-omit-frame-pointer>
+  $<$<BOOL:${KINECAL_FUZZ}>:-fsanitize=fuzzer-no-link>)
 target_link_options(kinecal_build_options INTERFACE
   $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined>)

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/problem.hpp"
+#include "support/double_problem.hpp"
 #include "support/oracle.hpp"
 #include "support/robots.hpp"
 

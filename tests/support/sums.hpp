@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "kinecal/evaluation/problem.hpp"
+#include "support/double_problem.hpp"
 #include "support/oracle_problem.hpp"
 
 namespace kinecal::test {

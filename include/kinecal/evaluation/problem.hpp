@@ -90,20 +90,15 @@ class BasicProblem final : public AnyProblem {
 using Problem = BasicProblem<Packet>;
 
 #ifndef KINECAL_HEADER_ONLY
-// Compiled once, in packets and in double, with all built-in sensors and error blocks (instances/).  A sensor
-// or an error block of another type is compiled where it is used, a crate's walks, too.
+// Compiled once, with all built-in sensors and error blocks (instances/).  A sensor or an error block of
+// another type is compiled where it is used, a crate's walks, too.  For another scalar than Packet, such as
+// double, include problem.ipp.
 extern template class detail::SensorView<Packet>;
 extern template class detail::LocalSums<Packet>;
 extern template class detail::PointWrenches<Packet>;
 extern template class detail::FeatureWrenches<Packet>;
 extern template class Evaluator<Packet>;
 extern template class BasicProblem<Packet>;
-extern template class detail::SensorView<double>;
-extern template class detail::LocalSums<double>;
-extern template class detail::PointWrenches<double>;
-extern template class detail::FeatureWrenches<double>;
-extern template class Evaluator<double>;
-extern template class BasicProblem<double>;
 #endif
 
 }  // namespace kinecal

@@ -1,5 +1,5 @@
-// Definitions of problem.hpp and of all that evaluates it, for a scalar S.  The library has compiled them in
-// packets and in double; include this for another scalar.
+// Definitions of problem.hpp and of all that evaluates it, for a scalar S.  The library has compiled them for
+// packets; include this for another scalar, such as double: one sample at a time.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

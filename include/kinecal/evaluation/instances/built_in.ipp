@@ -21,19 +21,4 @@ extern template class detail::BlockTerm<PoseToPose, Packet>;
 extern template class detail::BlockTerm<RayToRay, Packet>;
 extern template class detail::BlockTerm<PointToRay, Packet>;
 
-extern template class detail::SensorCodeOf<ChainPoint, double>;
-extern template class detail::SensorCodeOf<ChainPose, double>;
-extern template class detail::SensorCodeOf<DepthCamera, double>;
-extern template class detail::SensorCodeOf<PinholeCamera, double>;
-extern template class detail::BlockTerm<PointToPoint, double>;
-extern template class detail::BlockTerm<PointToPixel, double>;
-extern template class detail::BlockTerm<PointToPlane, double>;
-extern template class detail::BlockTerm<PlaneToPlane, double>;
-extern template class detail::BlockTerm<PointDistance, double>;
-extern template class detail::BlockTerm<PointToLine, double>;
-extern template class detail::BlockTerm<PointToSphere, double>;
-extern template class detail::BlockTerm<PoseToPose, double>;
-extern template class detail::BlockTerm<RayToRay, double>;
-extern template class detail::BlockTerm<PointToRay, double>;
-
 }  // namespace kinecal

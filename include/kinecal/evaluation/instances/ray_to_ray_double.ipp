@@ -1,9 +1,0 @@
-// The error block RayToRay in double.
-// SPDX-License-Identifier: Apache-2.0
-#include "kinecal/evaluation/instances/built_in.ipp"
-
-namespace kinecal {
-
-template class detail::BlockTerm<RayToRay, double>;
-
-}  // namespace kinecal
