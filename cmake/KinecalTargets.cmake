@@ -31,6 +31,37 @@ function(kinecal_shared_ceres result)
   set(${result} "${ceres}" PARENT_SCOPE)
 endfunction()
 
+# Files to compile as translation units: with KINECAL_UNITY so many of them each, else one.  They are included
+# relative to a folder, so that a compiler cache knows them in every clone.
+# @param result  the variable to set
+# @param folder  an include folder that the files are in
+function(kinecal_group_sources result name count folder)
+  if(NOT KINECAL_UNITY)
+    set(count 1)
+  endif()
+  list(LENGTH ARGN left)
+  set(units "")
+  while(left GREATER 0)
+    list(SUBLIST ARGN 0 ${count} files)
+    list(GET files 0 unit)
+    if(NOT files STREQUAL unit OR unit MATCHES "[.]ipp$")
+      set(text "")
+      foreach(file IN LISTS files)
+        cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${folder})
+        string(APPEND text "#include \"${file}\"\n")
+      endforeach()
+      cmake_path(RELATIVE_PATH unit BASE_DIRECTORY ${folder})
+      string(REGEX REPLACE "[/.]" "_" unit ${unit})
+      set(unit ${CMAKE_CURRENT_BINARY_DIR}/units/${name}/${unit}.cpp)
+      file(CONFIGURE OUTPUT ${unit} CONTENT "${text}" @ONLY)
+    endif()
+    list(APPEND units ${unit})
+    list(SUBLIST ARGN ${count} -1 ARGN)
+    list(LENGTH ARGN left)
+  endwhile()
+  set(${result} ${units} PARENT_SCOPE)
+endfunction()
+
 # kinecal_add_library(<name> FOLDERS <folder>... LINK <target>... [UNIT <count>] [OPTIMIZE <flag>]
 #                     [PRIVATE_LINK <target>...] [INSTANCES <file>...])
 #
@@ -68,15 +99,15 @@ function(kinecal_add_library name)
     endif()
   else()
     set(scope PUBLIC)
-    add_library(${target} ${units} ${ARG_INSTANCES})
+    kinecal_group_sources(units ${name} ${ARG_UNIT} ${PROJECT_SOURCE_DIR}/include
+                          ${units} ${ARG_INSTANCES})
+    add_library(${target} ${units})
     target_link_libraries(${target} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK}
                           $<BUILD_INTERFACE:kinecal_build_options>)
-    set_source_files_properties(${units} ${ARG_INSTANCES} PROPERTIES LANGUAGE CXX)
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
-                          UNITY_BUILD ${KINECAL_UNITY} UNITY_BUILD_BATCH_SIZE ${ARG_UNIT})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${ARG_OPTIMIZE}>)
   endif()
-  set(KINECAL_UNITS_${name} ${units} ${ARG_INSTANCES} PARENT_SCOPE)
+  set(KINECAL_UNITS_${name} ${units} PARENT_SCOPE)
   add_library(kinecal::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   target_compile_features(${target} ${scope} cxx_std_20)

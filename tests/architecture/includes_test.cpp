@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "support/paths.hpp"
+
 namespace kinecal {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kHeaders = fs::path(KINECAL_SOURCE_DIR) / "include/kinecal";
+const fs::path kHeaders = fs::path(test::source_folder()) / "include/kinecal";
 
 /// A folder may include those before it.
 const std::vector<std::string> kFolders = {
@@ -222,7 +224,7 @@ TEST(Architecture, EachExceptionToTheLengthIsNeededAndHasAReason) {
 
 TEST(Architecture, RosSeesTheVersionThatCMakeHas) {
   pugi::xml_document xml;
-  ASSERT_TRUE(xml.load_file((fs::path(KINECAL_SOURCE_DIR) / "package.xml").c_str()));
+  ASSERT_TRUE(xml.load_file((fs::path(test::source_folder()) / "package.xml").c_str()));
   const pugi::xml_node package = xml.child("package");
   EXPECT_STREQ(package.attribute("format").value(), "3");
   EXPECT_STREQ(package.child_value("name"), "kinecal");

@@ -12,6 +12,7 @@
 #include "kinecal/io/recordings/read_recording.hpp"
 #include "kinecal/io/samples/read_samples.hpp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 #include "support/served_robot.hpp"
 #include "support/simulated_fetch.hpp"
@@ -61,7 +62,7 @@ class KilledBridge : public ProgramTest {
                                 const std::string& fault = "") const {
     std::filesystem::create_directories(folder_ / folder);
     const BridgeServer server(R"({"encoding": "cdr", "rate": 3)" + fault + "}");
-    return run_in(folder_ / folder, KINECAL_PROGRAM
+    return run_in(folder_ / folder, kinecal_program() +
                                         " capture ../capture.yaml --urdf ../robot.urdf "
                                         "--poses ../poses.yaml -o samples.yaml --robot " +
                                         server.url() + options);
@@ -147,7 +148,7 @@ class FetchBehindBridge : public ProgramTest, public ::testing::WithParamInterfa
  protected:
   /// The shipped configuration, for LEDs in the frame in which capture.yaml has them.
   [[nodiscard]] Config led_config() const {
-    std::ifstream shipped(KINECAL_SOURCE_DIR "/examples/robots/fetch/calibrate.yaml");
+    std::ifstream shipped(source_folder() + "/examples/robots/fetch/calibrate.yaml");
     std::string text{std::istreambuf_iterator<char>(shipped), {}};
     const std::string frame = kFetchLedLink;
     text.replace(text.find(frame), frame.size(), "wrist_roll_link");
@@ -177,10 +178,9 @@ TEST_P(FetchBehindBridge, IsCapturedWithItsOwnFilesAndCalibratesToTheTruth) {
   {
     const ServedRobot served(robot, R"({"encoding": ")" + GetParam() +
                                         R"(", "camera": "/head_camera/depth_registered"})");
-    session = run(KINECAL_PROGRAM " capture " + data +
-                  "/capture.yaml --poses poses.yaml -o samples.bag --urdf " KINECAL_SOURCE_DIR
-                  "/examples/robots/fetch/fetch.urdf --robot " +
-                  served.url());
+    session = run(kinecal_program() + " capture " + data +
+                  "/capture.yaml --poses poses.yaml -o samples.bag --urdf " + source_folder() +
+                  "/examples/robots/fetch/fetch.urdf --robot " + served.url());
   }
   ASSERT_EQ(session.code, 0) << session.out << session.err;
 

@@ -7,6 +7,7 @@
 
 #include "kinecal/io/samples/write_samples.hpp"
 #include "support/arm_scene.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -39,13 +40,14 @@ class CalibrateLog : public test::ProgramTest {
   }
   /// Calibrates the three parts.
   [[nodiscard]] Outcome log(const std::string& options) const {
-    return run(KINECAL_PROGRAM " calibrate-log" + kInput + "a.yaml b.yaml c_.yaml " + options);
+    return run(test::kinecal_program() + " calibrate-log" + kInput + "a.yaml b.yaml c_.yaml " +
+               options);
   }
   /// Starts the first of two processes, and stops it while it waits for the second.
   [[nodiscard]] Outcome stopped_by(const std::string& signal) const {
-    write("start.sh", "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 " KINECAL_PROGRAM
-                      " calibrate-log" +
-                          kInput + "a.yaml b.yaml c_.yaml --threads 1 --output out &\n" +
+    write("start.sh", "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 " + test::kinecal_program() +
+                          " calibrate-log" + kInput +
+                          "a.yaml b.yaml c_.yaml --threads 1 --output out &\n" +
                           "until ls out/sums/* > /dev/null 2>&1; do sleep 0.05; done; sleep 0.3\n" +
                           "kill -" + signal + " $!; wait $!\n");
     return run("sh start.sh");
@@ -55,8 +57,8 @@ class CalibrateLog : public test::ProgramTest {
     std::string all;
     for (int rank = 0; rank < count; ++rank) {
       all += "OMPI_COMM_WORLD_SIZE=" + std::to_string(count) +
-             " OMPI_COMM_WORLD_RANK=" + std::to_string(rank) +
-             " timeout 300 " KINECAL_PROGRAM " calibrate-log" + kInput +
+             " OMPI_COMM_WORLD_RANK=" + std::to_string(rank) + " timeout 300 " +
+             test::kinecal_program() + " calibrate-log" + kInput +
              "a.yaml b.yaml c_.yaml --threads 1 --output " + output + " & all=\"$all $!\"; ";
     }
     return run("(" + all + "for one in $all; do wait $one || exit; done)");
@@ -75,7 +77,7 @@ TEST_F(CalibrateLog, FindsWhatCalibrateFinds) {
   const Outcome done = log("--output out");
   ASSERT_EQ(done.code, 0) << done.out << done.err;
   EXPECT_THAT(done.out, HasSubstr("60 samples of 3 files"));
-  ASSERT_EQ(run(KINECAL_PROGRAM " calibrate" + kInput + "all.yaml --output one").code, 0);
+  ASSERT_EQ(run(test::kinecal_program() + " calibrate" + kInput + "all.yaml --output one").code, 0);
   const YAML::Node report = YAML::Load(read("out/report.json")),
                    expected = YAML::Load(read("one/report.json"));
   ASSERT_EQ(report["parameters"].size(), expected["parameters"].size());
@@ -88,7 +90,7 @@ TEST_F(CalibrateLog, FindsWhatCalibrateFinds) {
   EXPECT_FALSE(fs::exists(folder_ / "out/sums"));
   EXPECT_FALSE(fs::exists(folder_ / "out/residuals.csv")) << "of all samples there are none";
   // The result is like any other.
-  const Outcome verified = run(KINECAL_PROGRAM " evaluate out all.yaml");
+  const Outcome verified = run(test::kinecal_program() + " evaluate out all.yaml");
   EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
   EXPECT_EQ(log("--output out").code, 1) << "exists";
 }
@@ -98,8 +100,9 @@ TEST_F(CalibrateLog, AFileMayHaveFewSamples) {
   write_part("b.yaml", 1, 59);
   write_part("c_.yaml", 59, 60);
   ASSERT_EQ(log("--output out").code, 0);
-  EXPECT_EQ(run(KINECAL_PROGRAM " calibrate-log" + kInput + "a.yaml c_.yaml --output few").code, 2)
-      << "two samples are too few";
+  const Outcome few =
+      run(test::kinecal_program() + " calibrate-log" + kInput + "a.yaml c_.yaml --output few");
+  EXPECT_EQ(few.code, 2) << "two samples are too few";
   EXPECT_FALSE(fs::exists(folder_ / "few"));
 }
 
@@ -140,11 +143,11 @@ TEST_F(CalibrateLog, NamesWhatIsWrongWithAFileAndWritesNothing) {
   EXPECT_THAT(wrong.err, HasSubstr("error: b.yaml:"));
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   const Outcome missing =
-      run(KINECAL_PROGRAM " calibrate-log" + kInput + "a.yaml no.yaml --output out2");
+      run(test::kinecal_program() + " calibrate-log" + kInput + "a.yaml no.yaml --output out2");
   EXPECT_EQ(missing.code, 1);
   EXPECT_THAT(missing.err, HasSubstr("no.yaml"));
   const Outcome twice =
-      run(KINECAL_PROGRAM " calibrate-log" + kInput + "a.yaml ./a.yaml --output out3");
+      run(test::kinecal_program() + " calibrate-log" + kInput + "a.yaml ./a.yaml --output out3");
   EXPECT_EQ(twice.code, 1);
   EXPECT_THAT(twice.err, HasSubstr("./a.yaml: is given twice"));
 }

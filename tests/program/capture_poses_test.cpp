@@ -8,6 +8,7 @@
 
 #include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/recordings/pose_messages.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal::test {
@@ -48,10 +49,9 @@ class CapturePoses : public ProgramTest {
     write("robot.py", kRobot);
     write("capture.yaml", kPosesConfig);
     write("keys.txt", keys);
-    return run(
-        KINECAL_PROGRAM " capture_poses capture.yaml --robot 'pipe:python3 robot.py " + where +
-        "' --urdf " KINECAL_SOURCE_DIR "/examples/mobile_manipulator/mobile_manipulator.urdf " +
-        options + " < keys.txt");
+    return run(kinecal_program() + " capture_poses capture.yaml --robot 'pipe:python3 robot.py " +
+               where + "' --urdf " + source_folder() +
+               "/examples/mobile_manipulator/mobile_manipulator.urdf " + options + " < keys.txt");
   }
   /// Poses of poses.yaml.
   [[nodiscard]] std::vector<CapturePose> written() const {
@@ -128,9 +128,9 @@ TEST_F(CapturePoses, KeepsWhatIsRecordedIfTheRobotIsLost) {
         "\\\"positions\\\": [0.5, 0.5]}\"; done");
   write("capture.yaml", kPosesConfig);
   const Outcome lost =
-      run("printf '\\n\\n' | " KINECAL_PROGRAM
-          " capture_poses capture.yaml --robot 'pipe:sh ends.sh' -o poses.yaml "
-          "--urdf " KINECAL_SOURCE_DIR "/examples/mobile_manipulator/mobile_manipulator.urdf");
+      run("printf '\\n\\n' | " + kinecal_program() +
+          " capture_poses capture.yaml --robot 'pipe:sh ends.sh' -o poses.yaml --urdf " +
+          source_folder() + "/examples/mobile_manipulator/mobile_manipulator.urdf");
   EXPECT_EQ(lost.code, 1);
   EXPECT_THAT(lost.err, AllOf(HasSubstr("ended with exit code 0"), HasSubstr("--resume goes on")));
   EXPECT_EQ(written().size(), 1u);
@@ -153,14 +153,14 @@ TEST_F(CapturePoses, PosesOfAnotherRobotAreNamed) {
 
 TEST_F(CapturePoses, JointsThatTheUrdfLacksAreNamed) {
   const std::string urdf =
-      " --urdf " KINECAL_SOURCE_DIR "/examples/mobile_manipulator/mobile_manipulator.urdf ";
+      " --urdf " + source_folder() + "/examples/mobile_manipulator/mobile_manipulator.urdf ";
   write("robot.py", kRobot);
   write("free.yaml", "features:\n  ground: {type: robot_calibration/PlaneFinder, topic: /p}\n");
   write("wrong.yaml",
         "chains:\n- {name: arm, topic: /a, joints: [elbow_flx_joint, wheel]}\n"
         "features:\n  ground: {type: robot_calibration/PlaneFinder, topic: /p}\n");
   const auto session = [&](const std::string& config) {
-    return run("printf '\\nq\\n' | " KINECAL_PROGRAM " capture_poses " + config + urdf +
+    return run("printf '\\nq\\n' | " + kinecal_program() + " capture_poses " + config + urdf +
                "-o p.yaml --robot 'pipe:python3 robot.py 0.5'");
   };
   const Outcome measured = session("free.yaml");

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal::test {
@@ -20,9 +21,9 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kProgram = KINECAL_PROGRAM;
+const std::string kProgram = kinecal_program();
 const std::string kCapturedUrdf =
-    std::string(KINECAL_SOURCE_DIR) + "/examples/mobile_manipulator/mobile_manipulator.urdf";
+    source_folder() + "/examples/mobile_manipulator/mobile_manipulator.urdf";
 
 class CaptureProgram : public ProgramTest {
  protected:

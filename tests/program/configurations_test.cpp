@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/repetitions.hpp"
 #include "support/run_program.hpp"
 
@@ -32,8 +33,8 @@ class Configurations : public test::ProgramTest {
                         const std::string& samples) const {
     const std::string data = test::data_folder().string() + "/";
     return verdict(config + " " + samples.substr(samples.rfind('/') + 1),
-                   KINECAL_PROGRAM " calibrate --dry-run --urdf " + data + urdf + " --config " +
-                       data + config + " --samples " + data + samples);
+                   test::kinecal_program() + " calibrate --dry-run --urdf " + data + urdf +
+                       " --config " + data + config + " --samples " + data + samples);
   }
 
   static constexpr std::string_view kVerdict = "verdict: ";
@@ -88,25 +89,25 @@ TEST_F(Configurations, OfThePandaAreGood) {
 
 TEST_F(Configurations, OfTheShippedRobotsAreGood) {
   const std::string programs =
-      std::filesystem::path(KINECAL_CALIBRATE_FETCH).parent_path().string() + "/calibrate_";
+      std::filesystem::path(test::calibrate_fetch_program()).parent_path().string() + "/calibrate_";
   std::vector<std::string> names = {"fetch", "panda", "pr2", "tiago", "ubr1", "ur5e"};
   names.resize(static_cast<std::size_t>(test::repetitions(6, 2)));
   for (const std::string& robot : names) {
     EXPECT_EQ(verdict("examples/robots/" + robot, programs + robot), "good") << robot;
   }
-  const std::string robots = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/";
+  const std::string robots = test::source_folder() + "/examples/robots/";
   ASSERT_EQ(run(programs + "fetch --write-samples drawn.yaml").code, 0);
   EXPECT_EQ(verdict("examples/robots/fetch/calibrate.yaml",
-                    KINECAL_PROGRAM " calibrate --dry-run --urdf " + robots +
+                    test::kinecal_program() + " calibrate --dry-run --urdf " + robots +
                         "fetch/fetch.urdf --config " + robots +
                         "fetch/calibrate.yaml --samples drawn.yaml"),
             "good");
-  const std::string example = std::string(KINECAL_SOURCE_DIR) + "/examples/mobile_manipulator/";
+  const std::string example = test::source_folder() + "/examples/mobile_manipulator/";
   const std::string urdf = example + "mobile_manipulator.urdf";
-  ASSERT_EQ(run(KINECAL_GENERATE_SAMPLES " " + urdf + " .").code, 0);
+  ASSERT_EQ(run(test::generate_samples_program() + " " + urdf + " .").code, 0);
   EXPECT_EQ(verdict("examples/mobile_manipulator/calibrate.yaml",
-                    KINECAL_PROGRAM " calibrate --dry-run --urdf " + urdf + " --config " + example +
-                        "calibrate.yaml --samples samples.yaml"),
+                    test::kinecal_program() + " calibrate --dry-run --urdf " + urdf + " --config " +
+                        example + "calibrate.yaml --samples samples.yaml"),
             "good");
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -16,13 +17,13 @@ using testing::HasSubstr;
 class Convert : public test::ProgramTest {
  protected:
   Convert() {
-    const fs::path examples = fs::path(KINECAL_SOURCE_DIR) / "examples";
+    const fs::path examples = fs::path(test::source_folder()) / "examples";
     fs::copy(examples / "csv/tracker.csv", folder_);
     fs::copy(examples / "csv/columns.yaml", folder_);
     fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
   }
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(fmt::format("{} {} < /dev/null", KINECAL_PROGRAM, arguments));
+    return run(fmt::format("{} {} < /dev/null", test::kinecal_program(), arguments));
   }
 };
 
@@ -74,8 +75,8 @@ TEST_F(Convert, AFullDiskIsReportedWithTheNameOfTheOutput) {
   for (const std::string output : {"full.yaml", "full.bag", "full.mcap"}) {
     // The greatest file that may be written, in blocks of 512 or 1024 bytes: 2.
     const Outcome made =
-        run("bash -c \"trap '' XFSZ; ulimit -f 2; " KINECAL_PROGRAM " convert tracker.csv " +
-            output + " --columns columns.yaml 2>&1 | cat\"");
+        run("bash -c \"trap '' XFSZ; ulimit -f 2; " + test::kinecal_program() +
+            " convert tracker.csv " + output + " --columns columns.yaml 2>&1 | cat\"");
     EXPECT_THAT(made.out, HasSubstr(output + ": "));
     EXPECT_THAT(made.out, HasSubstr(": File too large"));
     EXPECT_THAT(made.out, testing::Not(HasSubstr(".kinecal-")));

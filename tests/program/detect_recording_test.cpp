@@ -9,6 +9,7 @@
 #include "kinecal/io/images/png_bytes.hpp"
 #include "kinecal/io/images/read_image.hpp"
 #include "kinecal/io/samples/read_samples.hpp"
+#include "support/paths.hpp"
 #include "support/recording.hpp"
 #include "support/run_program.hpp"
 
@@ -32,7 +33,7 @@ GrayImage moved(const GrayImage& image, int columns) {
 class DetectRecording : public test::ProgramTest {
  protected:
   DetectRecording() {
-    fs::copy(fs::path(KINECAL_SOURCE_DIR) / "examples/robots/panda/panda.urdf", folder_);
+    fs::copy(fs::path(test::source_folder()) / "examples/robots/panda/panda.urdf", folder_);
   }
 
   /// Photographs of four poses, and a recording in which the robot stands a second in each.
@@ -73,7 +74,7 @@ class DetectRecording : public test::ProgramTest {
   }
 
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(std::string(KINECAL_PROGRAM) + " " + arguments + " < /dev/null");
+    return run(test::kinecal_program() + " " + arguments + " < /dev/null");
   }
   [[nodiscard]] std::vector<Sample> samples(const std::string& name) const {
     Diagnostics diagnostics;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -14,7 +15,7 @@ using testing::HasSubstr;
 class Detect : public test::ProgramTest {
  protected:
   Detect() {
-    fs::copy(fs::path(KINECAL_SOURCE_DIR) / "examples/robots/panda/panda.urdf", folder_);
+    fs::copy(fs::path(test::source_folder()) / "examples/robots/panda/panda.urdf", folder_);
     const Outcome made = kinecal("simulate panda.urdf --target apriltag --poses 12 -o photos");
     EXPECT_EQ(made.code, 0) << made.err;
     const std::string config = read("photos/calibrate.yaml");
@@ -23,7 +24,7 @@ class Detect : public test::ProgramTest {
     frame_ = config.substr(frame, config.find('\n', frame) - frame);
   }
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run(std::string(KINECAL_PROGRAM) + " " + arguments + " < /dev/null");
+    return run(test::kinecal_program() + " " + arguments + " < /dev/null");
   }
   [[nodiscard]] Outcome detect(const std::string& more = "") const {
     return kinecal(

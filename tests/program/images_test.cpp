@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "kinecal/io/samples/write_samples.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -36,7 +37,7 @@ class ImagesProgram : public test::ProgramTest {
     write("c.yaml", config);
     write("gantry.urdf", test::gantry_urdf());
     return run(
-        KINECAL_PROGRAM
+        test::kinecal_program() +
         " calibrate --urdf gantry.urdf --config c.yaml --samples s.yaml --output out --force");
   }
 };
@@ -54,7 +55,7 @@ TEST_F(ImagesProgram, WhatFitsIsTakenAndSaidInOneLine) {
 
 TEST_F(ImagesProgram, TheResultSaysWhatWasTakenForNewSamples) {
   ASSERT_EQ(calibrate(ImageKind::rectified).code, 0);
-  const test::Outcome same = run(KINECAL_PROGRAM " evaluate out s.yaml --report e.json");
+  const test::Outcome same = run(test::kinecal_program() + " evaluate out s.yaml --report e.json");
   EXPECT_EQ(same.code, 0) << same.err;
   EXPECT_EQ(YAML::Load(read("out/report.json"))["images"]["eye"].as<std::string>(), "rectified");
   const YAML::Node block = YAML::Load(read("e.json"))["error_blocks"][0];

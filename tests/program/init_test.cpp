@@ -7,6 +7,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -21,15 +22,15 @@ using testing::Not;
 class Init : public test::ProgramTest {
  protected:
   static std::string urdf(const std::string& robot) {
-    return std::string(KINECAL_SOURCE_DIR) + "/examples/robots/" + robot + "/" + robot + ".urdf";
+    return test::source_folder() + "/examples/robots/" + robot + "/" + robot + ".urdf";
   }
   /// Nobody can be asked.
   [[nodiscard]] Outcome init(const std::string& robot, const std::string& options) const {
-    return run(std::string(KINECAL_PROGRAM) + " init --urdf " + urdf(robot) + " " + options +
+    return run(test::kinecal_program() + " init --urdf " + urdf(robot) + " " + options +
                " < /dev/null");
   }
   [[nodiscard]] Outcome check(const std::string& robot) const {
-    return run(std::string(KINECAL_PROGRAM) + " check --urdf " + urdf(robot) +
+    return run(test::kinecal_program() + " check --urdf " + urdf(robot) +
                " --config calibrate.yaml");
   }
 
@@ -37,7 +38,7 @@ class Init : public test::ProgramTest {
   [[nodiscard]] Outcome type(const std::string& robot, const std::string& options,
                              const std::string& keys) const {
     int terminal = -1;
-    const std::string call = "cd " + folder_.string() + " && exec " + KINECAL_PROGRAM +
+    const std::string call = "cd " + folder_.string() + " && exec " + test::kinecal_program() +
                              " init --urdf " + urdf(robot) + " " + options;
     const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
     if (child == 0) {
@@ -124,14 +125,14 @@ TEST_F(Init, KeepsAFileThatIsThereUnlessForced) {
 TEST_F(Init, NeverWritesOverTheUrdf) {
   fs::copy(urdf("ur5e"), folder_ / "my robot.urdf");
   const std::string before = read("my robot.urdf");
-  const Outcome made = run(KINECAL_PROGRAM
+  const Outcome made = run(test::kinecal_program() +
                            " init --urdf 'my robot.urdf' --target tracker --force --output "
                            "'./my robot.urdf' < /dev/null");
   EXPECT_EQ(made.code, 1);
   EXPECT_THAT(made.err, HasSubstr("my robot.urdf: would replace an input"));
   EXPECT_EQ(read("my robot.urdf"), before);
   const Outcome next =
-      run(KINECAL_PROGRAM " init --urdf 'my robot.urdf' --target tracker < /dev/null");
+      run(test::kinecal_program() + " init --urdf 'my robot.urdf' --target tracker < /dev/null");
   EXPECT_THAT(next.out, HasSubstr("check --urdf 'my robot.urdf' --config calibrate.yaml"));
 }
 
@@ -260,11 +261,11 @@ TEST_F(Init, WritesWhatCalibratesARealRobotAsItStands) {
   for (const Set& set : sets) {
     const std::string robot = " --urdf " + (test::data_folder() / set.urdf).string();
     const Outcome made =
-        run(KINECAL_PROGRAM " init --force" + robot + " " + set.options + " < /dev/null");
+        run(test::kinecal_program() + " init --force" + robot + " " + set.options + " < /dev/null");
     ASSERT_EQ(made.code, 0) << made.err;
     const Outcome done =
-        run(KINECAL_PROGRAM " calibrate --force --config calibrate.yaml --output out" + robot +
-            " --samples " + (test::data_folder() / set.samples).string());
+        run(test::kinecal_program() + " calibrate --force --config calibrate.yaml --output out" +
+            robot + " --samples " + (test::data_folder() / set.samples).string());
     ASSERT_EQ(done.code, 0) << done.err;
     const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
     constexpr double kLoss =

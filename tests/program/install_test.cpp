@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/launch_scene.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -16,7 +17,7 @@ using testing::StartsWith;
 class InstallProgram : public test::InstallScene {
  protected:
   [[nodiscard]] test::Outcome run(const std::string& arguments) const {
-    return test::run_in(folder_, KINECAL_PROGRAM " install " + arguments);
+    return test::run_in(folder_, test::kinecal_program() + " install " + arguments);
   }
   void expect_refused(const std::string& arguments, const testing::Matcher<std::string>& message,
                       int code = 1) const {
@@ -109,8 +110,8 @@ TEST_F(InstallProgram, AFileSystemThatTakesNoMoreLeavesTheRobotAsItWas) {
   // The greatest file that may be written, in blocks of 512 or 1024 bytes: none.
   const auto before = robot();
   const test::Outcome result =
-      test::run_in(folder_, "bash -c \"trap '' XFSZ; ulimit -f 0; " KINECAL_PROGRAM
-                            " install out --to robot > /dev/null 2>&1\"");
+      test::run_in(folder_, "bash -c \"trap '' XFSZ; ulimit -f 0; " + test::kinecal_program() +
+                                " install out --to robot > /dev/null 2>&1\"");
   EXPECT_EQ(result.code, 1);
   EXPECT_EQ(robot(), before);
 }

@@ -10,6 +10,7 @@
 #include <regex>
 #include <set>
 
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -24,14 +25,14 @@ using testing::Not;
 class Manners : public test::ProgramTest {
  protected:
   Manners() {
-    const fs::path examples = fs::path(KINECAL_SOURCE_DIR) / "examples";
+    const fs::path examples = fs::path(test::source_folder()) / "examples";
     fs::copy(examples / "csv/tracker.csv", folder_);
     fs::copy(examples / "csv/columns.yaml", folder_);
     fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
   }
   /// The program, for ten seconds at most.
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run("timeout 60 " KINECAL_PROGRAM " " + arguments + " < /dev/null");
+    return run("timeout 60 " + test::kinecal_program() + " " + arguments + " < /dev/null");
   }
   /// Writes samples.yaml and calibrate.yaml.
   void prepare() const {
@@ -50,8 +51,8 @@ class Manners : public test::ProgramTest {
   /// What the program prints on a terminal.
   [[nodiscard]] std::string on_a_terminal(const std::string& arguments) const {
     int terminal = -1;
-    const std::string call =
-        "cd " + folder_.string() + " && exec timeout 60 " KINECAL_PROGRAM " " + arguments;
+    const std::string call = "cd " + folder_.string() + " && exec timeout 60 " +
+                             test::kinecal_program() + " " + arguments;
     const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
     if (child == 0) {
       execl("/bin/sh", "sh", "-c", call.c_str(), nullptr);

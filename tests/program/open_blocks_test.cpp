@@ -12,6 +12,7 @@
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -67,7 +68,7 @@ class OpenBlocksProgram : public test::ProgramTest {
   /// Calibrates; the configuration is what follows `base_link`.
   test::Outcome calibrate(const std::string& config, const std::string& options = "") {
     write("calibrate.yaml", "base_link: base\n" + config);
-    return run(std::string(KINECAL_PROGRAM) +
+    return run(test::kinecal_program() +
                " calibrate --urdf arm.urdf --config calibrate.yaml --samples samples.yaml "
                "--output result --force " +
                options);
@@ -349,11 +350,11 @@ error_blocks:
   EXPECT_THAT(calibrate(config).err,
               HasSubstr("sensor 'tracker': the sigma of feature 1 must be positive and finite, is "
                         "-1"));
-  const test::Outcome bag = run(KINECAL_PROGRAM " convert samples.yaml samples.bag");
+  const test::Outcome bag = run(test::kinecal_program() + " convert samples.yaml samples.bag");
   EXPECT_EQ(bag.code, 1);
   EXPECT_THAT(bag.err, HasSubstr("cannot hold the sigma of a feature; write YAML"));
   record([](const Pose<double>&, Sample& sample) { sample.conditions["temperature"] = 20.0; });
-  EXPECT_THAT(run(KINECAL_PROGRAM " convert samples.yaml samples.bag").err,
+  EXPECT_THAT(run(test::kinecal_program() + " convert samples.yaml samples.bag").err,
               HasSubstr("cannot hold conditions; write YAML"));
 }
 

@@ -10,6 +10,7 @@
 #include "kinecal/io/samples/write_samples.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -68,7 +69,7 @@ class OwnProgram : public test::ProgramTest {
   }
 
   [[nodiscard]] test::Outcome calibrate() const {
-    return run(std::string(KINECAL_OWN_PROGRAM) +
+    return run(test::own_program() +
                " calibrate --urdf arm.urdf --config calibrate.yaml --samples samples.yaml "
                "--output result");
   }
@@ -113,7 +114,7 @@ TEST_F(OwnProgram, RefusesWhatItsTypesDoNotHave) {
 
 TEST_F(OwnProgram, KnowsItsTypesOnly) {
   const test::Outcome result =
-      run(std::string(KINECAL_PROGRAM) + " check --urdf arm.urdf --config calibrate.yaml");
+      run(test::kinecal_program() + " check --urdf arm.urdf --config calibrate.yaml");
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, HasSubstr("type 'draw_wire' is not a model"));
 }

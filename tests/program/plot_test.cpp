@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/report/charts/charts.hpp"
+#include "support/paths.hpp"
 #include "support/report_data.hpp"
 #include "support/run_program.hpp"
 #include "support/svg_chart.hpp"
@@ -25,7 +26,7 @@ class Plot : public test::ProgramTest {
     write("out.html", page + "</body></html>\n");
   }
   [[nodiscard]] test::Outcome plot(const std::string& arguments) const {
-    return run(KINECAL_PROGRAM " plot " + arguments);
+    return run(test::kinecal_program() + " plot " + arguments);
   }
   [[nodiscard]] std::size_t files_in(const std::string& folder) const {
     if (!fs::exists(folder_ / folder)) return 0;

@@ -18,6 +18,7 @@
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -146,7 +147,7 @@ class Program : public test::ProgramTest {
   }
 
   [[nodiscard]] Outcome run(const std::string& arguments,
-                            const std::string& program = KINECAL_PROGRAM) const {
+                            const std::string& program = test::kinecal_program()) const {
     return ProgramTest::run(program + " " + arguments);
   }
   /// A test may calibrate several times.
@@ -312,7 +313,8 @@ TEST_F(Program, CalibratesAlikeAtEachLevelOfTheProcessor) {
       std::cout << "not run: " << level << ", which this processor or its loader does not have\n";
       continue;
     }
-    const std::string masked = loader + " --glibc-hwcaps-mask " + level + " " KINECAL_PROGRAM;
+    const std::string masked =
+        loader + " --glibc-hwcaps-mask " + level + " " + test::kinecal_program();
     EXPECT_THAT(run("--version", masked).out, HasSubstr("(" + level + ","));
     const Outcome result = run(
         "calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml --output out --force", masked);
@@ -334,7 +336,8 @@ TEST_F(Program, CalibratesAlikeAtEachLevelOfTheProcessor) {
 /// Eigen allocates and aligns them differently at each level.
 TEST_F(Program, GivesNoMatrixOfVariableSizeToTheLibraryOfALevel) {
   if (!KINECAL_HAS_LEVELS) GTEST_SKIP() << "the program is built without KINECAL_X86_64_LEVELS";
-  const Outcome symbols = run("--dynamic --demangle --undefined-only " KINECAL_PROGRAM, "nm");
+  const Outcome symbols =
+      run("--dynamic --demangle --undefined-only " + test::kinecal_program(), "nm");
   ASSERT_EQ(symbols.code, 0) << symbols.err;
   EXPECT_THAT(symbols.out, HasSubstr("kinecal::calibrate("));
   EXPECT_THAT(symbols.out, Not(ContainsRegex("kinecal::[^\n]*Eigen::Matrix<double, -1")));
@@ -660,8 +663,8 @@ TEST_F(Program, WritesNothingWhenTheDiskIsFullHalfWay) {
   const std::string before = read("out/calibrated.urdf");
   ASSERT_GT(before.size(), 1024u);
   spoil("tiny.urdf", "0.4 0 0", "0.41 0 0");
-  const std::string command = "cd " + folder_.string() +
-                              " && (trap '' XFSZ; ulimit -f 1; " KINECAL_PROGRAM
+  const std::string command = "cd " + folder_.string() + " && (trap '' XFSZ; ulimit -f 1; " +
+                              test::kinecal_program() +
                               " calibrate --urdf tiny.urdf --config c.yaml --samples s.yaml "
                               "--output out --force > /dev/null 2>&1)";
   const int status = std::system(command.c_str());
@@ -697,8 +700,8 @@ TEST_F(Program, RemovesTheFoldersItMadeWhenItDoesNotConverge) {
 }
 
 TEST_F(Program, ReadsTheUrdfFromAPipe) {
-  const std::string command = "cd " + folder_.string() +
-                              " && cat tiny.urdf | " KINECAL_PROGRAM
+  const std::string command = "cd " + folder_.string() + " && cat tiny.urdf | " +
+                              test::kinecal_program() +
                               " calibrate --urdf /dev/stdin --config c.yaml --samples s.yaml "
                               "--output out > /dev/null";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);

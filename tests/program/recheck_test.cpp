@@ -7,6 +7,7 @@
 
 #include "kinecal/io/samples/write_samples.hpp"
 #include "support/arm_scene.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -39,15 +40,16 @@ class Recheck : public test::ProgramTest {
   /// Calibrates the old samples into a folder.
   void calibrate(const std::string& folder = "out", const std::string& options = "") {
     write_as("s.yaml", old_);
-    const Outcome done = run(
-        KINECAL_PROGRAM " calibrate --urdf arm.urdf --config c.yaml --samples s.yaml --output " +
-        folder + " " + options);
+    const Outcome done =
+        run(test::kinecal_program() +
+            " calibrate --urdf arm.urdf --config c.yaml --samples s.yaml --output " + folder + " " +
+            options);
     ASSERT_EQ(done.code, 0) << done.out << done.err;
   }
   /// Runs a command with the result and the new samples.
   [[nodiscard]] Outcome with_new(const std::string& command, const std::string& options = "") {
     write_as("new.yaml", new_);
-    return run(KINECAL_PROGRAM " " + command + " out new.yaml " + options);
+    return run(test::kinecal_program() + " " + command + " out new.yaml " + options);
   }
   /// Encoders read less from now on: the joint's offset has grown.
   static void slip(std::vector<Sample>& samples, const std::string& joint, double by) {
@@ -165,7 +167,7 @@ TEST_F(Recheck, EvaluatesOtherSamplesBesideTheCalibration) {
   EXPECT_GT(block["distance"].as<double>(), 1e-3);
   EXPECT_NEAR(block["calibration"].as<double>(), 5e-5 * std::sqrt(3.0), 1e-5);
   // The samples of the calibration have its distances.
-  const Outcome same = run(KINECAL_PROGRAM " evaluate out s.yaml --report e.json");
+  const Outcome same = run(test::kinecal_program() + " evaluate out s.yaml --report e.json");
   EXPECT_EQ(same.code, 0) << same.err;
   const YAML::Node of_same = json("e.json")["error_blocks"][0];
   EXPECT_NEAR(of_same["distance"].as<double>(), of_same["calibration"].as<double>(), 1e-9);
@@ -175,7 +177,7 @@ TEST_F(Recheck, ComparesTwoResults) {
   calibrate("a");
   slip(old_, "elbow", 0.004);
   calibrate("b");
-  const Outcome result = run(KINECAL_PROGRAM " compare a b --report c.json");
+  const Outcome result = run(test::kinecal_program() + " compare a b --report c.json");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out,
               StartsWith("1 of 10 parameters moved by more than 3 standard deviations"));
@@ -186,7 +188,7 @@ TEST_F(Recheck, ComparesTwoResults) {
   EXPECT_NEAR(first["b"].as<double>() - first["a"].as<double>(), 0.004, 1e-9);
   EXPECT_EQ(json("c.json")["pose"]["poses"].as<int>(), 60);
   EXPECT_GT(json("c.json")["pose"]["position"].as<double>(), 5e-4);
-  const Outcome same = run(KINECAL_PROGRAM " compare a a");
+  const Outcome same = run(test::kinecal_program() + " compare a a");
   EXPECT_THAT(same.out, AllOf(StartsWith("0 of 10 parameters moved"), HasSubstr("moved by 0 mm")));
 }
 
@@ -198,7 +200,7 @@ TEST_F(Recheck, ComparesAResultWithOneThatBeganFromIt) {
   }
   write("arm.urdf", read("a/calibrated.urdf"));
   calibrate("b");
-  const Outcome result = run(KINECAL_PROGRAM " compare a b --report c.json");
+  const Outcome result = run(test::kinecal_program() + " compare a b --report c.json");
   EXPECT_THAT(result.out, StartsWith("0 of 10 parameters moved")) << result.err;
   EXPECT_LT(json("c.json")["pose"]["worst_position"].as<double>(), 1e-8);
 }
@@ -207,7 +209,7 @@ TEST_F(Recheck, RefusesWhatIsNotAResult) {
   calibrate();
   write_as("new.yaml", new_);
   const auto refused = [&](const std::string& call, const auto& message) {
-    const Outcome result = run(KINECAL_PROGRAM " " + call);
+    const Outcome result = run(test::kinecal_program() + " " + call);
     EXPECT_EQ(result.code, 1) << result.out;
     EXPECT_THAT(result.err, AllOf(StartsWith("error: "), message));
   };
@@ -240,7 +242,7 @@ TEST_F(Recheck, RefusesAResultThatWasChanged) {
           "was judged 'do not use'");
   refused("report.json", "\"lower\": [\n    [", "\"lower\": [\n    [1.0, ", "not a lower triangle");
   replace_in("out/config.yaml", " - elbow\n", "");
-  const Outcome compared = run(KINECAL_PROGRAM " compare out out");
+  const Outcome compared = run(test::kinecal_program() + " compare out out");
   EXPECT_EQ(compared.code, 1) << compared.out;
   EXPECT_THAT(compared.err,
               HasSubstr("out/report.json: 'elbow' was calibrated, but out/config.yaml "
@@ -271,7 +273,7 @@ TEST_F(Recheck, KeepsCopiesOfTheInputUnlessTheyAreTheInput) {
   fs::rename(folder_ / "c.yaml", folder_ / "config.yaml");
   const std::string config = read("config.yaml");
   const Outcome here =
-      run(KINECAL_PROGRAM
+      run(test::kinecal_program() +
           " calibrate --urdf arm.urdf --config config.yaml --samples s.yaml --output .");
   EXPECT_EQ(here.code, 0) << here.err;
   EXPECT_EQ(read("config.yaml"), config);

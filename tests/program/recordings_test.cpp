@@ -14,6 +14,7 @@
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -26,7 +27,7 @@ using testing::HasSubstr;
 class RecordingsProgram : public test::ProgramTest {
  protected:
   [[nodiscard]] test::Outcome kinecal(const std::string& arguments) const {
-    return run(KINECAL_PROGRAM " " + arguments);
+    return run(test::kinecal_program() + " " + arguments);
   }
   [[nodiscard]] fs::path synth() const { return test::data_folder() / "fetch/synth"; }
 

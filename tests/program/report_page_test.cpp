@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -15,16 +16,16 @@ using testing::Not;
 class ReportPage : public test::ProgramTest {
  protected:
   ReportPage() {
-    const fs::path robot = fs::path(KINECAL_SOURCE_DIR) / "examples/mobile_manipulator";
+    const fs::path robot = fs::path(test::source_folder()) / "examples/mobile_manipulator";
     for (const char* file : {"mobile_manipulator.urdf", "calibrate.yaml"}) {
       fs::copy(robot / file, folder_);
     }
     const Outcome made =
-        run(std::string(KINECAL_GENERATE_SAMPLES) + " mobile_manipulator.urdf . < /dev/null");
+        run(test::generate_samples_program() + " mobile_manipulator.urdf . < /dev/null");
     EXPECT_EQ(made.code, 0) << made.err;
   }
   [[nodiscard]] Outcome calibrate(const std::string& arguments) const {
-    return run("SOURCE_DATE_EPOCH=1760000000 " + std::string(KINECAL_PROGRAM) +
+    return run("SOURCE_DATE_EPOCH=1760000000 " + test::kinecal_program() +
                " calibrate --urdf mobile_manipulator.urdf --config calibrate.yaml "
                "--samples samples.yaml " +
                arguments + " < /dev/null");
@@ -35,7 +36,7 @@ class ReportPage : public test::ProgramTest {
   }
   /// Runs a script of tests/program/ with an interpreter.
   [[nodiscard]] Outcome script(const std::string& interpreter, const std::string& call) const {
-    const fs::path folder = fs::path(KINECAL_SOURCE_DIR) / "tests/program";
+    const fs::path folder = fs::path(test::source_folder()) / "tests/program";
     return run(interpreter + " " + (folder / call).string());
   }
 };
@@ -94,8 +95,7 @@ TEST_F(ReportPage, ReportAndResidualsAreAsTheirSchemasSay) {
     GTEST_SKIP() << "there is no python3-jsonschema";
   }
   ASSERT_EQ(calibrate("--output out").code, 0);
-  const std::string schemas =
-      (fs::path(KINECAL_SOURCE_DIR) / "include/kinecal/report/schema").string();
+  const std::string schemas = test::source_folder() + "/include/kinecal/report/schema";
   const Outcome valid = script("python3", "validate.py " + schemas + " out");
   EXPECT_EQ(valid.code, 0) << valid.out << valid.err;
   std::string broken = read("out/report.json");

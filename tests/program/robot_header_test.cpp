@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -33,7 +34,7 @@ class RobotHeaderProgram : public test::ProgramTest {
   RobotHeaderProgram() { write("arm.urdf", kHeaderUrdf); }
 
   [[nodiscard]] test::Outcome generate(const std::string& arguments) const {
-    return run(std::string(KINECAL_ROBOT_HEADER_PROGRAM) + " " + arguments);
+    return run(test::robot_header_program() + " " + arguments);
   }
 
   /// The URDF with one piece of text replaced is refused with this message; the header that was

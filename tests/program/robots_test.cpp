@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const std::string kRobots = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/";
+const std::string kRobots = test::source_folder() + "/examples/robots/";
 
 /// One sums in an order of its own, and another instruction set has other lanes.
 constexpr double kSameNumbers = 1e-10;
@@ -72,13 +73,15 @@ std::map<std::string, double> parameters(const YAML::Node& report) {
 }
 
 TEST_F(RobotProgram, FetchsCrateSolvesWhatItsConfigurationSays) {
-  const test::Outcome drawn = run(KINECAL_CALIBRATE_FETCH " --write-samples drawn.yaml --output a");
+  const test::Outcome drawn =
+      run(test::calibrate_fetch_program() + " --write-samples drawn.yaml --output a");
   ASSERT_EQ(drawn.code, 0) << drawn.err;
-  const test::Outcome crate = run(KINECAL_CALIBRATE_FETCH " --samples drawn.yaml --output crate");
+  const test::Outcome crate =
+      run(test::calibrate_fetch_program() + " --samples drawn.yaml --output crate");
   ASSERT_EQ(crate.code, 0) << crate.err;
   const test::Outcome configured =
-      run(KINECAL_PROGRAM " calibrate --urdf " + kRobots + "fetch/fetch.urdf --config " + kRobots +
-          "fetch/calibrate.yaml --samples drawn.yaml --output configured");
+      run(test::kinecal_program() + " calibrate --urdf " + kRobots + "fetch/fetch.urdf --config " +
+          kRobots + "fetch/calibrate.yaml --samples drawn.yaml --output configured");
   ASSERT_EQ(configured.code, 0) << configured.err;
 
   for (const char* cost : {"initial_cost", "final_cost"}) {
@@ -105,20 +108,22 @@ TEST_F(RobotProgram, FetchsCrateSolvesWhatItsConfigurationSays) {
 }
 
 TEST_F(RobotProgram, ReportsWhatItFoundOnSamplesHeldOut) {
-  const test::Outcome result = run(KINECAL_CALIBRATE_FETCH " --pairs 40 --planes 10 --seed 3");
+  const test::Outcome result =
+      run(test::calibrate_fetch_program() + " --pairs 40 --planes 10 --seed 3");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("On samples held out"));
   EXPECT_THAT(result.out, HasSubstr("2 of 26 parameters cannot be determined"));
 }
 
 TEST_F(RobotProgram, ExitsWith2WhereHeldOutSamplesShowMoreThanNoise) {
-  const test::Outcome result = run(KINECAL_CALIBRATE_FETCH " --pairs 6 --planes 3");
+  const test::Outcome result = run(test::calibrate_fetch_program() + " --pairs 6 --planes 3");
   EXPECT_EQ(result.code, 2) << result.out;
   EXPECT_THAT(result.err, HasSubstr("samples that were held out show more than noise"));
 }
 
 TEST_F(RobotProgram, RefusesSamplesThatAreNotThere) {
-  const test::Outcome result = run(KINECAL_CALIBRATE_FETCH " --samples none.yaml --output out");
+  const test::Outcome result =
+      run(test::calibrate_fetch_program() + " --samples none.yaml --output out");
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, HasSubstr("none.yaml"));
   EXPECT_FALSE(fs::exists(folder_ / "out"));

@@ -6,6 +6,7 @@
 
 #include <sstream>
 
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -16,7 +17,7 @@ using testing::HasSubstr;
 class Rpy : public test::ProgramTest {
  protected:
   [[nodiscard]] test::Outcome run(const std::string& arguments) const {
-    return ProgramTest::run(KINECAL_PROGRAM " rpy " + arguments);
+    return ProgramTest::run(test::kinecal_program() + " rpy " + arguments);
   }
   /// The three numbers behind a title.
   static Vector3<double> after(const std::string& title, const std::string& text) {

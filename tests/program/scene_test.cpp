@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "support/meshes.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -21,7 +22,7 @@ const std::string kMagic = "\x89MCAP0\r\n";
 class SceneFile : public test::ProgramTest {
  protected:
   SceneFile() {
-    const fs::path examples = fs::path(KINECAL_SOURCE_DIR) / "examples";
+    const fs::path examples = fs::path(test::source_folder()) / "examples";
     fs::copy(examples / "csv/tracker.csv", folder_);
     fs::copy(examples / "csv/columns.yaml", folder_);
     fs::copy(examples / "robots/ur5e/ur5e.urdf", folder_);
@@ -31,7 +32,7 @@ class SceneFile : public test::ProgramTest {
     ASSERT_EQ(kinecal("init --urdf ur5e.urdf --target tracker --arm tool0").code, 0);
   }
   [[nodiscard]] Outcome kinecal(const std::string& arguments) const {
-    return run("timeout 60 " KINECAL_PROGRAM " " + arguments + " < /dev/null");
+    return run("timeout 60 " + test::kinecal_program() + " " + arguments + " < /dev/null");
   }
   [[nodiscard]] Outcome calibrate(const std::string& more) const {
     return kinecal(

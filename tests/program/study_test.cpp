@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "kinecal/io/poses/poses.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -18,7 +19,7 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kFetchFolder = std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/";
+const std::string kFetchFolder = test::source_folder() + "/examples/robots/fetch/";
 
 class Study : public test::ProgramTest {
  protected:
@@ -30,7 +31,7 @@ class Study : public test::ProgramTest {
   }
   /// Of the example robot, with few poses.
   [[nodiscard]] test::Outcome call(const std::string& command, const std::string& arguments) const {
-    return run(std::string(KINECAL_PROGRAM " ") + command + " --urdf " + kFetchFolder +
+    return run(test::kinecal_program() + " " + command + " --urdf " + kFetchFolder +
                "fetch.urdf --target leds " + arguments);
   }
 };
@@ -114,8 +115,8 @@ TEST_F(Study, CtrlCPrintsWhatIsDoneAndTheSameCommandGoesOn) {
     }
     const double seconds = 0.5 * (early + late);
     fs::remove_all(folder_ / "part");
-    stopped = run("timeout --foreground --preserve-status -s INT " + std::to_string(seconds) +
-                  " " KINECAL_PROGRAM " study --urdf " + kFetchFolder +
+    stopped = run("timeout --foreground --preserve-status -s INT " + std::to_string(seconds) + " " +
+                  test::kinecal_program() + " study --urdf " + kFetchFolder +
                   "fetch.urdf --target leds " + what + "-o part");
     if (stopped.code == 130 && stopped.out.find("Interrupted") != std::string::npos) break;
     (stopped.code == 0 ? late : early) = seconds;
@@ -133,8 +134,8 @@ TEST_F(Study, GoesOnWhereItWasKilled) {
   int kills = 0;
   for (double seconds = 0.03; seconds < 300.0; seconds *= 1.5) {
     const test::Outcome part =
-        run("timeout -s KILL " + std::to_string(seconds) + " " KINECAL_PROGRAM " study --urdf " +
-            kFetchFolder + "fetch.urdf --target leds " + what + "-o part");
+        run("timeout -s KILL " + std::to_string(seconds) + " " + test::kinecal_program() +
+            " study --urdf " + kFetchFolder + "fetch.urdf --target leds " + what + "-o part");
     if (part.code == 0) break;
     ++kills;
   }
@@ -152,16 +153,16 @@ TEST_F(Study, SeveralProcessesShareAStudy) {
   // As mpirun starts them.
   std::string all;
   for (const char* rank : {"0", "1", "2"}) {
-    all += "OMPI_COMM_WORLD_SIZE=3 OMPI_COMM_WORLD_RANK=" + std::string(rank) +
-           " " KINECAL_PROGRAM " study --urdf " + kFetchFolder + "fetch.urdf --target leds " +
+    all += "OMPI_COMM_WORLD_SIZE=3 OMPI_COMM_WORLD_RANK=" + std::string(rank) + " " +
+           test::kinecal_program() + " study --urdf " + kFetchFolder + "fetch.urdf --target leds " +
            what + "-o three & ";
   }
   EXPECT_EQ(run("(" + all + "wait)").code, 0);
   EXPECT_EQ(read("one/trials.csv"), read("three/trials.csv"));
   EXPECT_EQ(read("one/study.json"), read("three/study.json"));
   const test::Outcome alone =
-      run("OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=2 " KINECAL_PROGRAM " study --urdf " +
-          kFetchFolder + "fetch.urdf -o x");
+      run("OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=2 " + test::kinecal_program() +
+          " study --urdf " + kFetchFolder + "fetch.urdf -o x");
   EXPECT_EQ(alone.code, 1);
   EXPECT_THAT(alone.err, HasSubstr("OMPI_COMM_WORLD_RANK is 2"));
 }
@@ -184,8 +185,8 @@ TEST_F(Study, RuinedSamplesAreLeftOut) {
 
 TEST_F(Study, RecordedSamplesAreMeasuredAnew) {
   const test::Outcome outcome =
-      run(KINECAL_PROGRAM " study --urdf " + kFetchFolder + "fetch.urdf --config " + kFetchFolder +
-          "calibrate.yaml --samples missing.yaml");
+      run(test::kinecal_program() + " study --urdf " + kFetchFolder + "fetch.urdf --config " +
+          kFetchFolder + "calibrate.yaml --samples missing.yaml");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("missing.yaml"));
   EXPECT_EQ(outcome.out, "");
@@ -201,8 +202,8 @@ TEST_F(Study, PosesInWhichNothingIsSeenAreNamed) {
 
 TEST_F(Study, AWrongSceneIsTheOnlyError) {
   write("wrong.yaml", "errors: {joint: 3}\n");
-  const test::Outcome outcome =
-      run(KINECAL_PROGRAM " study --scene wrong.yaml --urdf " + kFetchFolder + "fetch.urdf");
+  const test::Outcome outcome = run(test::kinecal_program() + " study --scene wrong.yaml --urdf " +
+                                    kFetchFolder + "fetch.urdf");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.err,
             "error: wrong.yaml:1: errors: joint is 3, not between 0 and 1 (radians, metres, or a "

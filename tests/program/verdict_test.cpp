@@ -9,6 +9,7 @@
 
 #include "kinecal/io/samples/write_samples.hpp"
 #include "support/arm_scene.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -31,7 +32,7 @@ class VerdictProgram : public test::ProgramTest {
     std::ostringstream text;
     write_samples(text, samples_);
     write("s.yaml", text.str());
-    return run(KINECAL_PROGRAM
+    return run(test::kinecal_program() +
                " calibrate --urdf arm.urdf --config c.yaml --samples s.yaml --output out --force " +
                options);
   }

@@ -17,6 +17,7 @@
 #include "support/arm_scene.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -72,10 +73,10 @@ Files arm() {
 Files shipped_fetch() {
   static const Files drawn = [] {
     const test::TemporaryFolder folder;
-    const test::Outcome run =
-        test::run_in(folder.path(), KINECAL_CALIBRATE_FETCH " --write-samples s.yaml --output a");
+    const test::Outcome run = test::run_in(
+        folder.path(), test::calibrate_fetch_program() + " --write-samples s.yaml --output a");
     if (run.code != 0) throw std::runtime_error(run.err);
-    const fs::path robot = fs::path(KINECAL_SOURCE_DIR) / "examples/robots/fetch";
+    const fs::path robot = fs::path(test::source_folder()) / "examples/robots/fetch";
     return files_of(robot / "fetch.urdf", robot / "calibrate.yaml", folder.path() / "s.yaml");
   }();
   return drawn;
@@ -402,7 +403,7 @@ class Inputs : public test::ProgramTest {
     std::ostringstream text;
     write_samples(text, files.samples);
     write("s.yaml", files.samples_text.empty() ? text.str() : files.samples_text);
-    return run(KINECAL_PROGRAM
+    return run(test::kinecal_program() +
                " calibrate --urdf robot.urdf --config c.yaml --samples s.yaml --output out");
   }
 };
@@ -583,7 +584,7 @@ class Recalibration : public Inputs {
     return rising_of(read("twice/calibrated.urdf"), "calibrated.urdf").at("lift");
   }
   [[nodiscard]] test::Outcome again(const std::string& options) const {
-    return run(KINECAL_PROGRAM
+    return run(test::kinecal_program() +
                " calibrate --urdf out/calibrated.urdf --config c.yaml --samples s.yaml --output "
                "twice --force " +
                options);

@@ -20,6 +20,7 @@
 #include "kinecal/io/capture/session_follower.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/simulated_fetch.hpp"
 
 namespace kinecal::test {
@@ -91,8 +92,7 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
     leds.leds.push_back({number + 1, "led" + std::to_string(number + 1), led});
   }
   Diagnostics diagnostics;
-  const std::string config_file =
-      std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/calibrate.yaml";
+  const std::string config_file = source_folder() + "/examples/robots/fetch/calibrate.yaml";
   cli::Input input;
   input.robot = setup.robot;
   input.config = read_config(config_file, input.diagnostics);

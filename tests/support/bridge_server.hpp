@@ -13,19 +13,19 @@
 
 #include "kinecal/io/bridge/child_process.hpp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 
 namespace kinecal::test {
 
 /// Empty if the server can be started; else why not.  The first call installs its packages.
 inline std::string why_no_bridge_server() {
   static const std::string why = [] {
-    const std::string folder = KINECAL_BRIDGE_FOLDER;
+    const std::string folder = bridge_folder();
     if (std::system("command -v npm node flock > /dev/null") != 0) {
       return std::string("node and npm are not installed");
     }
-    const std::string call = std::string(KINECAL_SOURCE_DIR) +
-                             "/tests/io/bridge/server/install.sh " + folder + " > " + folder +
-                             ".log 2>&1";
+    const std::string call = source_folder() + "/tests/io/bridge/server/install.sh " + folder +
+                             " > " + folder + ".log 2>&1";
     return std::system(call.c_str()) == 0
                ? std::string()
                : "npm cannot install the server's packages: see " + folder + ".log";
@@ -36,7 +36,7 @@ inline std::string why_no_bridge_server() {
 /// The command that starts server.mjs.
 /// @param options  JSON
 inline std::string server_command(const std::string& options) {
-  return "cd " + std::string(KINECAL_BRIDGE_FOLDER) + " && exec node server.mjs '" + options + "'";
+  return "cd " + bridge_folder() + " && exec node server.mjs '" + options + "'";
 }
 
 /// Where a server that has just been started is.

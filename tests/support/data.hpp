@@ -6,12 +6,15 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <string>
+
+#include "support/paths.hpp"
 
 namespace kinecal::test {
 
 inline std::filesystem::path data_folder() {
   const char* folder = std::getenv("KINECAL_DATA");
-  return folder != nullptr ? folder : KINECAL_DATA_DEFAULT;
+  return folder != nullptr ? folder : default_data_folder();
 }
 
 inline bool data_required() {

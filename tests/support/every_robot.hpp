@@ -10,6 +10,7 @@
 
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 
 namespace kinecal::test {
 
@@ -22,7 +23,7 @@ struct NamedUrdf {
 
 inline std::vector<NamedUrdf> every_robot() {
   std::vector<NamedUrdf> all;
-  const std::filesystem::path source = KINECAL_SOURCE_DIR;
+  const std::filesystem::path source = source_folder();
   for (const auto& folder :
        {source / "examples/robots", source / "examples/mobile_manipulator", data_folder() / "fetch",
         data_folder() / "ur5_tracker", data_folder() / "mukca_panda"}) {

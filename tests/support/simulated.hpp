@@ -12,6 +12,7 @@
 
 #include "kinecal/trust.hpp"
 #include "support/oracle.hpp"
+#include "support/paths.hpp"
 #include "support/unknown_poses.hpp"
 
 namespace kinecal::test {
@@ -108,8 +109,7 @@ namespace fetch {
 /// The shipped configuration without priors: what only they determine is held.
 inline Config config(bool floor) {
   Diagnostics diagnostics;
-  Config read = read_config(
-      std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/calibrate.yaml", diagnostics);
+  Config read = read_config(source_folder() + "/examples/robots/fetch/calibrate.yaml", diagnostics);
   diagnostics.throw_if_errors();
   StepConfig& step = read.steps.front();
   step.error_blocks.resize(floor ? 2 : 1);
@@ -188,7 +188,7 @@ inline Simulated fetch_and_leds(int count = 100, int floor = 0) {
   Chance chance(11);
   const Config config = fetch::config(floor > 0);
   Simulated all{"Fetch and LEDs",
-                read_urdf(std::string(KINECAL_SOURCE_DIR) + "/examples/robots/fetch/fetch.urdf"),
+                read_urdf(source_folder() + "/examples/robots/fetch/fetch.urdf"),
                 config,
                 {},
                 {},

@@ -15,6 +15,7 @@
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/study/simulated_robot.hpp"
 #include "kinecal/study/true_robot.hpp"
+#include "support/paths.hpp"
 
 namespace kinecal::test {
 
@@ -64,7 +65,7 @@ inline ParameterTable fetch_errors(SeededRandom& random) {
 inline SimulatedSetup simulated_fetch(std::uint64_t seed) {
   SeededRandom random(seed);
   SimulatedSetup setup;
-  const std::string urdf = KINECAL_SOURCE_DIR "/examples/robots/fetch/fetch.urdf";
+  const std::string urdf = source_folder() + "/examples/robots/fetch/fetch.urdf";
   setup.robot = read_urdf(urdf);
   setup.speeds = velocity_limits(read_urdf_text(urdf), urdf);
   setup.base = "base_link";

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "support/error_of.hpp"
+#include "support/paths.hpp"
 
 namespace kinecal {
 namespace {
@@ -20,7 +21,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 PipeRobot example() {
-  return PipeRobot({"python3 " KINECAL_SOURCE_DIR "/examples/pipe_robot/robot.py"});
+  return PipeRobot({"python3 " + test::source_folder() + "/examples/pipe_robot/robot.py"});
 }
 
 /// A program that answers each request with this.

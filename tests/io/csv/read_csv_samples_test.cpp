@@ -7,6 +7,7 @@
 #include <clocale>
 #include <locale>
 
+#include "support/paths.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace kinecal {
@@ -334,7 +335,7 @@ TEST_F(ReadCsvSamples, ReportsFilesThatAreEmptyOrMissing) {
 }
 
 TEST(CsvExample, IsReadAsItsReadmeSays) {
-  const std::string folder = KINECAL_SOURCE_DIR "/examples/csv/";
+  const std::string folder = test::source_folder() + "/examples/csv/";
   Diagnostics diagnostics;
   const auto samples =
       read_csv_samples(folder + "tracker.csv", folder + "columns.yaml", diagnostics);

@@ -17,6 +17,7 @@
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "support/every_robot.hpp"
+#include "support/paths.hpp"
 
 namespace kinecal {
 namespace {
@@ -270,7 +271,7 @@ class InitialConfigMistakes : public testing::Test {
     }
     return "";
   }
-  Robot robot_ = read_urdf(KINECAL_SOURCE_DIR "/examples/robots/panda/panda.urdf");
+  Robot robot_ = read_urdf(test::source_folder() + "/examples/robots/panda/panda.urdf");
   InitAnswers good_{InitTarget::world_checkerboard, false,      "panda_link0", "panda_hand",
                     "camera_color_optical_frame",   "camera3d", "camera"};
 };

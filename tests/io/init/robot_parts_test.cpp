@@ -7,6 +7,7 @@
 #include <map>
 
 #include "support/every_robot.hpp"
+#include "support/paths.hpp"
 
 namespace kinecal {
 namespace {
@@ -16,7 +17,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 Robot example(const std::string& name) {
-  return read_urdf(KINECAL_SOURCE_DIR "/examples/" + name + ".urdf");
+  return read_urdf(test::source_folder() + "/examples/" + name + ".urdf");
 }
 
 TEST(ProposeArms, FindsTheHandsOfEveryRobot) {

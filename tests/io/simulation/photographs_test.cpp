@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "support/paths.hpp"
 
 namespace kinecal {
 namespace {
 
 SimulationPlan panda(const std::string& target = "checkerboard") {
   Diagnostics diagnostics;
-  const Robot robot = read_urdf(KINECAL_SOURCE_DIR "/examples/robots/panda/panda.urdf");
+  const Robot robot = read_urdf(test::source_folder() + "/examples/robots/panda/panda.urdf");
   SimulationPlan plan = read_simulation(robot, "", target, 1, diagnostics);
   plan.poses = 2;
   return plan;

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "support/paths.hpp"
 #include "support/repetitions.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -17,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 Robot shipped(const std::string& path) {
-  return read_urdf(std::string(KINECAL_SOURCE_DIR) + "/examples/" + path);
+  return read_urdf(test::source_folder() + "/examples/" + path);
 }
 
 SimulationPlan plan_of(const Robot& robot, const std::string& target) {

@@ -9,6 +9,7 @@
 
 #include "kinecal/geometry/jet.hpp"
 #include "support/every_robot.hpp"
+#include "support/paths.hpp"
 #include "support/static_robot.hpp"
 
 namespace kinecal {
@@ -106,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(EveryRobot, RobotsOfUrdfs, testing::ValuesIn(test::ever
                          [](const auto& param) { return param.param.name; });
 
 TEST(GeometricJacobian, OfAChainThatGoesUpAndDownIsThatOfJets) {
-  const Robot robot = read_urdf(KINECAL_SOURCE_DIR "/examples/robots/fetch/fetch.urdf");
+  const Robot robot = read_urdf(test::source_folder() + "/examples/robots/fetch/fetch.urdf");
   const RuntimeChain chain = make_chain(robot, "wrist_roll_link", "head_tilt_link");
   const auto joints = static_cast<Eigen::Index>(chain.joints.size());
   ASSERT_TRUE(chain.joints.front().reversed);

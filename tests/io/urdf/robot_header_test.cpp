@@ -11,6 +11,7 @@
 #include "kinecal/kinematics/robot_data.hpp"
 #include "robots/every_joint.hpp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/same_joint.hpp"
 #if __has_include("robots/fetch_data.hpp")
 #include "robots/fetch_data.hpp"
@@ -22,7 +23,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string kEveryJoint = KINECAL_SOURCE_DIR "/tests/io/urdf/every_joint.urdf";
+const std::string kEveryJoint = test::source_folder() + "/tests/io/urdf/every_joint.urdf";
 
 /// Every joint of the header is that of the URDF, and the other way round.
 template <RobotData R>

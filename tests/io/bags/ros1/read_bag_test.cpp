@@ -14,6 +14,7 @@
 #include "kinecal/io/bags/ros1/record_text.ipp"
 #include "kinecal/io/bags/ros1/records.ipp"
 #include "support/data.hpp"
+#include "support/paths.hpp"
 #include "support/ros1_bags.hpp"
 
 namespace kinecal {
@@ -394,7 +395,7 @@ TEST(Ros1Bag, DamageAnywhereDoesNoHarm) {
 }
 
 TEST(Ros1Bag, BagsThatTheFuzzerBeginsWithAreRead) {
-  const auto folder = std::filesystem::path(KINECAL_SOURCE_DIR) / "tests/fuzz/corpus/ros1_bag";
+  const auto folder = std::filesystem::path(test::source_folder()) / "tests/fuzz/corpus/ros1_bag";
   std::size_t count = 0;
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
     std::ifstream in(file.path(), std::ios::binary);
