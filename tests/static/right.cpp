@@ -57,6 +57,13 @@ static_assert(ToFinger::kJoints[1].drive.joint == "finger \"left\"");
 static_assert(kColumnsOf<ToFinger, FreeParameters<JointOffset<"finger \"left\"">>>[1].offset == 0);
 static_assert(kColumnsOf<ToFinger, FreeParameters<JointOffset<"finger \"left\"">>>[1].gain == -1.1);
 
+// A robot is written in place; its origins may be left out.
+[[maybe_unused]] inline Robot lift() {
+  return Robot("lift",
+               {{.name = "lift", .type = JointType::prismatic, .parent = "base", .child = "top"},
+                {"tip", JointType::fixed, "top", "tip", {}}});
+}
+
 // ---- names
 
 struct Some {

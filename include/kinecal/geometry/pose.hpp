@@ -22,8 +22,10 @@ template <class S, class U>
 /// A rotation followed by a translation: p -> rotation p + translation.
 template <class S>
 struct Pose {
-  Matrix3<S> rotation = Matrix3<S>::Identity();  ///< (3 x 3)
-  Vector3<S> translation = Vector3<S>::Zero();   ///< (3) metres
+  // Constructors: g++ 12 crashes at a call of Identity() or Zero() here where a Joint in a list has {} or
+  // nothing for its origin.
+  Matrix3<S> rotation = typename Matrix3<S>::IdentityReturnType(3, 3);  ///< (3 x 3)
+  Vector3<S> translation = Vector3<S>(S(0), S(0), S(0));                ///< (3) metres
 
   /// tip_T_base of base_T_tip.
   [[nodiscard]] Pose inverse() const {

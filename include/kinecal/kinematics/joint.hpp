@@ -58,7 +58,7 @@ struct Joint {
   JointType type = JointType::fixed;       ///< how it moves
   std::string parent;                      ///< link
   std::string child;                       ///< link
-  Pose<double> origin;                     ///< of the joint in the parent link, metres
+  Pose<double> origin = {};                ///< of the joint in the parent link, metres
   Vector3<double> axis{1.0, 0.0, 0.0};     ///< unit vector, in the joint's frame
   std::optional<Mimic> mimic = {};         ///< if it follows another joint
   std::optional<JointLimits> limits = {};  ///< if it has any
