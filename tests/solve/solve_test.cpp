@@ -376,6 +376,102 @@ TEST(Solve, CountsWhatItSolved) {
   }
 }
 
+/// A camera looks along z at two points, one metre ahead: exact pixels, so its z is zero.
+Problem camera_ahead() {
+  const Robot robot("robot", {{.name = "mount", .parent = "base", .child = "camera"},
+                              {.name = "turn",
+                               .type = JointType::revolute,
+                               .parent = "base",
+                               .child = "arm",
+                               .axis = {0, 0, 1}}});
+  ParameterTable table;
+  for (const auto axis : kFrameAxes) table.add({.name = parameter_name("mount", axis)});
+  Problem problem(robot, "base", table, {"mount"});
+  problem.add_sensor(ChainPoint{}, {"arm", "arm"});
+  problem.add_sensor(PinholeCamera{}, {"camera", "camera"});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "camera"});
+  CameraInfo info;
+  info.width = 640;
+  info.height = 480;
+  info.p = {500, 0, 320, 0, 0, 500, 240, 0, 0, 0, 1, 0};
+  problem.add_sample({{"turn"},
+                      {0},
+                      {{"arm", {{"arm", {0.1, 0, 1}}, {"arm", {0, 0.1, 1}}}},
+                       {"camera", {{"camera", {370, 240, 0}}, {"camera", {320, 290, 0}}}, info}},
+                      "here:1"});
+  return problem;
+}
+
+/// A first step from far behind goes beyond the points.
+TEST(Solve, AStepThatPutsAPointBehindTheCameraIsRefusedAndNotTakenForTheMinimum) {
+  const Problem problem = camera_ahead();
+  for (const CostForm form : {CostForm::compressed, CostForm::stacked}) {
+    for (const double z : {0.0, -1.0, -2.0}) {
+      SCOPED_TRACE(std::string(to_string(form)) + " from " + std::to_string(z));
+      SolveOptions options;
+      options.form = form;
+      double highest = 0.0;
+      options.progress = [&](int, double cost) { highest = std::max(highest, cost); };
+      Eigen::VectorXd values = Eigen::VectorXd::Zero(6);
+      values(2) = z;
+      const StepResult result = solve(problem, FreeSet({2}, 6), values, options);
+      EXPECT_TRUE(result.converged) << result.termination;
+      EXPECT_NEAR(values(2), 0.0, 1e-9);
+      // A refused step costs what the values cost where it began.
+      EXPECT_DOUBLE_EQ(highest, result.initial_cost);
+      for (const double cost : result.costs) EXPECT_LE(cost, highest);
+    }
+  }
+}
+
+/// The derivatives have the wrong sign: every step raises the cost.
+struct WrongWay {
+  static constexpr const char* kType = "wrong_way";
+  template <class S>
+  Vector3<S> operator()(const Vector3<S>& p) const {
+    const auto falls = [](const S& x) { return S(x - S(2.0 * value_of(x)) + 3.0); };
+    return {falls(p.x()), falls(p.y()), falls(p.z())};
+  }
+};
+
+TEST(Solve, WithoutAStepThatLowersTheCostItHasNotConverged) {
+  Problem problem = test::scene_problem();
+  problem.add_block("wrong", WrongWay{}, {"camera"});
+  for (const Sample& sample : noisy_samples(5, 1e-3)) problem.add_sample(sample);
+  for (const CostForm form : {CostForm::compressed, CostForm::stacked}) {
+    SCOPED_TRACE(to_string(form));
+    SolveOptions options;
+    options.form = form;
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
+    const StepResult result =
+        solve(problem, free_of(problem.table(), {"camera_joint_x"}), values, options);
+    EXPECT_FALSE(result.converged);
+    EXPECT_THAT(result.termination,
+                testing::StartsWith("did not converge: no step lowered the cost, though chi-square "
+                                    "could still fall by about "));
+    EXPECT_DOUBLE_EQ(result.final_cost, result.initial_cost);
+    EXPECT_TRUE(values.isZero(0.0));
+  }
+}
+
+/// What rounding leaves is no reason to doubt it.
+TEST(Solve, AStartAtTheMinimumOfExactSamplesHasConverged) {
+  Problem problem = test::scene_problem();
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  const Eigen::VectorXd truth = true_values(problem.table());
+  for (const Sample& sample : test::exact_samples(problem, span_of(truth), 10)) {
+    problem.add_sample(sample);
+  }
+  for (const CostForm form : {CostForm::compressed, CostForm::stacked}) {
+    SolveOptions options;
+    options.form = form;
+    Eigen::VectorXd values = truth;
+    const StepResult result =
+        solve(problem, free_of(problem.table(), kObservable), values, options);
+    EXPECT_TRUE(result.converged) << to_string(form) << ": " << result.termination;
+  }
+}
+
 TEST(Solve, RefusesAStartWhoseCostOverflows) {
   Problem problem = test::scene_problem();
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},

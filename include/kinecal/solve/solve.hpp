@@ -33,7 +33,8 @@ struct SolveOptions {
   CostForm form = CostForm::compressed;  ///< how Ceres gets the samples
   int threads = 0;                       ///< zero: one per core; the result does not depend on it
   int random_starts = 0;                 ///< of calibrate(), beside the one given; solve() has one
-  /// Called after each iteration with its number and cost.
+  /// Called after each iteration with its number and the cost where it ended; a refused step ends where it
+  /// began.
   std::function<void(int iteration, double cost)> progress = {};
   ProgressMeter meter = {};  ///< called after each of several starts
 };

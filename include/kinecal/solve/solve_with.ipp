@@ -67,7 +67,7 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
 
 /// By how much chi-square could still fall, to second order: g^T H^-1 g, over the variance of the
 /// residuals.  With it, 2 cost / (residuals - parameters) is one, whether a sigma was given or not.
-/// Parameters that are held at a bound do not move.
+/// Exact samples leave rounding errors.  Parameters that are held at a bound do not move.
 [[nodiscard]] inline double possible_decrease(AnyEvaluator& evaluator,
                                               const EvaluatorOf& evaluator_of,
                                               const Eigen::VectorXd& values,
@@ -80,30 +80,38 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
   // The first rows of the equivalent residual are A^-T g, with H = A^T A.
   const Eigen::VectorXd projected = EquivalentResidual(normal).residual.head(inside.size());
   const int spare = std::max(1, result.num_residuals - result.num_parameters);
-  const double variance = 2.0 * normal.cost / spare;
+  constexpr double kRounding = 1e-12;  // of what one unit of a parameter adds to a residual
+  const double rounding = kRounding * kRounding * normal.hessian.diagonal().maxCoeff() / spare;
+  const double variance = std::max(2.0 * normal.cost / spare, rounding);
   return variance > 0.0 ? projected.squaredNorm() / variance : 0.0;
 }
 
-/// How a solve that did not fail ended.  One that ran out of iterations has converged if what is left
-/// is nothing beside the noise.
+/// How a solve that did not fail ended.  One that ran out of iterations, or made no step, has converged
+/// if what is left is nothing beside the noise: Ceres also takes the smallest of refused steps for
+/// convergence.
 inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evaluator_of,
                               const Eigen::VectorXd& values, const Minimum& last,
                               StepResult& result) {
   constexpr double kNegligible =
       1e-3;  // of chi-square, whose noise is sqrt(2 (residuals - parameters))
-  result.converged = last.converged;
-  result.termination = (last.converged ? "converged: " : "did not converge: ") + last.message;
-  if (last.converged) return;
+  const bool claimed = last.converged && !last.stuck;
+  const double decrease =
+      claimed ? 0.0 : possible_decrease(evaluator, evaluator_of, values, result);
+  result.converged = decrease < kNegligible;
   std::ostringstream what;
   what.precision(2);
-  const double decrease = possible_decrease(evaluator, evaluator_of, values, result);
-  result.converged = decrease < kNegligible;
-  what << (result.converged ? "converged: " : "did not converge: ") << result.iterations
-       << (result.iterations == 1 ? " iteration is" : " iterations are") << " used up, ";
-  if (result.converged) {
-    what << "but what is left is noise: chi-square could fall by " << decrease;
+  what << (result.converged ? "converged: " : "did not converge: ");
+  if (claimed || (last.converged && result.converged)) {
+    what << last.message;
+  } else if (last.converged) {
+    what << "no step lowered the cost, though chi-square could still fall by about " << decrease
+         << "; start elsewhere, or check the derivatives of error blocks of your own";
   } else {
-    what << "and chi-square could still fall by about " << decrease;
+    what << result.iterations << (result.iterations == 1 ? " iteration is" : " iterations are")
+         << " used up, ";
+    what << (result.converged ? "but what is left is noise: chi-square could fall by "
+                              : "and chi-square could still fall by about ")
+         << decrease;
   }
   result.termination = what.str();
 }

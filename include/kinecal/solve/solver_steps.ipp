@@ -14,6 +14,22 @@
 
 namespace kinecal::detail {
 
+/// The cost where Ceres stands after each iteration.  A step that was not successful leaves the values
+/// where they were, and its summary has the cost of the trial: DBL_MAX where a residual is undefined.
+class StandingCost {
+ public:
+  /// True if the iteration is the start or moved the values.
+  bool add(const ceres::IterationSummary& summary) {
+    const bool moved = summary.iteration == 0 || summary.step_is_successful;
+    if (moved) cost_ = summary.cost;
+    return moved;
+  }
+  [[nodiscard]] double cost() const { return cost_; }
+
+ private:
+  double cost_ = 0.0;
+};
+
 /// Reports the progress, and stops where even an undamped step promises nothing.
 class StepCallback final : public ceres::IterationCallback {
  public:
@@ -21,15 +37,18 @@ class StepCallback final : public ceres::IterationCallback {
   StepCallback(const SolveOptions& options, const CompressedCost* cost)
       : options_(options), cost_(cost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (options_.progress) options_.progress(summary.iteration, summary.cost);
+    const bool moved = standing_.add(summary);
+    if (options_.progress) options_.progress(summary.iteration, standing_.cost());
+    if (!moved || cost_ == nullptr) return ceres::SOLVER_CONTINUE;
     const bool promises =
-        cost_ == nullptr || cost_->promised_decrease() > options_.function_tolerance * summary.cost;
+        cost_->promised_decrease() > options_.function_tolerance * standing_.cost();
     return promises ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
 
  private:
   const SolveOptions& options_;
   const CompressedCost* cost_;
+  StandingCost standing_;
 };
 
 [[nodiscard]] inline ceres::Solver::Options ceres_options(const SolveOptions& options) {
@@ -64,6 +83,8 @@ inline void set_steps(Steps steps, ceres::Solver::Options& options) {
 /// The outcome of several runs of Ceres.
 struct Minimum {
   bool usable = false, converged = false;
+  bool moved = false;              ///< a step was successful since the start
+  bool stuck = false;              ///< none was, though a Gauss-Newton step promises something
   std::string message;             ///< of the last run
   double cost = 0.0;               ///< at the end of the last run
   std::vector<double> costs = {};  ///< of each iteration of all runs
@@ -81,9 +102,13 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
       by_callback ? "a Gauss-Newton step promises no decrease of the cost" : summary.message;
   minimum.cost = summary.final_cost;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  StandingCost standing;
   for (const ceres::IterationSummary& iteration : summary.iterations) {
-    minimum.costs.push_back(iteration.cost);
+    const bool moved = standing.add(iteration);
+    minimum.costs.push_back(standing.cost());
+    minimum.moved = minimum.moved || (moved && iteration.iteration > 0);
   }
+  minimum.stuck = !minimum.moved && !by_callback;
   minimum.seconds += summary.total_time_in_seconds;
 }
 
@@ -98,6 +123,7 @@ inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const So
   solver.callbacks.push_back(&callback);
   const std::vector<double> start = x;
   const std::size_t costs = minimum.costs.size();
+  minimum.moved = false;
   constexpr int kMostCareful = 20;  // iterations
   for (const Steps steps : {Steps::careful, Steps::bold}) {
     const bool is_bold = steps == Steps::bold;
@@ -105,6 +131,7 @@ inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const So
       if (options.max_num_iterations <= kMostCareful) return;
       std::copy(start.begin(), start.end(), x.begin());
       minimum.costs.resize(costs);
+      minimum.moved = false;
     }
     set_steps(steps, solver);
     solver.max_num_iterations =
