@@ -69,21 +69,15 @@ endfunction()
 function(kinecal_add_level level)
   set(folder ${CMAKE_INSTALL_LIBDIR}/kinecal)
   set(parts kinecal_core kinecal_solve)
-  set(check "")
   if(NOT level STREQUAL x86-64)
     string(APPEND folder /glibc-hwcaps/${level})
-    set(parts kinecal_core_${level} kinecal_solve_${level})
+    set(parts kinecal_core_${level} kinecal_solve_${level} kinecal_level_check)
     kinecal_add_part(kinecal_core_${level} core ${level})
     kinecal_add_part(kinecal_solve_${level} solve ${level})
-    # The program is compiled for the baseline and refers to the baseline's check: see linkage.hpp.
-    set(check ${CMAKE_CURRENT_BINARY_DIR}/kinecal_level_check.cpp)
-    file(CONFIGURE OUTPUT ${check} CONTENT
-      "namespace kinecal { namespace x86_64 { extern const bool kLibraryIsCompiledForThis; \
-const bool kLibraryIsCompiledForThis = true; } }\n")
   endif()
   set(target kinecal_evaluation_${level})
   list(TRANSFORM parts REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
-  add_library(${target} SHARED ${parts} ${check})
+  add_library(${target} SHARED ${parts})
   target_link_libraries(${target} PRIVATE ${KINECAL_CERES} Threads::Threads)
   target_link_options(${target} PRIVATE
     -Wl,-Bsymbolic  # never another object's inline functions
@@ -98,6 +92,23 @@ const bool kLibraryIsCompiledForThis = true; } }\n")
     install(TARGETS ${target} LIBRARY DESTINATION ${folder})
   endif()
 endfunction()
+
+# The program is compiled for the baseline and refers to the baseline's checks: see linkage.hpp.
+if(KINECAL_BUILD_EXAMPLES AND KINECAL_LEVELS)
+  set(check ${CMAKE_CURRENT_BINARY_DIR}/kinecal_level_check.cpp)
+  file(CONFIGURE OUTPUT ${check} CONTENT "#include \"kinecal/geometry/eigen_layout.hpp\"
+namespace kinecal::KINECAL_INSTRUCTION_SET {
+const bool KINECAL_LIBRARY_CHECK = true;
+template <>
+const bool EigenAligned::KINECAL_LIBRARY_CHECK = true;
+}
+")
+  add_library(kinecal_level_check OBJECT ${check})
+  target_include_directories(kinecal_level_check PRIVATE ${PROJECT_SOURCE_DIR}/include)
+  target_compile_features(kinecal_level_check PRIVATE cxx_std_20)
+  target_link_libraries(kinecal_level_check PRIVATE Eigen3::Eigen kinecal_warnings)
+  set_target_properties(kinecal_level_check PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endif()
 
 if(KINECAL_BUILD_EXAMPLES)
   foreach(level IN LISTS KINECAL_LEVELS)

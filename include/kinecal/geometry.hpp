@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/geometry/eigen_layout.hpp"
 #include "kinecal/geometry/jet.hpp"
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/geometry/pose.hpp"

@@ -7,7 +7,8 @@
 // What is evaluated in packets differs between instruction sets, in width and in alignment.  So
 // packets live in an inline namespace that bears the name of the instruction set, and every source
 // refers to a constant in it that the library defines for its own: a source that is compiled with
-// other flags, such as -mavx2, does not link (instead of crashing where the two meet).
+// other flags, such as -mavx2, does not link (instead of crashing where the two meet).  Eigen's alignment
+// has a constant of its own (geometry/eigen_layout.hpp).
 // Source: x86-64 psABI, micro-architecture levels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -38,14 +38,27 @@ execute_process(COMMAND ${COMPILER} -std=c++20 ${WORK}/consumer/core/main.cpp ${
                         -o ${WORK}/core/by_pkg_config COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/core/by_pkg_config COMMAND_ERROR_IS_FATAL ANY)
 
-# A source that is compiled for another instruction set than the library does not link.
-if(CMAKE_HOST_SYSTEM_PROCESSOR STREQUAL x86_64)
-  execute_process(COMMAND ${COMPILER} -std=c++20 -mavx ${WORK}/consumer/core/main.cpp ${flags}
+# A source that is compiled otherwise than the library does not link; one that stores matrices by rows
+# does not compile.
+function(expect_refused why expected)
+  execute_process(COMMAND ${COMPILER} -std=c++20 ${ARGN} ${WORK}/consumer/core/main.cpp ${flags}
                           -o ${WORK}/core/mixed RESULT_VARIABLE result ERROR_VARIABLE output)
-  if(result EQUAL 0 OR NOT output MATCHES "kinecal::x86_64_avx::kLibraryIsCompiled")
-    message(FATAL_ERROR "other flags than the library's: ${output}")
+  if(result EQUAL 0 OR NOT output MATCHES "${expected}")
+    message(FATAL_ERROR "${why}: ${output}")
   endif()
+endfunction()
+if(CMAKE_HOST_SYSTEM_PROCESSOR STREQUAL x86_64)
+  expect_refused("another instruction set" "kinecal::x86_64_avx::kLibraryIsCompiled" -mavx)
 endif()
+set(aligned "kinecal::[a-z0-9_]+::EigenAlignedTo<.*>::kLibraryIsCompiled")
+expect_refused("more alignment" ${aligned} -DEIGEN_MAX_ALIGN_BYTES=128)
+expect_refused("no alignment" ${aligned} -DEIGEN_MAX_STATIC_ALIGN_BYTES=0)
+expect_refused("storage by rows" "kinecal: EIGEN_DEFAULT_TO_ROW_MAJOR is defined"
+               -DEIGEN_DEFAULT_TO_ROW_MAJOR)
+expect_refused("storage by rows, headers alone" "kinecal: EIGEN_DEFAULT_TO_ROW_MAJOR is defined"
+               -DEIGEN_DEFAULT_TO_ROW_MAJOR -DKINECAL_HEADER_ONLY)
+expect_refused("narrow indices" "kinecal: EIGEN_DEFAULT_DENSE_INDEX_TYPE is not as wide"
+               -DEIGEN_DEFAULT_DENSE_INDEX_TYPE=int)
 
 flags_of(io)
 execute_process(COMMAND ${COMPILER} -std=c++20 ${WORK}/consumer/io.cpp ${flags}

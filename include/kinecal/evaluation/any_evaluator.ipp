@@ -10,6 +10,8 @@ namespace kinecal {
 #ifndef KINECAL_HEADER_ONLY
 inline namespace KINECAL_INSTRUCTION_SET {
 const bool KINECAL_LIBRARY_CHECK = true;
+template <>
+const bool EigenAligned::KINECAL_LIBRARY_CHECK = true;
 }  // namespace KINECAL_INSTRUCTION_SET
 #endif
 

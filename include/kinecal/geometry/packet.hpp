@@ -15,6 +15,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "kinecal/geometry/eigen_layout.hpp"
 #include "kinecal/linkage.hpp"
 
 #if defined(__AVX__)
