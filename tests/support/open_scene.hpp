@@ -117,8 +117,9 @@ ParameterTable open_table(const B& block) {
 /// The problem of the scene with further sensors and one block named "block".
 template <class S, ErrorBlock B>
 BasicProblem<S> open_problem(const B& block, const std::vector<std::string>& sensors,
-                             const TermOptions& options = {}) {
-  BasicProblem<S> problem(mobile_manipulator(), "base_link", open_table(block), kSceneFrames);
+                             const TermOptions& options = {},
+                             const std::string& base = "base_link") {
+  BasicProblem<S> problem(mobile_manipulator(), base, open_table(block), kSceneFrames);
   problem.add_sensor(ChainPoint{}, {"arm", "hand"});
   problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
   problem.add_sensor(PinholeCamera{}, {"eye", "camera_optical_frame"});
