@@ -24,12 +24,6 @@ struct PoseChange {
   double worst_rotation = 0.0;  ///< the largest, radians
 };
 
-/// A robot with its parameters: samples are not needed.
-struct RobotState {
-  const AnyProblem& problem;       ///< robot, base and frames
-  std::span<const double> values;  ///< of all parameters of its table
-};
-
 /// Change of the pose of a frame in another.
 /// @param samples  poses at which it is computed; those that lack a joint of a chain are left out
 /// @throws RobotError  if a link does not exist, or no chain joins the two

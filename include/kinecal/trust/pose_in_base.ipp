@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "kinecal/trust/pose_change.hpp"
+#include "kinecal/trust/pose_uncertainty.hpp"
 
 namespace kinecal::detail {
 

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "kinecal/samples/sample.hpp"
@@ -25,6 +26,12 @@ struct FrameOnRobot {
 
   /// Its name.
   [[nodiscard]] const std::string& name() const { return frame.empty() ? link : frame; }
+};
+
+/// A robot with its parameters: samples are not needed.
+struct RobotState {
+  const AnyProblem& problem;       ///< robot, base and frames
+  std::span<const double> values;  ///< of all parameters of its table
 };
 
 /// Uncertainty of the pose of a frame in another, over the poses of the samples.
