@@ -62,11 +62,11 @@ using Calibrate = std::function<Calibrated(const Simulated&, const std::vector<S
 class Coverage {
  public:
   Coverage(const Simulated& simulated, const Calibrate& calibrate, int runs)
-      : simulated_(simulated), runs_(runs) {
+      : simulated_(simulated), runs_(std::max(2, runs)) {
     const Calibration calibration = simulated.calibration(simulated.exact);
     const FreeSet& free = calibration.steps.back().free;
     find_poses(calibration.table, free);
-    for (int run = 0; run < runs; ++run) {
+    for (int run = 0; run < runs_; ++run) {
       const auto seed = static_cast<std::uint64_t>(run) + 1000;
       add(calibrate(simulated, simulated.samples(seed)));
     }
@@ -74,32 +74,59 @@ class Coverage {
 
   /// Checks the counts and prints them.
   void check() const {
-    const double sigma = std::sqrt(0.95 * 0.05 / runs_);
-    double sum = 0.0, least = 1.0, most = 0.0;
+    const test::Band band = test::binomial_band(runs_, kShare, kTail);
+    int least = runs_, most = 0;
     std::string worst;
     for (const auto& [name, covered] : covered_) {
-      const double share = static_cast<double>(covered) / runs_;
-      EXPECT_NEAR(share, 0.95, kSigmas * sigma + 0.5 / runs_) << name;
-      sum += share;
-      if (share < least) worst = name;
-      least = std::min(least, share);
-      most = std::max(most, share);
+      EXPECT_TRUE(band.contains(covered)) << name << ": " << covered << " of " << runs_;
+      if (covered < least) worst = name;
+      least = std::min(least, covered);
+      most = std::max(most, covered);
     }
-    const double mean = sum / static_cast<double>(covered_.size());
-    const double of_position = std::sqrt(squares_ / variances_);
+    const Mean mean = mean_of(shares_), of_position = position_error_over_stated();
     std::printf(
-        "%s: %d calibrations, %zu intervals: %.2f %% cover the truth, the least %.1f %% "
-        "(%s), the most %.1f %%; errors of position / stated: %.3f\n",
-        simulated_.name.c_str(), runs_, covered_.size(), 100.0 * mean, 100.0 * least, worst.c_str(),
-        100.0 * most, of_position);
-    testing::Test::RecordProperty("coverage", std::to_string(mean));
-    testing::Test::RecordProperty("position_error_over_stated", std::to_string(of_position));
-    EXPECT_NEAR(mean, 0.95, std::max(0.02, kSigmas * sigma));
-    EXPECT_NEAR(of_position, 1.0, std::max(0.05, kSigmas / std::sqrt(2.0 * runs_)));
+        "%s: %d calibrations, %zu intervals: %.2f +- %.2f %% cover the truth, the least %d times "
+        "(%s), the most %d (chance: %d to %d); errors of position / stated: %.3f +- %.3f\n",
+        simulated_.name.c_str(), runs_, covered_.size(), 100.0 * mean.value, 100.0 * mean.deviation,
+        least, worst.c_str(), most, band.least, band.most, of_position.value,
+        of_position.deviation);
+    testing::Test::RecordProperty("coverage", std::to_string(mean.value));
+    testing::Test::RecordProperty("position_error_over_stated", std::to_string(of_position.value));
+    EXPECT_NEAR(mean.value, kShare, kSigmas * mean.deviation);
+    EXPECT_NEAR(of_position.value, 1.0, kSigmas * of_position.deviation);
   }
 
  private:
-  static constexpr double kSigmas = 4.0;  // of a share; of some 100 of them, none is beyond
+  static constexpr double kShare = 0.95;
+  // The counts of all tests together, some 200, are within the binomial band by chance but for once in
+  // 250 times; seeds are fixed.  Of 500 it is 452 to 493 (90.4 to 98.6 %), of 20 it is 13 to 20: 20
+  // calibrations find only an interval that is much too short.
+  static constexpr double kTail = 1e-5;
+  static constexpr double kSigmas = 4.0;  // of a mean over the calibrations
+
+  /// A mean over the calibrations, and its standard deviation as they scatter.
+  struct Mean {
+    double value = 0.0, deviation = 0.0;
+  };
+  [[nodiscard]] static Mean mean_of(const std::vector<double>& numbers) {
+    const auto n = static_cast<double>(numbers.size());
+    Mean mean;
+    for (const double x : numbers) mean.value += x / n;
+    for (const double x : numbers) mean.deviation += (x - mean.value) * (x - mean.value);
+    mean.deviation = std::sqrt(mean.deviation / (n * (n - 1.0)));
+    return mean;
+  }
+  /// Root of the ratio of two means, to first order.
+  [[nodiscard]] Mean position_error_over_stated() const {
+    const double variance = mean_of(variances_).value;
+    const double ratio = mean_of(squares_).value / variance;
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < squares_.size(); ++i) {
+      differences.push_back((squares_[i] - ratio * variances_[i]) / variance);
+    }
+    const double root = std::sqrt(ratio);
+    return {root, 0.5 * mean_of(differences).deviation / root};
+  }
 
   /// Poses at which the gripper's position is asked for, and its derivative there.
   void find_poses(const ParameterTable& table, const FreeSet& free) {
@@ -127,8 +154,12 @@ class Coverage {
     for (const BlockNoise& noise : found.noise) freedom += noise.freedom;
     const double width = student(freedom);
     const ParameterTable& table = once.result.table;
+    int intervals = 0, hits = 0;
     const auto count = [&](const std::string& name, double error, double deviation) {
-      covered_[name] += std::abs(error) <= width * deviation ? 1 : 0;
+      const int hit = std::abs(error) <= width * deviation ? 1 : 0;
+      covered_[name] += hit;
+      hits += hit;
+      ++intervals;
     };
     for (std::size_t c = 0; c < found.parameters.size(); ++c) {
       const double deviation = found.uncertainty.deviation(static_cast<Eigen::Index>(c));
@@ -148,15 +179,16 @@ class Coverage {
               std::sqrt(variance(k, k)));
       }
     }
+    shares_.push_back(static_cast<double>(hits) / intervals);
     ASSERT_TRUE(found.pose.has_value());
-    variances_ += found.pose->position * found.pose->position;
     double squares = 0.0;
     for (const Sample& sample : simulated_.exact) {
       squares += (simulated_.gripper_in_camera(table, sample, values) -
                   simulated_.gripper_in_camera(table, sample, truth_))
                      .squaredNorm();
     }
-    squares_ += squares / static_cast<double>(simulated_.exact.size());
+    squares_.push_back(squares / static_cast<double>(simulated_.exact.size()));
+    variances_.push_back(found.pose->position * found.pose->position);
   }
 
   const Simulated& simulated_;
@@ -164,7 +196,9 @@ class Coverage {
   Eigen::VectorXd truth_;
   std::vector<std::pair<const Sample*, Eigen::MatrixXd>> poses_;
   std::map<std::string, int> covered_;
-  double squares_ = 0.0, variances_ = 0.0;  ///< of positions
+  // Of each calibration:
+  std::vector<double> shares_;               ///< of the intervals that cover the truth
+  std::vector<double> squares_, variances_;  ///< of positions: errors, and as stated
 };
 
 int runs() {

@@ -129,13 +129,17 @@ TEST(Ruined, TenOfAHundredSamplesOfTheFetchAreLeftOutAndNoOther) {
       repetitions, perfect, clean_named, clean_left_out, missed, near_clean, near_unspoiled);
   RecordProperty("repetitions", repetitions);
   RecordProperty("perfect", perfect);
-  // Rarely the joints move so that all LEDs stay within the noise; a clean data set has a feature
+  // What chance allows of a share, but for once in 1000 times.  Of 200 repetitions at least 192 are
+  // perfect and 194 near the unspoiled fit, of 6 at least 4 and 5: these find only a broken rule.
+  const auto least = [&](double share) {
+    return test::binomial_band(repetitions, share, 1e-3).least;
+  };
+  // Rarely the joints move so that all LEDs stay within the noise, and a clean data set has a feature
   // beyond the limit once in 1000.
-  const int rare = std::max(1, repetitions / 50);
-  EXPECT_GE(perfect, repetitions - rare);
+  EXPECT_GE(perfect, least(0.99));
   EXPECT_EQ(near_clean, repetitions);
   // Ten samples fewer move a parameter by a third of its sigma: 1.2 is 3.6 of these, and there are 24.
-  EXPECT_GE(near_unspoiled, repetitions - std::max(1, repetitions / 10));
+  EXPECT_GE(near_unspoiled, least(1.0 - 24 * 3.2e-4));
 }
 
 TEST(Ruined, AreTheSameInAnyOrderOfTheSamples) {
