@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
+#include <csignal>
 #include <cstdio>
 
 #include "kinecal/io/poses/poses.hpp"
@@ -33,6 +33,21 @@ class Study : public test::ProgramTest {
   [[nodiscard]] test::Outcome call(const std::string& command, const std::string& arguments) const {
     return run(test::kinecal_program() + " " + command + " --urdf " + kFetchFolder +
                "fetch.urdf --target leds " + arguments);
+  }
+  /// Calibrations in the journal of the study in the folder "part".
+  [[nodiscard]] int journal_lines() const {
+    const std::string journal = read("part/journal.0.csv");
+    int lines = 0;
+    for (std::size_t at = 0; (at = journal.find(",end\n", at)) != std::string::npos; ++at) ++lines;
+    return lines;
+  }
+  /// A study in the folder "part" that gets a signal once its journal has so many calibrations.
+  [[nodiscard]] test::Outcome call_until(int lines, int signal,
+                                         const std::string& arguments) const {
+    return test::run_and_send(folder_,
+                              test::kinecal_program() + " study --urdf " + kFetchFolder +
+                                  "fetch.urdf --target leds " + arguments,
+                              signal, [&] { return journal_lines() >= lines; });
   }
 };
 
@@ -102,44 +117,29 @@ TEST_F(Study, TrialsDoNotDependOnThreads) {
 
 TEST_F(Study, CtrlCPrintsWhatIsDoneAndTheSameCommandGoesOn) {
   const std::string what = "--robots 2 --repeat 30 --poses 12 --threads 1 ";
-  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(call("study", what + "-o whole").code, 0);
-  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - start;
-  // Between too early, while files are read, and too late, when all is done: by halves.
-  test::Outcome stopped;
-  double early = 0.0, late = 2.0 * whole.count();
-  for (int attempt = 0; attempt < 60; ++attempt) {
-    if (late - early < 0.01) {  // the machine has become faster or slower
-      early = 0.0;
-      late = 2.0 * whole.count();
-    }
-    const double seconds = 0.5 * (early + late);
-    fs::remove_all(folder_ / "part");
-    stopped = run("timeout --foreground --preserve-status -s INT " + std::to_string(seconds) + " " +
-                  test::kinecal_program() + " study --urdf " + kFetchFolder +
-                  "fetch.urdf --target leds " + what + "-o part");
-    if (stopped.code == 130 && stopped.out.find("Interrupted") != std::string::npos) break;
-    (stopped.code == 0 ? late : early) = seconds;
-  }
+  const test::Outcome stopped = call_until(1, SIGINT, what + "-o part");
   EXPECT_EQ(stopped.code, 130);
   EXPECT_THAT(stopped.out, ContainsRegex("Interrupted: [0-9]+ of 60 calibrations are done"));
   EXPECT_THAT(stopped.out, HasSubstr("part: run the same command again to go on"));
-  EXPECT_EQ(call("study", what + "-o part").code, 0);
+  const int done = journal_lines();
+  EXPECT_GE(done, 1);
+  EXPECT_LT(done, 60);
+  const test::Outcome rest = call("study", what + "-o part");
+  EXPECT_EQ(rest.code, 0);
+  EXPECT_THAT(rest.err,
+              HasSubstr("note: " + std::to_string(done) + " calibrations were done before"));
   EXPECT_EQ(read("part/study.json"), read("whole/study.json"));
 }
 
 TEST_F(Study, GoesOnWhereItWasKilled) {
   const std::string what = "--robots 2 --repeat 20 --poses 12 ";
   ASSERT_EQ(call("study", what + "-o whole").code, 0);
-  int kills = 0;
-  for (double seconds = 0.03; seconds < 300.0; seconds *= 1.5) {
-    const test::Outcome part =
-        run("timeout -s KILL " + std::to_string(seconds) + " " + test::kinecal_program() +
-            " study --urdf " + kFetchFolder + "fetch.urdf --target leds " + what + "-o part");
-    if (part.code == 0) break;
-    ++kills;
+  for (const int lines : {1, 3, 7}) {  // of 40
+    EXPECT_EQ(call_until(lines, SIGKILL, what + "--threads 1 -o part").code, -1) << "not killed";
+    EXPECT_GE(journal_lines(), lines);
   }
-  EXPECT_GT(kills, 0);
+  ASSERT_EQ(call("study", what + "-o part").code, 0);
   EXPECT_EQ(read("part/trials.csv"), read("whole/trials.csv"));
   EXPECT_EQ(read("part/study.json"), read("whole/study.json"));
   for (const auto& file : fs::directory_iterator(folder_ / "part")) {

@@ -4,12 +4,17 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <string>
+#include <thread>
 
 #include "support/temporary_folder.hpp"
 
@@ -20,15 +25,42 @@ struct Outcome {
   std::string out, err;
 };
 
-/// Runs a program with arguments through the shell, in a folder.
-inline Outcome run_in(const std::filesystem::path& folder, const std::string& call) {
+/// How a program ended that ran in a folder.
+inline Outcome outcome_of(const std::filesystem::path& folder, int status) {
   const auto read = [&](const char* name) {
     std::ifstream file(folder / name, std::ios::binary);
     return std::string{std::istreambuf_iterator<char>(file), {}};
   };
-  const std::string command = "cd " + folder.string() + " && " + call + " > out.txt 2> err.txt";
-  const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out.txt"), read("err.txt")};
+}
+
+/// Runs a program with arguments through the shell, in a folder.
+inline Outcome run_in(const std::filesystem::path& folder, const std::string& call) {
+  const std::string command = "cd " + folder.string() + " && " + call + " > out.txt 2> err.txt";
+  return outcome_of(folder, std::system(command.c_str()));
+}
+
+/// The same, and sends the program a signal as soon as something has happened that it can be seen to do.
+inline Outcome run_and_send(const std::filesystem::path& folder, const std::string& call,
+                            int signal, const std::function<bool()>& has_happened) {
+  const std::string command =
+      "cd " + folder.string() + " && exec " + call + " > out.txt 2> err.txt";
+  const pid_t program = fork();
+  if (program == 0) {
+    execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  int status = 0;
+  while (waitpid(program, &status, WNOHANG) == 0) {
+    if (!has_happened()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      continue;
+    }
+    kill(program, signal);
+    waitpid(program, &status, 0);
+    break;
+  }
+  return outcome_of(folder, status);
 }
 
 class ProgramTest : public FolderTest {
