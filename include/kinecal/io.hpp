@@ -71,6 +71,7 @@
 #include "kinecal/io/messages/known_definitions.hpp"
 #include "kinecal/io/messages/value.hpp"
 #include "kinecal/io/messages/view_message.hpp"
+#include "kinecal/io/natural_order.hpp"
 #include "kinecal/io/parameters_from_config.hpp"
 #include "kinecal/io/poses/poses.hpp"
 #include "kinecal/io/printable.hpp"

@@ -43,6 +43,11 @@ class ImageFolderTest : public testing::Test {
     return list_images({path("images"), path("poses.csv"), columns, path("depth")}, diagnostics_);
   }
 
+  /// The name of a photograph: "shot7 (640x480).png".
+  [[nodiscard]] static std::string shot(int number) {
+    return "shot" + std::to_string(number) + " (640x480).png";
+  }
+
   test::TemporaryFolder folder_;
   Diagnostics diagnostics_;
 };
@@ -70,6 +75,26 @@ TEST_F(ImageFolderTest, WithoutNamesRowsAreInTheOrderOfTheSortedFiles) {
   ASSERT_EQ(images.size(), 2u);
   EXPECT_EQ(images[0].path, path("images/a.png"));
   EXPECT_THAT(images[1].joints.positions, ElementsAre(3.0, 4.0));
+}
+
+TEST_F(ImageFolderTest, WithoutNamesNumbersInNamesAreNumbers) {
+  for (const char* name : {"a.png", "b.png"}) {
+    std::filesystem::remove(path(std::string("images/") + name));
+  }
+  std::string table = "q1\n";
+  for (int i = 1; i <= 12; ++i) {
+    for (const char* folder : {"images/", "depth/"}) write(folder + shot(i), "");
+    table += std::to_string(i) + "\n";
+  }
+  const auto images = list(table);
+  EXPECT_THAT(diagnostics_.errors, testing::IsEmpty());
+  ASSERT_EQ(images.size(), 12u);
+  for (int i = 1; i <= 12; ++i) {
+    const PosedImage& image = images[static_cast<std::size_t>(i - 1)];
+    EXPECT_EQ(image.path, path("images/" + shot(i)));
+    EXPECT_EQ(image.depth, path("depth/" + shot(i)));
+    EXPECT_THAT(image.joints.positions, ElementsAre(i));
+  }
 }
 
 TEST_F(ImageFolderTest, ColumnsOfAFileMayBeInDegrees) {

@@ -1,7 +1,7 @@
 // Photographs in a folder, and a table with the robot's joint positions for each.
 //
 //   image,joint_1,joint_2        a column `image` names the files; without one, rows are in the
-//   0001.png,0.52,-1.04          order of the files' sorted names
+//   0001.png,0.52,-1.04          order of the files' names as people count: 2.png before 10.png
 //
 // Positions are in radians and metres, unless a file of columns (io/csv/csv_mapping.hpp) says otherwise.
 // SPDX-License-Identifier: Apache-2.0

@@ -13,6 +13,7 @@
 #include "kinecal/io/csv/read_csv_samples.hpp"
 #include "kinecal/io/detect/image_folder.hpp"
 #include "kinecal/io/images/read_image.hpp"
+#include "kinecal/io/natural_order.hpp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/io/text_file.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
@@ -32,7 +33,7 @@ namespace detail {
   return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
 }
 
-/// Names of the images in a folder, sorted.
+/// Names of the images in a folder, as people count.
 [[nodiscard]] inline std::vector<std::string> image_names(const std::string& folder) {
   std::error_code failed;
   std::filesystem::directory_iterator files(folder, failed);
@@ -42,7 +43,7 @@ namespace detail {
     if (is_image_name(file.path().string())) names.push_back(file.path().filename().string());
   }
   if (names.empty()) throw InputError(folder + ": has no PNG or JPEG images");
-  std::sort(names.begin(), names.end());
+  std::sort(names.begin(), names.end(), file_naturally_before);
   return names;
 }
 
@@ -101,7 +102,7 @@ namespace detail {
       diagnostics.error(place, "there is no image for this row: the table has " +
                                    std::to_string(rows.size() - first) + " rows, " + folder.images +
                                    " has " + std::to_string(names.size()) + " images");
-    } else if (!std::binary_search(names.begin(), names.end(), file)) {
+    } else if (!std::binary_search(names.begin(), names.end(), file, file_naturally_before)) {
       diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
                                    did_you_mean(file, names));
     } else if (!used.insert(file).second) {

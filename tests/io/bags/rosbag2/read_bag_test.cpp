@@ -268,18 +268,5 @@ TEST(Ros2Formats, TypesAreCalledAsInRos1) {
   EXPECT_EQ(ros2_type("plain"), "plain");
 }
 
-TEST(NaturallyBefore, CountsAsPeopleDo) {
-  const std::vector<std::string> sorted{"", "a", "a2", "a02", "a10", "a10b", "a10c", "b1"};
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    for (std::size_t k = 0; k < sorted.size(); ++k) {
-      const bool both_two = (i == 2 || i == 3) && (k == 2 || k == 3);
-      if (!both_two) {
-        EXPECT_EQ(naturally_before(sorted[i], sorted[k]), i < k);
-      }
-    }
-  }
-  EXPECT_NE(naturally_before("a2", "a02"), naturally_before("a02", "a2"));
-}
-
 }  // namespace
 }  // namespace kinecal

@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "kinecal/io/bags/byte_file.ipp"
@@ -52,32 +50,6 @@ struct Ros2Metadata {
   } catch (const BytesError& e) {
     throw InputError(path + ": " + e.what());
   }
-}
-
-/// Whether one name comes before another as people count: "bag_2" before "bag_10".
-[[nodiscard]] inline bool naturally_before(std::string_view a, std::string_view b) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  const auto cut_number = [&](std::string_view& text) {
-    const auto end = std::find_if_not(text.begin(), text.end(), is_digit) - text.begin();
-    std::string_view digits = text.substr(0, static_cast<std::size_t>(end));
-    text.remove_prefix(digits.size());
-    digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
-    return digits;
-  };
-  std::string_view left = a, right = b;
-  while (!left.empty() && !right.empty()) {
-    if (is_digit(left[0]) && is_digit(right[0])) {
-      const std::string_view x = cut_number(left), y = cut_number(right);
-      if (x.size() != y.size()) return x.size() < y.size();
-      if (x != y) return x < y;
-    } else if (left[0] != right[0]) {
-      return left[0] < right[0];
-    } else {
-      left.remove_prefix(1);
-      right.remove_prefix(1);
-    }
-  }
-  return left.size() != right.size() ? left.size() < right.size() : a < b;
 }
 
 }  // namespace kinecal::detail

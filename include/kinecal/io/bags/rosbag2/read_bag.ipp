@@ -20,6 +20,7 @@
 #include "kinecal/io/bags/rosbag2/read_bag.hpp"
 #include "kinecal/io/bags/rosbag2/read_db3.hpp"
 #include "kinecal/io/bags/rosbag2/unpacked_file.ipp"
+#include "kinecal/io/natural_order.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {
