@@ -54,6 +54,7 @@
 #include "kinecal/io/doubts/sensor_points.hpp"
 #include "kinecal/io/doubts/urdf_units.hpp"
 #include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/io/doubts/xacro_left.hpp"
 #include "kinecal/io/images/png_bytes.hpp"
 #include "kinecal/io/images/read_image.hpp"
 #include "kinecal/io/init/init_answers.hpp"

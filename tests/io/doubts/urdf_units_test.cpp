@@ -1,4 +1,4 @@
-// Lengths, angles and leftovers of xacro in a URDF.
+// Lengths and angles in a URDF.
 #include "kinecal/io/doubts/urdf_units.hpp"
 
 #include <gmock/gmock.h>
@@ -75,18 +75,6 @@ TEST_F(UrdfUnits, LimitsTheWrongWayRoundAreNamed) {
   EXPECT_THAT(found().warnings,
               ElementsAre(AllOf(HasSubstr("arm.urdf:11: the limits of joint 'lift' are not used"),
                                 HasSubstr("lower 1.4 is above upper -1.2; are they exchanged?"))));
-}
-
-TEST_F(UrdfUnits, XacroIsAnErrorWithItsLine) {
-  replace(urdf, "<robot name=\"arm\">",
-          "<robot name=\"arm\" xmlns:xacro=\"http://ros.org/wiki/xacro\">");
-  replace(urdf, "<link name=\"l1\"/>", "<link name=\"l1\"/><!-- ${not} <xacro:this/> -->");
-  EXPECT_THAT(found().errors, IsEmpty());
-  replace(urdf, "<link name=\"l2\"/>", "<link name=\"l2\"/><xacro:hand parent=\"l2\"/>");
-  EXPECT_THAT(found().errors, ElementsAre(AllOf(HasSubstr("arm.urdf:13: <xacro:hand> is xacro"),
-                                                HasSubstr("run: xacro arm.urdf > robot.urdf"))));
-  replace(urdf, "<xacro:hand parent=\"l2\"/>", "<material name=\"${color}\"/>");
-  EXPECT_THAT(found().errors, ElementsAre(HasSubstr("arm.urdf:13: <material> is xacro")));
 }
 
 }  // namespace

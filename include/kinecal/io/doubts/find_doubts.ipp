@@ -10,6 +10,7 @@
 #include "kinecal/io/doubts/sensor_points.hpp"
 #include "kinecal/io/doubts/urdf_units.hpp"
 #include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/io/doubts/xacro_left.hpp"
 
 namespace kinecal {
 
@@ -17,6 +18,7 @@ KINECAL_INLINE void find_doubts(const CalibrationInput& input, Diagnostics& diag
   const auto& [config, robot, urdf_text, urdf, samples, calibration, recorded, is_part] = input;
   const std::size_t before = diagnostics.errors.size();
   detail::check_initial_values(config, diagnostics);
+  detail::check_xacro(urdf_text, urdf, diagnostics);
   detail::check_urdf_units(config, robot, urdf_text, urdf, diagnostics);
   if (samples.empty() || before > 0) return;  // the rest needs models that fit the robot
   const std::vector<detail::UsedJoint> joints = detail::used_joints(config, robot, samples);

@@ -15,33 +15,6 @@
 
 namespace kinecal::detail {
 
-/// True for an element or attribute that xacro should have replaced.
-[[nodiscard]] inline bool is_xacro(pugi::xml_node node) {
-  if (std::string_view(node.name()).starts_with("xacro:")) return true;
-  for (const pugi::xml_attribute attribute : node.attributes()) {
-    if (std::string_view(attribute.value()).find("${") != std::string_view::npos) return true;
-  }
-  return false;
-}
-
-/// Error: what xacro should have replaced.
-inline void check_xacro(const UrdfText& source, Diagnostics& diagnostics) {
-  std::size_t count = 0;
-  SourceLocation first;
-  std::string name;
-  const auto visit = [&](const auto& self, pugi::xml_node node) -> void {
-    if (is_xacro(node) && count++ == 0) first = source.place(node), name = node.name();
-    for (const pugi::xml_node child : node.children()) self(self, child);
-  };
-  visit(visit, source.robot());
-  if (count == 0) return;
-  diagnostics.error(
-      first, fmt::format("<{}> is xacro, which the URDF should no longer contain{}; parts of the "
-                         "robot are missing; run: xacro {} > robot.urdf",
-                         name, count == 1 ? "" : fmt::format(" ({} elements in all)", count),
-                         source.file()));
-}
-
 /// A number of a joint's origin, and where it is.
 struct SuspectNumber {
   std::string joint;
@@ -164,7 +137,6 @@ KINECAL_INLINE void check_urdf_units(const Config& config, const Robot& robot,
                                      const std::string& text, const std::string& name_for_messages,
                                      Diagnostics& diagnostics) {
   const UrdfText source(text, name_for_messages);
-  check_xacro(source, diagnostics);
   const std::vector<const Joint*> joints = joints_between(config, robot);
   check_lengths(source, joints, diagnostics);
   check_angles(source, joints, diagnostics);

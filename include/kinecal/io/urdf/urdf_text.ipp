@@ -11,6 +11,7 @@
 
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/urdf/xacro_remnants.ipp"
 #include "kinecal/io/xml/xml_numbers.ipp"
 #include "kinecal/io/xml/xml_text.ipp"
 
@@ -74,13 +75,11 @@ class UrdfText : public XmlText {
     return {values[0], values[1], values[2]};
   }
 
-  /// Throws the errors gathered.  If xacro is left in the file, only the first error and the likely
+  /// Throws the errors gathered.  If xacro has not been run, only the first error and the likely
   /// cause.
   /// @throws InputError  if there are errors
   void throw_if_errors(const Diagnostics& diagnostics) const {
-    const bool xacro =
-        text().find("<xacro:") != std::string::npos || text().find("${") != std::string::npos;
-    if (xacro && !diagnostics.errors.empty()) {
+    if (!diagnostics.errors.empty() && is_unexpanded(robot())) {
       throw InputError(diagnostics.errors.front() +
                        "; the file is xacro, not URDF: run xacro on it first");
     }
