@@ -240,6 +240,59 @@ TEST_F(CameraFile, OpencvsKeysMayBeWrittenInOtherWays) {
   EXPECT_THAT(camera.d, ElementsAre(-0.29, 0.075, 0.0002, -0.0001, 0.0));
 }
 
+TEST_F(CameraFile, OpencvsDistortionHasManyNames) {
+  for (const char* key :
+       {"dist_coeff", "dist_coeffs", "distCoeffs", "distortion_coefs", "distortion_coeff", "dist",
+        "distortion", "distortion_parameters", "camera_distortion", "lens_distortion", "Distortion",
+        "cameraDistCoeffs", "dist_matrix", "d", "D", "distortion-coefficients"}) {
+    const CameraInfo camera = read(replaced(kOpencv, "distortion_coefficients", key));
+    EXPECT_THAT(diagnostics_.errors, IsEmpty()) << key;
+    EXPECT_THAT(camera.d, ElementsAre(-0.29, 0.075, 0.0002, -0.0001, 0.01)) << key;
+  }
+}
+
+TEST_F(CameraFile, ADistortionUnderAnUnknownNameIsNotLostInSilence) {
+  for (const char* key : {"distorsion", "kc", "radial_tangential", "lens", "coefficients", "my_d",
+                          "distotion_coeficients", "dist_coeffs_left", "D1", "calib"}) {
+    EXPECT_THAT(refusal(replaced(kOpencv, "distortion_coefficients", key)),
+                AllOf(HasSubstr("c.yaml:13: unknown key '" + std::string(key) + "'"),
+                      HasSubstr("call it 'distortion_coefficients'")));
+  }
+  const std::string apart = replaced(kOpencv, "distortion_coefficients", "per_view_errors");
+  EXPECT_THAT(refusal(apart + "k1: -0.29\nk2: 0.075\n"),
+              AllOf(HasSubstr("unknown key 'k1'"), HasSubstr("unknown key 'k2'"),
+                    HasSubstr("list the coefficients under 'distortion_coefficients'")));
+}
+
+TEST_F(CameraFile, NoDistortionAtAllIsAWarningAndOtherMatricesAreNotTakenForOne) {
+  const std::string text = replaced(kOpencv, "distortion_coefficients", "per_view_errors") +
+                           "tvec: [0.1, 0.2, 0.3]\nroi: [0, 0, 640, 480]\n"
+                           "distance_to_board: 1.5\n";
+  EXPECT_THAT(read(text).d, testing::Each(0.0));
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(HasSubstr("there is no distortion_coefficients; the lens is taken")));
+}
+
+TEST_F(CameraFile, ACameraInfoWithItsDistortionUnderAnotherKeyIsRefused) {
+  CameraInfo camera;
+  camera.k = kMatrix;
+  camera.p = kProjection;
+  camera.width = camera.height = 480;
+  camera.distortion_model = "plumb_bob";
+  camera.d = {-0.3, 0.1, 0.001, 0.002, 0.01};
+  const std::string text = to_camera_info_yaml(camera, "head");
+  for (const char* key :
+       {"dist_coeff", "distortion_coefs", "distortion", "distorsion", "D_coeffs"}) {
+    EXPECT_THAT(refusal(replaced(text, "distortion_coefficients", key)),
+                AllOf(HasSubstr("unknown key '" + std::string(key) + "'"),
+                      HasSubstr("call it 'distortion_coefficients'")));
+  }
+  EXPECT_THAT(refusal(replaced(kMessage, "\nd:", "\ndist:")), HasSubstr("call it 'd'"));
+  (void)read(replaced(text, "distortion_coefficients", "distortion_coefficients: []\nknown"));
+  EXPECT_THAT(diagnostics_.errors, IsEmpty()) << "no distortion, as it says";
+}
+
 TEST_F(CameraFile, RefusesWhatOpencvHasAndCameraInfoHasNot) {
   EXPECT_THAT(refusal(replaced(replaced(kOpencv, ", 0.01 ]", " , 0.01, 0, 0, 0, 0, 0, 0, 0 ]"),
                                "rows: 5", "rows: 12")),

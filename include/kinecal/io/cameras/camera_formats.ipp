@@ -11,8 +11,9 @@
 //               radtan is plumb_bob with k3 = 0; ROS pinhole cameras do not have the other models.
 //               Source: Kalibr wiki, YAML formats and supported models.
 // OpenCV        %YAML:1.0, image_width, image_height, and !!opencv-matrix {rows, cols, dt, data}:
-//               camera_matrix, distortion_coefficients.  Case and underscores of keys vary.  Four
-//               coefficients are plumb_bob with k3 = 0, five plumb_bob, eight rational_polynomial.
+//               camera_matrix, distortion_coefficients.  Case and underscores of keys vary, and so does
+//               the name of the distortion: see distortion_keys.ipp.  Four coefficients are plumb_bob
+//               with k3 = 0, five plumb_bob, eight rational_polynomial.
 //               Source: OpenCV documentation, FileStorage; calib3d, distortion coefficients.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,6 +24,7 @@
 #include <vector>
 
 #include "kinecal/io/cameras/camera_fields.ipp"
+#include "kinecal/io/cameras/distortion_keys.ipp"
 #include "kinecal/io/cameras/image_part.ipp"
 
 namespace kinecal::detail {
@@ -39,6 +41,15 @@ inline void doubt_image_part(ConfigMap& file, const CameraInfo& camera) {
   if (!doubt.empty()) file.diagnostics().warning(file.place(), doubt);
 }
 
+/// Warns of a camera without distortion; refuses one that has it under another key.
+/// @param known  keys that were read
+inline void doubt_no_distortion(ConfigMap& file, const CameraKeys& known,
+                                const std::string& intended, bool any_name) {
+  if (refuse_lost_distortion(file, known, intended, any_name)) return;
+  file.warning(file.place(),
+               "there is no " + intended + "; the lens is taken to be free of distortion");
+}
+
 /// Reads a camera_info file or message.
 /// @param file  the top-level map
 [[nodiscard]] inline CameraInfo read_camera_info(ConfigMap& file) {
@@ -50,6 +61,11 @@ inline void doubt_image_part(ConfigMap& file, const CameraInfo& camera) {
   if (!is_empty) camera.distortion_model = file.text("distortion_model").value_or("plumb_bob");
   if (const ConfigEntry* d = find_camera_key(file, {"distortion_coefficients", "D", "d"})) {
     camera.d = camera_numbers(file, *d).value_or(std::vector<double>());
+  } else if (!is_empty) {
+    const std::string intended = file.peek("K")   ? "D"
+                                 : file.peek("k") ? "d"
+                                                  : "distortion_coefficients";
+    doubt_no_distortion(file, {"distortion_model"}, intended, false);
   }
   if (!read_camera_matrix(file, {"camera_matrix", "K", "k"}, camera.k)) {
     file.error(file.place(), "camera_matrix is missing");
@@ -134,16 +150,21 @@ inline void expect_kalibr_model(ConfigMap& camera, const std::string& key,
 
 /// All keys of a file that equal a wanted one except for case and underscores.
 [[nodiscard]] inline CameraKeys opencv_keys(const ConfigMap& file, const CameraKeys& wanted) {
-  const auto letters = [](std::string key) {
-    std::erase(key, '_');
-    for (char& c : key) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-    return key;
-  };
   CameraKeys keys;
   for (const std::string& key : wanted) {
     for (const ConfigEntry& entry : file.entries()) {
-      if (letters(entry.key) == letters(key)) keys.push_back(entry.key);
+      if (plain_key(entry.key) == plain_key(key)) keys.push_back(entry.key);
     }
+  }
+  return keys;
+}
+
+/// All keys of a file that are well known for a distortion and have numbers.
+[[nodiscard]] inline CameraKeys opencv_distortion_keys(const ConfigMap& file) {
+  CameraKeys keys;
+  for (const ConfigEntry& entry : file.entries()) {
+    const bool numbers = entry.value.is_map() || entry.value.is_list();
+    if (numbers && is_distortion_key(entry.key)) keys.push_back(entry.key);
   }
   return keys;
 }
@@ -164,9 +185,14 @@ inline void expect_kalibr_model(ConfigMap& camera, const std::string& key,
   if (!read_camera_matrix(file, keys({"camera_matrix", "K"}), camera.k)) {
     file.error(file.place(), "camera_matrix is missing");
   }
-  const ConfigEntry* d =
-      find_camera_key(file, keys({"distortion_coefficients", "dist_coeffs", "D"}));
-  if (d != nullptr) camera.d = camera_numbers(file, *d).value_or(std::vector<double>());
+  const ConfigEntry* d = find_camera_key(file, opencv_distortion_keys(file));
+  if (d != nullptr) {
+    camera.d = camera_numbers(file, *d).value_or(std::vector<double>());
+  } else {
+    doubt_no_distortion(file,
+                        keys({"camera_matrix", "K", "rectification_matrix", "projection_matrix"}),
+                        "distortion_coefficients", true);
+  }
   const std::size_t n = camera.d.size();
   if (n != 0 && n != 4 && n != 5 && n != 8) {
     file.error(d->place,
