@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -112,26 +111,6 @@ inline void free_offsets(InitPlan& plan, const std::vector<ChainJoint>& way,
                                          "shift) from this joint's offset"});
     }
   }
-}
-
-/// The joint whose frame describes how a camera is mounted: the nearest fixed joint above it, but
-/// not one that only turns the axes into an optical frame; a moving joint if there is no other.
-/// Null if no joint belongs to the camera alone.
-/// @param others  links; the joints that lead to them do not belong to the camera alone
-[[nodiscard]] inline const Joint* camera_mount(const Robot& robot, const std::string& camera,
-                                               const std::vector<std::string>& others) {
-  std::set<const Joint*> shared;
-  for (const std::string& link : others) {
-    for (const Joint* joint : joints_to_root(robot, link)) shared.insert(joint);
-  }
-  const Joint* mount = nullptr;
-  for (const Joint* joint : joints_to_root(robot, camera)) {
-    if (shared.contains(joint) || (mount != nullptr && joint->type != JointType::fixed)) break;
-    const bool only_turns = joint->origin.translation.norm() == 0.0;
-    mount = joint;
-    if (joint->type != JointType::fixed || !only_turns) break;
-  }
-  return mount;
 }
 
 }  // namespace kinecal::detail

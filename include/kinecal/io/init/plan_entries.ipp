@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinecal/io/diagnostics.hpp"
+#include "kinecal/io/init/camera_parts.ipp"
 #include "kinecal/io/init/init_answers.hpp"
 #include "kinecal/io/init/init_plan.ipp"
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/io/init/camera_parts.ipp"
 #include "kinecal/io/init/robot_parts.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/nearest_name.hpp"
@@ -19,19 +20,6 @@
 namespace kinecal {
 
 namespace detail {
-
-[[nodiscard]] inline bool contains_word(const std::string& name, std::string_view word) {
-  const auto lower = [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  const auto same = [&](char a, char b) { return lower(a) == b; };
-  return std::search(name.begin(), name.end(), word.begin(), word.end(), same) != name.end();
-}
-
-[[nodiscard]] inline bool looks_like_camera(const std::string& link) {
-  for (const char* word : {"optical", "camera", "kinect", "xtion", "realsense"}) {
-    if (contains_word(link, word)) return true;
-  }
-  return false;
-}
 
 /// True for a joint with a drive: it moves, and does not mimic another.
 [[nodiscard]] inline bool is_driven(const Joint& joint) {

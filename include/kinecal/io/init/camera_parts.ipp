@@ -1,0 +1,75 @@
+// The links and joints of a camera, and the joint that describes how it is mounted.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinecal/kinematics/chain.hpp"
+
+namespace kinecal::detail {
+
+[[nodiscard]] inline bool contains_word(const std::string& name, std::string_view word) {
+  const auto lower = [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  const auto same = [&](char a, char b) { return lower(a) == b; };
+  return std::search(name.begin(), name.end(), word.begin(), word.end(), same) != name.end();
+}
+
+[[nodiscard]] inline bool looks_like_camera(const std::string& link) {
+  for (const char* word : {"optical", "camera", "kinect", "xtion", "realsense"}) {
+    if (contains_word(link, word)) return true;
+  }
+  return false;
+}
+
+/// Whether a link and all that it carries look like parts of a camera and do not move.
+[[nodiscard]] inline bool is_camera_only(const Robot& robot, const std::string& link) {
+  if (!looks_like_camera(link)) return false;
+  return std::all_of(robot.joints().begin(), robot.joints().end(), [&](const Joint& joint) {
+    if (joint.parent != link) return true;
+    return joint.type == JointType::fixed && is_camera_only(robot, joint.child);
+  });
+}
+
+/// The joints of a camera: its own, and fixed ones above it up to the one by which it hangs on the robot.
+/// What a joint above its own moves must be the camera only: a flange is not part of it.
+/// @param others  links; the joints that lead to them do not belong to the camera
+[[nodiscard]] inline std::vector<const Joint*> camera_joints(
+    const Robot& robot, const std::string& camera, const std::vector<std::string>& others) {
+  std::set<const Joint*> shared;
+  for (const std::string& link : others) {
+    for (const Joint* joint : joints_to_root(robot, link)) shared.insert(joint);
+  }
+  std::vector<const Joint*> own;
+  for (const Joint* joint : joints_to_root(robot, camera)) {
+    if (shared.contains(joint)) break;
+    const bool is_above = !own.empty();
+    if (is_above && own.back()->type != JointType::fixed) break;
+    if (is_above && (joint->type != JointType::fixed || !is_camera_only(robot, joint->child)))
+      break;
+    own.push_back(joint);
+  }
+  return own;
+}
+
+/// The joint whose frame describes how a camera is mounted.  The joint by which it hangs on the robot, if
+/// that has no origin, as if somebody had left it to the calibration; else the nearest one that does not
+/// only turn the axes into an optical frame.  Null if no joint belongs to the camera alone.
+[[nodiscard]] inline const Joint* camera_mount(const Robot& robot, const std::string& camera,
+                                               const std::vector<std::string>& others) {
+  const std::vector<const Joint*> own = camera_joints(robot, camera, others);
+  if (own.empty()) return nullptr;
+  const auto is_moved = [](const Joint& joint) { return joint.origin.translation.norm() > 0.0; };
+  const Joint& last = *own.back();
+  const bool has_origin = is_moved(last) || !last.origin.rotation.isIdentity();
+  if (!has_origin) return &last;
+  for (const Joint* joint : own) {
+    if (joint->type != JointType::fixed || is_moved(*joint)) return joint;
+  }
+  return &last;
+}
+
+}  // namespace kinecal::detail
