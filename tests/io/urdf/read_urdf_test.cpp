@@ -292,6 +292,22 @@ TEST(ReadUrdfError, XacroLeftInTheFile) {
                     HasSubstr("run xacro on it first")));
 }
 
+TEST(ReadUrdfError, XacroIsNamedAsTheCauseOnlyIfItCanBe) {
+  const auto robot = [](const std::string& size, const std::string& joint) {
+    return "<robot name='r'><xacro:property name='s' value='1'/>\n"
+           "<link name='a'><collision><geometry><box size='" +
+           size +
+           "'/></geometry></collision><visual><xacro:grey/></visual></link>\n<link name='b'/>"
+           "<joint name='j' type='fixed'><parent link='a'/>" +
+           joint + "</joint></robot>";
+  };
+  const std::string child = "<child link='b'/>";
+  EXPECT_NO_THROW((void)parse_urdf(robot("1 1 1", child), "arm.urdf"));
+  EXPECT_THAT(refusal(robot("${s} 1 1", child)), HasSubstr("run xacro on it first"));
+  EXPECT_THAT(refusal(robot("1 1 1", "")),
+              AllOf(HasSubstr("joint 'j' has no <child"), Not(HasSubstr("xacro"))));
+}
+
 TEST(ReadUrdf, ExpandedXacroIsNotTakenForXacro) {
   EXPECT_NO_THROW((void)parse_urdf(
       "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='a'/></robot>",

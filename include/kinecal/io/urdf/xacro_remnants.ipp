@@ -122,11 +122,13 @@ class XacroRemnants {
   std::vector<XacroRemnant> all_;
 };
 
-/// Whether links, joints or numbers of joints may be missing, because xacro has not been run.
+/// Whether xacro that was not run may be why a URDF cannot be read: parts are missing, or ${...} stands
+/// where a number should.
 [[nodiscard]] inline bool is_unexpanded(pugi::xml_node robot) {
   const XacroRemnants remnants(robot);
-  return std::any_of(remnants.all().begin(), remnants.all().end(),
-                     [](const XacroRemnant& remnant) { return !remnant.is_inert; });
+  return std::any_of(remnants.all().begin(), remnants.all().end(), [](const XacroRemnant& remnant) {
+    return !remnant.is_inert || !remnant.text.starts_with('<');
+  });
 }
 
 }  // namespace kinecal::detail
