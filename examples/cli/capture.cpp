@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -18,6 +19,7 @@
 #include "kinecal/capture/find_leds.hpp"
 #include "kinecal/capture/session.hpp"
 #include "kinecal/io/assemble.hpp"
+#include "kinecal/io/capture/session_end.hpp"
 #include "kinecal/io/capture/session_follower.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "kinecal/io/detect/contact_sheet.hpp"
@@ -83,6 +85,21 @@ SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobo
   return {finder.name, camera.viewer, view_finder(finder, settings).find};
 }
 
+/// The joint positions of a pose; those that it does not move are as in a sample.
+Sample at_pose(const CapturePose& pose, const Sample& sample) {
+  Sample there;
+  there.joint_names = sample.joint_names;
+  there.joint_positions = sample.joint_positions;
+  for (std::size_t i = 0; i < there.joint_names.size(); ++i) {
+    const auto at =
+        std::find(pose.joint_names.begin(), pose.joint_names.end(), there.joint_names[i]);
+    if (at == pose.joint_names.end()) continue;
+    there.joint_positions[i] =
+        pose.positions[static_cast<std::size_t>(at - pose.joint_names.begin())];
+  }
+  return there;
+}
+
 /// Follows the session and says when it is enough.
 class Follower {
  public:
@@ -95,8 +112,12 @@ class Follower {
   }
 
   /// Takes a sample; prints what it tells on one line.
-  void add(const Sample& sample) {
-    const FollowedState state = follower_->add(sample);
+  /// @param left  poses of the session without a sample
+  void add(const Sample& sample, const std::vector<CapturePose>& left) {
+    enough_ = false;
+    ahead_.clear();
+    for (const CapturePose& pose : left) ahead_.push_back(at_pose(pose, sample));
+    const FollowedState state = follower_->add(sample, ahead_);
     if (!state.problem.empty()) {
       fmt::print("  warning: {}\n", printable(state.problem));
       return;
@@ -112,7 +133,7 @@ class Follower {
           state.online.times);
     }
     if (state.online.known) print_state(state);
-    enough_ = until_ && until_->reached(state.online) && is_confirmed();
+    if (until_ && until_->reached(state.online)) confirm();
   }
 
   [[nodiscard]] bool enough() const { return enough_; }
@@ -133,22 +154,27 @@ class Follower {
     fmt::print("\n");
   }
 
-  /// True if the whole calibration agrees: it is usable, and knows the pose as well.
-  [[nodiscard]] bool is_confirmed() const {
-    const Findings findings = fit_all().findings;
-    if (findings.judgement.verdict == Grade::do_not_use) return false;
-    const std::optional<PoseUncertainty>& pose = findings.assessments.back().pose;
-    if (!pose || !until_->frame.empty()) return true;
-    OnlineState whole;
-    whole.known = pose->determined;
-    whole.position = pose->position;
-    whole.rotation = pose->rotation;
-    return until_->reached(whole);
+  /// Asks the whole calibration, and prints why it does not agree.
+  void confirm() {
+    const Fit whole = fit_all();
+    const Findings& found = whole.findings;
+    if (found.assessments.empty()) return;
+    const Eigen::VectorXd values = found.result.table.values();
+    const std::string why = why_go_on(*until_,
+                                      {*whole.calibration.steps.back().problem,
+                                       {values.data(), static_cast<std::size_t>(values.size())},
+                                       found.assessments.back(),
+                                       found.judgement,
+                                       whole.samples},
+                                      ahead_);
+    enough_ = why.empty();
+    if (!enough_) fmt::print("  not enough yet: {}\n", printable(why));
   }
 
   Input input_;
   std::optional<Accuracy> until_;
   std::optional<SessionFollower> follower_;
+  std::vector<Sample> ahead_ = {};  ///< poses without a sample
   bool enough_ = false;
 };
 
@@ -270,7 +296,7 @@ struct Session {
     samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
     write_recording(options.output, samples, urdf);
     for (const Sample& sample : captured.samples) {
-      if (follower) follower->add(sample);
+      if (follower) follower->add(sample, poses_left(poses, samples));
     }
   }
 
@@ -369,7 +395,7 @@ int capture(const CaptureOptions& options) {
   }
   if (!options.calibrate.empty()) {
     session.follower.emplace(options, session.robot);
-    for (const Sample& sample : session.samples) session.follower->add(sample);
+    for (const Sample& sample : session.samples) session.follower->add(sample, session.poses);
   }
   const std::string lost = is_complete ? "" : session.run(config);
   if (!session.thumbnails.empty()) {

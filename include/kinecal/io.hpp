@@ -26,6 +26,7 @@
 #include "kinecal/io/cameras/read_camera_file.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/capture/capture_config.hpp"
+#include "kinecal/io/capture/session_end.hpp"
 #include "kinecal/io/capture/session_follower.hpp"
 #include "kinecal/io/config/config.hpp"
 #include "kinecal/io/config/hold_parameters.hpp"

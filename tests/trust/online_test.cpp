@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "kinecal/trust/assess.hpp"
-#include "support/noisy_scene.hpp"
+#include "support/alike_samples.hpp"
 
 namespace kinecal::test {
 namespace {
@@ -60,6 +60,34 @@ TEST(Online, ThePoseIsNotKnownBeforeSamplesDetermineItAndThenGetsBetter) {
   }
   ASSERT_GT(early, 0.0);
   EXPECT_LT(state.position, 0.7 * early);  // by root of 4 with alike poses
+}
+
+TEST(Online, ThePoseIsNotKnownFromFewerNumbersThanParameters) {
+  NoisyScene scene(10);
+  for (Sample& sample : scene.samples) {
+    for (Observation& seen : sample.observations) {
+      const std::vector<Feature> corners = seen.features;
+      for (int copy = 0; copy < 9; ++copy) {
+        seen.features.insert(seen.features.end(), corners.begin(), corners.end());
+      }
+    }
+  }
+  OnlineCalibration online = follow(scene);
+  EXPECT_FALSE(online.add(scene.samples[0]).known) << "120 residuals, but of one body";
+  EXPECT_TRUE(online.add(scene.samples[1]).known) << "10 parameters, 12 numbers";
+}
+
+TEST(Online, ThePoseIsAsWellKnownAsAtThePosesAhead) {
+  const AlikeSamples alike(12, "elbow");
+  OnlineCalibration here = follow(alike.scene), everywhere = follow(alike.scene);
+  everywhere.expect(alike.others);
+  OnlineState captured, ahead;
+  for (const Sample& sample : alike.scene.samples) {
+    captured = here.add(sample);
+    ahead = everywhere.add(sample);
+  }
+  EXPECT_GT(ahead.position, 1.5 * captured.position);
+  EXPECT_EQ(here.values(), everywhere.values());
 }
 
 TEST(Online, LeavesOutASampleThatDoesNotFitAndGoesOn) {

@@ -37,8 +37,9 @@ struct OnlineState {
   std::vector<int> dropped =
       {};                 ///< earlier ones that do not fit any more, by number of add(), from 1
   double times = 0.0;     ///< root of X of the last sample: 1 is usual; 0 if it was not tested
-  bool known = false;     ///< the samples determine the pose, with some to spare
-  double position = 0.0;  ///< standard deviation of the pose, metres: see PoseUncertainty
+  bool known = false;     ///< the samples determine the pose, with some to spare, also ahead
+  double position = 0.0;  ///< standard deviation of the pose, metres: see PoseUncertainty; where it
+                          ///< is larger: at the captured poses or at those ahead
   double rotation = 0.0;  ///< the same, radians
   double noise = 0.0;     ///< root of the mean weighted squared residual, by degrees of freedom
 };
@@ -65,6 +66,9 @@ class OnlineCalibration {
   ~OnlineCalibration();
   OnlineCalibration(OnlineCalibration&&) noexcept;
   OnlineCalibration& operator=(OnlineCalibration&&) noexcept;
+
+  /// Poses ahead, where the pose is wanted as well: only their joint positions count.
+  void expect(std::vector<Sample> poses);
 
   /// Takes the next sample.
   /// @throws SampleError  if the sample does not suit the problem; it is not added

@@ -16,14 +16,17 @@ KINECAL_INLINE OnlineCalibration::OnlineCalibration(MakeProblem make, const Free
                                                     const FrameOnRobot& in)
     : inside_(new Inside{std::move(make), free, {values.begin(), values.end()}, frame, in}) {
   inside_->problem->check(free);
-  (void)inside_->derivative(frame);
-  (void)inside_->derivative(in);
+  (void)detail::PoseDerivative(*inside_->problem, free, inside_->values, frame, in);
 }
 
 KINECAL_INLINE OnlineCalibration::~OnlineCalibration() = default;
 KINECAL_INLINE OnlineCalibration::OnlineCalibration(OnlineCalibration&&) noexcept = default;
 KINECAL_INLINE OnlineCalibration& OnlineCalibration::operator=(OnlineCalibration&&) noexcept =
     default;
+
+KINECAL_INLINE void OnlineCalibration::expect(std::vector<Sample> poses) {
+  inside_->ahead = std::move(poses);
+}
 
 KINECAL_INLINE OnlineState OnlineCalibration::add(const Sample& sample) {
   OnlineState state;

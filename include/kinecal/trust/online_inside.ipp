@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "kinecal/solve/determined_spectrum.ipp"
+#include "kinecal/trust/measured_numbers.hpp"
 #include "kinecal/trust/online.hpp"
-#include "kinecal/trust/tip_derivative.ipp"
+#include "kinecal/trust/pose_variance.ipp"
 
 namespace kinecal {
 
@@ -22,15 +23,15 @@ struct OnlineCalibration::Inside {
   std::vector<Sample> samples = {};              ///< of the problem
   std::vector<int> numbers = {};                 ///< of each of them: of the call of add(), from 1
   int added = 0;                                 ///< calls of add()
+  std::vector<Sample> ahead = {};                ///< poses where the pose is wanted as well
   Eigen::MatrixXd hessian = {};                  ///< (free x free) at the values
   double noise2 = 0.0;                           ///< s^2
   int freedom = 0;                               ///< residuals that are left for the noise
+  int measured = 0;                              ///< numbers: see measured_numbers()
 
   void step_to_minimum(AnyEvaluator& evaluator);
   void estimate_noise(double cost);
   [[nodiscard]] double innovation(AnyEvaluator& evaluator, int& rows) const;
-  [[nodiscard]] std::vector<const Sample*> spread() const;
-  [[nodiscard]] detail::TipDerivative derivative(const FrameOnRobot& of) const;
   void set_pose(OnlineState& state) const { set_pose(state, hessian); }
   void set_pose(OnlineState& state, const Eigen::MatrixXd& information) const;
   [[nodiscard]] bool add_if_it_fits(const Sample& sample, OnlineState& state);
@@ -101,6 +102,7 @@ inline void OnlineCalibration::Inside::estimate_noise(double cost) {
   freedom = problem->num_residuals() - of_priors - rank;
   const double of_features = cost - detail::prior_equations(*problem, free, values).cost;
   noise2 = freedom > 0 ? std::max(0.0, 2.0 * of_features / freedom) : 0.0;
+  measured = measured_numbers(*problem, values);
 }
 
 /// X of the last sample; zero if it has no residuals.
@@ -118,8 +120,10 @@ inline double OnlineCalibration::Inside::innovation(AnyEvaluator& evaluator, int
   return last.residual.dot(expected.ldlt().solve(last.residual)) / rows;
 }
 
-/// A few samples, evenly over the session.
-inline std::vector<const Sample*> OnlineCalibration::Inside::spread() const {
+namespace detail {
+
+/// A few samples, evenly over a session.
+inline std::vector<const Sample*> some_of(const std::vector<Sample>& samples) {
   constexpr std::size_t kPoses = 16;
   std::vector<const Sample*> some;
   const std::size_t count = std::min(kPoses, samples.size());
@@ -129,37 +133,31 @@ inline std::vector<const Sample*> OnlineCalibration::Inside::spread() const {
   return some;
 }
 
-inline detail::TipDerivative OnlineCalibration::Inside::derivative(const FrameOnRobot& of) const {
-  RuntimeChain chain = make_chain(problem->robot(), problem->base(), of.link, problem->frames());
-  if (!of.frame.empty()) chain = with_virtual_frame(std::move(chain), of.frame);
-  return {*problem, free, values, std::move(chain)};
-}
+}  // namespace detail
 
+/// The worse of the captured poses and of those ahead.
 inline void OnlineCalibration::Inside::set_pose(OnlineState& state,
                                                 const Eigen::MatrixXd& information) const {
   const detail::Spectrum spectrum(information);
   const Eigen::MatrixXd covariance = noise2 * spectrum.pseudo_inverse();
   const Eigen::MatrixXd null =
       spectrum.scale.cwiseInverse().asDiagonal() * spectrum.vectors.leftCols(spectrum.null);
-  detail::TipDerivative of_frame = derivative(frame), of_in = derivative(in);
+  detail::PoseDerivative derivative(*problem, free, values, frame, in);
   // With less to spare, neither the noise nor the poses say much.
   constexpr double kToSpare = 2.0;  // residuals for each direction that they determine
   const auto rank = static_cast<double>(spectrum.singular.size() - spectrum.null);
-  state.known = freedom >= kToSpare * rank;
-  double positions = 0.0, rotations = 0.0;
-  const std::vector<const Sample*> poses = spread();
-  for (const Sample* sample : poses) {
-    if (!of_frame.has_joints(*sample) || !of_in.has_joints(*sample)) continue;
-    const Vector3<double> p_base = of_frame.tip(*sample);
-    const Eigen::MatrixXd jacobian = of_frame.at(*sample, p_base) - of_in.at(*sample, p_base);
-    const Eigen::MatrixXd across = jacobian * covariance;
-    positions += across.topRows<3>().cwiseProduct(jacobian.topRows<3>()).sum();
-    rotations += across.bottomRows<3>().cwiseProduct(jacobian.bottomRows<3>()).sum();
-    if (detail::moves_origin(jacobian, null, 0.0)) state.known = false;
+  state.known = freedom >= kToSpare * rank && measured >= free.size();
+  state.position = state.rotation = 0.0;
+  for (const std::vector<Sample>* poses : {&samples, &ahead}) {
+    detail::PoseVariance variance(0.0);
+    for (const Sample* sample : detail::some_of(*poses)) {
+      if (const auto jacobian = derivative.at(*sample)) variance.add(*jacobian, covariance, null);
+    }
+    const PoseUncertainty there = variance.result(frame, in);
+    state.known = state.known && there.determined;
+    state.position = std::max(state.position, there.position);
+    state.rotation = std::max(state.rotation, there.rotation);
   }
-  const double count = std::max(1.0, static_cast<double>(poses.size()));
-  state.position = std::sqrt(std::max(0.0, positions / count));
-  state.rotation = std::sqrt(std::max(0.0, rotations / count));
 }
 
 }  // namespace kinecal

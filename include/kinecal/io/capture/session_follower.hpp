@@ -8,6 +8,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,7 +38,8 @@ class SessionFollower {
   ~SessionFollower() = default;
 
   /// Takes the next sample of the session.
-  FollowedState add(const Sample& sample);
+  /// @param ahead  poses that are left, where the pose is wanted as well
+  FollowedState add(const Sample& sample, std::span<const Sample> ahead = {});
 
   /// The frame whose pose is meant, and the one in which it is meant; empty before it is known.
   [[nodiscard]] std::pair<std::string, std::string> frames() const;
@@ -45,7 +47,7 @@ class SessionFollower {
  private:
   void check(const Sample& sample) const;
   [[nodiscard]] bool start();
-  [[nodiscard]] OnlineState start_again();
+  [[nodiscard]] OnlineState start_again(std::span<const Sample> ahead);
 
   Config config_;
   Robot robot_;

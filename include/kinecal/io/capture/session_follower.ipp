@@ -56,30 +56,33 @@ KINECAL_INLINE bool SessionFollower::start() {
   return true;
 }
 
-KINECAL_INLINE OnlineState SessionFollower::start_again() {
+KINECAL_INLINE OnlineState SessionFollower::start_again(std::span<const Sample> ahead) {
   misfits_ = 0;
   online_.reset();
   OnlineState state;
   constexpr std::size_t kFewest = 3;
   if (samples_.size() < kFewest || !start()) return state;
+  online_->expect({ahead.begin(), ahead.end()});
   for (const Sample& sample : samples_) state = online_->add(sample);
   if (!state.known) online_.reset();
   return state;
 }
 
-KINECAL_INLINE FollowedState SessionFollower::add(const Sample& sample) {
+KINECAL_INLINE FollowedState SessionFollower::add(const Sample& sample,
+                                                  std::span<const Sample> ahead) {
   FollowedState followed;
   try {
     check(sample);
     if (online_) {
+      online_->expect({ahead.begin(), ahead.end()});
       followed.online = online_->add(sample);
       samples_.push_back(sample);
       misfits_ = followed.online.fits ? 0 : misfits_ + 1;
       constexpr int kMisfits = 2;
-      if (misfits_ == kMisfits) followed.online = start_again();
+      if (misfits_ == kMisfits) followed.online = start_again(ahead);
     } else {
       samples_.push_back(sample);
-      followed.online = start_again();
+      followed.online = start_again(ahead);
     }
     if (online_ && followed.online.known) followed.next = online_->next_move();
   } catch (const SampleError& error) {

@@ -1,0 +1,41 @@
+// How well a pose is known where it was not measured.
+//
+// Where a camera saw the gripper, it measured the pose itself, so the pose is known there although
+// parameters are not.  What a calibration is for are other poses:
+//
+//   J C J^T        at poses without a sample
+//   J_i C_i J_i^T  at the pose of sample i, with C_i = (H - A_i^T A_i)^-1 of all other samples,
+//                  H = A^T A + priors, A rows in standard deviations of their error block's noise
+//
+// Source: as pose_uncertainty.hpp; Stone, Cross-Validatory Choice and Assessment of Statistical
+// Predictions, 1974, for leaving out each sample once.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/trust/assess.hpp"
+
+namespace kinecal {
+
+/// The uncertainty of a pose at poses without a sample.
+/// @param step    of the problem
+/// @param values  of all parameters of the table: the solution
+/// @param poses   samples of which only the joint positions count
+[[nodiscard]] PoseUncertainty pose_at(const AnyProblem& problem, const Assessment& step,
+                                      std::span<const double> values, std::span<const Sample> poses,
+                                      const FrameOnRobot& frame, const FrameOnRobot& in);
+
+/// The uncertainty of a pose at each sample, by the other samples.
+/// @param samples  those of the problem, in their order
+[[nodiscard]] PoseUncertainty pose_held_out(const AnyProblem& problem, const Assessment& step,
+                                            std::span<const double> values,
+                                            std::span<const Sample> samples,
+                                            const FrameOnRobot& frame, const FrameOnRobot& in);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/pose_elsewhere.ipp"
+#endif
