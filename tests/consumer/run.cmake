@@ -1,7 +1,6 @@
 # Builds and runs the consumer against kinecal as its users have it:
-#   cmake -DMODE=install|deb|source|headers -DSOURCE=... -DBUILD=... -DWORK=... -DCOMPILER=... -P run.cmake
+#   cmake -DMODE=install|source|headers -DSOURCE=... -DBUILD=... -DWORK=... -DCOMPILER=... -P run.cmake
 # install  what `cmake --install` installs
-# deb      the package that `cpack` makes of the same, unpacked into a folder of its own
 # source   what FetchContent fetches
 # headers  the headers alone, of a source that was configured and not built
 file(REMOVE_RECURSE ${WORK})
@@ -36,19 +35,6 @@ endif()
 if(MODE STREQUAL install)
   execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix}
                   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-elseif(MODE STREQUAL deb)
-  set(prefix ${WORK}/unpacked/usr)
-  foreach(tool dpkg-deb dpkg-shlibdeps file)
-    find_program(${tool}_program ${tool})
-    if(NOT ${tool}_program)
-      message("skipped: there is no ${tool}")
-      return()
-    endif()
-  endforeach()
-  execute_process(COMMAND ${CMAKE_CPACK_COMMAND} -G DEB --config ${BUILD}/CPackConfig.cmake -B ${WORK}
-                  COMMAND_ERROR_IS_FATAL ANY)
-  file(GLOB package ${WORK}/kinecal_*.deb)
-  execute_process(COMMAND dpkg-deb -x ${package} ${WORK}/unpacked COMMAND_ERROR_IS_FATAL ANY)
 endif()
 
 if(PROGRAM AND NOT MODE STREQUAL source)
@@ -94,6 +80,4 @@ set(HERE ${CMAKE_CURRENT_LIST_DIR})
 if(MODE STREQUAL install)
   include(${HERE}/check_core.cmake)
 endif()
-if(NOT MODE STREQUAL deb)
-  include(${HERE}/check_robot_header.cmake)
-endif()
+include(${HERE}/check_robot_header.cmake)

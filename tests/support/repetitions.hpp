@@ -1,5 +1,5 @@
-// How often a test repeats what it does, less with sanitizers, which are slow; and how many successes
-// chance allows.
+// How often a test repeats what it does, less with sanitizers and without optimization, which are slow; and how
+// many successes chance allows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,30 +7,24 @@
 #include <cmath>
 #include <cstdlib>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define KINECAL_HAS_SANITIZERS 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define KINECAL_HAS_SANITIZERS 1
-#endif
-#endif
-
 namespace kinecal::test {
 
-/// True where memory is watched.
-#ifdef KINECAL_HAS_SANITIZERS
-inline constexpr bool kHasSanitizers = true;
+/// True where sanitizers watch the libraries.
+inline constexpr bool kHasSanitizers = KINECAL_SANITIZERS_IN_LIBRARIES;
+/// True where tests take many times as long as in a release.
+#ifdef __OPTIMIZE__
+inline constexpr bool kIsSlow = kHasSanitizers;
 #else
-inline constexpr bool kHasSanitizers = false;
+inline constexpr bool kIsSlow = true;
 #endif
 
-/// The number of repetitions: `full`; `few` with sanitizers.  KINECAL_REPETITIONS replaces either by a
+/// The number of repetitions: `full`; `few` where tests are slow.  KINECAL_REPETITIONS replaces either by a
 /// number, at most `full`.
 inline int repetitions(int full, int few) {
   if (const char* given = std::getenv("KINECAL_REPETITIONS")) {
     return std::clamp(std::atoi(given), 1, full);
   }
-  return kHasSanitizers ? std::min(few, full) : full;
+  return kIsSlow ? std::min(few, full) : full;
 }
 
 /// The counts that chance allows.

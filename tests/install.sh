@@ -1,0 +1,46 @@
+#!/bin/sh
+# README's Install, word for word; then the package is used as its users do: a calibration from photographs,
+# a report, and programs of their own against the libraries.  Afterwards the package is removed.
+#   tests/install.sh    as root, or as somebody who may use sudo
+set -eu
+cd "$(dirname "$0")/.."
+
+as_root=""
+[ "$(id -u)" = 0 ] || as_root=sudo
+sudo() { $as_root env DEBIAN_FRONTEND=noninteractive "$@"; }
+work=$(mktemp -d)
+trap 'sudo apt-get remove -y -qq kinecal >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
+
+echo "== README, Install, $(date +%H:%M:%S)"
+rm -f build/release/kinecal_*.deb
+commands=$(sed -n '/^## Install/,/^[^ #]/s/^    //p' README.md | sed 's/apt install/apt install -y -qq/')
+[ -n "$commands" ]
+echo "$commands"
+(eval "set -e; $commands") >"$work/log" 2>&1 || { tail -n 60 "$work/log"; exit 1; }
+if grep -A 5 'warning:' "$work/log"; then
+  echo "The build gives warnings." >&2
+  exit 1
+fi
+
+echo "== kinecal as it is installed, $(date +%H:%M:%S)"
+source=$PWD
+cd "$work"
+kinecal --version
+kinecal simulate "$source/examples/mobile_manipulator/mobile_manipulator.urdf" --target apriltag --poses 30 -o sim >/dev/null
+kinecal detect sim/capture.yaml --images sim/images --poses sim/poses.csv --camera sim/camera.yaml \
+  --frame head_camera_rgb_optical_frame -o samples.yaml
+kinecal calibrate --urdf sim/robot.urdf --config sim/calibrate.yaml --samples samples.yaml \
+  --output calibrated --report report.html >calibrate.txt
+head -n 3 calibrate.txt
+grep -q '^verdict: good' calibrate.txt
+grep -q '</html>' report.html
+man -w kinecal >/dev/null 2>&1 || [ -e /usr/share/man/man1/kinecal.1 ] || [ -e /usr/share/man/man1/kinecal.1.gz ]
+
+echo "== programs of a user's own, $(date +%H:%M:%S)"
+cmake -S "$source/tests/consumer" -B consumer -G Ninja -DCMAKE_BUILD_TYPE=Release >/dev/null
+cmake --build consumer
+consumer/consumer
+consumer/finders
+# shellcheck disable=SC2046  # words on purpose
+g++ -std=c++20 "$source/tests/consumer/io.cpp" -o by_pkg_config $(pkg-config --cflags --libs kinecal-io)
+./by_pkg_config "$source/tests/consumer/pendulum.urdf"
