@@ -7,13 +7,13 @@
 namespace kinecal::test {
 namespace {
 
-int numbers(const NoisyScene& scene) {
+int numbers_of(const NoisyScene& scene) {
   const Eigen::VectorXd values = scene_table().values();
   return measured_numbers(*scene.problem(scene.samples), NoisyScene::span(values));
 }
 
 TEST(MeasuredNumbers, AreSixForABodyHoweverManyPointsItHas) {
-  EXPECT_EQ(numbers(NoisyScene(5)), 5 * 6) << "of four points each";
+  EXPECT_EQ(numbers_of(NoisyScene(5)), 5 * 6) << "of four points each";
 }
 
 TEST(MeasuredNumbers, AreThoseOfThePointsIfTheyAreFewer) {
@@ -21,7 +21,7 @@ TEST(MeasuredNumbers, AreThoseOfThePointsIfTheyAreFewer) {
   for (Sample& sample : scene.samples) {
     for (Observation& seen : sample.observations) seen.features.resize(1);
   }
-  EXPECT_EQ(numbers(scene), 5 * 3);
+  EXPECT_EQ(numbers_of(scene), 5 * 3);
 }
 
 }  // namespace

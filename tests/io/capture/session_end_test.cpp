@@ -62,7 +62,7 @@ TEST(SessionEnd, AsksHowEachPoseIsKnownByTheOthers) {
 }
 
 TEST(SessionEnd, AsksHowThePosesAreKnownThatAreLeft) {
-  AlikeSamples alike(12, "elbow");
+  AlikeSamples alike(12);
   const CalibratedSession session{alike.scene};
   const double enough = 1.3 * session.held_out();
   EXPECT_EQ(session.why(enough), "");
