@@ -16,17 +16,18 @@ namespace kinecal {
 
 namespace detail {
 
-/// How many times as far off samples held out are as their noise, or as fitted ones: few samples are
-/// fitted better than they predict.  At least 1.
+/// How many times further off samples held out are than their noise and than fitted ones: few samples
+/// are fitted better than they predict.  What is in the uncertainty as design effect does not count
+/// twice.  At least 1.
 [[nodiscard]] inline double times_held_out(const Assessment& step) {
-  double most = 1.0;
+  double most = 0.0;
   for (std::size_t t = 0; t < step.held_out.size(); ++t) {
     const HeldOutError& error = step.held_out[t];
     const double noise = step.noise[t].sigma * std::sqrt(step.noise[t].components);
     const double expected = std::max(noise, error.fitted);
     if (expected > 0.0) most = std::max(most, error.held_out / expected);
   }
-  return most;
+  return std::max(1.0, most / std::sqrt(std::max(1.0, step.uncertainty.design_effect)));
 }
 
 /// Why a pose is not known well enough; empty if it is.
