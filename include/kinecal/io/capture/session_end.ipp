@@ -66,10 +66,10 @@ namespace detail {
 
 KINECAL_INLINE std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
                                      std::span<const Sample> ahead) {
-  const auto& [problem, values, step, judgement, samples] = result;
+  const Assessment& step = result.step;  // clang 14 captures no structured binding
   if (std::string few = detail::too_few(result); !few.empty()) return few;
-  if (judgement.verdict == Grade::do_not_use) {
-    return "the verdict is 'do not use': " + judgement.reasons.front();
+  if (result.judgement.verdict == Grade::do_not_use) {
+    return "the verdict is 'do not use': " + result.judgement.reasons.front();
   }
   if (!step.pose) return "no error block compares two frames";
   const auto on_robot = [](const std::string& name, const std::string& link) {
@@ -79,13 +79,15 @@ KINECAL_INLINE std::string why_go_on(const Accuracy& wanted, const SessionResult
   const FrameOnRobot frame = wanted.frame.empty() ? on_robot(step.pose->frame, step.pose->link)
                                                   : FrameOnRobot{wanted.frame};
   const auto known_at = [&](std::span<const Sample> poses) {
-    return pose_at(problem, step, values, poses, frame, in);
+    return pose_at(result.problem, step, result.values, poses, frame, in);
   };
   const double times = detail::times_held_out(step);
-  std::string why = detail::not_known(wanted, known_at(samples), times, "at the captured poses");
+  std::string why =
+      detail::not_known(wanted, known_at(result.samples), times, "at the captured poses");
   if (why.empty()) {  // which holds samples out already
-    why = detail::not_known(wanted, pose_held_out(problem, step, values, samples, frame, in), 1.0,
-                            "at each pose by the samples of the others");
+    why = detail::not_known(
+        wanted, pose_held_out(result.problem, step, result.values, result.samples, frame, in), 1.0,
+        "at each pose by the samples of the others");
   }
   if (why.empty() && !ahead.empty()) {
     why = detail::not_known(wanted, known_at(ahead), times, "at the poses that are left");
