@@ -58,7 +58,7 @@ TEST_F(XacroLeft, AnExpressionIsAnErrorInAJointOnly) {
   EXPECT_THAT(found().warnings, ElementsAre(HasSubstr("name=\"${color}\" of <material>")));
   replace(urdf, "<joint name=\"flange\"", "<joint name=\"$(arg side)flange\"");
   EXPECT_THAT(found().errors,
-              ElementsAre(AllOf(HasSubstr("arm.urdf:32: name=\"$(arg side)flange\" of <joint>"),
+              ElementsAre(AllOf(HasSubstr("arm.urdf:31: name=\"$(arg side)flange\" of <joint>"),
                                 Not(HasSubstr("remove it")))));
 }
 
