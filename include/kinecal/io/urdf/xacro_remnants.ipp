@@ -122,13 +122,11 @@ class XacroRemnants {
   std::vector<XacroRemnant> all_;
 };
 
-/// Whether xacro that was not run may be why a URDF cannot be read: parts are missing, or ${...} stands
-/// where a number should.
+/// Whether links, joints or numbers of joints may be missing, because xacro has not been run.
 [[nodiscard]] inline bool is_unexpanded(pugi::xml_node robot) {
   const XacroRemnants remnants(robot);
-  return std::any_of(remnants.all().begin(), remnants.all().end(), [](const XacroRemnant& remnant) {
-    return !remnant.is_inert || !remnant.text.starts_with('<');
-  });
+  return std::any_of(remnants.all().begin(), remnants.all().end(),
+                     [](const XacroRemnant& remnant) { return !remnant.is_inert; });
 }
 
 }  // namespace kinecal::detail
