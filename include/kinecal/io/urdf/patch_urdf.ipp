@@ -16,6 +16,7 @@
 #include "kinecal/io/urdf/patch_urdf.hpp"
 #include "kinecal/io/urdf/urdf_text.ipp"
 #include "kinecal/kinematics/joint_state.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {

@@ -20,6 +20,7 @@
 #include "kinecal/io/urdf/urdf_text.ipp"
 #include "kinecal/io/urdf/urdfdom.ipp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
 #include "kinecal/linkage.hpp"
 
 namespace kinecal {
