@@ -190,6 +190,8 @@ target_compile_options(kinecal_build_options INTERFACE
   $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=all>
   # These checks double the time to compile; the address sanitizer and the processor find the same.
   $<$<BOOL:${KINECAL_SANITIZE}>:-fno-sanitize=null,alignment,object-size,vptr>
+  # Eigen adds offsets to the null pointer of an empty matrix.
+  $<$<AND:$<BOOL:${KINECAL_SANITIZE}>,$<CXX_COMPILER_ID:Clang>>:-fno-sanitize=pointer-overflow>
   $<$<BOOL:${KINECAL_SANITIZE}>:-fno-omit-frame-pointer>
   $<$<BOOL:${KINECAL_FUZZ}>:-fsanitize=fuzzer-no-link>)
 target_link_options(kinecal_build_options INTERFACE

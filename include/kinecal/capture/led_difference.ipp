@@ -22,9 +22,10 @@ struct LedLight {
   }
 };
 
+/// The pixels around a circle, in the image; none if its center is not a number.
 inline PixelBox led_box(const PixelCircle& circle, int width, int height) {
   const auto pixel = [](double x, int last) {
-    return static_cast<int>(std::clamp(std::floor(x), -1.0, last + 1.0));
+    return std::isnan(x) ? last + 1 : static_cast<int>(std::clamp(std::floor(x), -1.0, last + 1.0));
   };
   return {std::max(0, pixel(circle.u - circle.radius, width - 1)),
           std::max(0, pixel(circle.v - circle.radius, height - 1)),
