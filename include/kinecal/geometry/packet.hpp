@@ -24,8 +24,7 @@
 #include <emmintrin.h>
 #endif
 
-/// Inlines everything that a function calls.  For functions that compose many small ones and run
-/// once per pack of samples.  Off with sanitizers, which would make such functions huge.
+/// Inlines everything that a function calls: many small ones, once per batch.  Off with g++'s sanitizers.
 #if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)
 #define KINECAL_FLATTEN [[gnu::flatten]]
 #else

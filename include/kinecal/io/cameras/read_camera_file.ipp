@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kinecal/io/cameras/camera_formats.ipp"
+#include "kinecal/io/cameras/opencv_camera.ipp"
 #include "kinecal/io/cameras/read_camera_file.hpp"
 #include "kinecal/io/yaml/yaml_node.hpp"
 
