@@ -32,7 +32,7 @@ kinecal detect sim/capture.yaml --images sim/images --poses sim/poses.csv --came
 kinecal calibrate --urdf sim/robot.urdf --config sim/calibrate.yaml --samples samples.yaml \
   --output calibrated --report report.html >calibrate.txt
 head -n 3 calibrate.txt
-grep -q '^verdict: good' calibrate.txt
+grep -qE '^verdict: (good|use with care)' calibrate.txt
 grep -q '</html>' report.html
 man -w kinecal >/dev/null 2>&1 || [ -e /usr/share/man/man1/kinecal.1 ] || [ -e /usr/share/man/man1/kinecal.1.gz ]
 
