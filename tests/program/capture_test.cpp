@@ -66,13 +66,11 @@ TEST_F(CaptureProgram, CapturesUntilAnAccuracyIsReachedAndCalibrates) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "calibrated/calibrated.urdf"));
 }
 
-TEST_F(CaptureProgram, GoesOnWhileItsSamplesMeasureLessThanTheParametersNeed) {
+TEST_F(CaptureProgram, SaysWhyItGoesOnThoughTheAskedAccuracyIsCoarse) {
   simulate(15);
   const Outcome session = capture("--calibrate sim/calibrate.yaml --until 'gripper 100 mm'");
   EXPECT_EQ(session.code, 0) << session.out << session.err;
-  EXPECT_THAT(
-      session.out,
-      ContainsRegex("  not enough yet: [0-9]+ free parameters need [0-9]+ measured numbers"));
+  EXPECT_THAT(session.out, HasSubstr("  not enough yet: "));
   EXPECT_THAT(session.out, HasSubstr("'gripper 100 mm' is reached"));
   EXPECT_GE(samples(), 6);
 }
