@@ -68,7 +68,7 @@ endfunction()
 # FOLDERS       of include/kinecal: their headers, and the .ipp beside a header of the same name, which
 #               are compiled once
 # UNIT          so many sources are one translation unit with KINECAL_UNITY
-# OPTIMIZE      in place of Release's -O3, where that costs time to compile and saves none
+# OPTIMIZE      in place of Release's -O3
 # LINK          what the headers include
 # PRIVATE_LINK  what only the .ipp files include
 function(kinecal_add_library name)
@@ -135,18 +135,18 @@ target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
 file(GLOB KINECAL_INSTANCES CONFIGURE_DEPENDS
      ${PROJECT_SOURCE_DIR}/include/kinecal/evaluation/instances/*_packet.ipp)
 
-kinecal_add_library(core UNIT 8
+kinecal_add_library(core UNIT 16
   INSTANCES ${KINECAL_INSTANCES}
   FOLDERS geometry kinematics parameters samples sensors errors problem evaluation crate testing core
           linkage
   LINK Eigen3::Eigen Threads::Threads)
-kinecal_add_library(solve UNIT 13 OPTIMIZE -O2
+kinecal_add_library(solve UNIT 50
   FOLDERS solve trust
   LINK kinecal_core Ceres::ceres)
-kinecal_add_library(capture UNIT 16 OPTIMIZE -O1
+kinecal_add_library(capture UNIT 30
   FOLDERS capture study
   LINK kinecal_solve)
-kinecal_add_library(io UNIT 24 OPTIMIZE -O1
+kinecal_add_library(io UNIT 33 OPTIMIZE -O2
   FOLDERS io report
   LINK kinecal_capture
   PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB)
