@@ -8,7 +8,7 @@
 namespace kinecal {
 
 /// Runs the program, with the arguments of main().
-/// @returns  the exit code: 0 done, 1 bad input, 2 not converged
+/// @returns  the exit code: 0 done, 1 bad input, 2 a result that must not be used
 int run_program(int argc, char** argv);
 
 }  // namespace kinecal
