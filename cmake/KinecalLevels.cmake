@@ -62,7 +62,7 @@ function(kinecal_add_part part library level)
   get_target_property(options kinecal_${library} COMPILE_OPTIONS)
   # g++ 12 takes what AVX-512's own headers leave undefined for a mistake (GCC bug 105593).
   target_compile_options(${part} PRIVATE ${options} -march=${level}
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized>)
   set_target_properties(${part} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()
 
