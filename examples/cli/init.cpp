@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "kinecal/io/init/initial_config.hpp"
 #include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
 #include "output_file.hpp"
 #include "question.hpp"
 

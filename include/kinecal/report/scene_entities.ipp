@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/report/scene_text.ipp"
+#include "kinecal/report/scene_pieces.ipp"
 
 namespace kinecal::detail {
 

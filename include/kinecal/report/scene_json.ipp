@@ -10,7 +10,7 @@
 
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/scene_json.hpp"
-#include "kinecal/report/scene_text.ipp"
+#include "kinecal/report/scene_pieces.ipp"
 
 namespace kinecal {
 

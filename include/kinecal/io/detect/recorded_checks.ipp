@@ -11,6 +11,7 @@
 #include "kinecal/io/detect/listed.ipp"
 #include "kinecal/io/detect/raw_view.ipp"
 #include "kinecal/io/detect/recorded_views.hpp"
+#include "kinecal/kinematics/nearest_name.hpp"
 
 namespace kinecal::detail {
 
