@@ -9,7 +9,7 @@ objects=$(ninja -C build/tidy -t targets all | sed -n 's/: CXX_COMPILER__.*//p')
 if [ "${1:-changed}" = all ]; then
   chosen=$objects
 else
-  before=$(git rev-list -n 1 --before="$(git log -1 --format=%cI) - 1 day" HEAD)
+  before=$(git rev-list -n 1 --before="$(($(git log -1 --format=%ct) - 86400))" HEAD)
   chosen=""
   for file in $(git diff --name-only --diff-filter=d "${before:-$(git rev-list --max-parents=0 HEAD)}" HEAD -- \
                   'include/*.hpp' 'include/*.ipp' 'examples/cli/*.cpp'); do

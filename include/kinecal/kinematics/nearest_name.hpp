@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,28 +11,49 @@
 
 namespace kinecal {
 
+namespace detail {
+
+/// Three rows of a table, one after another in the same place.  (A std::vector is no constant expression
+/// with g++ 11.)
+class ThreeRows {
+ public:
+  constexpr explicit ThreeRows(std::size_t columns)
+      : columns_(columns), cells_(new std::size_t[3 * columns]{}) {}
+  constexpr ~ThreeRows() { delete[] cells_; }
+  ThreeRows(const ThreeRows&) = delete;
+  ThreeRows& operator=(const ThreeRows&) = delete;
+
+  /// A row, from 0; it replaces the third before it.
+  [[nodiscard]] constexpr std::size_t* operator[](std::size_t row) {
+    return cells_ + row % 3 * columns_;
+  }
+
+ private:
+  std::size_t columns_;
+  std::size_t* cells_;
+};
+
+}  // namespace detail
+
 /// Number of insertions, deletions, replacements and swaps of neighbours between two names; case
 /// does not count.  Source: Damerau-Levenshtein distance, restricted.
 [[nodiscard]] constexpr std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; };
   const auto same = [&](char x, char y) { return x == y || lower(x) == lower(y); };
-  std::vector<std::size_t> two_back, previous, current;  // of a table, one row for each letter of a
-  for (std::size_t j = 0; j <= b.size(); ++j) current.push_back(j);
+  detail::ThreeRows rows(b.size() + 1);  // a row for each letter of a
+  for (std::size_t j = 0; j <= b.size(); ++j) rows[0][j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    two_back.swap(previous);
-    previous.swap(current);
-    current.clear();
-    current.push_back(i);
+    std::size_t* const current = rows[i];
+    const std::size_t* const previous = rows[i - 1];
+    current[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
+      const bool swapped = i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]);
       const std::size_t replaced = previous[j - 1] + (same(a[i - 1], b[j - 1]) ? 0 : 1);
-      std::size_t distance = std::min({replaced, previous[j] + 1, current[j - 1] + 1});
-      if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1])) {
-        distance = std::min(distance, two_back[j - 2] + 1);
-      }
-      current.push_back(distance);
+      current[j] = std::min({replaced, previous[j] + 1, current[j - 1] + 1});
+      if (swapped) current[j] = std::min(current[j], rows[i - 2][j - 2] + 1);
     }
   }
-  return current[b.size()];
+  return rows[a.size()][b.size()];
 }
 
 /// The nearest of the candidates seen so far.
