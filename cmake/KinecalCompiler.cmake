@@ -14,7 +14,7 @@ endif()
 include(CheckLinkerFlag)
 check_linker_flag(CXX -fuse-ld=lld KINECAL_HAS_LLD)
 if(KINECAL_HAS_LLD)
-  add_link_options(-fuse-ld=lld)
+  add_link_options($<$<CONFIG:Debug>:-fuse-ld=lld>)  # a release is linked as where there is none
 else()
   message(STATUS "kinecal: without lld, linking takes longer")
 endif()

@@ -41,8 +41,10 @@ function(kinecal_link_levels program)
   foreach(level IN LISTS KINECAL_LEVELS)
     add_dependencies(${program} kinecal_evaluation_${level})
   endforeach()
-  # Before kinecal::io, whose references the static kinecal::solve would resolve otherwise.
-  target_link_libraries(${program} PRIVATE kinecal_evaluation_x86-64)
+  # Before kinecal::io, whose references the static kinecal::solve would resolve otherwise; GNU ld forgets what
+  # nobody before it refers to.
+  target_link_libraries(${program} PRIVATE
+    -Wl,--push-state,--no-as-needed kinecal_evaluation_x86-64 -Wl,--pop-state)
   file(RELATIVE_PATH from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/kinecal)
   set_target_properties(${program} PROPERTIES
     BUILD_RPATH_USE_ORIGIN ON

@@ -26,6 +26,7 @@ echo "== kinecal as it is installed, $(date +%H:%M:%S)"
 source=$PWD
 cd "$work"
 kinecal --version
+ldd "$(command -v kinecal)" | grep -q libkinecal_evaluation  # at this processor's level
 kinecal simulate "$source/examples/mobile_manipulator/mobile_manipulator.urdf" --target apriltag --poses 30 -o sim >/dev/null
 kinecal detect sim/capture.yaml --images sim/images --poses sim/poses.csv --camera sim/camera.yaml \
   --frame head_camera_rgb_optical_frame -o samples.yaml
