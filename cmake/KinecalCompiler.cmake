@@ -11,12 +11,15 @@ elseif(NOT CMAKE_CXX_COMPILER_LAUNCHER)
       CCACHE_NOHASHDIR=true CCACHE_MAXSIZE=10G ${KINECAL_CCACHE})
 endif()
 
-include(CheckLinkerFlag)
-check_linker_flag(CXX -fuse-ld=lld KINECAL_HAS_LLD)
-if(KINECAL_HAS_LLD)
-  add_link_options($<$<CONFIG:Debug>:-fuse-ld=lld>)  # a release is linked as where there is none
-else()
-  message(STATUS "kinecal: without lld, linking takes longer")
+# A release is linked as on machines without lld.
+if(CMAKE_BUILD_TYPE STREQUAL Debug)
+  include(CheckLinkerFlag)
+  check_linker_flag(CXX -fuse-ld=lld KINECAL_HAS_LLD)
+  if(KINECAL_HAS_LLD)
+    add_link_options(-fuse-ld=lld)
+  else()
+    message(STATUS "kinecal: without lld, linking takes longer")
+  endif()
 endif()
 
 # g++ collects garbage from 1 GB on, not from some 100 MB: a fifth of its time.
