@@ -39,7 +39,7 @@ Sample measure(const ParameterTable& truth, SeededRandom& random) {
 /// @returns  the table with the resulting values
 ParameterTable calibrate_with(const Loss& loss, double bound, const std::vector<Sample>& samples) {
   Tracked crate;
-  crate.block<"tracking">().options.weight = 1.0 / kSigma;
+  crate.block<"tracking">().options.sigma = kSigma;
   crate.block<"tracking">().options.loss = loss;
   ParameterTable table = Tracked().table(samples);
   table["gripper_axis_x"].lower = -bound;

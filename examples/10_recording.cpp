@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   if (!diagnostics.errors.empty()) return 1;
 
   HandEye crate;
-  crate.block<"hand_eye">().options.weight = 1.0 / 0.001;  // the camera is good to 1 mm
+  crate.block<"hand_eye">().options.sigma = 0.001;  // the camera is good to 1 mm
   crate.block<"hand_eye">().options.loss = {LossType::huber, 3.0};
   try {
     const CrateResult<HandEye> result = calibrate(crate, recording.samples);

@@ -88,10 +88,7 @@ Updates follow(const Work& work) {
   const CalibrationStep& step = work.calibration.steps.back();
   const auto frames = compared_frames(*step.problem, work.samples).value();
   const Eigen::VectorXd values = work.calibration.table.values();
-  const auto make = [&] {
-    return empty_problem(work.config, work.config.steps.back(), work.robot, work.calibration.table,
-                         work.samples);
-  };
+  const auto make = [&] { return step.problem->without_samples(); };
   OnlineCalibration online(make, step.free,
                            {values.data(), static_cast<std::size_t>(values.size())}, frames.first,
                            frames.second);

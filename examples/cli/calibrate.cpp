@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "fit.hpp"
 #include "input.hpp"
+#include "kinecal/io/doubts/judge_causes.hpp"
 #include "kinecal/report.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
@@ -140,7 +141,7 @@ int calibrate(const CalibrateOptions& options) {
   check_reports(options);
   if (!options.scene.empty()) check_scene(options);
   const Clock::time_point start = Clock::now();
-  const Input input = read_input(options);
+  Input input = read_input(options);
   print(input.diagnostics);
   if (!input.diagnostics.errors.empty()) return kBadInput;
 
@@ -151,17 +152,14 @@ int calibrate(const CalibrateOptions& options) {
   std::optional<ProgressLine> line(std::in_place);
   SolveOptions solving = solve_options(options);
   solving.meter = line->meter();
-  Fit fitted = fit(input, options, progress_line(), solving);
+  Fit fitted = fit(input, std::move(input.calibration), options, progress_line(), solving);
   line.reset();
   end_progress_line();
   Findings& findings = fitted.findings;
   const CalibrationResult& result = findings.result;
-  if (const std::string why = impossible_camera(fitted.calibration, result.table, fitted.samples);
-      result.converged && !why.empty()) {
-    findings.judgement.verdict = Grade::do_not_use;
-    findings.judgement.reasons.insert(findings.judgement.reasons.begin(), why);
-  }
-  add_causes(input, fitted);
+  judge_causes({input.config, input.robot, input.urdf_text, input.urdf, fitted.samples,
+                fitted.calibration},
+               findings);
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   write_reports(options, input, fitted);

@@ -6,9 +6,6 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <map>
-#include <memory>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -17,12 +14,11 @@
 #include "fit.hpp"
 #include "input.hpp"
 #include "interruption.hpp"
-#include "kinecal/io/assemble.hpp"
 #include "kinecal/io/cameras/set_camera.hpp"
 #include "kinecal/io/doubts/used_joints.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/report/checksum.hpp"
-#include "kinecal/trust/assess_shards.hpp"
+#include "kinecal/trust/judge_shards.hpp"
 #include "output.hpp"
 #include "process_group.hpp"
 #include "shard_folder.hpp"
@@ -74,18 +70,34 @@ class LogRun {
     content_ = check_files();
   }
 
-  /// Solves and assesses.
+  /// Solves, assesses and judges.
   [[nodiscard]] Findings calibrate() {
-    const std::vector<BlockConfig*> blocks = blocks_to_estimate(first_.config);
-    Findings findings = calibrate_once();
-    constexpr int kRounds = 10;
-    for (int round = 0; round < kRounds && findings.result.converged; ++round) {
-      if (!take_estimates(findings, blocks)) break;
-      problems_.clear();
-      Diagnostics ignored;  // they are known
-      first_.calibration = assemble(first_.config, first_.robot, first_.samples, ignored);
-      findings = calibrate_once();
+    ShardedCalibration sharded{std::move(first_.calibration),
+                               first_.samples,
+                               options_.samples,
+                               content_.samples,
+                               content_.residuals,
+                               content_.free,
+                               [&](int file) { return samples_of(file); },
+                               [&](const std::string& what, const NumbersOfShard& numbers_of) {
+                                 return folder_->exchange(what, numbers_of);
+                               }};
+    ProcedureOptions procedure;
+    procedure.solving.threads = options_.threads;
+    procedure.doubts = first_.diagnostics.doubts;
+    if (content_.doubts > 0) {
+      procedure.doubts.push_back(
+          fmt::format("{} about other files, printed above",
+                      counted(static_cast<std::size_t>(content_.doubts), "doubt")));
     }
+    JudgedResult judged = calibrate_and_judge(sharded, procedure);
+    first_.calibration = std::move(sharded.first);
+    const std::string why =
+        impossible_camera(first_.calibration, judged.result.table, first_.samples);
+    if (judged.result.converged && !why.empty()) judged.judgement.add(Grade::do_not_use, why);
+    Findings findings =
+        findings_of(first_.robot, first_.calibration, std::move(judged), first_.samples);
+    findings.images = images_of(first_.config);
     return findings;
   }
 
@@ -113,12 +125,6 @@ class LogRun {
     }
     for (const std::string& file : options_.samples) text += '\n' + ends_of(file);
     return sha256_text(text);
-  }
-
-  [[nodiscard]] ShardExchange exchange(const std::string& prefix) const {
-    return [this, prefix](const std::string& what, const NumbersOfShard& numbers_of) {
-      return folder_->exchange(prefix + what, numbers_of);
-    };
   }
 
   /// Samples, doubts, and for each step the residuals and the parameters that they determine.
@@ -156,7 +162,7 @@ class LogRun {
   }
 
   [[nodiscard]] LogContent check_files() const {
-    const auto all = exchange("files")("", [&](int file) { return numbers_of_file(file); });
+    const auto all = folder_->exchange("files", [&](int file) { return numbers_of_file(file); });
     LogContent content;
     const int size = first_.calibration.table.size();
     for (const std::vector<double>& of : all) {
@@ -188,12 +194,6 @@ class LogRun {
     return *first_.calibration.steps[static_cast<std::size_t>(step)].problem;
   }
 
-  /// A step's problem without samples.
-  [[nodiscard]] std::unique_ptr<AnyProblem> empty(int step) const {
-    return empty_problem(first_.config, first_.config.steps[static_cast<std::size_t>(step)],
-                         first_.robot, problem_of(step).table(), first_.samples);
-  }
-
   [[nodiscard]] std::vector<Sample> samples_of(int file) const {
     Diagnostics diagnostics;
     std::vector<Sample> samples =
@@ -206,152 +206,11 @@ class LogRun {
     return samples;
   }
 
-  /// A step's problem with the samples of a file.  Small logs are kept.
-  [[nodiscard]] std::shared_ptr<const AnyProblem> problem(int step, int file) {
-    constexpr int kKept = 100000;  // samples
-    if (Interruption::is_asked()) throw Interrupted();
-    const auto known = problems_.find({step, file});
-    if (known != problems_.end()) return known->second;
-    std::shared_ptr<AnyProblem> made = empty(step);
-    for (const Sample& sample : file == 0 ? first_.samples : samples_of(file)) {
-      made->add_sample(sample);
-    }
-    int kept = made->num_samples();
-    for (const auto& [key, one] : problems_) kept += one->num_samples();
-    if (kept <= kKept) problems_[{step, file}] = made;
-    return made;
-  }
-
-  /// The result of the first file alone: where to start.
-  [[nodiscard]] std::vector<double> start(const std::string& prefix) {
-    const auto of_first = [&](int file) {
-      if (file > 0) return std::vector<double>();
-      const CalibrationResult result = kinecal::calibrate(first_.calibration);
-      const Eigen::VectorXd values =
-          result.converged ? result.table.values() : first_.calibration.table.values();
-      return std::vector<double>(values.begin(), values.end());
-    };
-    return exchange(prefix)("start", of_first).front();
-  }
-
-  [[nodiscard]] Findings calibrate_once() {
-    std::string prefix = "step";
-    for (const StepConfig& step : first_.config.steps) {
-      for (const BlockConfig& block : step.error_blocks) {
-        prefix += fmt::format(" {}", block.estimated_sigma.value_or(0.0));
-      }
-    }
-    const Eigen::VectorXd table = first_.calibration.table.values();
-    const std::vector<double> initial(table.begin(), table.end()), guess = start(prefix);
-    Findings findings;
-    CalibrationResult& result = findings.result;
-    result.table = first_.calibration.table;
-    std::vector<double> values = initial;
-    for (int step = 0; step < steps(); ++step) {
-      if (!solve(step, fmt::format("{} {} ", prefix, step), initial, guess, values, findings))
-        break;
-    }
-    for (int i = 0; i < result.table.size(); ++i) {
-      result.table[i].value = values[static_cast<std::size_t>(i)];
-    }
-    complete(findings);
-    return findings;
-  }
-
-  /// @param values  in: where the step before ended; out: where this one did
-  /// @returns  whether it converged
-  bool solve(int number, const std::string& prefix, const std::vector<double>& initial,
-             const std::vector<double>& guess, std::vector<double>& values, Findings& findings) {
-    const CalibrationStep& step = first_.calibration.steps[static_cast<std::size_t>(number)];
-    const FreeSet& free = content_.free[static_cast<std::size_t>(number)];
-    const std::unique_ptr<AnyProblem> bare = empty(number);
-    Shards shards{bare.get(),
-                  files(),
-                  content_.samples,
-                  content_.residuals[static_cast<std::size_t>(number)],
-                  [&](int file) { return problem(number, file); },
-                  exchange(prefix)};
-    for (const auto& [parameter, value] : step.assignments) {
-      values[static_cast<std::size_t>(parameter)] = value;
-    }
-    const std::vector<double> reference = values;
-    for (const int p : free.parameters()) {
-      values[static_cast<std::size_t>(p)] = guess[static_cast<std::size_t>(p)];
-    }
-    SolveOptions solving;
-    solving.threads = options_.threads;
-    solving.max_num_iterations = step.max_num_iterations;
-    CalibrationResult& result = findings.result;
-    StepResult solved = solve_shards(shards, free, values, reference, solving);
-    solved.name = step.name;
-    result.converged = solved.converged;
-    result.termination = solved.termination;
-    result.steps.push_back(std::move(solved));
-    for (const int p : free.parameters()) {
-      if (std::find(result.calibrated.begin(), result.calibrated.end(), p) ==
-          result.calibrated.end()) {
-        result.calibrated.push_back(p);
-      }
-    }
-    if (!result.converged) return false;
-    ShardAssessment found = assess_shards(shards, free, initial, values, first_.samples);
-    found.assessment.step = step.name;
-    findings.assessments.push_back(std::move(found.assessment));
-    for (BlockStatistics& block : found.blocks) {
-      std::erase_if(result.blocks, [&](const auto& known) { return known.name == block.name; });
-      result.blocks.push_back(std::move(block));
-    }
-    misfits_ = std::move(found.misfits);
-    return true;
-  }
-
-  /// Adds the verdict, and what the report says of the samples.
-  void complete(Findings& findings) const {
-    findings.robot = first_.robot.name();
-    findings.poses = recorded_poses(first_.calibration, first_.samples);
-    findings.sources.resize(static_cast<std::size_t>(content_.samples));
-    findings.numbers.resize(findings.sources.size());
-    std::iota(findings.numbers.begin(), findings.numbers.end(), 1);
-    std::vector<std::string> doubts = first_.diagnostics.doubts;
-    if (content_.doubts > 0) {
-      doubts.push_back(fmt::format("{} about other files, printed above",
-                                   counted(static_cast<std::size_t>(content_.doubts), "doubt")));
-    }
-    findings.judgement = judge(first_.calibration, findings.result, findings.assessments, doubts);
-    judge_misfits(findings.judgement);
-    const std::string why =
-        impossible_camera(first_.calibration, findings.result.table, first_.samples);
-    if (findings.result.converged && !why.empty()) {
-      findings.judgement.add(Grade::do_not_use, why);
-    }
-    for (const ModelConfig& model : detail::models_of(first_.config)) {
-      if (model.image == ImageKind::automatic) continue;
-      findings.images[model.name] = model.image == ImageKind::raw ? "raw" : "rectified";
-    }
-  }
-
-  /// Files that do not fit the others.
-  void judge_misfits(Judgement& judgement) const {
-    constexpr double kMuch = 2.0;
-    if (misfits_.size() < 3) return;
-    std::vector<double> sorted = misfits_;
-    std::sort(sorted.begin(), sorted.end());
-    const double median = sorted[sorted.size() / 2];
-    for (std::size_t file = 0; file < misfits_.size(); ++file) {
-      if (misfits_[file] <= kMuch * median) continue;
-      judgement.add(Grade::use_with_care,
-                    fmt::format("{}: its residuals are {:.1f} times those of most files",
-                                options_.samples[file], misfits_[file] / median));
-    }
-  }
-
   const ResultOptions& options_;
   ProcessGroup group_;
   Input first_;
   std::optional<ShardFolder> folder_;
   LogContent content_;
-  std::map<std::pair<int, int>, std::shared_ptr<const AnyProblem>> problems_;
-  std::vector<double> misfits_;
 };
 
 /// Each file once.

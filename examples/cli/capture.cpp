@@ -13,12 +13,10 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "fit.hpp"
 #include "input.hpp"
 #include "interruption.hpp"
 #include "kinecal/capture/find_leds.hpp"
 #include "kinecal/capture/session.hpp"
-#include "kinecal/io/assemble.hpp"
 #include "kinecal/io/capture/session_end.hpp"
 #include "kinecal/io/capture/session_follower.hpp"
 #include "kinecal/io/config/read_config.hpp"
@@ -85,30 +83,15 @@ SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobo
   return {finder.name, camera.viewer, view_finder(finder, settings).find};
 }
 
-/// The joint positions of a pose; those that it does not move are as in a sample.
-Sample at_pose(const CapturePose& pose, const Sample& sample) {
-  Sample there;
-  there.joint_names = sample.joint_names;
-  there.joint_positions = sample.joint_positions;
-  for (std::size_t i = 0; i < there.joint_names.size(); ++i) {
-    const auto at =
-        std::find(pose.joint_names.begin(), pose.joint_names.end(), there.joint_names[i]);
-    if (at == pose.joint_names.end()) continue;
-    there.joint_positions[i] =
-        pose.positions[static_cast<std::size_t>(at - pose.joint_names.begin())];
-  }
-  return there;
-}
-
 /// Follows the session and says when it is enough.
 class Follower {
  public:
-  Follower(const CaptureOptions& options, const Robot& robot) {
-    input_.robot = robot;
-    input_.config = read_config(options.calibrate, input_.diagnostics);
-    print_or_throw(input_.diagnostics);
+  Follower(const CaptureOptions& options, const Robot& robot) : robot_(robot) {
+    Diagnostics diagnostics;
+    Config config = read_config(options.calibrate, diagnostics);
+    print_or_throw(diagnostics);
     if (!options.until.empty()) until_ = parse_accuracy(options.until);
-    follower_.emplace(input_.config, robot, until_ ? until_->frame : "");
+    follower_.emplace(std::move(config), robot, until_ ? until_->frame : "");
   }
 
   /// Takes a sample; prints what it tells on one line.
@@ -122,7 +105,6 @@ class Follower {
       fmt::print("  warning: {}\n", printable(state.problem));
       return;
     }
-    input_.samples.push_back(sample);
     for (const int number : state.online.dropped) {
       fmt::print("  warning: sample {} does not fit the others\n", number);
     }
@@ -138,7 +120,7 @@ class Follower {
 
   [[nodiscard]] bool enough() const { return enough_; }
   /// The calibration of all samples so far.
-  [[nodiscard]] Fit fit_all() const { return fit(input_, {}, {}, {}); }
+  [[nodiscard]] SessionCalibration calibrate_all() const { return follower_->calibrate_all(); }
 
  private:
   void print_state(const FollowedState& state) const {
@@ -146,7 +128,7 @@ class Follower {
     fmt::print("  '{}' in '{}': +- {:.2f} mm, {:.3f} deg", frame, in, 1e3 * state.online.position,
                state.online.rotation / kDegree);
     if (state.next) {
-      const bool turns = input_.robot.joint(state.next->joint).type != JointType::prismatic;
+      const bool turns = robot_.joint(state.next->joint).type != JointType::prismatic;
       fmt::print("; next, move {} by {:+.0f} {}", state.next->joint,
                  turns ? state.next->change / kDegree : 1e3 * state.next->change,
                  turns ? "deg" : "mm");
@@ -156,22 +138,12 @@ class Follower {
 
   /// Asks the whole calibration, and prints why it does not agree.
   void confirm() {
-    const Fit whole = fit_all();
-    const Findings& found = whole.findings;
-    if (found.assessments.empty()) return;
-    const Eigen::VectorXd values = found.result.table.values();
-    const std::string why = why_go_on(*until_,
-                                      {*whole.calibration.steps.back().problem,
-                                       {values.data(), static_cast<std::size_t>(values.size())},
-                                       found.assessments.back(),
-                                       found.judgement,
-                                       whole.samples},
-                                      ahead_);
+    const std::string why = why_go_on(*until_, calibrate_all(), ahead_);
     enough_ = why.empty();
     if (!enough_) fmt::print("  not enough yet: {}\n", printable(why));
   }
 
-  Input input_;
+  Robot robot_;
   std::optional<Accuracy> until_;
   std::optional<SessionFollower> follower_;
   std::vector<Sample> ahead_ = {};  ///< poses without a sample
@@ -422,7 +394,7 @@ int capture(const CaptureOptions& options) {
   const int code = options.result.empty() ? kDone : calibrate(calibration_of(options));
   if (session.follower && options.robot.starts_with(kSimulated)) {
     const std::string scene = options.robot.substr(kSimulated.size());
-    fmt::print("{}", truth_text(session.robot, scene, session.follower->fit_all()));
+    fmt::print("{}", truth_text(session.robot, scene, session.follower->calibrate_all()));
   }
   return code;
 }

@@ -11,7 +11,7 @@ std::vector<OutputFile> output_files(const Robot& robot, const UrdfFile& urdf,
                                      const Calibration& calibration, const Findings& findings,
                                      std::span<const Sample> samples, ResultFileOptions options) {
   for (const int i : findings.result.calibrated) {
-    if (const auto deviation = detail::deviation_of(findings, i)) {
+    if (const auto deviation = findings.deviation(i)) {
       options.deviations[i] = *deviation;
     }
   }

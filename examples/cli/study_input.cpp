@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <set>
 #include <utility>
 
 #include "input.hpp"
@@ -108,10 +109,7 @@ void set_drawn(const StudyFiles& files, const ParameterTable& places, StudyInput
 void set_up(const StudyFiles& files, StudyInput& input) {
   StudySetup& setup = input.setup;
   const CalibrationStep& step = input.calibration.steps.back();
-  setup.make = [&input] {
-    return empty_problem(input.config, input.config.steps.back(), input.robot,
-                         input.calibration.table, input.samples);
-  };
+  setup.make = [&problem = *step.problem] { return problem.without_samples(); };
   setup.free = step.free.parameters();
   if (setup.free.empty()) throw InputError(files.config + ": no free parameter affects a residual");
   setup.samples = input.samples;
@@ -135,42 +133,35 @@ StudyFit fit_study(const StudyInput& input, const Config& config, std::span<cons
   StudyFit fit;
   fit.solves = 0;
   std::vector<Sample> samples(all.begin(), all.end());
-  struct Fitted {
-    Calibration calibration;
-    CalibrationResult result;
-    std::vector<Assessment> assessments = {};
-  };
+  Diagnostics ignored;
+  Calibration calibration = assemble(config, input.robot, samples, ignored);
+  ignored.throw_if_errors();
   SolveOptions solving;
   solving.threads = 1;
   const auto once = [&] {
-    Diagnostics ignored;
-    Fitted fitted{assemble(config, input.robot, samples, ignored), {}};
-    ignored.throw_if_errors();
-    fitted.result = kinecal::calibrate(fitted.calibration, {}, solving);
-    for (const StepResult& step : fitted.result.steps) fit.seconds += step.seconds;
+    CalibrationResult result = kinecal::calibrate(calibration, {}, solving);
+    for (const StepResult& step : result.steps) fit.seconds += step.seconds;
     ++fit.solves;
-    return fitted;
+    return result;
   };
-  const auto last = [&](Fitted& fitted) -> const Assessment* {
-    if (input.keep_ruined || !fitted.result.converged) return nullptr;
-    AssessOptions options;
-    options.folds = 0;
-    fitted.assessments = assess(fitted.calibration, fitted.result, samples, options);
-    return &fitted.assessments.back();
+  Assessment assessed;
+  const auto last = [&](const CalibrationResult& result) -> const Assessment* {
+    if (input.keep_ruined || !result.converged) return nullptr;
+    assessed = assess(calibration, result, samples, {.folds = 1}).back();
+    return &assessed;
   };
-  int in_round = 0;
-  const auto leave_out = [&](const Fitted&, const CaptureError& error) {
-    samples.erase(samples.begin() + (error.sample - in_round));
-    ++in_round;
-    ++fit.left_out;
+  const auto leave_out = [&](const CalibrationResult&, const std::vector<CaptureError>& ruined) {
+    std::set<int> left;
+    for (const CaptureError& error : ruined) left.insert(error.sample);
+    for (CalibrationStep& step : calibration.steps) step.exclude(left);
+    for (auto sample = left.rbegin(); sample != left.rend(); ++sample) {
+      samples.erase(samples.begin() + *sample);
+    }
+    fit.left_out += static_cast<int>(left.size());
   };
-  const auto again = [&] {
-    in_round = 0;
-    return once();
-  };
-  const Fitted fitted = fit_without_ruined(again, last, leave_out);
-  fit.converged = fitted.result.converged;
-  const Eigen::VectorXd values = fitted.result.table.values();
+  const CalibrationResult result = fit_without_ruined(once, last, leave_out);
+  fit.converged = result.converged;
+  const Eigen::VectorXd values = result.table.values();
   fit.values.assign(values.begin(), values.end());
   return fit;
 }

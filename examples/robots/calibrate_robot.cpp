@@ -12,7 +12,6 @@
 #include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/text.hpp"
-#include "kinecal/solve/calibrate.hpp"
 #include "simulate.hpp"
 
 namespace kinecal::examples {
@@ -124,18 +123,19 @@ int calibrate(const RobotExample& example, const Options& options) {
   std::optional<OutputFolder> folder;
   if (!options.output.empty()) folder.emplace(options.output);
 
-  const Calibration calibration = calibration_of(example, samples);
-  const CalibrationResult result = kinecal::calibrate(calibration);
-  const Findings findings = find(example.robot, calibration, result, samples);
+  Calibration calibration = calibration_of(example, samples);
+  JudgedResult judged = calibrate_and_judge(calibration, samples);
+  const std::vector<Sample> used = used_samples(judged, samples);
+  const Findings findings = findings_of(example.robot, calibration, std::move(judged), used);
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   if (findings.judgement.verdict == Grade::do_not_use) return kNotGood;
   if (folder) {
     const cli::UrdfFile urdf{example.urdf, read_urdf_text(example.urdf)};
-    cli::write(*folder, cli::output_files(example.robot, urdf, calibration, findings, samples));
+    cli::write(*folder, cli::output_files(example.robot, urdf, calibration, findings, used));
   }
   if (!simulation) return kGood;
-  if (is_as_good_as_the_truth(hold_out(example, *simulation, options, result))) return kGood;
+  if (is_as_good_as_the_truth(hold_out(example, *simulation, options, findings.result))) return kGood;
   fmt::print(
       stderr,
       "error: samples that were held out show more than noise; calibrate with more of them?\n");

@@ -48,6 +48,7 @@
 #include "kinecal/io/doubts/find_doubts.hpp"
 #include "kinecal/io/doubts/initial_values.hpp"
 #include "kinecal/io/doubts/joint_positions.hpp"
+#include "kinecal/io/doubts/judge_causes.hpp"
 #include "kinecal/io/doubts/likely_causes.hpp"
 #include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/repeated_samples.hpp"

@@ -56,14 +56,14 @@ BasicProblem<S> by_hand() {
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"});
   problem.add_block("floor", PointToPlane(0, 0, 1, 0), {"camera"});
   problem.add_block("weight", PointToPoint{}, {"weight", "arm"});
-  problem.add_block("pixels", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01, .unit = "px"});
+  problem.add_block("pixels", PointToPixel{}, {"arm", "eye"}, {.scale = 0.01, .unit = "px"});
   problem.add_prior("keep", {"camera_joint", 1.0, 2.0, 3.0}, {.type = "outrageous", .unit = "1"});
   return problem;
 }
 
 All crate() {
   All crate;
-  crate.block<"pixels">().options.weight = 0.01;
+  crate.block<"pixels">().options.scale = 0.01;
   crate.prior<"keep">().position_scale = 2.0;
   crate.prior<"keep">().rotation_scale = 3.0;
   return crate;

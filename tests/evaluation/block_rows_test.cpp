@@ -41,9 +41,9 @@ TEST(BlockRows, OfADifferenceDoNotDependOnWhetherItIsKnownAsOne) {
   for (const auto& sensors : std::vector<std::vector<std::string>>{
            {"camera", "arm"}, {"camera", "second"}, {"counterweight", "finger"}}) {
     Problem known = test::wide_problem<Packet>(), unknown = test::wide_problem<Packet>();
-    known.add_block("b", PointToPoint{}, sensors, {.weight = 3.0, .loss = {LossType::cauchy, 0.2}});
+    known.add_block("b", PointToPoint{}, sensors, {.scale = 3.0, .loss = {LossType::cauchy, 0.2}});
     unknown.add_block("b", test::HiddenDifference{}, sensors,
-                      {.weight = 3.0, .loss = {LossType::cauchy, 0.2}});
+                      {.scale = 3.0, .loss = {LossType::cauchy, 0.2}});
     const auto x = test::random_values(known.table(), 0.1, 9);
     for (const Sample& s : test::wide_samples(known, x, 7)) {
       known.add_sample(s);

@@ -18,9 +18,9 @@ constexpr double kOrderOfSums = 1e-12;  // the same terms, added in another orde
 /// Camera against arm, the arm's points in the image, the camera's points on the ground.
 template <class P>
 void add_three_blocks(P& problem, const Loss& loss) {
-  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.weight = 2.0, .loss = loss});
-  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01});
-  problem.add_block("ground", PointToPlane(0, 0, 1, 0), {"camera"}, {.weight = 0.5});
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.scale = 2.0, .loss = loss});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.scale = 0.01});
+  problem.add_block("ground", PointToPlane(0, 0, 1, 0), {"camera"}, {.scale = 0.5});
 }
 
 template <class S = Packet>
@@ -269,8 +269,8 @@ TEST(Evaluate, GivesTheSameBytesForAnyNumberOfThreadsWithSamplesOfManyShapes) {
 /// A thread that meets the board before the hand adds up their sums all the same in one order.
 TEST(Evaluate, GivesTheSameBytesInWhateverOrderAThreadMeetsTheChains) {
   Problem problem = test::scene_problem();
-  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.weight = 2.0});
-  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01});
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.scale = 2.0});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.scale = 0.01});
   const auto in_hand = near_samples(50), on_board = near_samples(50, "board");
   // The first pack, and with it the first piece, is of the hand; the other pieces start with the
   // board: hand, hand, board, hand, board, ...
@@ -352,7 +352,7 @@ Sample behind_the_camera(Sample sample, const Problem& problem, std::span<const 
 template <class P>
 void add_sights(P& problem, const Loss& loss) {
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.loss = loss});
-  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01, .loss = loss});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.scale = 0.01, .loss = loss});
 }
 
 Problem sights(const Loss& loss) {

@@ -52,8 +52,8 @@ template <class S>
 BasicProblem<S> problem_of(std::span<const Sample> samples) {
   BasicProblem<S> problem = test::scene_problem<S>();
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
-                    {.weight = 100.0, .sigma = 0.01, .loss = {LossType::huber, 2.0}});
-  problem.add_block("pixels", PointToPixel{}, {"arm", "eye"}, {.weight = 0.5, .sigma = 2.0});
+                    {.sigma = 0.01, .loss = {LossType::huber, 2.0}});
+  problem.add_block("pixels", PointToPixel{}, {"arm", "eye"}, {.sigma = 2.0});
   for (const Sample& sample : samples) problem.add_sample(sample);
   return problem;
 }

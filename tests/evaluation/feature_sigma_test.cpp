@@ -17,7 +17,7 @@ using testing::HasSubstr;
 constexpr double kHandEye = 0.01, kPixels = 2.0;  // sigmas of the blocks, metres and pixels
 
 TermOptions options_of(double sigma, const Loss& loss = {}) {
-  return {.weight = 3.0 / sigma, .sigma = sigma, .loss = loss};
+  return {.scale = 3.0, .sigma = sigma, .loss = loss};
 }
 
 /// Points and pixels with errors of a few centimetres and pixels.

@@ -46,11 +46,11 @@ TEST(Sums, AreThoseOfRowsMultipliedOutForSeveralBlocksAndPriorsTogether) {
   const test::Scene scene{.arm_frame = "board"};
   const auto add_blocks = [](auto& problem, TermOptions options) {
     problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, options);
-    options.weight = 0.3;
+    options.scale = 0.3;
     options.loss.type = LossType::none;
     problem.add_block("finger", PointToPoint{}, {"arm", "finger"}, options);
     problem.add_block("ground", PointToPlane(0, 0, 1, 0), {"camera"}, options);
-    options.weight = 0.01;
+    options.scale = 0.01;
     options.loss = {LossType::huber, 0.2};
     problem.add_block("reprojection", PointToPixel{}, {"camera", "eye"}, options);
     problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0, {0, 0.01, -0.02, 0, 0, 0.03, 0}},

@@ -57,7 +57,7 @@ Eigen::MatrixXd residuals_and_jacobian(const BasicProblem<S>& problem, const std
 
 template <ErrorBlock B>
 void expect_packets_equal_doubles(const B& block, const std::vector<std::string>& sensors) {
-  const TermOptions options{.weight = 1.7, .loss = {LossType::cauchy, 0.5}};
+  const TermOptions options{.scale = 1.7, .loss = {LossType::cauchy, 0.5}};
   for (const int count : {1, 3, 8, 13}) {
     SCOPED_TRACE(std::to_string(count) + " samples, " + std::to_string(kLanes<Packet>) + " lanes");
     Problem packets = test::open_problem<Packet>(block, sensors, options);

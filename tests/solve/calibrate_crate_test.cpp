@@ -86,9 +86,9 @@ TEST(CalibrateCrate, APriorHoldsASingleParameterOfAJointModelOrASensor) {
     sample.observations.push_back({"camera", {{"", p}, {"", 1.1 * p}, {"", p + p}}, info});
   }
   Kept crate;
-  crate.block<"hand_eye">().options.weight = 1e-3;
+  crate.block<"hand_eye">().options.scale = 1e-3;
   crate.prior<"keep_gear">().mean[0] = 0.015;
-  crate.prior<"keep_gear">().options.weight = 1e6;
+  crate.prior<"keep_gear">().options.scale = 1e6;
   crate.prior<"keep_depth">().mean[0] = 0.025;
   crate.prior<"keep_depth">().joint_scale = 1e6;
   const auto result = calibrate(crate, samples);
@@ -101,7 +101,7 @@ TEST(CalibrateCrate, APriorHoldsASingleParameterOfAJointModelOrASensor) {
 TEST(CalibrateCrate, TakesTheOptionsOfItsBlocksAndOfSolving) {
   const std::vector<Sample> samples = exact_samples({0.02, -0.03, 0.004, -0.005, 0.006}, 12);
   Tracked crate;
-  crate.block<"tracking">().options.weight = 10.0;
+  crate.block<"tracking">().options.scale = 10.0;
   SolveOptions options;
   options.max_num_iterations = 1;
   const auto one = calibrate(Tracked(), samples, options),

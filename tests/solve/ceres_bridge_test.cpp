@@ -28,8 +28,8 @@ std::vector<Sample> samples() {
 /// The camera against the arm, or the arm against the image, or both.
 Problem problem_of(bool hand_eye, bool pixels) {
   Problem problem = test::scene_problem();
-  if (hand_eye) problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.weight = 2.0});
-  if (pixels) problem.add_block("pixels", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01});
+  if (hand_eye) problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.scale = 2.0});
+  if (pixels) problem.add_block("pixels", PointToPixel{}, {"arm", "eye"}, {.scale = 0.01});
   for (const Sample& sample : samples()) problem.add_sample(sample);
   return problem;
 }

@@ -23,7 +23,7 @@ Stacked stack(const Problem& problem, std::span<const double> values, const Free
   Stacked all;
   all.jacobian.resize(0, free.size());
   (void)evaluate(problem, values, &free, [&](int t, int, const TermResiduals& out) {
-    const double weight = problem.term(t).options.weight;
+    const double weight = problem.term(t).weight;
     const Eigen::Index rows = all.residual.size();
     all.residual.conservativeResize(rows + out.residual.size());
     all.jacobian.conservativeResize(rows + out.residual.size(), Eigen::NoChange);
@@ -36,10 +36,10 @@ Stacked stack(const Problem& problem, std::span<const double> values, const Free
 Problem noisy_problem(const Loss& loss) {
   Problem problem = test::scene_problem();
   TermOptions options;
-  options.weight = 3.0;
+  options.scale = 3.0;
   options.loss = loss;
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, options);
-  options.weight = 0.01;
+  options.scale = 0.01;
   problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, options);
   const auto truth = test::random_values(problem.table(), 0.01, 2);
   for (const Sample& sample : test::exact_samples(problem, truth, 6)) problem.add_sample(sample);

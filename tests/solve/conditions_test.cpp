@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 template <class S>
 BasicProblem<S> bar_problem() {
-  return test::open_problem<S>(ThermalBar{}, {"arm", "elbow_point"}, {.weight = 1000.0});
+  return test::open_problem<S>(ThermalBar{}, {"arm", "elbow_point"}, {.scale = 1000.0});
 }
 
 /// Samples whose bar has exactly the length of its temperature and load.

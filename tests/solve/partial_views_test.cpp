@@ -27,7 +27,7 @@ class PartialViews : public testing::Test {
   }
   [[nodiscard]] Eigen::VectorXd solution(const std::vector<Sample>& samples) const {
     Problem problem = test::scene_problem();
-    problem.add_block("points", PointToPoint{}, {"camera", "arm"}, {.weight = 1e3});
+    problem.add_block("points", PointToPoint{}, {"camera", "arm"}, {.scale = 1e3});
     problem.add_block("pixels", PointToPixel{}, {"arm", "eye"});
     for (const Sample& sample : samples) problem.add_sample(sample);
     Eigen::VectorXd values = test::scene_table().values();

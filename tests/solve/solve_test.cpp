@@ -179,7 +179,7 @@ TEST(Solve, ALossJudgesAFeatureByItsOwnSigma) {
   const auto solved_with_tukey = [](const std::vector<Sample>& given) {
     Problem problem = test::scene_problem();
     problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
-                      {.weight = 1.0 / kSigma, .sigma = kSigma, .loss = {LossType::tukey, 6.0}});
+                      {.sigma = kSigma, .loss = {LossType::tukey, 6.0}});
     for (const Sample& sample : given) problem.add_sample(sample);
     Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());
     return solve(problem, free_of(problem.table(), kObservable), values);
@@ -231,7 +231,7 @@ TEST(Solve, APriorCountsOncePerSampleAndPullsToZero) {
   constexpr int kSamples = 7;
   Problem problem = test::scene_problem();
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
-  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 5.0}, {.weight = kScale / 2.0});
+  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 5.0}, {.scale = kScale / 2.0});
   const int x = problem.table().index("camera_joint_x");
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(problem.table().size());
   truth(x) = kOff;
@@ -282,7 +282,7 @@ TEST(Solve, GivesTheSameBytesForAnyNumberOfThreads) {
   Problem problem = test::scene_problem();
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
                     {.loss = {LossType::cauchy, 0.002}});
-  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.scale = 0.01});
   for (std::size_t n = 0; n < 1500; ++n) problem.add_sample(samples[n % samples.size()]);
   const FreeSet free = free_of(problem.table(), kObservable);
   std::optional<Eigen::VectorXd> one;
@@ -307,7 +307,7 @@ TEST(Solve, GivesTheSameBytesForAnyNumberOfThreads) {
 StepResult solved_in(int iterations, const std::vector<Sample>& samples, double weight) {
   Problem problem = test::scene_problem();
   TermOptions options;
-  options.weight = weight;
+  options.scale = weight;
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, options);
   for (const Sample& sample : samples) problem.add_sample(sample);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(problem.table().size());

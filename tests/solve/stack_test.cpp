@@ -12,9 +12,9 @@ namespace {
 
 Problem problem_of(std::span<const Sample> samples) {
   Problem problem = test::scene_problem();
-  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.weight = 2.0});
-  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.weight = 0.01});
-  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {.weight = 0.1});
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.scale = 2.0});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.scale = 0.01});
+  problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {.scale = 0.1});
   for (const Sample& sample : samples) problem.add_sample(sample);
   return problem;
 }
@@ -76,7 +76,7 @@ TEST(Stack, HasTheCovarianceOfTheEstimates) {
   const std::vector<Sample> exact = test::exact_samples(empty, zero, 8);
   for (int n = 0; n < kEstimates; ++n) {
     Problem problem = test::scene_problem();
-    problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.weight = 1.0 / kSigma});
+    problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.scale = 1.0 / kSigma});
     for (Sample sample : exact) {
       for (Feature& feature : sample.observations[0].features) {
         for (int k = 0; k < 3; ++k) feature.point(k) += noise(random);

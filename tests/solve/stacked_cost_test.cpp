@@ -49,11 +49,11 @@ Problem problem_of(const Trial& trial) {
   problem.add_sensor(DepthCamera{}, {"camera", "camera_optical_frame"});
   problem.add_sensor(PinholeCamera{}, {"eye", "camera_optical_frame"});
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
-                    {.weight = 2.0, .loss = trial.loss});
+                    {.scale = 2.0, .loss = trial.loss});
   problem.add_block("reprojection", PointToPixel{}, {"arm", "eye"},
-                    {.weight = 0.002, .loss = trial.loss});
+                    {.scale = 0.002, .loss = trial.loss});
   if (trial.priors) {
-    problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {.weight = 0.1});
+    problem.add_prior("restrict", {"camera_joint", 0.0, 2.0, 3.0}, {.scale = 0.1});
     problem.add_prior("elbow", {"elbow", 1.0, 0.0, 0.0}, {.loss = {LossType::huber, 0.001}});
   }
   std::vector<double> truth = test::random_values(table, 0.03, 11);

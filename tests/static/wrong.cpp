@@ -70,7 +70,7 @@ auto& misspelt_block(Crate<Arm, Head, HandEye>& crate) {
 // expect: the crate has no part of this name; correct the name
 // meant: hand_eye
 void weight_of_misspelt_block(Crate<Arm, Head, HandEye>& crate) {
-  crate.block<"hand_eys">().options.weight = 2.0;
+  crate.block<"hand_eys">().options.scale = 2.0;
 }
 
 // expect: this parameter is not free in the crate; add it there or ask for another
@@ -242,7 +242,7 @@ Crate<Arm, Head, JointOffset<"elbow_flex_joint">, JointOffset<"head_pan_joint">,
 using WithoutJoint = Crate<Arm, Head, JointOffset<"elbow_flex_jiont">, HandEye>;
 auto calibrate_misspelt_joint(std::span<const Sample> samples) {
   WithoutJoint crate;
-  crate.block<"hand_eye">().options.weight = 2.0;
+  crate.block<"hand_eye">().options.scale = 2.0;
   (void)make_calibration(crate, samples);
   (void)WithoutJoint::free(crate.table(samples));
   return calibrate(crate, crate.table(samples), samples);

@@ -13,11 +13,10 @@
 #include <filesystem>
 #include <random>
 
-#include "fit.hpp"
 #include "kinecal/capture/find_leds.hpp"
 #include "kinecal/capture/session.hpp"
 #include "kinecal/io/assemble.hpp"
-#include "kinecal/io/capture/session_follower.hpp"
+#include "kinecal/io/capture/session_end.hpp"
 #include "kinecal/io/config/read_config.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
@@ -72,14 +71,6 @@ void judge_found(const SimulatedRobot& robot, const Found& found, Outcome& outco
   }
 }
 
-/// What the program says of the samples so far.
-bool is_good(const cli::Input& input) {
-  const Findings findings = cli::fit(input, {}, {}, {}).findings;
-  if (findings.judgement.verdict == Grade::do_not_use) return false;
-  const std::optional<PoseUncertainty>& pose = findings.assessments.back().pose;
-  return pose && pose->position <= kUntil;
-}
-
 /// Captures until the accuracy is reached, then calibrates.
 Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
   SimulatedSetup setup = simulated_fetch(seed);
@@ -93,10 +84,10 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
   }
   Diagnostics diagnostics;
   const std::string config_file = source_folder() + "/examples/robots/fetch/calibrate.yaml";
-  cli::Input input;
-  input.robot = setup.robot;
-  input.config = read_config(config_file, input.diagnostics);
-  SessionFollower follower(input.config, input.robot);
+  SessionFollower follower(read_config(config_file, diagnostics), setup.robot);
+  std::vector<Sample> samples;
+  Accuracy wanted;
+  wanted.position = kUntil;
   Outcome outcome;
   std::vector<SessionFinder> finders = {
       {"led_finder", [&](Stamp after) { return robot.next_view(after); },
@@ -118,20 +109,25 @@ Outcome capture(std::uint64_t seed, const std::vector<CapturePose>& all) {
   run_session(robot, next, finders, [&](const CapturedPose& captured) {
     ++outcome.poses;
     for (const Sample& sample : captured.samples) {
-      input.samples.push_back(sample);
+      samples.push_back(sample);
       const FollowedState state = follower.add(sample);
-      enough = state.online.known && state.online.position <= kUntil && is_good(input);
+      if (!wanted.reached(state.online)) continue;
+      std::vector<Sample> ahead;
+      for (auto i = static_cast<std::size_t>(outcome.poses); i < poses.size(); ++i) {
+        ahead.push_back(at_pose(poses[i], sample));
+      }
+      enough = why_go_on(wanted, follower.calibrate_all(), ahead).empty();
     }
   });
   outcome.minutes = static_cast<double>((robot.now() - start).count()) / kMinute;
-  const cli::Fit fitted = cli::fit(input, {}, {}, {});
+  const JudgedResult judged = follower.calibrate_all().judged;
   const TrueRobot truth(setup.robot, setup.truth, setup.frames);
   const TrueRobot drawn(setup.robot, {}, setup.frames);
-  const TrueRobot calibrated(setup.robot, fitted.findings.result.table, setup.frames);
-  outcome.before = led_difference(drawn, truth, input.samples);
-  outcome.error = led_difference(calibrated, truth, input.samples);
-  outcome.reasons = fitted.findings.judgement.reasons;
-  outcome.usable = fitted.findings.judgement.verdict != Grade::do_not_use;
+  const TrueRobot calibrated(setup.robot, judged.result.table, setup.frames);
+  outcome.before = led_difference(drawn, truth, samples);
+  outcome.error = led_difference(calibrated, truth, samples);
+  outcome.reasons = judged.judgement.reasons;
+  outcome.usable = judged.judgement.verdict != Grade::do_not_use;
   return outcome;
 }
 

@@ -107,7 +107,7 @@ template <ErrorBlock B>
 void check_rows_of(const B& block, const std::vector<std::string>& sensors,
                    const std::string& arm_frame = "hand", const std::string& base = "base_link") {
   TermOptions options;
-  options.weight = 1.7;
+  options.scale = 1.7;
   options.loss = {LossType::cauchy, 0.5};
   for (const std::string where : {"zero", "tiny", "random", "near_pi"}) {
     SCOPED_TRACE(where + ", features of the arm in " + arm_frame + ", base " + base);

@@ -139,8 +139,8 @@ void check_sums(const Scene& scene, AddBlocks&& add_blocks, const OracleRows& or
     SCOPED_TRACE("loss " + std::to_string(static_cast<int>(type)) + ", base " + scene.base +
                  ", the arm's points in " + scene.arm_frame);
     TermOptions options;
-    options.weight = 2.5;
-    options.loss = {type, options.weight * residual};
+    options.scale = 2.5;
+    options.loss = {type, options.scale * residual};
     Problem packets = wide_problem<Packet>(scene.base);
     BasicProblem<double> numbers = wide_problem<double>(scene.base);
     OracleProblem oracle = oracle_of(packets);

@@ -37,7 +37,7 @@ constexpr double kPointNoise = 1e-3;  ///< metres, of each coordinate
 struct NoisyScene {
   Eigen::VectorXd truth;
   std::vector<Sample> samples;
-  TermOptions options{.weight = 1.0 / kPointNoise, .sigma = kPointNoise, .sigma_given = true};
+  TermOptions options{.sigma = kPointNoise};
   std::vector<std::string> names = kNoisyFree;
   Calibration calibration = {};
   CalibrationResult result = {};

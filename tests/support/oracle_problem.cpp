@@ -32,7 +32,7 @@ void add(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
   }
   LossType type = options.loss.type;
   if (losses == Losses::convex && type != LossType::none) type = LossType::huber;
-  const double w2 = std::pow(options.weight * factor, 2);
+  const double w2 = std::pow(options.weight() * factor, 2);
   const Robust cost = robust(type, options.loss.scale, w2 * residual.squaredNorm());
   total.cost += 0.5 * cost.rho;
   total.gradient += cost.derivative * w2 * columns.transpose() * residual;
@@ -149,7 +149,7 @@ std::vector<double> OracleProblem::factors(const Term& term, const Views& views)
       if (term.of_pixels && view == views[0]) continue;
       if (const auto sigma = view->seen->features[i].sigma) variance += std::pow(*sigma, 2);
     }
-    if (there) all.push_back(variance > 0.0 ? term.options.sigma / std::sqrt(variance) : 1.0);
+    if (there) all.push_back(variance > 0.0 ? term.options.sigma.value_or(1.0) / std::sqrt(variance) : 1.0);
   }
   return all;
 }

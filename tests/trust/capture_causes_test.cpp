@@ -196,12 +196,8 @@ class CaptureCausesOfABoard : public testing::Test {
     noise_ = assess(calibration_, result, scenario_.samples)[0].noise;
   }
   [[nodiscard]] std::string cause() const {
-    return capture_cause(
-        [this] {
-          return empty_problem(scenario_.config, scenario_.config.steps[0], scenario_.robot,
-                               calibration_.table, scenario_.samples);
-        },
-        test::NoisyScene::span(values_), noise_, bad_);
+    return capture_cause(*calibration_.steps[0].problem, test::NoisyScene::span(values_), noise_,
+                         bad_);
   }
   std::vector<Feature>& pixels() { return bad_.observations[1].features; }
 

@@ -33,8 +33,7 @@ struct Calibrated {
   Assessment found;
 };
 
-Calibrated calibrate_once(const Simulated& simulated, const std::vector<Sample>& samples) {
-  const Calibration calibration = simulated.calibration(samples);
+Calibrated solve_and_assess(const Calibration& calibration, const std::vector<Sample>& samples) {
   SolveOptions solving;
   solving.threads = 1;
   Calibrated once{calibrate(calibration, {}, solving), {}};
@@ -43,15 +42,21 @@ Calibrated calibrate_once(const Simulated& simulated, const std::vector<Sample>&
   return once;
 }
 
-/// The same with the noise of each block in place of its sigma, as the program does.
-Calibrated calibrate_with_estimates(Simulated simulated, const std::vector<Sample>& samples) {
-  Calibrated once = calibrate_once(simulated, samples);
+Calibrated calibrate_once(const Simulated& simulated, const std::vector<Sample>& samples) {
+  return solve_and_assess(simulated.calibration(samples), samples);
+}
+
+/// The same with the noise of each block in place of its sigma, as calibrate_and_judge() does.
+Calibrated calibrate_with_estimates(const Simulated& simulated,
+                                    const std::vector<Sample>& samples) {
+  Calibration calibration = simulated.calibration(samples);
+  Calibrated once = solve_and_assess(calibration, samples);
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t b = 0; b < once.found.noise.size(); ++b) {
-      simulated.config.steps.back().error_blocks[b].estimated_sigma = once.found.noise[b].robust;
+      calibration.steps.back().set_sigma(static_cast<int>(b), once.found.noise[b].robust);
     }
-    once = calibrate_once(simulated, samples);
+    once = solve_and_assess(calibration, samples);
   }
   return once;
 }

@@ -113,7 +113,7 @@ Problem hand_eye(int samples) {
 TEST(Observability, WeighsAFeatureByItsOwnSigma) {
   Problem problem = test::scene_problem();
   problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
-                    {.weight = 100.0, .sigma = 0.01});
+                    {.sigma = 0.01});
   const std::vector<double> truth = test::random_values(problem.table(), 0.01, 6);
   std::vector<Sample> samples = test::exact_samples(problem, truth, 6);
   for (Sample& sample : samples) {
@@ -205,8 +205,8 @@ TEST(Observability, ItsConditionIsThatOfTheWeightedJacobian) {
     Problem problem = test::scene_problem();
     test::OracleProblem oracle = test::oracle_of(problem);
     const auto add_to = [&](auto& to) {
-      to.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.weight = 3.0});
-      to.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.weight = weight});
+      to.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.scale = 3.0});
+      to.add_block("reprojection", PointToPixel{}, {"arm", "eye"}, {.scale = weight});
     };
     add_to(problem);
     add_to(oracle);

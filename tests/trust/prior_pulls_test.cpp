@@ -19,7 +19,7 @@ Assessment with_prior(double sigma, double off) {
   Prior prior{.param = "head_pan", .position_scale = 1.0, .rotation_scale = 0.0};
   prior.mean[1] = scene.truth(scene.result.table.index("head_pan_x")) + off;
   prior.mean[2] = scene.truth(scene.result.table.index("head_pan_y"));
-  problem.add_prior("stand", prior, {.weight = 1.0 / (sigma * std::sqrt(40.0))});
+  problem.add_prior("stand", prior, {.scale = 1.0 / (sigma * std::sqrt(40.0))});
   scene.result = calibrate(scene.calibration);
   const Eigen::VectorXd values = scene.values();
   return assess(problem, scene.free(), scene.span(values), scene.samples);

@@ -45,8 +45,10 @@ std::pair<SomeFit, std::set<int>> fit_by_the_rule(const Simulated& simulated,
   std::set<int> left_out;
   const auto again = [&] { return fit_some(simulated, samples, left_out); };
   const auto last = [](const SomeFit& fit) { return &fit.found; };
-  const auto leave_out = [&](const SomeFit& fit, const CaptureError& error) {
-    left_out.insert(fit.numbers[static_cast<std::size_t>(error.sample)]);
+  const auto leave_out = [&](const SomeFit& fit, const std::vector<CaptureError>& ruined) {
+    for (const CaptureError& error : ruined) {
+      left_out.insert(fit.numbers[static_cast<std::size_t>(error.sample)]);
+    }
   };
   SomeFit fit = fit_without_ruined(again, last, leave_out);
   return {std::move(fit), std::move(left_out)};

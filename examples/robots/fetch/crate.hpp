@@ -26,14 +26,14 @@ using Camera = Camera3d<"camera", To<"head_camera_rgb_optical_frame">>;
 /// At 0.8 m the camera measures an LED to 1 mm; beyond 3 sigma it is an outlier.
 struct SameLeds : Block<"hand_eye", PointToPoint, "camera", "arm"> {
   SameLeds() {
-    options.weight = 1.0 / 0.001;
+    options.sigma = 0.001;
     options.loss = {LossType::huber, 3.0};
   }
 };
 /// At 1.5 m the camera measures the floor to 3 mm; samples of the LEDs do not show it.
 struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
   OnFloor() {
-    options.weight = 1.0 / 0.003;
+    options.sigma = 0.003;
     options.exclusive = true;
   }
 };

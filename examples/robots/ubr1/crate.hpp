@@ -21,12 +21,10 @@ struct Arm : Chain3d<"arm", To<"wrist_roll_link">> {
 };
 using Camera = Camera3d<"camera", To<"head_camera_rgb_optical_frame">>;
 
-/// Samples of the LEDs do not show the floor.  It has a third of the weight because it is farther
-/// away.
+/// Samples of the LEDs do not show the floor.
 struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
   OnFloor() {
     options.exclusive = true;
-    options.weight = 1.0 / 3.0;
   }
 };
 

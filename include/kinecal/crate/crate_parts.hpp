@@ -41,9 +41,10 @@ struct Camera3d : SensorOn<Name, C, DepthCamera> {};
 template <FixedString Name, StaticChain C>
 struct Camera2d : SensorOn<Name, C, PinholeCamera> {};
 
-/// An error block between sensors, with a name, a weight and a loss.  Both can be set later:
+/// An error block between sensors, with a name, a sigma and a loss.  Both can be set later:
 ///
-///     crate.block<"hand_eye">().options.loss = {LossType::huber, 0.01};
+///     crate.block<"hand_eye">().options.sigma = 0.001;
+///     crate.block<"hand_eye">().options.loss = {LossType::huber, 3.0};
 ///
 /// @tparam B        the block: one of errors/, or your own struct
 /// @tparam Sensors  names of the sensors that it compares
@@ -56,7 +57,7 @@ struct Block {
   static constexpr std::array<std::string_view, sizeof...(Sensors)> kSensorNames = {Sensors...};
 
   B error = {};                             ///< the error block
-  TermOptions options = default_options();  ///< weight, loss, names
+  TermOptions options = default_options();  ///< sigma, loss, names
 
  private:
   [[nodiscard]] static TermOptions default_options() {
@@ -77,7 +78,7 @@ struct PriorOn {
   double position_scale = 1.0;                                ///< 1 / m
   double rotation_scale = 1.0;                                ///< 1 / rad
   std::array<double, 7> mean = {};                            ///< see Prior
-  TermOptions options = {.type = "outrageous", .unit = "1"};  ///< weight, loss, names
+  TermOptions options = {.type = "outrageous", .unit = "1"};  ///< sigma, loss, names
 };
 
 /// A part of a crate that is a sensor.

@@ -33,7 +33,7 @@ struct NormalEquations {
   /// Adds those of other samples.
   NormalEquations& operator+=(const NormalEquations& other);
   /// Adds the residuals of a prior, which count once for each sample.
-  void add_prior(const TermOptions& options, const TermResiduals& residuals, int samples,
+  void add_prior(const PriorTerm& prior, const TermResiduals& residuals, int samples,
                  Losses losses);
 };
 

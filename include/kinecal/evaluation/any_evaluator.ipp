@@ -22,11 +22,11 @@ KINECAL_INLINE NormalEquations& NormalEquations::operator+=(const NormalEquation
   return *this;
 }
 
-KINECAL_INLINE void NormalEquations::add_prior(const TermOptions& options,
+KINECAL_INLINE void NormalEquations::add_prior(const PriorTerm& prior,
                                                const TermResiduals& residuals, int samples,
                                                Losses losses) {
-  const double w2 = options.weight * options.weight;
-  const auto loss = options.loss_for(losses)(w2 * residuals.residual.squaredNorm());
+  const double w2 = std::pow(prior.options.weight(), 2);
+  const auto loss = prior.options.loss_for(losses)(w2 * residuals.residual.squaredNorm());
   cost += 0.5 * samples * loss.rho;
   if (residuals.jacobian.cols() == 0) return;
   const double factor = samples * w2 * loss.derivative;

@@ -66,13 +66,21 @@ class BlockTerm final : public TermCode<S> {
     return kMayBeDifference;
   }
 
+  /// The block's sigma over the feature's own; one where the feature has none.
+  [[nodiscard]] static S factor_of(const S& precision, double sigma) {
+    return select(precision == S(0.0), S(1.0), precision * S(sigma));
+  }
+
   /// Adds the cost of a feature.
   /// @returns  the feature's weight in the normal equations
   S add_cost(const Views& views, std::size_t i, const Eigen::Matrix<S, kSize, 1>& residual,
              const S& weight, const Loss& loss, TermSums<S>& sums) const {
-    const double weight_of_term = views.term->options.weight;
+    const double weight_of_term = views.term->weight;
     S w2(weight_of_term * weight_of_term);
-    if (const S* factors = views.numbers.factors) w2 *= factors[i] * factors[i];
+    if (const S* precisions = views.numbers.precisions) {
+      const S factor = factor_of(precisions[i], views.term->sigma);
+      w2 *= factor * factor;
+    }
     S squared(0.0);
     for (int m = 0; m < kSize; ++m) squared += residual(m) * residual(m);
     squared *= w2;
@@ -171,8 +179,12 @@ void BlockTerm<B, S>::evaluate(const Views& views, bool derivatives, Linearizati
   const std::size_t features = views.features();
   out.weight.resize(features);
   out.residual.resize(features * kSize);
-  const S* factors = views.numbers.factors;
-  out.factor.assign(factors, factors != nullptr ? factors + features : nullptr);
+  out.factor.clear();
+  if (const S* precisions = views.numbers.precisions) {
+    for (std::size_t i = 0; i < features; ++i) {
+      out.factor.push_back(factor_of(precisions[i], views.term->sigma));
+    }
+  }
   if (!derivatives) {
     Rows rows;
     for (std::size_t i = 0; i < features; ++i) {

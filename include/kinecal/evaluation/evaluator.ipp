@@ -91,7 +91,7 @@ NormalEquations Evaluator<S>::normal_equations(std::span<const double> values, b
   for (const NormalEquations& part : parts) total += part;
   for (const PriorTerm& prior : problem_.priors()) {
     prior.evaluate(problem_.table(), values, derivatives ? &free_ : nullptr, residuals_);
-    total.add_prior(prior.options, residuals_, problem_.num_samples(), losses);
+    total.add_prior(prior, residuals_, problem_.num_samples(), losses);
   }
   return total;
 }

@@ -14,6 +14,9 @@ template <class S>
 class BasicProblem final : public AnyProblem {
  public:
   using AnyProblem::AnyProblem;
+  /// For without_samples().
+  BasicProblem(const BasicProblem& other, AnyProblem::WithoutSamples without)
+      : AnyProblem(other, without), evaluations_(other.evaluations_), codes_(other.codes_) {}
 
   /// Adds a sensor.
   /// @param walks  compiled walks along its chains, if there are any
@@ -59,12 +62,13 @@ class BasicProblem final : public AnyProblem {
 
   [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
                                                         int threads = 1) const override;
+  [[nodiscard]] std::unique_ptr<AnyProblem> without_samples() const override;
 
  private:
   template <class M>
   void add_sensor_of_type(const M& sensor, const Mount& mount) {
     this->mount(any_sensor(sensor), mount);
-    evaluations_.push_back({std::make_unique<detail::SensorCodeOf<M, S>>(sensor), {}});
+    evaluations_.push_back({std::make_shared<const detail::SensorCodeOf<M, S>>(sensor), {}});
   }
   template <class B>
   void add_block_of_type(const std::string& name, const B& block,
@@ -75,14 +79,15 @@ class BasicProblem final : public AnyProblem {
               .conditions = kConditionsOfBlock<B>,
               .feature_size = kResiduals<B>},
              sensors, parameters_of(block));
-    codes_.push_back(std::make_unique<detail::BlockTerm<B, S>>(block));
+    codes_.push_back(std::make_shared<const detail::BlockTerm<B, S>>(block));
   }
   void set_walks(const std::vector<detail::CompiledWalk<S>>& walks);
   void add_to_batch(std::size_t index, const detail::SampleLayout& layout,
                     std::span<const double> numbers) override;
+  std::vector<int> renumber_in_batches(std::span<const int> numbers) override;
 
   std::vector<detail::SensorEvaluation<S>> evaluations_;           ///< of each sensor
-  std::vector<std::unique_ptr<const detail::TermCode<S>>> codes_;  ///< of each term
+  std::vector<std::shared_ptr<const detail::TermCode<S>>> codes_;  ///< of each term
   std::vector<detail::Batches<S>> batches_;                        ///< by layout
 };
 

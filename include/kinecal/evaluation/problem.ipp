@@ -43,6 +43,21 @@ void BasicProblem<S>::add_to_batch(std::size_t index, const detail::SampleLayout
 }
 
 template <class S>
+std::vector<int> BasicProblem<S>::renumber_in_batches(std::span<const int> numbers) {
+  std::vector<int> left;
+  for (detail::Batches<S>& batches : batches_) {
+    batches = batches.renumbered(numbers);
+    left.push_back(batches.num_samples());
+  }
+  return left;
+}
+
+template <class S>
+std::unique_ptr<AnyProblem> BasicProblem<S>::without_samples() const {
+  return std::make_unique<BasicProblem>(*this, AnyProblem::WithoutSamples{});
+}
+
+template <class S>
 std::unique_ptr<AnyEvaluator> BasicProblem<S>::evaluator(const FreeSet& free, int threads) const {
   return std::make_unique<Evaluator<S>>(*this, free, threads);
 }

@@ -34,7 +34,7 @@ struct SensorState {
 /// How a problem evaluates a sensor in S.
 template <class S>
 struct SensorEvaluation {
-  std::unique_ptr<const SensorCode<S>> code;  ///< its functions
+  std::shared_ptr<const SensorCode<S>> code;  ///< its functions
   std::vector<CompiledWalk<S>> walks;         ///< of its first chains, as far as there are any
 };
 

@@ -63,11 +63,9 @@ inline void add_block(AnyProblem& problem, const BlockConfig& block, bool exclus
   options.exclusive = exclusive;
   options.beside = block.ground;
   options.loss = {loss_type(block.loss.type), block.loss.scale};
-  options.sigma = block.sigma.value_or(block.estimated_sigma.value_or(1.0));
-  options.sigma_given = block.sigma.has_value();
-  options.weight = 1.0 / options.sigma;
+  options.sigma = block.sigma;
   if (const auto scale = block.numbers.find("scale"); scale != block.numbers.end()) {
-    options.weight *= scale->second;
+    options.scale = scale->second;
   }
   entry->add(problem, block, options);
 }

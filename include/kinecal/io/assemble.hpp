@@ -4,7 +4,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
 #include <span>
 
 #include "kinecal/io/config/config.hpp"
@@ -18,15 +17,6 @@ namespace kinecal {
 /// @param samples  may be empty: then only the configuration and the robot are checked
 [[nodiscard]] Calibration assemble(const Config& config, const Robot& robot,
                                    std::span<const Sample> samples, Diagnostics& diagnostics);
-
-/// A step's problem without samples: its sensors and error blocks.
-/// @param table    all parameters, as in Calibration::table
-/// @param samples  decide which samples a plane block takes
-/// @throws InputError  if sensors or blocks do not fit the robot
-[[nodiscard]] std::unique_ptr<AnyProblem> empty_problem(const Config& config,
-                                                        const StepConfig& step, const Robot& robot,
-                                                        const ParameterTable& table,
-                                                        std::span<const Sample> samples);
 
 }  // namespace kinecal
 

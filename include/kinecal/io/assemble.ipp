@@ -15,13 +15,16 @@ namespace kinecal {
 
 namespace detail {
 
-inline void add_samples(AnyProblem& problem, std::span<const Sample> samples,
-                        Diagnostics& diagnostics) {
+/// @returns  indices of those that were added
+inline std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> samples,
+                                    Diagnostics& diagnostics) {
   constexpr std::size_t kReported = 5;  // the first few show what is wrong
   std::size_t refused = 0;
+  std::vector<int> added;
   for (const Sample& sample : samples) {
     try {
       problem.add_sample(sample);
+      added.push_back(static_cast<int>(&sample - samples.data()));
     } catch (const SampleError& e) {
       if (++refused <= kReported) diagnostics.errors.emplace_back(e.what());
     }
@@ -31,6 +34,7 @@ inline void add_samples(AnyProblem& problem, std::span<const Sample> samples,
                                              refused - kReported,
                                              refused - kReported == 1 ? " has" : "s have"));
   }
+  return added;
 }
 
 /// Says that no sample has an observation of a block's ground; empty if one has.
@@ -212,22 +216,14 @@ inline void prepare_search(CalibrationStep& step, const Config& config, const St
   for (const ModelConfig& model : of_step.models) {
     if (model.type == PinholeCamera::kType) eyes[model.name] = {model.image};
   }
-  add_samples(*few, few_samples(*step.problem, samples, eyes), ignored);
+  const FewSamples chosen = few_samples(*step.problem, samples, eyes);
+  for (const int i : add_samples(*few, chosen.samples, ignored)) {
+    step.of_excerpt.push_back(chosen.numbers[static_cast<std::size_t>(i)]);
+  }
   if (few->num_residuals() > 0) step.excerpt = std::move(few);
 }
 
 }  // namespace detail
-
-KINECAL_INLINE std::unique_ptr<AnyProblem> empty_problem(const Config& config,
-                                                         const StepConfig& step, const Robot& robot,
-                                                         const ParameterTable& table,
-                                                         std::span<const Sample> samples) {
-  Diagnostics diagnostics;
-  auto problem = make_problem(robot, config.base_link, table, detail::frames_of(config));
-  detail::add_models(*problem, step, samples, diagnostics);
-  diagnostics.throw_if_errors();
-  return problem;
-}
 
 KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
                                     std::span<const Sample> samples, Diagnostics& diagnostics) {
@@ -258,7 +254,7 @@ KINECAL_INLINE Calibration assemble(const Config& config, const Robot& robot,
         robot, config.base_link, detail::with_bounds(calibration.table, step, diagnostics), frames);
     detail::warn_of_unknown_sensors(step, samples, diagnostics);
     if (!detail::add_models(*problem, step, samples, diagnostics)) continue;
-    detail::add_samples(*problem, samples, diagnostics);
+    (void)detail::add_samples(*problem, samples, diagnostics);
     if (!diagnostics.errors.empty()) continue;
     if (!samples.empty()) detail::check_terms(step, *problem, samples, diagnostics);
     FreeSet free = detail::free_set(step, *problem, !samples.empty(), diagnostics);

@@ -170,10 +170,16 @@ inline void rectify(Observation& seen, const PinholeCamera& camera = {}) {
   seen.camera->p = {s[0], 0, s[2], 0, 0, s[1], s[3], 0, 0, 0, 1, 0};
 }
 
+/// Samples of an excerpt.
+struct FewSamples {
+  std::vector<Sample> samples;
+  std::vector<int> numbers;  ///< of each, among all samples
+};
+
 /// A few samples of each kind: those with observations of the same sensors.
 /// @param problem  that takes all of them
 /// @param cameras  the sensors that observe pixels, by name
-[[nodiscard]] inline std::vector<Sample> few_samples(
+[[nodiscard]] inline FewSamples few_samples(
     const AnyProblem& problem, std::span<const Sample> samples,
     const std::map<std::string, PinholeCamera>& cameras) {
   constexpr std::size_t kOfEachKind = 12;
@@ -183,12 +189,13 @@ inline void rectify(Observation& seen, const PinholeCamera& camera = {}) {
     for (const Observation& seen : samples[i].observations) sensors.insert(seen.sensor);
     kinds[sensors].push_back(i);
   }
-  std::vector<Sample> few;
+  FewSamples few;
   for (const auto& [sensors, indices] : kinds) {
     for (const std::size_t i : spread(indices.size(), kOfEachKind)) {
       const Sample& sample = samples[indices[i]];
-      few.push_back(with_few_features(problem.paired(sample).value_or(sample)));
-      for (Observation& seen : few.back().observations) {
+      few.numbers.push_back(static_cast<int>(indices[i]));
+      few.samples.push_back(with_few_features(problem.paired(sample).value_or(sample)));
+      for (Observation& seen : few.samples.back().observations) {
         const auto camera = cameras.find(seen.sensor);
         if (camera != cameras.end()) rectify(seen, camera->second);
       }

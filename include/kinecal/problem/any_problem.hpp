@@ -78,6 +78,14 @@ class AnyProblem {
   /// Adds a sample.  Sensors and blocks must have been added before.
   /// @throws SampleError  with the sample and what is missing or wrong; the sample is not added
   void add_sample(const Sample& sample);
+  /// Leaves samples out, as if they had never been added; the others move up.
+  /// @param samples  their numbers, from 0; any order
+  void exclude(const std::set<int>& samples);
+  /// Sets the noise of an error block: its weight changes in proportion to 1 / sigma.
+  /// @param sigma  standard deviation of a residual, in its unit; positive
+  void set_sigma(int term, double sigma);
+  /// A problem with the same sensors and terms, to which samples can be added.
+  [[nodiscard]] virtual std::unique_ptr<AnyProblem> without_samples() const = 0;
   /// The sample as blocks pair its features by their ids: see pair_features().
   [[nodiscard]] std::optional<Sample> paired(const Sample& sample) const;
 
@@ -100,10 +108,10 @@ class AnyProblem {
     return terms_[static_cast<std::size_t>(index)];
   }
   /// Number of samples that were added.
-  [[nodiscard]] int num_samples() const { return static_cast<int>(sources_.size()); }
+  [[nodiscard]] int num_samples() const { return static_cast<int>(samples_.size()); }
   /// Source location of a sample: "samples.yaml:37".
   [[nodiscard]] const std::string& source(int sample) const {
-    return sources_[static_cast<std::size_t>(sample)];
+    return samples_[static_cast<std::size_t>(sample)].source;
   }
   /// The feature to which residuals of a term in a sample belong: the i-th that it compares there.
   [[nodiscard]] FeatureLabel feature(int term, int sample, std::ptrdiff_t i) const;
@@ -139,6 +147,11 @@ class AnyProblem {
   /// Derived classes can be moved.
   AnyProblem& operator=(AnyProblem&&) = default;
 
+  /// Marks a constructor that leaves the samples behind.
+  struct WithoutSamples {};
+  /// The sensors and terms of another problem.
+  AnyProblem(const AnyProblem& other, WithoutSamples);
+
   /// Adds a sensor, apart from what evaluates it.
   void mount(std::shared_ptr<const AnySensor> sensor, const Mount& mount);
   /// Adds a term, apart from what evaluates it.
@@ -154,6 +167,10 @@ class AnyProblem {
   /// @param index  of its layout; layouts are numbered as they occur
   virtual void add_to_batch(std::size_t index, const detail::SampleLayout& layout,
                             std::span<const double> numbers) = 0;
+  /// Gives the samples in the batches other numbers, and removes some.
+  /// @param numbers  of each sample: its new number, or -1 to remove it
+  /// @returns  how many are left of each layout, by index
+  virtual std::vector<int> renumber_in_batches(std::span<const int> numbers) = 0;
 
   [[nodiscard]] const MountedSensor& sensor(int s) const {
     return sensors_[static_cast<std::size_t>(s)];
@@ -175,10 +192,16 @@ class AnyProblem {
   std::vector<MountedSensor> sensors_;
   std::vector<Term> terms_;
   std::vector<PriorTerm> priors_;
-  int residuals_ = 0;                 ///< of all features
-  std::vector<std::string> sources_;  ///< of each sample
-  /// Of a sample and a term: the features that it compares, unless they are 0, 1, 2 ... without ids.
-  std::map<std::pair<int, int>, std::vector<FeatureLabel>> labels_;
+
+  /// What is known of a sample beside its numbers.
+  struct AddedSample {
+    std::string source;  ///< "samples.yaml:37"
+    int residuals = 0;   ///< of all features
+    /// Of a term: the features that it compares, unless they are 0, 1, 2 ... without ids.
+    std::map<int, std::vector<FeatureLabel>> labels = {};
+  };
+  std::vector<AddedSample> samples_;
+  int residuals_ = 0;  ///< of all samples
 
   /// Samples of one layout.
   struct OfLayout {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "kinecal/problem/any_problem.hpp"
@@ -20,6 +21,26 @@ KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTa
       frames_(std::move(frames)) {
   (void)robot_.parent_joint(base_);
   set_owners();
+}
+
+KINECAL_INLINE AnyProblem::AnyProblem(const AnyProblem& other, WithoutSamples)
+    : robot_(other.robot_),
+      base_(other.base_),
+      table_(other.table_),
+      frames_(other.frames_),
+      owners_(other.owners_),
+      sensors_(other.sensors_),
+      terms_(other.terms_),
+      priors_(other.priors_) {}
+
+KINECAL_INLINE void AnyProblem::set_sigma(int term, double sigma) {
+  if (!(sigma > 0.0) || !std::isfinite(sigma)) {
+    throw std::invalid_argument("error block '" + this->term(term).name + "': sigma is " +
+                                std::to_string(sigma) + "; it must be positive");
+  }
+  Term& changed = terms_[static_cast<std::size_t>(term)];
+  changed.sigma = sigma;
+  changed.weight = changed.options.scale / sigma;
 }
 
 KINECAL_INLINE void AnyProblem::mount(std::shared_ptr<const AnySensor> sensor, const Mount& mount) {
@@ -59,7 +80,7 @@ using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
   SampleRow row;
   for (std::size_t s = 0; s < used.size(); ++s) row.add_sensor(used[s] ? &*observed[s] : nullptr);
   for (const auto& [t, features] : compared) {
-    row.add_term(t, factors_of(term(t), observed), conditions_of(term(t), sample));
+    row.add_term(t, precisions_of(term(t), observed), conditions_of(term(t), sample));
   }
   return row;
 }
@@ -104,24 +125,45 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   } catch (const SampleError& e) {
     throw SampleError(sample.source + ": " + e.what());
   }
+  AddedSample added{sample.source};
   for (const auto& [t, features] : compared) {
-    residuals_ += static_cast<int>(features.size()) * term(t).feature_size;
+    added.residuals += static_cast<int>(features.size()) * term(t).feature_size;
     const std::string& first = sensor(term(t).sensors.front()).mount().name;
     const Observation* recorded = sample.observation(first);
     auto labels = detail::labels_of(term(t), features, *recorded,
                                     in_order ? *in_order->observation(first) : *recorded);
-    if (!labels.empty()) labels_.emplace(std::pair(num_samples(), t), std::move(labels));
+    if (!labels.empty()) added.labels.emplace(t, std::move(labels));
   }
   auto& [layout, of_layout] =
       *layouts_.try_emplace(std::move(row.layout), OfLayout{layouts_.size()}).first;
   add_to_batch(of_layout.index, layout, row.numbers);
   ++of_layout.samples;
-  sources_.push_back(sample.source);
+  residuals_ += added.residuals;
+  samples_.push_back(std::move(added));
+}
+
+KINECAL_INLINE void AnyProblem::exclude(const std::set<int>& samples) {
+  std::vector<AddedSample> kept;
+  std::vector<int> numbers;  // the new one of each sample
+  for (int i = 0; i < num_samples(); ++i) {
+    const bool stays = !samples.contains(i);
+    numbers.push_back(stays ? static_cast<int>(kept.size()) : -1);
+    AddedSample& sample = samples_[static_cast<std::size_t>(i)];
+    if (stays) {
+      kept.push_back(std::move(sample));
+    } else {
+      residuals_ -= sample.residuals;
+    }
+  }
+  samples_ = std::move(kept);
+  const std::vector<int> left = renumber_in_batches(numbers);
+  for (auto& [layout, of_layout] : layouts_) of_layout.samples = left[of_layout.index];
 }
 
 KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdiff_t i) const {
-  const auto labels = labels_.find({sample, term});
-  if (labels == labels_.end()) return {static_cast<int>(i)};
+  const auto& all = samples_[static_cast<std::size_t>(sample)].labels;
+  const auto labels = all.find(term);
+  if (labels == all.end()) return {static_cast<int>(i)};
   return labels->second.at(static_cast<std::size_t>(i));
 }
 
@@ -142,7 +184,7 @@ KINECAL_INLINE int AnyProblem::shared_samples(int term) const {
 }
 
 KINECAL_INLINE void AnyProblem::check_no_samples() const {
-  if (sources_.empty()) return;
+  if (samples_.empty()) return;
   throw std::logic_error("sensors and error blocks are added before the samples");
 }
 
@@ -171,6 +213,7 @@ KINECAL_INLINE void AnyProblem::add_term(Term term, const std::vector<std::strin
   }
   term.parameters = parameters_of_block(term.name, own);
   terms_.push_back(std::move(term));
+  set_sigma(num_terms() - 1, terms_.back().options.sigma.value_or(1.0));
 }
 
 KINECAL_INLINE int AnyProblem::sensor_index(const std::string& name) const {

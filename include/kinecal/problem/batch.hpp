@@ -38,7 +38,7 @@ struct ObservationLayout {
 /// Where the numbers are that a term takes besides the observations of its sensors.
 struct TermLayout {
   int term = 0;                   ///< its index in the problem
-  std::size_t factors = kAbsent;  ///< first number, or kAbsent if all are one
+  std::size_t precisions = kAbsent;  ///< first number, or kAbsent if no feature has its own sigma
   std::size_t conditions = 0;     ///< first number
 
   auto operator<=>(const TermLayout&) const = default;  // NOLINT(modernize-use-nullptr)
@@ -62,9 +62,9 @@ struct SampleRow {
   /// Appends what the next sensor observed; nullptr: nothing.
   void add_sensor(const ObservationNumbers* seen);
   /// Appends what a term takes.
-  /// @param factors     of each feature: the block's sigma over its own; empty: all are one
+  /// @param precisions  of each feature: 1 / sigma, or 0 if it has none; empty: none has one
   /// @param conditions  those that the block takes, in its order
-  void add_term(int term, const std::vector<double>& factors,
+  void add_term(int term, const std::vector<double>& precisions,
                 const std::vector<double>& conditions);
 
  private:
@@ -117,8 +117,8 @@ struct BatchObservation {
 /// What a term takes of the samples of a batch besides the observations of its sensors.
 template <class S>
 struct BatchTerm {
-  /// Of each feature, lane by lane: the block's sigma over the feature's own; nullptr: all are one.
-  const S* factors = nullptr;
+  /// Of each feature, lane by lane: 1 / sigma, or 0 if it has none of its own; nullptr: none has one.
+  const S* precisions = nullptr;
   const S* conditions = nullptr;  ///< those that the block takes, lane by lane
 };
 
@@ -150,6 +150,25 @@ class Batches {
     }
   }
 
+  /// The same samples with other numbers, without some of them.
+  /// @param numbers  of each sample of the problem: its new number, or -1 to leave it out
+  [[nodiscard]] Batches renumbered(std::span<const int> numbers) const {
+    Batches kept(layout_);
+    std::vector<double> row(layout_.size);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const int number = numbers[static_cast<std::size_t>(samples_[i])];
+      if (number < 0) continue;
+      const S* const batch = numbers_.data() + i / kLanes<S> * layout_.size;
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        row[k] = lane(batch[k], static_cast<int>(i % kLanes<S>));
+      }
+      kept.add(number, row);
+    }
+    return kept;
+  }
+
+  /// Number of samples.
+  [[nodiscard]] int num_samples() const { return static_cast<int>(samples_.size()); }
   /// What the numbers of a batch are.
   [[nodiscard]] const SampleLayout& layout() const { return layout_; }
   /// Number of batches; none of samples that no term takes.
@@ -174,7 +193,8 @@ class Batches {
   /// What a term takes of the samples of a batch.
   [[nodiscard]] BatchTerm<S> of_term(std::size_t batch, const TermLayout& term) const {
     const S* numbers = numbers_.data() + batch * layout_.size;
-    return {term.factors == kAbsent ? nullptr : numbers + term.factors, numbers + term.conditions};
+    return {term.precisions == kAbsent ? nullptr : numbers + term.precisions,
+            numbers + term.conditions};
   }
 
  private:

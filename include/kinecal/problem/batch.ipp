@@ -30,9 +30,9 @@ KINECAL_INLINE void SampleRow::add_sensor(const ObservationNumbers* seen) {
   place.usable = append(misses_some ? seen->usable : std::vector{1.0});
 }
 
-KINECAL_INLINE void SampleRow::add_term(int term, const std::vector<double>& factors,
+KINECAL_INLINE void SampleRow::add_term(int term, const std::vector<double>& precisions,
                                         const std::vector<double>& conditions) {
-  const std::size_t of_features = factors.empty() ? kAbsent : append(factors);
+  const std::size_t of_features = precisions.empty() ? kAbsent : append(precisions);
   layout.terms.push_back({term, of_features, append(conditions)});
 }
 

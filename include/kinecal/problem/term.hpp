@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,18 +18,20 @@ namespace kinecal {
 
 /// How a term enters the cost and reports.
 struct TermOptions {
-  double weight = 1.0;  ///< factor of the residual: scale / sigma
-  double sigma = 1.0;   ///< the standard deviation in `weight`: the weight of a feature that has
-                        ///< its own is weight * sigma / Feature::sigma
-  bool sigma_given = false;  ///< somebody stated `sigma`: the residuals are compared with it
-  Loss loss = {};            ///< of each feature's weighted residual
-  bool exclusive = false;    ///< use only samples in which no other sensor observes anything
+  double scale = 1.0;  ///< factor of the residual: its weight is scale / sigma
+  /// Standard deviation of a residual, in its unit; residuals are compared with it.  Empty: it counts as one
+  /// until it is estimated (trust/calibrate_and_judge.hpp).  A feature's own sigma replaces it.
+  std::optional<double> sigma = {};
+  Loss loss = {};          ///< of each feature's weighted residual
+  bool exclusive = false;  ///< use only samples in which no other sensor observes anything
   /// Use only samples with an observation of this sensor, too; empty: all samples.  It need not be a
   /// sensor of the problem, and does not count for `exclusive`: "ground" marks samples of the floor.
   std::string beside = {};
   std::string type = {};   ///< for reports: "chain3d_to_chain3d"
   std::string unit = "m";  ///< of the unweighted residual, for reports: "m", "px" or "1"
 
+  /// Factor of the residual by what was stated.
+  [[nodiscard]] double weight() const { return scale / sigma.value_or(1.0); }
   /// The loss, or its convex substitute.
   [[nodiscard]] Loss loss_for(Losses losses) const {
     return losses == Losses::convex ? loss.convex() : loss;
@@ -65,7 +68,9 @@ inline constexpr std::size_t kMostOwn = 32;
 /// A term of the cost: an error block with the sensors that it compares.
 struct Term {
   std::string name;                           ///< of the error block
-  TermOptions options = {};                   ///< weight, loss, names
+  TermOptions options = {};                   ///< sigma, loss, names
+  double sigma = 1.0;   ///< the stated one, or an estimate: standard deviation of a residual
+  double weight = 1.0;  ///< scale / sigma; that of a feature with a sigma: scale / Feature::sigma
   std::vector<int> sensors = {};              ///< indices in the problem of those that are compared
   std::vector<int> parameters = {};           ///< table indices of the block's own parameters
   std::span<const Quantity> quantities = {};  ///< what the block takes of each of its sensors
@@ -81,7 +86,7 @@ struct Term {
 struct PriorTerm {
   std::string name;     ///< of the prior, for reports
   Prior prior;          ///< which parameters should stay small
-  TermOptions options;  ///< weight, loss, names
+  TermOptions options;  ///< sigma, loss, names
 
   /// Its unweighted residuals; they count once for each sample.
   /// @param values  of all parameters of the table

@@ -24,24 +24,24 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
   return seen;
 }
 
-/// The block's sigma over that of each feature; empty if no feature has its own.  Variances of
+/// 1 / sigma of each feature, 0 for one without a sigma; empty if no feature has one.  Variances of
 /// several sensors add up.  A pixel block takes those of the camera, which are in pixels.
-[[nodiscard]] inline std::vector<double> factors_of(const Term& term, const Observed& observed) {
+[[nodiscard]] inline std::vector<double> precisions_of(const Term& term, const Observed& observed) {
   const auto seen = observations_of(term, observed);
   const auto quantities = term.quantities;
   const bool of_pixels =
       std::find(quantities.begin(), quantities.end(), Quantity::pixel) != quantities.end();
-  std::vector<double> factors;
+  std::vector<double> variances;
   for (std::size_t s = 0; s < seen.size(); ++s) {
     const std::vector<double>& variance = seen[s]->variance;
     if (variance.empty() || (of_pixels && quantities[s] != Quantity::pixel)) continue;
-    factors.resize(variance.size(), 0.0);
-    for (std::size_t i = 0; i < variance.size(); ++i) factors[i] += variance[i];
+    variances.resize(variance.size(), 0.0);
+    for (std::size_t i = 0; i < variance.size(); ++i) variances[i] += variance[i];
   }
-  for (double& of_feature : factors) {
-    of_feature = of_feature > 0.0 ? term.options.sigma / std::sqrt(of_feature) : 1.0;
+  for (double& variance : variances) {
+    variance = variance > 0.0 ? 1.0 / std::sqrt(variance) : 0.0;
   }
-  return factors;
+  return variances;
 }
 
 /// Labels of the features that a term compares in a sample; empty if they are 0, 1, 2 ... and have no ids.

@@ -10,44 +10,23 @@
 
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/report/text.hpp"
-#include "kinecal/solve/calibrate.hpp"
-#include "kinecal/trust/assess.hpp"
-#include "kinecal/trust/judge.hpp"
+#include "kinecal/trust/calibrate_and_judge.hpp"
 
 namespace kinecal {
 
-/// A sample that the fit does not use.
-struct LeftOutSample {
-  int number = 0;      ///< from 1, in the order of the files
-  std::string source;  ///< source location: "samples.yaml:4711"
-  std::string why;     ///< "error block 'hand_eye', feature 2 is 48 mm off, ..."
-};
-
 /// What is reported of a calibration.
-struct Findings {
-  std::string robot;                    ///< its name
-  CalibrationResult result;             ///< of the samples that were not left out
-  std::vector<Assessment> assessments;  ///< of its steps
-  Judgement judgement;                  ///< the verdict
-  std::vector<LeftOutSample> left_out;  ///< by the rule of trust/captures.hpp, or by the user
-  std::vector<std::string> sources;     ///< source location of each sample of the problems
-  std::vector<int> numbers;             ///< from 1, in the order of the files, of each of them
-  std::map<int, std::string> causes;    ///< likely ones of bad samples, by number in the problem
-  std::map<std::string, std::string>
-      images;                ///< "raw" or "rectified", of cameras where it was chosen
-  RecordedPoses poses = {};  ///< of the samples that were used
+struct Findings : JudgedResult {
+  std::string robot = {};                            ///< its name
+  std::map<std::string, std::string> images = {};  ///< "raw" or "rectified", where it was chosen,
+                                                   ///< by camera
+  RecordedPoses poses = {};                        ///< of the samples that were used
 };
 
-/// What is wrong with a sample: "error block 'hand_eye': feature 2 is 48 mm off, all others below 3 mm".
-[[nodiscard]] std::string capture_text(const CaptureError& error, const Assessment& assessment);
-
-/// Assesses and judges a calibration that has run.
-/// @param samples  those of the calibration, in their order; their numbers are 1, 2, 3 ...
-/// @param doubts   about the input, as sentences
-[[nodiscard]] Findings find(const Robot& robot, const Calibration& calibration,
-                            CalibrationResult result, std::span<const Sample> samples,
-                            const AssessOptions& options = {},
-                            const std::vector<std::string>& doubts = {});
+/// What is reported of a judged calibration.
+/// @param calibration  that of the result
+/// @param samples      those of its problems, in their order
+[[nodiscard]] Findings findings_of(const Robot& robot, const Calibration& calibration,
+                                   JudgedResult judged, std::span<const Sample> samples);
 
 namespace detail {
 
@@ -62,8 +41,6 @@ template <class T>
   }
   return nullptr;
 }
-/// Standard deviation of a parameter in the last step that frees it.
-[[nodiscard]] std::optional<double> deviation_of(const Findings& findings, int parameter);
 /// "; likely cause: ...", or nothing.
 /// @param sample  by number in the problem
 [[nodiscard]] std::string cause_text(const Findings& findings, int sample);

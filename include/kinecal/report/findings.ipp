@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <stdexcept>
 
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/text.hpp"
@@ -56,18 +54,11 @@ KINECAL_INLINE std::string note_on(const Parameter& parameter, double deviation)
   return "";
 }
 
-KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int parameter) {
-  for (auto a = findings.assessments.rbegin(); a != findings.assessments.rend(); ++a) {
-    if (const auto deviation = a->deviation(parameter)) return deviation;
-  }
-  return std::nullopt;
-}
-
 [[nodiscard]] inline std::string parameters_table(const Findings& findings) {
   TextTable table({"parameter", "calibrated", "+-", "unit", "value", "from", ""});
   for (const int i : findings.result.calibrated) {
     const Parameter& parameter = findings.result.table[i];
-    const auto deviation = deviation_of(findings, i);
+    const auto deviation = findings.deviation(i);
     const auto [text, unit] = for_people(parameter.value, parameter.unit);
     const std::string known =
         deviation && std::isfinite(*deviation) ? for_people(*deviation, parameter.unit).first : "-";
@@ -147,35 +138,12 @@ KINECAL_INLINE std::optional<double> deviation_of(const Findings& findings, int 
 
 }  // namespace detail
 
-KINECAL_INLINE Findings find(const Robot& robot, const Calibration& calibration,
-                             CalibrationResult result, std::span<const Sample> samples,
-                             const AssessOptions& options, const std::vector<std::string>& doubts) {
-  Findings findings;
+KINECAL_INLINE Findings findings_of(const Robot& robot, const Calibration& calibration,
+                                    JudgedResult judged, std::span<const Sample> samples) {
+  Findings findings{std::move(judged)};
   findings.robot = robot.name();
   findings.poses = recorded_poses(calibration, samples);
-  findings.result = std::move(result);
-  for (const Sample& sample : samples) findings.sources.push_back(sample.source);
-  findings.numbers.resize(samples.size());
-  std::iota(findings.numbers.begin(), findings.numbers.end(), 1);
-  const std::vector<StepResult>& steps = findings.result.steps;
-  if (findings.result.converged || (!steps.empty() && steps.back().iterations > 0)) {
-    try {
-      findings.assessments = assess(calibration, findings.result, samples, options);
-    } catch (const std::domain_error&) {  // it ended with a point behind a camera: not converged
-    }
-  }
-  findings.judgement = judge(calibration, findings.result, findings.assessments, doubts);
   return findings;
-}
-
-KINECAL_INLINE std::string capture_text(const CaptureError& error, const Assessment& assessment) {
-  const BlockNoise& noise = assessment.noise[static_cast<std::size_t>(error.term)];
-  std::string text = fmt::format("error block '{}': {} is {} off", noise.block,
-                                 error.feature.text(), reading(error.distance, noise.unit));
-  if (error.others > 0.0) {
-    text += fmt::format(", all others at most {}", reading(error.others, noise.unit));
-  }
-  return text + fmt::format(", {:.1f} times the noise", error.times);
 }
 
 KINECAL_INLINE std::string findings_text(const Findings& findings) {

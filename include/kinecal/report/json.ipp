@@ -108,7 +108,7 @@ KINECAL_INLINE std::string json_number(double value) {
 
 [[nodiscard]] inline std::string json_parameter(const Findings& findings, int i) {
   const Parameter& parameter = findings.result.table[i];
-  const auto deviation = deviation_of(findings, i);
+  const auto deviation = findings.deviation(i);
   const bool known = deviation && std::isfinite(*deviation);
   return fmt::format(
       R"({{"name": {}, "value": {}, "initial": {}, "unit": {}, "sigma": {}, "significant": {}}})",

@@ -70,7 +70,7 @@ namespace detail {
     reported.unit = parameter.unit;
     reported.value = parameter.value;
     reported.initial = parameter.initial;
-    const auto deviation = deviation_of(findings, i);
+    const auto deviation = findings.deviation(i);
     if (deviation && std::isfinite(*deviation)) reported.sigma = deviation;
     reported.note = deviation                      ? note_on(parameter, *deviation)
                     : findings.assessments.empty() ? ""
@@ -85,7 +85,7 @@ inline void add_correlations(const Findings& findings, ReportData& data) {
   std::vector<Eigen::Index> known;
   for (Eigen::Index i = 0; i < state.covariance.rows(); ++i) {
     const int parameter = state.parameters[static_cast<std::size_t>(i)];
-    const auto deviation = deviation_of(findings, parameter);
+    const auto deviation = findings.deviation(parameter);
     if (!(state.covariance(i, i) > 0.0) || !deviation || !std::isfinite(*deviation)) continue;
     known.push_back(i);
     data.correlated.push_back(findings.result.table[parameter].name);

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,6 +26,14 @@ struct CalibrationStep {
   std::vector<std::pair<int, double>> assignments;
   std::vector<UnknownFrame> unknown_frames = {};  ///< whose pose is searched for
   std::unique_ptr<AnyProblem> excerpt = nullptr;  ///< a few samples for that search; null: all
+  std::vector<int> of_excerpt = {};  ///< of each sample of the excerpt: its number in the problem
+
+  /// Sets the noise of an error block: AnyProblem::set_sigma(), in the excerpt, too.
+  void set_sigma(int term, double sigma);
+  /// Leaves samples out: AnyProblem::exclude(), in the excerpt, too.  Parameters that affect none of
+  /// the residuals that are left are not free any more.
+  /// @throws std::invalid_argument  if no free parameter affects a residual any more
+  void exclude(const std::set<int>& samples);
 };
 
 /// Everything that calibrate() needs.
@@ -51,6 +60,13 @@ using Progress = std::function<void(const std::string& step, int iteration, doub
 [[nodiscard]] CalibrationResult calibrate(const Calibration& calibration,
                                           const Progress& progress = {},
                                           const SolveOptions& solving = {});
+
+namespace detail {
+/// Adds a step that has run: its parameters, whether it converged.
+void add_step(StepResult step, const FreeSet& free, CalibrationResult& result);
+/// Adds statistics of error blocks; those of a block that occurs in several steps are the last step's.
+void merge_statistics(std::vector<BlockStatistics>& all, std::vector<BlockStatistics> more);
+}  // namespace detail
 
 /// A calibration of one step: the problem with these samples.  Free parameters that affect none of
 /// the residuals keep their initial values.

@@ -12,8 +12,19 @@ namespace kinecal {
 
 namespace detail {
 
-/// A block that occurs in several steps is reported once, with the statistics of the last step.
-inline void merge_statistics(std::vector<BlockStatistics>& all, std::vector<BlockStatistics> more) {
+KINECAL_INLINE void add_step(StepResult step, const FreeSet& free, CalibrationResult& result) {
+  for (const int parameter : free.parameters()) {
+    const auto& known = result.calibrated;
+    if (std::find(known.begin(), known.end(), parameter) == known.end()) {
+      result.calibrated.push_back(parameter);
+    }
+  }
+  result.converged = step.converged;
+  result.termination = step.termination;
+  result.steps.push_back(std::move(step));
+}
+
+KINECAL_INLINE void merge_statistics(std::vector<BlockStatistics>& all, std::vector<BlockStatistics> more) {
   for (BlockStatistics& block : more) {
     const auto same = std::find_if(all.begin(), all.end(),
                                    [&](const auto& known) { return known.name == block.name; });
@@ -25,7 +36,56 @@ inline void merge_statistics(std::vector<BlockStatistics>& all, std::vector<Bloc
   }
 }
 
+/// The parameters of a free set that affect some residual of a problem, in their order.
+[[nodiscard]] inline FreeSet affecting(const AnyProblem& problem, const FreeSet& free) {
+  const std::vector<int> touched = problem.touched_parameters();
+  std::vector<int> kept = free.parameters();
+  std::erase_if(kept,
+                [&](int p) { return !std::binary_search(touched.begin(), touched.end(), p); });
+  return {std::move(kept), problem.table().size()};
+}
+
 }  // namespace detail
+
+KINECAL_INLINE void CalibrationStep::set_sigma(int term, double sigma) {
+  problem->set_sigma(term, sigma);
+  if (excerpt == nullptr) return;
+  const Term& changed = problem->term(term);
+  for (int t = 0; t < excerpt->num_terms(); ++t) {
+    const Term& same = excerpt->term(t);  // unless it compares lines of sight in place of pixels
+    if (same.name == changed.name && same.options.type == changed.options.type) {
+      excerpt->set_sigma(t, sigma);
+    }
+  }
+}
+
+KINECAL_INLINE void CalibrationStep::exclude(const std::set<int>& samples) {
+  std::vector<int> now;  // number of each sample that is left
+  for (int i = 0, left = 0; i < problem->num_samples(); ++i) {
+    now.push_back(samples.contains(i) ? -1 : left++);
+  }
+  problem->exclude(samples);
+  free = detail::affecting(*problem, free);
+  if (free.size() == 0) {
+    throw std::invalid_argument("step '" + name +
+                                "': the samples that are left determine none of its free "
+                                "parameters");
+  }
+  if (excerpt == nullptr) return;
+  std::set<int> gone;
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < of_excerpt.size(); ++i) {
+    const int number = now[static_cast<std::size_t>(of_excerpt[i])];
+    if (number < 0) {
+      gone.insert(static_cast<int>(i));
+    } else {
+      kept.push_back(number);
+    }
+  }
+  excerpt->exclude(gone);
+  of_excerpt = std::move(kept);
+  if (excerpt->num_residuals() == 0) excerpt.reset();
+}
 
 KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const Progress& progress,
                                            const SolveOptions& solving) {
@@ -49,15 +109,7 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
       solved.final_cost = hold_undetermined(*step.problem, step.free, start, values);
     }
     solved.name = step.name;
-    for (int parameter : step.free.parameters()) {
-      const auto& known = result.calibrated;
-      if (std::find(known.begin(), known.end(), parameter) == known.end()) {
-        result.calibrated.push_back(parameter);
-      }
-    }
-    result.converged = solved.converged;
-    result.termination = solved.termination;
-    result.steps.push_back(std::move(solved));
+    detail::add_step(std::move(solved), step.free, result);
     if (!result.converged) break;
   }
   const auto span = [](const Eigen::VectorXd& v) {
@@ -76,15 +128,11 @@ KINECAL_INLINE Calibration make_calibration(std::unique_ptr<AnyProblem> problem,
                                             const std::string& step) {
   problem->check(free);
   for (const Sample& sample : samples) problem->add_sample(sample);
-  const std::vector<int> touched = problem->touched_parameters();
-  if (touched.empty()) {
+  if (problem->touched_parameters().empty()) {
     throw std::invalid_argument("no sample has usable features of all sensors of an error block");
   }
-  std::vector<int> determined = free.parameters();
-  std::erase_if(determined,
-                [&](int p) { return !std::binary_search(touched.begin(), touched.end(), p); });
+  FreeSet columns = detail::affecting(*problem, free);
   Calibration calibration{problem->table(), {}};
-  FreeSet columns(std::move(determined), calibration.table.size());
   calibration.steps.push_back(
       {step, SolveOptions{}.max_num_iterations, std::move(problem), std::move(columns), {}});
   return calibration;

@@ -14,6 +14,30 @@
 
 namespace kinecal {
 
+namespace detail {
+
+/// Numbers of a free parameter of the crate C: one, or (N) in the order of its names.
+/// @param number_of  takes a name
+template <class C, FreeParameter P, class NumberOf>
+[[nodiscard]] auto numbers_of(const NumberOf& number_of) {
+  using Owner = LookedUp<P::kOwner, typename C::Free>;
+  constexpr bool kIsFree = C::Free::template have<P>();
+  [[maybe_unused]] constexpr Unless<kIsFree, ValueOf<P, Owner>> kCheck = {};
+  if constexpr (!kIsFree) {
+    return 0.0;
+  } else if constexpr (P::kIds.size() == 1) {
+    return number_of(P::kIds[0].name());
+  } else {
+    Eigen::Matrix<double, static_cast<int>(P::kIds.size()), 1> all;
+    for (std::size_t i = 0; i < P::kIds.size(); ++i) {
+      all(static_cast<Eigen::Index>(i)) = number_of(P::kIds[i].name());
+    }
+    return all;
+  }
+}
+
+}  // namespace detail
+
 /// The result of calibrating a crate.
 /// @tparam C  the crate
 template <class C>
@@ -21,20 +45,7 @@ struct CrateResult : CalibrationResult {
   /// The calibrated value of a free parameter: a number, or (N) in the order of its names.
   template <FreeParameter P>
   [[nodiscard]] auto value() const {
-    using Owner = LookedUp<P::kOwner, typename C::Free>;
-    constexpr bool kIsFree = C::Free::template have<P>();
-    [[maybe_unused]] constexpr detail::Unless<kIsFree, detail::ValueOf<P, Owner>> kCheck = {};
-    if constexpr (!kIsFree) {
-      return 0.0;
-    } else if constexpr (P::kIds.size() == 1) {
-      return table[P::kIds[0].name()].value;
-    } else {
-      Eigen::Matrix<double, static_cast<int>(P::kIds.size()), 1> all;
-      for (std::size_t i = 0; i < P::kIds.size(); ++i) {
-        all(static_cast<Eigen::Index>(i)) = table[P::kIds[i].name()].value;
-      }
-      return all;
-    }
+    return detail::numbers_of<C, P>([&](const std::string& name) { return table[name].value; });
   }
 };
 

@@ -70,7 +70,7 @@ inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::Ma
   TermResiduals rows;
   for (const PriorTerm& prior : problem.priors()) {
     prior.evaluate(problem.table(), values, &free, rows);
-    sums.add_prior(prior.options, rows, problem.num_samples(), Losses::as_given);
+    sums.add_prior(prior, rows, problem.num_samples(), Losses::as_given);
   }
   return sums;
 }

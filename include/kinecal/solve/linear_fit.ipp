@@ -34,12 +34,11 @@ inline void collect(AnyEvaluator& evaluator, std::span<const double> values, boo
 /// Weighted residuals of a block, and rho' of its features.
 inline void weigh(const Term& term, const TermResiduals& rows, Eigen::Ref<Eigen::VectorXd> r,
                   Eigen::Ref<Eigen::VectorXd> loss) {
-  const TermOptions& options = term.options;
-  r = options.weight * rows.factor.cwiseProduct(rows.residual);
+  r = term.weight * rows.factor.cwiseProduct(rows.residual);
   const int size = term.feature_size;
   for (Eigen::Index row = 0; row < r.size(); row += size) {
     loss.segment(row, size).setConstant(
-        options.loss(r.segment(row, size).squaredNorm()).derivative);
+        term.options.loss(r.segment(row, size).squaredNorm()).derivative);
   }
 }
 
@@ -77,7 +76,7 @@ KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, std::span<const dou
     detail::weigh(term, from, fit.residual.segment(first, block.size),
                   fit.loss.segment(first, block.size));
     if (derivatives) {
-      const Eigen::VectorXd weights = term.options.weight * from.factor;
+      const Eigen::VectorXd weights = term.weight * from.factor;
       fit.jacobian.middleRows(first, block.size).noalias() =
           weights.asDiagonal() * (from.jacobian * basis);
     }

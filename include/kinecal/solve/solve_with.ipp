@@ -44,7 +44,7 @@ namespace detail {
     const TermOptions& options = term.options;
     Features& features = of_terms[static_cast<std::size_t>(t)];
     for (Eigen::Index row = 0; row < rows.residual.size(); row += term.feature_size) {
-      const double weight = options.weight * rows.factor(row);
+      const double weight = term.weight * rows.factor(row);
       const double squared = rows.residual.segment(row, term.feature_size).squaredNorm();
       ++features.all;
       if (options.loss(weight * weight * squared).derivative == 0.0) ++features.left_out;

@@ -15,7 +15,7 @@ KINECAL_INLINE Eigen::MatrixXd error_free_information(const AnyProblem& problem,
                                                       std::span<const double> values) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(free.size(), free.size());
   const auto add = [&](int t, int, const TermResiduals& out) {
-    const Eigen::VectorXd weights = problem.term(t).options.weight * out.factor;
+    const Eigen::VectorXd weights = problem.term(t).weight * out.factor;
     const Eigen::MatrixXd weighted = weights.asDiagonal() * out.jacobian;
     sum.noalias() += weighted.transpose() * weighted;
   };

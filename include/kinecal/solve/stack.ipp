@@ -25,12 +25,12 @@ KINECAL_INLINE std::optional<UndefinedResidual> detail::stack_rows(AnyEvaluator&
     row += rows;
   };
   auto undefined = evaluator.evaluate(values, jacobians, [&](int t, int, const auto& of_term) {
-    append(problem.term(t).options.weight, of_term);
+    append(problem.term(t).weight, of_term);
   });
   TermResiduals of_prior;
   for (const PriorTerm& prior : problem.priors()) {
     prior.evaluate(problem.table(), values, jacobians ? &evaluator.free() : nullptr, of_prior);
-    append(prior_factor * prior.options.weight, of_prior);
+    append(prior_factor * prior.options.weight(), of_prior);
   }
   return undefined;
 }

@@ -86,9 +86,9 @@ class ExactSearch {
 
   /// The scale of a row: residuals of cameras are pixels.
   [[nodiscard]] double scale(int term) const {
-    const TermOptions& options = changing_.problem().term(term).options;
+    const Term& of = changing_.problem().term(term);
     constexpr double kOfPixels = 100.0;
-    return options.weight * (options.unit == "px" ? kOfPixels : 1.0);
+    return of.weight * (of.options.unit == "px" ? kOfPixels : 1.0);
   }
   [[nodiscard]] double largest() const {
     double most = 0.0;

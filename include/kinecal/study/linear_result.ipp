@@ -61,7 +61,7 @@ struct StackedRows {
                                               const Eigen::VectorXd& step) {
   StackedRows all;
   (void)evaluator.evaluate(values, step.size() > 0, [&](int term, int, const TermResiduals& rows) {
-    const double weight = evaluator.problem().term(term).options.weight;
+    const double weight = evaluator.problem().term(term).weight;
     for (Eigen::Index row = 0; row < rows.residual.size(); ++row) {
       const double factor = weight * rows.factor(row);
       all.residual.push_back(factor * rows.residual(row));

@@ -91,7 +91,7 @@ class ChangingSamples {
   static void add(const AnyProblem& problem, int term, int sample, const TermResiduals& of_term,
                   StudyRows& rows) {
     const Term& is = problem.term(term);
-    const double weight = is.options.weight;
+    const double weight = is.weight;
     const Eigen::Index size = is.pairs_features() ? is.feature_size : of_term.residual.size();
     for (Eigen::Index row = 0; size > 0 && row < of_term.residual.size(); row += size) {
       const int place =

@@ -24,7 +24,7 @@ namespace detail {
   for (int t = 0; t < problem.num_terms(); ++t) {
     const Term& term = problem.term(t);
     const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
-    const double median = DistanceBins::median(block.bins.col(2)) * term.options.weight;
+    const double median = DistanceBins::median(block.bins.col(2)) * term.weight;
     noise.push_back(block_noise(term, static_cast<int>(block.figures(BlockSums::features)),
                                 block.figures(BlockSums::weighted),
                                 inverse.cwiseProduct(block.information).sum(),

@@ -12,8 +12,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,16 +23,13 @@
 
 namespace kinecal {
 
-/// Makes a problem with sensors and error blocks, without samples.
-using ProblemMaker = std::function<std::unique_ptr<AnyProblem>()>;
-
 /// The likely cause of a bad capture: "features 1 and 2 are exchanged", "'elbow' reads 4.9 deg less
 /// than the others say".  Empty if none is recognised.
-/// @param make    the problem of the fit
+/// @param problem of the fit
 /// @param values  of all parameters of its table, fitted to the other samples
 /// @param noise   of each error block, in their order
 /// @param sample  the bad one
-[[nodiscard]] std::string capture_cause(const ProblemMaker& make, std::span<const double> values,
+[[nodiscard]] std::string capture_cause(const AnyProblem& problem, std::span<const double> values,
                                         const std::vector<BlockNoise>& noise, const Sample& sample);
 
 }  // namespace kinecal

@@ -121,20 +121,20 @@ inline void add_turns(const Sample& sample, std::size_t observation,
 
 }  // namespace detail
 
-KINECAL_INLINE std::string capture_cause(const ProblemMaker& make, std::span<const double> values,
+KINECAL_INLINE std::string capture_cause(const AnyProblem& problem,
+                                         std::span<const double> values,
                                          const std::vector<BlockNoise>& noise,
                                          const Sample& sample) {
-  const detail::CaptureTrials trials(make, values, noise);
+  const detail::CaptureTrials trials(problem, values, noise);
   detail::TrialRows now = trials({sample}).front();
   if (!now.defined || now.fits()) return {};
-  const std::unique_ptr<AnyProblem> problem = make();
-  const std::optional<Sample> in_order = problem->paired(sample);
+  const std::optional<Sample> in_order = problem.paired(sample);
   if (in_order) now = trials({*in_order}).front();  // the same, numbered as in it
-  std::string cause = detail::wrong_order(trials, *problem, in_order.value_or(sample), now);
+  std::string cause = detail::wrong_order(trials, problem, in_order.value_or(sample), now);
   if (!cause.empty()) return cause;
   constexpr double kBetter = 25.0;  // by five parameters more: once in 10000 by chance
-  detail::JointCause one = detail::wrong_reading(trials, problem->robot(), sample, now);
-  detail::JointCause all = detail::motion(trials, problem->robot(), sample, now);
+  detail::JointCause one = detail::wrong_reading(trials, problem.robot(), sample, now);
+  detail::JointCause all = detail::motion(trials, problem.robot(), sample, now);
   const bool is_one = all.text.empty() || one.chi2 < all.chi2 + kBetter;
   return !one.text.empty() && is_one ? one.text : all.text;
 }

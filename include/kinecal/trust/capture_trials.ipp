@@ -55,15 +55,15 @@ struct TrialRows {
 /// Evaluates variants of a sample.
 class CaptureTrials {
  public:
-  CaptureTrials(const ProblemMaker& make, std::span<const double> values,
+  CaptureTrials(const AnyProblem& problem, std::span<const double> values,
                 const std::vector<BlockNoise>& noise)
-      : make_(make), values_(values), noise_(noise) {}
+      : problem_(problem), values_(values), noise_(noise) {}
 
   /// @returns  rows of each variant, in their order
   [[nodiscard]] std::vector<TrialRows> operator()(const std::vector<Sample>& variants) const {
     std::vector<TrialRows> all(variants.size());
     std::vector<std::size_t> numbers;  // of the samples that the problem takes
-    const std::unique_ptr<AnyProblem> problem = make_();
+    const std::unique_ptr<AnyProblem> problem = problem_.without_samples();
     for (std::size_t i = 0; i < variants.size(); ++i) {
       try {
         problem->add_sample(variants[i]);
@@ -106,7 +106,7 @@ class CaptureTrials {
     }
   }
 
-  const ProblemMaker& make_;
+  const AnyProblem& problem_;
   std::span<const double> values_;
   const std::vector<BlockNoise>& noise_;
 };

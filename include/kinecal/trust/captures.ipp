@@ -149,7 +149,7 @@ class CaptureSearch {
     std::vector<CaptureError> all(bad_.size());
     for (const FeatureRows& f : features_) {
       CaptureError& of = all[static_cast<std::size_t>(f.sample)];
-      const double unit = 1.0 / problem_.term(f.term).options.weight, d = unit * distance(f);
+      const double unit = 1.0 / problem_.term(f.term).weight, d = unit * distance(f);
       const double so_far = times(f);
       of.sample = f.sample;
       if (so_far > of.times) {

@@ -115,7 +115,7 @@ class DriftFit {
     std::vector<double> all;
     for (int t = 0; t < problem_.num_terms(); ++t) {
       const bool used = problem_.samples_of(t) > 0;
-      all.push_back(used ? state_.noise[noise_of(t)].sigma * problem_.term(t).options.weight : 1.0);
+      all.push_back(used ? state_.noise[noise_of(t)].sigma * problem_.term(t).weight : 1.0);
     }
     return all;
   }

@@ -23,7 +23,7 @@ struct SquaredDistances {
 
   void add(const AnyProblem& problem, const Eigen::VectorXd& residual, const RowBlock& block) {
     const Term& term = problem.term(block.term);
-    const double unit = 1.0 / term.options.weight;
+    const double unit = 1.0 / term.weight;
     const auto t = static_cast<std::size_t>(block.term);
     sum[t] += unit * unit * residual.segment(block.first, block.size).squaredNorm();
     features[t] += static_cast<int>(block.size) / term.feature_size;

@@ -40,8 +40,8 @@ KINECAL_INLINE BlockNoise detail::block_noise(const Term& term, int features, do
   of.unit = term.options.unit;
   of.features = features;
   of.components = term.feature_size;
-  of.unit_sigma = 1.0 / term.options.weight;
-  of.given = term.options.sigma_given ? of.unit_sigma : 0.0;
+  of.unit_sigma = 1.0 / term.weight;
+  of.given = term.options.sigma ? of.unit_sigma : 0.0;
   const double rows = static_cast<double>(features) * of.components;
   of.freedom = rows - leverage;
   constexpr double kNoFreedom = 1e-6;  // the parameters fit every row

@@ -110,7 +110,7 @@ inline double OnlineCalibration::Inside::innovation(AnyEvaluator& evaluator, int
   detail::SampleRows last;
   const int number = problem->num_samples() - 1;
   (void)evaluator.evaluate(values, true, [&](int term, int sample, const TermResiduals& of_term) {
-    if (sample == number) last.append(of_term, problem->term(term).options.weight);
+    if (sample == number) last.append(of_term, problem->term(term).weight);
   });
   rows = static_cast<int>(last.residual.size());
   if (rows == 0) return 0.0;

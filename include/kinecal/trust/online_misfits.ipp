@@ -32,7 +32,7 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
   if (samples.size() < detail::kFewestToTest || freedom <= 0) return std::nullopt;
   std::vector<double> squares(samples.size(), 0.0), rows(samples.size(), 0.0);
   (void)evaluator.evaluate(values, false, [&](int term, int sample, const TermResiduals& of_term) {
-    const double weight = problem->term(term).options.weight;
+    const double weight = problem->term(term).weight;
     squares[static_cast<std::size_t>(sample)] += weight * weight * of_term.residual.squaredNorm();
     rows[static_cast<std::size_t>(sample)] += static_cast<double>(of_term.residual.size());
   });

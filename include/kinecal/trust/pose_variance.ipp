@@ -19,7 +19,7 @@ namespace kinecal::detail {
   for (const RowBlock& block : fit.blocks) {
     const Term& term = problem.term(block.term);
     if (term.options.unit != "m") continue;
-    const double weight = term.options.weight;
+    const double weight = term.weight;
     squares += fit.residual.segment(block.first, block.size).squaredNorm() / (weight * weight);
     features += block.size / term.feature_size;
   }

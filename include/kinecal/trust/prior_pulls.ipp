@@ -23,7 +23,7 @@ KINECAL_INLINE std::vector<PriorPull> prior_pulls(const AnyProblem& problem, con
   for (const PriorTerm& prior : problem.priors()) {
     prior.evaluate(problem.table(), values, &free, rows);
     NormalEquations of_prior(free.size());
-    of_prior.add_prior(prior.options, rows, problem.num_samples(), Losses::as_given);
+    of_prior.add_prior(prior, rows, problem.num_samples(), Losses::as_given);
     const Eigen::MatrixXd& basis = fit.coordinates.basis;
     const Eigen::VectorXd shift = basis * (inverse * (basis.transpose() * of_prior.gradient));
     PriorPull pull{.prior = prior.name};

@@ -21,7 +21,7 @@ namespace detail {
   constexpr double kRounding = 1e-7;
   double squares = 0.0;
   for (const RowBlock& block : fit.blocks) {
-    const double weight = problem.term(block.term).options.weight;
+    const double weight = problem.term(block.term).weight;
     squares += fit.residual.segment(block.first, block.size).squaredNorm() / (weight * weight);
   }
   return !(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()));

@@ -19,7 +19,7 @@ namespace kinecal {
 /// Fits, and fits again without ruined samples, until there are none.
 /// @param fit        the fit of the samples that have not been left out, of any type
 /// @param last       assessment of a fit's last step; nullptr if there is nothing to judge
-/// @param leave_out  takes a fit and a sample of it to leave out of the next one
+/// @param leave_out  takes a fit and those of its samples that are to be left out of the next one
 /// @returns  the last fit
 template <class Fit, class Last, class LeaveOut>
 [[nodiscard]] auto fit_without_ruined(const Fit& fit, const Last& last, const LeaveOut& leave_out) {
@@ -30,7 +30,7 @@ template <class Fit, class Last, class LeaveOut>
     if (round == kRounds || assessment == nullptr) return fitted;
     const std::vector<CaptureError> ruined = ruined_captures(*assessment);
     if (ruined.empty()) return fitted;
-    for (const CaptureError& error : ruined) leave_out(fitted, error);
+    leave_out(fitted, ruined);
   }
 }
 

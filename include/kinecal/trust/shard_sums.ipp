@@ -144,23 +144,23 @@ inline void add_distances(const Term& term, const TermResiduals& rows, BlockSums
 /// Adds the features of a term in a sample, and their gradient to that of the sample.
 inline void add_features(const Term& term, const TermResiduals& rows, ShardSums& sums,
                          BlockSums& block, Eigen::Ref<Eigen::VectorXd> score) {
-  const TermOptions& options = term.options;
+  const Loss& loss = term.options.loss;
   const int size = term.feature_size;
   for (Eigen::Index row = 0; row < rows.residual.size(); row += size) {
-    const double weight = options.weight * rows.factor(row);
+    const double weight = term.weight * rows.factor(row);
     const Eigen::VectorXd r = weight * rows.residual.segment(row, size);
     const Eigen::MatrixXd j = weight * rows.jacobian.middleRows(row, size);
     const Eigen::VectorXd g = j.transpose() * r;
-    const auto [rho, slope] = options.loss(r.squaredNorm());
+    const auto [rho, slope] = loss(r.squaredNorm());
     const Eigen::MatrixXd information = slope * j.transpose() * j;
     block.information += information;
     sums.hessian +=
-        information + 2.0 * curvature_of(options.loss, r.squaredNorm()) * g * g.transpose();
+        information + 2.0 * curvature_of(loss, r.squaredNorm()) * g * g.transpose();
     score += slope * g;
     sums.cost += 0.5 * rho;
     block.figures(BlockSums::features) += 1.0;
     block.figures(BlockSums::weighted) += slope * r.squaredNorm();
-    block.bins(DistanceBins::of(r.norm() / options.weight), 2) += 1.0;
+    block.bins(DistanceBins::of(r.norm() / term.weight), 2) += 1.0;
   }
 }
 

@@ -35,6 +35,10 @@ struct SessionResult {
 [[nodiscard]] std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
                                     std::span<const Sample> ahead);
 
+/// The same of a session's calibration.
+[[nodiscard]] std::string why_go_on(const Accuracy& wanted, const SessionCalibration& all,
+                                    std::span<const Sample> ahead);
+
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY

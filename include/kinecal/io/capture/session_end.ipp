@@ -95,4 +95,18 @@ KINECAL_INLINE std::string why_go_on(const Accuracy& wanted, const SessionResult
   return why;
 }
 
+KINECAL_INLINE std::string why_go_on(const Accuracy& wanted, const SessionCalibration& all,
+                                     std::span<const Sample> ahead) {
+  const JudgedResult& judged = all.judged;
+  if (judged.assessments.empty()) return judged.result.termination;
+  const Eigen::VectorXd values = judged.result.table.values();
+  return why_go_on(wanted,
+                   {*all.calibration.steps.back().problem,
+                    {values.data(), static_cast<std::size_t>(values.size())},
+                    judged.assessments.back(),
+                    judged.judgement,
+                    all.samples},
+                   ahead);
+}
+
 }  // namespace kinecal

@@ -7,13 +7,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "kinecal/capture/session.hpp"
 #include "kinecal/io/config/config.hpp"
+#include "kinecal/trust/calibrate_and_judge.hpp"
 #include "kinecal/trust/online.hpp"
 
 namespace kinecal {
@@ -24,6 +27,16 @@ struct FollowedState {
   std::optional<NextMove> next;  ///< what to move next; nullopt if the pose is not known
   std::string problem;           ///< why the sample cannot be used; empty if it can
 };
+
+/// The calibration of all samples of a session so far.
+struct SessionCalibration {
+  Calibration calibration;
+  JudgedResult judged;
+  std::vector<Sample> samples;  ///< those that the result uses
+};
+
+/// The joint positions of a pose; joints that it does not move are where they are in a sample.
+[[nodiscard]] Sample at_pose(const CapturePose& pose, const Sample& sample);
 
 /// Follows a session.
 class SessionFollower {
@@ -41,6 +54,10 @@ class SessionFollower {
   /// @param ahead  poses that are left, where the pose is wanted as well
   FollowedState add(const Sample& sample, std::span<const Sample> ahead = {});
 
+  /// Calibrates and judges all samples so far.
+  /// @throws InputError, std::invalid_argument  if they do not suffice
+  [[nodiscard]] SessionCalibration calibrate_all() const;
+
   /// The frame whose pose is meant, and the one in which it is meant; empty before it is known.
   [[nodiscard]] std::pair<std::string, std::string> frames() const;
 
@@ -52,7 +69,7 @@ class SessionFollower {
   Config config_;
   Robot robot_;
   std::string frame_;
-  ParameterTable table_;         ///< at the initial values
+  std::unique_ptr<AnyProblem> problem_;  ///< of the last step, without samples
   std::vector<Sample> samples_;  ///< all of the session that suit the configuration
   std::optional<OnlineCalibration> online_;
   std::optional<std::pair<FrameOnRobot, FrameOnRobot>> frames_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -19,8 +20,9 @@ KINECAL_INLINE SessionFollower::SessionFollower(Config config, Robot robot,
                                                 const std::string& frame)
     : config_(std::move(config)), robot_(std::move(robot)), frame_(frame) {
   Diagnostics diagnostics;
-  table_ = assemble(config_, robot_, {}, diagnostics).table;
+  Calibration empty = assemble(config_, robot_, {}, diagnostics);
   diagnostics.throw_if_errors();
+  problem_ = std::move(empty.steps.back().problem);
   if (frame.empty() || robot_.has_link(frame)) return;
   std::vector<std::string> names = robot_.link_names();
   names.emplace_back("gripper");  // see parse_accuracy()
@@ -29,7 +31,7 @@ KINECAL_INLINE SessionFollower::SessionFollower(Config config, Robot robot,
 
 /// @throws SampleError  if a sample does not suit the configuration
 KINECAL_INLINE void SessionFollower::check(const Sample& sample) const {
-  empty_problem(config_, config_.steps.back(), robot_, table_, {&sample, 1})->add_sample(sample);
+  problem_->without_samples()->add_sample(sample);
 }
 
 /// Calibrates all samples so far, and goes on from there.
@@ -46,9 +48,8 @@ KINECAL_INLINE bool SessionFollower::start() {
   frames_ = compared_frames(*step.problem, samples_);
   if (!frames_) return false;
   if (!frame_.empty()) frames_->first = {frame_};
-  const auto make = [this, table = result.table] {
-    return empty_problem(config_, config_.steps.back(), robot_, table, samples_);
-  };
+  const std::shared_ptr<const AnyProblem> problem = step.problem->without_samples();
+  const auto make = [problem] { return problem->without_samples(); };
   const Eigen::VectorXd values = result.table.values();
   online_.emplace(make, step.free,
                   std::span<const double>(values.data(), static_cast<std::size_t>(values.size())),
@@ -89,6 +90,29 @@ KINECAL_INLINE FollowedState SessionFollower::add(const Sample& sample,
     followed.problem = error.what();
   }
   return followed;
+}
+
+KINECAL_INLINE SessionCalibration SessionFollower::calibrate_all() const {
+  Diagnostics diagnostics;
+  SessionCalibration all{assemble(config_, robot_, samples_, diagnostics), {}, {}};
+  diagnostics.throw_if_errors();
+  all.judged = calibrate_and_judge(all.calibration, samples_);
+  all.samples = used_samples(all.judged, samples_);
+  return all;
+}
+
+KINECAL_INLINE Sample at_pose(const CapturePose& pose, const Sample& sample) {
+  Sample there;
+  there.joint_names = sample.joint_names;
+  there.joint_positions = sample.joint_positions;
+  for (std::size_t i = 0; i < there.joint_names.size(); ++i) {
+    const auto at =
+        std::find(pose.joint_names.begin(), pose.joint_names.end(), there.joint_names[i]);
+    if (at == pose.joint_names.end()) continue;
+    there.joint_positions[i] =
+        pose.positions[static_cast<std::size_t>(at - pose.joint_names.begin())];
+  }
+  return there;
 }
 
 KINECAL_INLINE std::pair<std::string, std::string> SessionFollower::frames() const {

@@ -86,10 +86,8 @@ struct BlockConfig {
   std::string ground;  ///< camera3d_to_ground: only samples with an observation of this sensor
   std::optional<double> sigma =
       {};  ///< standard deviation, units of the residual; empty: not given
-  std::optional<double> estimated_sigma =
-      {};                ///< from residuals, in place of one that is not given
-  LossConfig loss;       ///< of each feature
-  SourceLocation place;  ///< where the file defines it
+  LossConfig loss;           ///< of each feature
+  SourceLocation place;      ///< where the file defines it
 };
 
 /// One optimization.  Each step starts from the result of the step before it.

@@ -1,0 +1,45 @@
+// Noise in place of a sigma that nobody gave.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/trust/assess.hpp"
+
+namespace kinecal {
+
+/// The sigmas of the error blocks for which an estimate matters: blocks without a sigma that have a
+/// loss, whose scale is in sigmas, or that share a step with others, against which they are weighed.
+class EstimatedNoise {
+ public:
+  explicit EstimatedNoise(const Calibration& calibration);
+
+  /// Sets the noise that residuals show as sigmas, unless each stays within 1 % of its sigma.
+  /// @param calibration  the one that was given to the constructor
+  /// @param assessments  of its steps
+  /// @returns  whether sigmas have changed, so that it should be solved again
+  [[nodiscard]] bool update(Calibration& calibration,
+                            const std::vector<Assessment>& assessments) const;
+  /// Forgets the estimates: each sigma is one.
+  void reset(Calibration& calibration) const;
+  /// The current sigmas.
+  [[nodiscard]] std::vector<double> sigmas(const Calibration& calibration) const;
+
+ private:
+  /// An error block of a step.
+  struct Estimated {
+    std::size_t step = 0;
+    int term = 0;
+  };
+  std::vector<Estimated> blocks_;
+};
+
+/// How often sigmas are estimated at most.
+inline constexpr int kMostNoiseRounds = 10;
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/trust/estimated_noise.ipp"
+#endif
