@@ -62,9 +62,8 @@ function(kinecal_group_sources result name count folder)
 endfunction()
 
 # kinecal_add_library(<name> FOLDERS <folder>... LINK <target>... [UNIT <count>] [OPTIMIZE <flag>]
-#                     [PRIVATE_LINK <target>...] [INSTANCES <file>...])
+#                     [PRIVATE_LINK <target>...])
 #
-# INSTANCES     files of explicit template instances
 # FOLDERS       of include/kinecal: their headers, and the .ipp beside a header of the same name, which
 #               are compiled once
 # UNIT          so many sources are one translation unit with KINECAL_UNITY
@@ -72,7 +71,7 @@ endfunction()
 # LINK          what the headers include
 # PRIVATE_LINK  what only the .ipp files include
 function(kinecal_add_library name)
-  cmake_parse_arguments(ARG "" "UNIT;OPTIMIZE" "FOLDERS;INSTANCES;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "UNIT;OPTIMIZE" "FOLDERS;LINK;PRIVATE_LINK" ${ARGN})
   set(target kinecal_${name})
   set(include ${PROJECT_SOURCE_DIR}/include/kinecal)
   set(headers "")
@@ -99,7 +98,7 @@ function(kinecal_add_library name)
   else()
     set(scope PUBLIC)
     kinecal_group_sources(units ${name} ${ARG_UNIT} ${PROJECT_SOURCE_DIR}/include
-                          ${units} ${ARG_INSTANCES})
+                          ${units})
     add_library(${target} ${units})
     target_link_libraries(${target} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK}
                           $<BUILD_INTERFACE:kinecal_build_options>)
@@ -131,12 +130,7 @@ target_compile_features(kinecal_headers INTERFACE cxx_std_20)
 target_compile_definitions(kinecal_headers INTERFACE KINECAL_HEADER_ONLY)
 target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
 
-# What is compiled once for all sources: evaluation in packets, of all built-in sensors and error blocks.
-file(GLOB KINECAL_INSTANCES CONFIGURE_DEPENDS
-     ${PROJECT_SOURCE_DIR}/include/kinecal/evaluation/instances/*_packet.ipp)
-
 kinecal_add_library(core UNIT 16
-  INSTANCES ${KINECAL_INSTANCES}
   FOLDERS geometry kinematics parameters samples sensors errors problem evaluation crate testing core
           linkage
   LINK Eigen3::Eigen Threads::Threads)

@@ -10,7 +10,7 @@
 
 #include "kinecal/core.hpp"
 #include "kinecal/errors.hpp"
-#include "kinecal/evaluation/problem.ipp"  // in double, too
+#include "kinecal/evaluation/basic_problem.ipp"  // in double, too
 #include "robots/mobile_manipulator.hpp"
 #include "simulation.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "counting.hpp"
 #include "fetch_crate.hpp"
-#include "kinecal/evaluation/problem.ipp"
+#include "kinecal/evaluation/basic_problem.ipp"
 #include "kinecal/solve/solve.hpp"
 #include "own_problem.hpp"
 #include "peak.hpp"

@@ -3,8 +3,11 @@
 #pragma once
 
 #include "kinecal/sensors/any_sensor.hpp"
+#include "kinecal/sensors/built_in_sensor.hpp"
+#include "kinecal/sensors/camera_image.hpp"
 #include "kinecal/sensors/chain_point.hpp"
 #include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/lens.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
 #include "kinecal/sensors/quantity.hpp"
 #include "kinecal/sensors/quantity_vectors.hpp"

@@ -39,7 +39,7 @@ std::vector<double> depths(const View& view) {
 TEST(SimulatedCamera, DepthNoiseGrowsWithTheSquare) {
   SimulatedCamera camera;
   SeededRandom random(1);
-  const Lens lens(camera);
+  const SimulatedLens lens(camera);
   for (const double z : {0.5, 1.0, 3.0}) {
     const Moments seen =
         moments(depths(photograph(camera, lens, flat_picture(100, float(z)), random)));
@@ -52,7 +52,7 @@ TEST(SimulatedCamera, BrightnessHasItsNoiseAndEndsAt255) {
   SimulatedCamera camera;
   camera.noise = 3.0;
   SeededRandom random(2);
-  const Lens lens(camera);
+  const SimulatedLens lens(camera);
   const View view = photograph(camera, lens, flat_picture(100, 1), random);
   std::vector<double> values(view.image.pixels.begin(), view.image.pixels.end());
   EXPECT_NEAR(moments(values).mean, 100.0, 0.1);
@@ -70,7 +70,7 @@ TEST(SimulatedCamera, ItsPointsAreThoseThatDepthCameraCorrects) {
   camera.depth_noise = 0.0;
   camera.errors = {0.01, -0.02, 0.015, 0.012, 0.005, -0.01};
   SeededRandom random(3);
-  const Lens lens(camera);
+  const SimulatedLens lens(camera);
   const View view = photograph(camera, lens, flat_picture(100, 1.2F), random);
   const Vector3<double> truth = lens.ray(500, 100) * 1.2;
   const Observation seen{
@@ -93,7 +93,7 @@ TEST(SimulatedCamera, StructuredLightMeasuresInSteps) {
   for (int u = 0; u < 640; ++u) {
     for (int v = 0; v < 480; ++v) picture.depth(u, v) = 2.0F + 1e-5F * static_cast<float>(u);
   }
-  const std::vector<double> seen = depths(photograph(camera, Lens(camera), picture, random));
+  const std::vector<double> seen = depths(photograph(camera, SimulatedLens(camera), picture, random));
   const std::set<double> steps(seen.begin(), seen.end());
   EXPECT_LE(steps.size(), 2U);
   const double step = 2.0 * 2.0 * 0.125 / (554.25 * 0.075);  // dz = z^2 / (f b) dd
@@ -108,17 +108,17 @@ TEST(SimulatedCamera, HasNoDepthAtEdgesAndWhereNothingAnswers) {
     for (int u = 320; u < 640; ++u) picture.depth(u, v) = 1.5F;
   }
   picture.answer(100, 100) = 0;
-  View view = photograph(camera, Lens(camera), picture, random);
+  View view = photograph(camera, SimulatedLens(camera), picture, random);
   EXPECT_TRUE(std::isnan(view.points(319, 50).z()));
   EXPECT_TRUE(std::isnan(view.points(320, 50).z()));
   EXPECT_FALSE(std::isnan(view.points(318, 50).z()));
   EXPECT_TRUE(std::isnan(view.points(100, 100).z()));
   camera.nearest = 1.2;
-  view = photograph(camera, Lens(camera), picture, random);
+  view = photograph(camera, SimulatedLens(camera), picture, random);
   EXPECT_TRUE(std::isnan(view.points(50, 50).z()));
   EXPECT_FALSE(std::isnan(view.points(400, 50).z()));
   camera.has_depth = false;
-  EXPECT_TRUE(photograph(camera, Lens(camera), picture, random).points.empty());
+  EXPECT_TRUE(photograph(camera, SimulatedLens(camera), picture, random).points.empty());
 }
 
 TEST(SimulatedCamera, BlurKeepsTheLight) {
@@ -128,7 +128,7 @@ TEST(SimulatedCamera, BlurKeepsTheLight) {
   SeededRandom random(6);
   Picture picture = flat_picture(0, 1);
   picture.brightness(200, 100) = 2000.0F;
-  const View view = photograph(camera, Lens(camera), picture, random);
+  const View view = photograph(camera, SimulatedLens(camera), picture, random);
   double sum = 0.0;
   for (const std::uint8_t value : view.image.pixels) sum += value;
   EXPECT_NEAR(sum, 2000.0, 40.0);  // rounded to whole numbers

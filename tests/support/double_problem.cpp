@@ -1,6 +1,6 @@
 #include "support/double_problem.hpp"
 
-#include "kinecal/evaluation/problem.ipp"
+#include "kinecal/evaluation/basic_problem.ipp"
 
 namespace kinecal {
 

@@ -10,7 +10,7 @@
 #include "kinecal/capture/turn_votes.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/linkage.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/lens.hpp"
 
 namespace kinecal {
 
@@ -18,13 +18,10 @@ namespace detail {
 
 /// (x / z, y / z) of a camera's pixels.
 [[nodiscard]] KINECAL_INLINE std::vector<Eigen::Vector2d> rays_of(const Observation& camera) {
-  const PinholeCamera pinhole;
-  Measurement<PinholeCamera, double> seen;
-  seen.settings = pinhole.settings(camera);
+  const Lens lens(camera_info_of(camera));
   std::vector<Eigen::Vector2d> rays;
   for (const Feature& f : camera.features) {
-    seen.point = f.point;
-    rays.push_back(pinhole.place(seen, std::array<double, 4>{}).direction.template head<2>());
+    rays.emplace_back(lens.ray(f.point.x(), f.point.y()).head<2>());
   }
   return rays;
 }

@@ -18,6 +18,7 @@
 #include "kinecal/capture/robot_body.hpp"
 #include "kinecal/capture/view_fault.ipp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/sensors/lens.hpp"
 
 namespace kinecal::detail {
 
@@ -30,7 +31,7 @@ class ViewSearch {
         body_(robot, goal.base, goal.radius, held_joints(robot)),
         camera_(body_.link(goal.camera)),
         target_(body_.link(goal.target)),
-        settings_(PinholeCamera{goal.image}.settings({"camera", {}, goal.info})) {
+        lens_(goal.info, goal.image) {
     if (goal.points.empty()) throw std::invalid_argument("a target without points to look at");
     for (const std::string& name : body_.joints()) joints_.push_back(robot.joint(name));
     for (const std::string& name : names_) chosen_.push_back(index_of(name));
@@ -158,13 +159,12 @@ class ViewSearch {
       return;
     }
     fault.add(std::min(p.z() - goal_.farthest, kMost), "the target is too far away");
-    const Eigen::Vector2d pixel =
-        PinholeCamera{goal_.image}.predict(p, settings_, std::array<double, 4>{});
+    const Eigen::Vector2d pixel = lens_.project(p);
     const double u = pixel.x() / (goal_.info.width - 1), v = pixel.y() / (goal_.info.height - 1);
     const double out = std::max(
         {goal_.margin - u, u - 1.0 + goal_.margin, goal_.margin - v, v - 1.0 + goal_.margin});
     // Beyond the image a lens model may bend back: the direction counts, too.
-    const double side = std::abs(p.x() / p.z()) - goal_.info.width / settings_[0];
+    const double side = std::abs(p.x() / p.z()) - goal_.info.width / lens_.focal_length();
     fault.add(std::min(std::max(out, side), kMost), "the target is not all in the image");
     box = {std::min(box[0], pixel.x()), std::min(box[1], pixel.y()), std::max(box[2], pixel.x()),
            std::max(box[3], pixel.y())};
@@ -174,7 +174,7 @@ class ViewSearch {
   std::set<std::string> names_;  ///< of the joints that move
   RobotBody body_;
   std::size_t camera_, target_;
-  std::array<double, 9> settings_;
+  Lens lens_;
   std::vector<Joint> joints_;
   std::vector<std::size_t> chosen_;  ///< indices of those that move
   std::vector<double> middle_;       ///< positions of those that do not

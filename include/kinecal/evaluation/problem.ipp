@@ -1,65 +1,19 @@
-// Definitions of problem.hpp and of all that evaluates it, for a scalar S.  The library has compiled them for
-// packets; include this for another scalar, such as double: one sample at a time.
+// What problem.hpp declares, compiled: everything that evaluates a problem in packets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/evaluator.ipp"
-#include "kinecal/evaluation/feature_wrenches.ipp"
-#include "kinecal/evaluation/local_sums.ipp"
-#include "kinecal/evaluation/point_wrenches.ipp"
+#include "kinecal/evaluation/basic_problem.ipp"
 #include "kinecal/evaluation/problem.hpp"
-#include "kinecal/evaluation/sensor_view.ipp"
 
+#ifndef KINECAL_HEADER_ONLY
 namespace kinecal {
 
-template <class S>
-void BasicProblem<S>::add_built_in(const BuiltInSensor& sensor, const Mount& mount) {
-  std::visit([&](const auto& of_type) { add_sensor_of_type(of_type, mount); }, sensor);
-}
-
-template <class S>
-void BasicProblem<S>::add_built_in(const std::string& name, const BuiltInBlock& block,
-                                   const std::vector<std::string>& sensors,
-                                   const TermOptions& options) {
-  std::visit([&](const auto& of_type) { add_block_of_type(name, of_type, sensors, options); },
-             block);
-}
-
-template <class S>
-void BasicProblem<S>::set_walks(const std::vector<detail::CompiledWalk<S>>& walks) {
-  for (const RuntimeChain& chain : sensors().back().chains()) {  // in the order of the chains
-    const auto walk =
-        std::find_if(walks.begin(), walks.end(), [&](const auto& w) { return w.tip == chain.tip; });
-    if (walk == walks.end()) return;
-    evaluations_.back().walks.push_back(*walk);
-  }
-}
-
-template <class S>
-void BasicProblem<S>::add_to_batch(std::size_t index, const detail::SampleLayout& layout,
-                                   std::span<const double> numbers) {
-  if (index == batches_.size()) batches_.emplace_back(layout);
-  batches_[index].add(num_samples(), numbers);
-}
-
-template <class S>
-std::vector<int> BasicProblem<S>::renumber_in_batches(std::span<const int> numbers) {
-  std::vector<int> left;
-  for (detail::Batches<S>& batches : batches_) {
-    batches = batches.renumbered(numbers);
-    left.push_back(batches.num_samples());
-  }
-  return left;
-}
-
-template <class S>
-std::unique_ptr<AnyProblem> BasicProblem<S>::without_samples() const {
-  return std::make_unique<BasicProblem>(*this, AnyProblem::WithoutSamples{});
-}
-
-template <class S>
-std::unique_ptr<AnyEvaluator> BasicProblem<S>::evaluator(const FreeSet& free, int threads) const {
-  return std::make_unique<Evaluator<S>>(*this, free, threads);
-}
+template class detail::SensorView<Packet>;
+template class detail::LocalSums<Packet>;
+template class detail::PointWrenches<Packet>;
+template class detail::FeatureWrenches<Packet>;
+template class Evaluator<Packet>;
+template class BasicProblem<Packet>;
 
 }  // namespace kinecal
+#endif

@@ -167,11 +167,7 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step, std::span<co
   const std::size_t before = diagnostics.errors.size();
   for (const ModelConfig& model : step.models) {
     try {
-      if (model.type == PinholeCamera::kType) {
-        problem.add_built_in(PinholeCamera{model.image}, mount_from(model));
-      } else {
-        sensor_entry(model).add(problem, mount_from(model));
-      }
+      sensor_entry(model).add(problem, mount_from(model), model.image);
     } catch (const std::exception& e) {
       diagnostics.error(model.place, fmt::format("model '{}': {}", model.name, e.what()));
     }
@@ -212,11 +208,7 @@ inline void prepare_search(CalibrationStep& step, const Config& config, const St
     few->add_built_in(block.name, PointToRay{}, block.models,
                       {.exclusive = block.exclusive.value_or(false), .beside = block.ground});
   }
-  std::map<std::string, PinholeCamera> eyes;
-  for (const ModelConfig& model : of_step.models) {
-    if (model.type == PinholeCamera::kType) eyes[model.name] = {model.image};
-  }
-  const FewSamples chosen = few_samples(*step.problem, samples, eyes);
+  const FewSamples chosen = few_samples(*step.problem, samples);
   for (const int i : add_samples(*few, chosen.samples, ignored)) {
     step.of_excerpt.push_back(chosen.numbers[static_cast<std::size_t>(i)]);
   }

@@ -32,33 +32,6 @@ KINECAL_INLINE bool is_blank(const CameraInfo& camera) {
          zero(camera.d) && zero(camera.k) && zero(camera.r) && zero(camera.p);
 }
 
-KINECAL_INLINE CameraInfo calibrated_camera_info(const CameraInfo& camera, double fx, double fy,
-                                                 double cx, double cy, ImageKind image) {
-  CameraInfo calibrated = camera;
-  auto& k = calibrated.k;
-  auto& p = calibrated.p;
-  // Shifts of a principal point, in pixels of the other matrix.
-  const auto follow = [](double shift, double focal, double of_other) {
-    return focal != 0.0 ? shift * of_other / focal : 0.0;
-  };
-  const bool raw = image == ImageKind::raw, rectified = image == ImageKind::rectified;
-  const double kx = rectified ? follow(p[2] * cx, p[0], k[0]) : k[2] * cx;
-  const double ky = rectified ? follow(p[6] * cy, p[5], k[4]) : k[5] * cy;
-  const double px = raw ? follow(k[2] * cx, k[0], p[0]) : p[2] * cx;
-  const double py = raw ? follow(k[5] * cy, k[4], p[5]) : p[6] * cy;
-  k[0] *= 1.0 + fx;
-  k[2] += kx;
-  k[4] *= 1.0 + fy;
-  k[5] += ky;
-  p[0] *= 1.0 + fx;
-  p[2] += px;
-  p[3] *= 1.0 + fx;
-  p[5] *= 1.0 + fy;
-  p[6] += py;
-  p[7] *= 1.0 + fy;
-  return calibrated;
-}
-
 KINECAL_INLINE std::string to_camera_info_yaml(const CameraInfo& camera,
                                                const std::string& camera_name) {
   std::string text = fmt::format("image_width: {}\nimage_height: {}\ncamera_name: {}\n",

@@ -13,7 +13,10 @@ namespace kinecal::detail {
 
 KINECAL_INLINE const SensorEntry& sensor_entry(const ModelConfig& model) {
   const SensorEntry* entry = registry().sensor(model.type);
-  return entry != nullptr ? *entry : *registry().sensor(std::string(DepthCamera::kType));
+  if (entry != nullptr) return *entry;
+  const std::vector<SensorEntry>& all = registry().sensors();  // any camera: for names of parameters
+  return *std::find_if(all.begin(), all.end(),
+                       [](const SensorEntry& one) { return measures_depth(*one.sensor); });
 }
 
 KINECAL_INLINE Mount mount_from(const ModelConfig& model) {

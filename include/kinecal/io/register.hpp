@@ -27,10 +27,10 @@ namespace detail {
 /// @throws std::invalid_argument  if the name is taken
 template <Sensor M>
 void register_sensor(const M& model) {
-  registry().add(SensorEntry{std::string(M::kType), any_sensor(model),
-                             [model](AnyProblem& problem, const Mount& mount) {
-                               detail::problem_of_program(problem).add_sensor(model, mount);
-                             }});
+  registry().add(detail::sensor_entry_of(
+      model, [](AnyProblem& problem, const M& sensor, const Mount& mount) {
+        detail::problem_of_program(problem).add_sensor(sensor, mount);
+      }));
 }
 
 /// Adds a type of error block: configurations name it B::kType.

@@ -26,9 +26,37 @@ namespace kinecal {
 struct SensorEntry {
   std::string type;                         ///< `type:` of a model
   std::shared_ptr<const AnySensor> sensor;  ///< what is known of it
+  bool has_image = false;                   ///< `image:` says what its pixels are of
+  /// A sensor of this type, with an image.
+  std::function<std::shared_ptr<const AnySensor>(ImageKind)> make;
   /// Adds a sensor of this type to a problem.
-  std::function<void(AnyProblem&, const Mount&)> add;
+  std::function<void(AnyProblem&, const Mount&, ImageKind)> add;
 };
+
+namespace detail {
+
+/// True for a sensor with a member `image`.
+template <class M>
+inline constexpr bool kHasImage = requires(M model) {
+  { model.image } -> std::same_as<ImageKind&>;
+};
+
+/// @param add  takes a problem, a sensor and its mount
+template <Sensor M, class Add>
+[[nodiscard]] SensorEntry sensor_entry_of(const M& model, Add add) {
+  const auto with = [model](ImageKind image) {
+    M made = model;
+    if constexpr (kHasImage<M>) made.image = image;
+    return made;
+  };
+  return {std::string(M::kType), behind_interface(model), kHasImage<M>,
+          [with](ImageKind image) { return behind_interface(with(image)); },
+          [with, add](AnyProblem& problem, const Mount& mount, ImageKind image) {
+            add(problem, with(image), mount);
+          }};
+}
+
+}  // namespace detail
 
 /// A sensor of an error block in configurations.
 struct BlockSensorEntry {

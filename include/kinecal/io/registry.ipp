@@ -14,10 +14,13 @@ namespace detail {
 using Keys = std::vector<std::vector<std::string>>;
 using NumberKeys = std::vector<std::pair<std::string, double>>;
 
-template <Sensor M>
-[[nodiscard]] SensorEntry built_in_sensor() {
-  return {std::string(M::kType), any_sensor(M{}),
-          [](AnyProblem& problem, const Mount& mount) { problem.add_built_in(M{}, mount); }};
+/// The entries of all built-in sensors, in the order of the variant.
+template <Sensor... Ms>
+[[nodiscard]] std::vector<SensorEntry> built_in_sensors(const std::variant<Ms...>*) {
+  const auto add = [](AnyProblem& problem, const BuiltInSensor& sensor, const Mount& mount) {
+    problem.add_built_in(sensor, mount);
+  };
+  return {sensor_entry_of(Ms{}, add)...};
 }
 
 /// @param make  the block of the numbers of a configuration
@@ -71,10 +74,7 @@ template <ErrorBlock B, class Make>
 
 KINECAL_INLINE Registry::Registry() {
   using detail::built_in_block;
-  add(detail::built_in_sensor<ChainPoint>());
-  add(detail::built_in_sensor<DepthCamera>());
-  add(detail::built_in_sensor<PinholeCamera>());
-  add(detail::built_in_sensor<ChainPose>());
+  sensors_ = detail::built_in_sensors(static_cast<const BuiltInSensor*>(nullptr));
 
   const auto number = [](const BlockConfig& block, const char* key) {
     return block.numbers.at(key);

@@ -149,9 +149,9 @@ namespace kinecal::detail {
 }
 
 /// Rectifies pixels: without distortion, a line of sight takes a tenth of the time.
-inline void rectify(Observation& seen, const PinholeCamera& camera = {}) {
+inline void rectify(Observation& seen, const AnySensor& camera) {
   if (!seen.camera) return;
-  std::array<double, 9> s{};
+  std::vector<double> s;
   try {
     s = camera.settings(seen);
   } catch (const SettingsError&) {  // the sample is refused
@@ -159,11 +159,7 @@ inline void rectify(Observation& seen, const PinholeCamera& camera = {}) {
   }
   if (std::all_of(s.begin() + 4, s.end(), [](double d) { return d == 0.0; })) return;
   for (Feature& feature : seen.features) {
-    Measurement<PinholeCamera, double> pixel;
-    pixel.point = feature.point;
-    pixel.settings = s;
-    const Vector3<double> ray =
-        PinholeCamera{}.place(pixel, std::array<double, 4>{0.0, 0.0, 0.0, 0.0}).direction;
+    const Vector3<double> ray = camera.place(feature.point, s);
     feature.point = {s[0] * ray.x() + s[2], s[1] * ray.y() + s[3], feature.point.z()};
   }
   seen.camera->d.clear();
@@ -178,10 +174,8 @@ struct FewSamples {
 
 /// A few samples of each kind: those with observations of the same sensors.
 /// @param problem  that takes all of them
-/// @param cameras  the sensors that observe pixels, by name
 [[nodiscard]] inline FewSamples few_samples(
-    const AnyProblem& problem, std::span<const Sample> samples,
-    const std::map<std::string, PinholeCamera>& cameras) {
+    const AnyProblem& problem, std::span<const Sample> samples) {
   constexpr std::size_t kOfEachKind = 12;
   std::map<std::set<std::string>, std::vector<std::size_t>> kinds;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -196,8 +190,10 @@ struct FewSamples {
       few.numbers.push_back(static_cast<int>(indices[i]));
       few.samples.push_back(with_few_features(problem.paired(sample).value_or(sample)));
       for (Observation& seen : few.samples.back().observations) {
-        const auto camera = cameras.find(seen.sensor);
-        if (camera != cameras.end()) rectify(seen, camera->second);
+        for (const MountedSensor& sensor : problem.sensors()) {
+          const bool is_it = sensor.mount().name == seen.sensor;
+          if (is_it && sensor.sensor().delivers(Quantity::pixel)) rectify(seen, sensor.sensor());
+        }
       }
     }
   }

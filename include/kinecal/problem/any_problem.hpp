@@ -13,39 +13,17 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "kinecal/errors/plane_to_plane.hpp"
-#include "kinecal/errors/point_distance.hpp"
-#include "kinecal/errors/point_to_line.hpp"
-#include "kinecal/errors/point_to_pixel.hpp"
-#include "kinecal/errors/point_to_plane.hpp"
-#include "kinecal/errors/point_to_point.hpp"
-#include "kinecal/errors/point_to_ray.hpp"
-#include "kinecal/errors/point_to_sphere.hpp"
-#include "kinecal/errors/pose_to_pose.hpp"
-#include "kinecal/errors/ray_to_ray.hpp"
+#include "kinecal/errors/built_in_block.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/problem/batch.hpp"
 #include "kinecal/problem/term.hpp"
+#include "kinecal/sensors/built_in_sensor.hpp"
 
 namespace kinecal {
 
 class AnyEvaluator;
-
-/// The error blocks that the library has compiled.
-using BuiltInBlock =
-    std::variant<PointToPoint, PointToPixel, PointToPlane, PlaneToPlane, PointDistance, PointToLine,
-                 PointToSphere, PoseToPose, RayToRay, PointToRay>;
-
-namespace detail {
-/// True for a type of a variant.
-template <class T, class Variant>
-inline constexpr bool kIsOneOf = false;
-template <class T, class... Ts>
-inline constexpr bool kIsOneOf<T, std::variant<Ts...>> = (std::is_same_v<T, Ts> || ...);
-}  // namespace detail
 
 /// A calibration problem.  Add sensors, then error blocks and priors, then samples.
 class AnyProblem {

@@ -9,15 +9,13 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/sensors/any_sensor.hpp"
-#include "kinecal/sensors/chain_point.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
 
 namespace kinecal {
 
@@ -59,6 +57,10 @@ class MountedSensor {
   /// Table indices of the sensor's own parameters; -1 if the table does not have them.
   [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
 
+  /// The values of its own parameters; 0 where the table does not have one.
+  /// @param values  of all parameters of the table
+  [[nodiscard]] std::vector<double> own_values(std::span<const double> values) const;
+
   /// What the sensor observed in a sample, as numbers.
   /// @throws SampleError  with what is missing or wrong
   [[nodiscard]] detail::ObservationNumbers numbers(const Sample& sample,
@@ -80,16 +82,6 @@ class MountedSensor {
   std::vector<std::vector<JointIndices>> chain_parameters_;
   std::map<std::string, std::size_t> chain_by_frame_;
 };
-
-/// The sensors that the library has compiled.
-using BuiltInSensor = std::variant<ChainPoint, ChainPose, DepthCamera, PinholeCamera>;
-
-#ifndef KINECAL_HEADER_ONLY
-extern template std::shared_ptr<const AnySensor> any_sensor(ChainPoint);
-extern template std::shared_ptr<const AnySensor> any_sensor(ChainPose);
-extern template std::shared_ptr<const AnySensor> any_sensor(DepthCamera);
-extern template std::shared_ptr<const AnySensor> any_sensor(PinholeCamera);
-#endif
 
 }  // namespace kinecal
 

@@ -10,13 +10,6 @@
 
 namespace kinecal {
 
-#ifndef KINECAL_HEADER_ONLY
-template std::shared_ptr<const AnySensor> any_sensor(ChainPoint);
-template std::shared_ptr<const AnySensor> any_sensor(ChainPose);
-template std::shared_ptr<const AnySensor> any_sensor(DepthCamera);
-template std::shared_ptr<const AnySensor> any_sensor(PinholeCamera);
-#endif
-
 namespace detail {
 
 /// Replaces NaN features, whose weight is zero, by another one: zero times NaN is NaN.
@@ -46,6 +39,12 @@ KINECAL_INLINE MountedSensor::MountedSensor(const Robot& robot, const std::strin
   for (const ParameterInfo& info : sensor_->parameters()) {
     parameters_.push_back(table.find(parameter_name(mount_.parameter_prefix(), info.name)));
   }
+}
+
+KINECAL_INLINE std::vector<double> MountedSensor::own_values(std::span<const double> values) const {
+  std::vector<double> own;
+  for (const int p : parameters_) own.push_back(p < 0 ? 0.0 : values[static_cast<std::size_t>(p)]);
+  return own;
 }
 
 KINECAL_INLINE detail::ObservationNumbers MountedSensor::numbers(const Sample& sample,

@@ -99,7 +99,7 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
     if (seen.usable[i] == 0.0) continue;
     if (seen.chain[i] != seen.chain[0]) return "the points of a plane are in several frames";
     const double* measured = &seen.measured[3 * i];
-    points.push_back(sensor.point({measured[0], measured[1], measured[2]}, seen.settings));
+    points.push_back(sensor.place({measured[0], measured[1], measured[2]}, seen.settings));
   }
   if (points.size() < 3) return "a plane takes three points or more";
   return PlaneFit<double>(points).determined() ? "" : "its points span no plane";

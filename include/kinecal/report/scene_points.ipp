@@ -92,11 +92,10 @@ class ScenePoints {
   }
   [[nodiscard]] bool is_camera(int s) const { return sensor(s).sensor().in_own_frame(); }
 
-  /// A sensor of one's own program with parameters: where its points are is not known here.
+  /// Points, rays and poses have a place.
   [[nodiscard]] static bool is_known(const MountedSensor& sensor) {
-    const auto type = sensor.sensor().type();
-    return type == DepthCamera::kType || type == PinholeCamera::kType ||
-           sensor.sensor().parameters().empty();
+    const std::optional<Quantity> places = sensor.sensor().places();
+    return places && *places != Quantity::reading;
   }
 
   /// A point that is compared with a sphere, or with a plane whose foot is found later.
@@ -135,21 +134,13 @@ class ScenePoints {
   [[nodiscard]] Vector3<double> in_sensor(const MountedSensor& of, const Vector3<double>& recorded,
                                           const std::vector<double>& settings) const {
     const Vector3<double> m = of.sensor().measurement(recorded, settings);
-    if (of.sensor().type() == DepthCamera::kType) {
-      const Measurement<DepthCamera, double> one{.point = m, .settings = array_of<6>(settings)};
-      return DepthCamera{}.place(one, own<6>(of.parameters()));
-    }
-    if (of.sensor().type() == PinholeCamera::kType) {
-      const Measurement<PinholeCamera, double> one{.point = m, .settings = array_of<9>(settings)};
-      return PinholeCamera{}.place(one, own<4>(of.parameters())).direction;
-    }
-    return of.sensor().point(m, settings);
+    return of.sensor().place(m, settings, of.own_values(values_));
   }
 
   [[nodiscard]] std::vector<PlacedFeature> placed(int s, const Observation& seen,
                                                   const Sample& sample) const {
     const MountedSensor& of = sensor(s);
-    const bool rays = of.sensor().type() == PinholeCamera::kType;
+    const bool rays = of.sensor().places() == Quantity::ray;
     const std::vector<double> settings = of.sensor().settings(seen);
     std::map<std::string, Pose<double>> frames;
     std::vector<PlacedFeature> all;

@@ -49,8 +49,7 @@ class SceneRobot {
   /// Adds the cameras with their settings in the first sample that has them.
   void add_cameras(std::span<const Sample> samples) {
     for (const MountedSensor& sensor : problem_.sensors()) {
-      const auto type = sensor.sensor().type();
-      if (type != DepthCamera::kType && type != PinholeCamera::kType) continue;
+      if (!sensor.sensor().is_camera()) continue;
       for (const Sample& sample : samples) {
         const Observation* seen = sample.observation(sensor.mount().name);
         if (seen != nullptr && seen->camera && add_camera(sensor, *seen)) break;

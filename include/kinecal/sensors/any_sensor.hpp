@@ -4,7 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "kinecal/linkage.hpp"
@@ -38,11 +40,32 @@ class AnySensor {
   /// @throws SettingsError
   [[nodiscard]] virtual Vector3<double> measurement(const Vector3<double>& point,
                                                     std::span<const double> settings) const = 0;
-  /// The point of a measurement with initial parameters, metres, in the sensor's frame; the
-  /// measurement itself for a sensor that does not deliver points.
-  [[nodiscard]] virtual Vector3<double> point(const Vector3<double>& measured,
-                                              std::span<const double> settings) const = 0;
+  /// What it places in its frame: points, rays, poses or readings; nullopt if it only predicts.
+  [[nodiscard]] virtual std::optional<Quantity> places() const = 0;
+  /// A measurement as a point of the sensor's frame, metres, or as the direction of a ray; the measurement
+  /// itself for a sensor of poses or readings.
+  /// @param own  its parameters, in their order; empty: as initial()
+  [[nodiscard]] virtual Vector3<double> place(const Vector3<double>& measured,
+                                              std::span<const double> settings,
+                                              std::span<const double> own = {}) const = 0;
+  /// The pixel at which a camera sees a point of its frame; NaN for a sensor that does not predict.
+  /// @param p    (3) metres
+  /// @param own  as above
+  [[nodiscard]] virtual Eigen::Vector2d predict(const Vector3<double>& p,
+                                                std::span<const double> settings,
+                                                std::span<const double> own = {}) const = 0;
+  /// True for a camera: it gives a calibrated camera_info, and its settings begin with fx fy cx cy, pixels.
+  [[nodiscard]] virtual bool is_camera() const = 0;
+  /// The camera_info of a camera with its parameters applied; of another sensor as it was.
+  /// @param own  its parameters, in their order
+  [[nodiscard]] virtual CameraInfo calibrated(const CameraInfo& info,
+                                              std::span<const double> own) const = 0;
 };
+
+/// True for a camera that measures points: depth.
+[[nodiscard]] inline bool measures_depth(const AnySensor& sensor) {
+  return sensor.is_camera() && sensor.delivers(Quantity::point);
+}
 
 namespace detail {
 
@@ -94,17 +117,42 @@ class SensorOfType final : public AnySensor {
     }
     return point;
   }
-  [[nodiscard]] Vector3<double> point(const Vector3<double>& measured,
-                                      std::span<const double> settings) const override {
-    if constexpr (PlacesOne<M, Quantity::point>) {
-      Measurement<M, double> m{.point = measured, .settings = array_of<kSettingsOf<M>>(settings)};
-      const std::vector<double> values = initial(settings);
-      return model_.place(m, array_of<kParametersOf<M>>(values));
-    }
+  [[nodiscard]] std::optional<Quantity> places() const override { return placed_quantity<M>(); }
+  [[nodiscard]] Vector3<double> place(const Vector3<double>& measured,
+                                      std::span<const double> settings,
+                                      std::span<const double> own) const override {
+    [[maybe_unused]] const Measurement<M, double> m{
+        .point = measured, .settings = array_of<kSettingsOf<M>>(settings)};
+    if constexpr (PlacesOne<M, Quantity::point>) return model_.place(m, values(settings, own));
+    if constexpr (PlacesOne<M, Quantity::ray>) return model_.place(m, values(settings, own)).direction;
     return measured;
+  }
+  [[nodiscard]] Eigen::Vector2d predict(const Vector3<double>& p, std::span<const double> settings,
+                                        std::span<const double> own) const override {
+    if constexpr (PredictingSensor<M>) {
+      return model_.predict(p, array_of<kSettingsOf<M>>(settings), values(settings, own));
+    }
+    return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+  [[nodiscard]] bool is_camera() const override { return kIsCamera; }
+  [[nodiscard]] CameraInfo calibrated(const CameraInfo& info,
+                                      std::span<const double> own) const override {
+    if constexpr (kIsCamera) return model_.calibrated(info, array_of<kParametersOf<M>>(own));
+    return info;
   }
 
  private:
+  static constexpr bool kIsCamera = requires(const M& model, const CameraInfo& info,
+                                             const std::array<double, kParametersOf<M>>& own) {
+    { model.calibrated(info, own) } -> std::same_as<CameraInfo>;
+  };
+
+  [[nodiscard]] std::array<double, kParametersOf<M>> values(std::span<const double> settings,
+                                                            std::span<const double> own) const {
+    if (!own.empty()) return array_of<kParametersOf<M>>(own);
+    return array_of<kParametersOf<M>>(initial(settings));
+  }
+
   M model_;
 };
 

@@ -19,28 +19,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "kinecal/sensors/camera_image.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
-
-/// The settings of a camera, or an error without them.
-/// @throws SettingsError
-[[nodiscard]] inline const CameraInfo& camera_info_of(const Observation& seen) {
-  if (seen.camera) return *seen.camera;
-  throw SettingsError("it is a camera but has no camera_info");
-}
-
-/// Checks that settings are numbers and focal lengths are positive.
-/// @param settings  fx fy, then others
-/// @throws SettingsError
-inline void check_camera_settings(std::span<const double> settings) {
-  for (const double number : settings) {
-    if (!std::isfinite(number)) throw SettingsError("camera_info has a value that is not a number");
-  }
-  if (!(settings[0] > 0.0 && settings[1] > 0.0)) {
-    throw SettingsError("the focal lengths in camera_info are not positive");
-  }
-}
 
 template <class Q>
 class CorrectedDepthCamera;
@@ -72,6 +54,12 @@ struct DepthCamera {
     check_camera_settings(s);
     if (!(s[5] > 0.0)) throw SettingsError("z_scaling is not positive");
     return s;
+  }
+  /// Its camera_info with corrected intrinsics.
+  /// @param v  (6) parameters in the order above
+  [[nodiscard]] static CameraInfo calibrated(const CameraInfo& info,
+                                             const std::array<double, 6>& v) {
+    return calibrated_camera_info(info, v[0], v[1], v[2], v[3]);
   }
   /// Parameters with which a recorded point stays where it is.
   [[nodiscard]] static std::array<double, 6> initial(const std::array<double, 6>& s) {

@@ -14,20 +14,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <array>
 
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/camera_image.hpp"
+#include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal {
-
-/// What the pixels of a camera are of.
-enum class ImageKind {
-  automatic,  ///< raw if camera_info has a distortion, else rectified; where K or P is zero, by the
-              ///< other one
-  raw,        ///< as the lens shows it: K and D
-  rectified   ///< without distortion: P
-};
 
 /// A pinhole camera.
 struct PinholeCamera {
@@ -44,18 +36,24 @@ struct PinholeCamera {
   ///                        other than plumb_bob
   [[nodiscard]] std::array<double, 9> settings(const Observation& seen) const {
     const CameraInfo& info = camera_info_of(seen);
-    const bool raw = image == ImageKind::automatic ? is_raw(info) : image == ImageKind::raw;
-    std::array<double, 9> s = {info.p[0], info.p[5], info.p[2], info.p[6]};
-    if (raw) {
-      s = {info.k[0], info.k[4], info.k[2], info.k[5]};
-      add_distortion(info, s);
-    }
+    const bool raw = is_raw(info, image);
+    const std::array<double, 4> intrinsics = intrinsics_of(info, raw);
+    std::array<double, 9> s = {intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]};
+    if (raw) add_distortion(info, s);
     if (image != ImageKind::automatic && s[0] == 0.0 && s[1] == 0.0) {
       throw SettingsError(raw ? "K of camera_info is zero, but the image is raw"
                               : "P of camera_info is zero, but the image is rectified");
     }
     check_camera_settings(s);
     return s;
+  }
+
+  /// Its camera_info with corrected intrinsics.
+  /// @param v  (4) fx fy cx cy: relative corrections
+  [[nodiscard]] CameraInfo calibrated(const CameraInfo& info, const std::array<double, 4>& v) const {
+    const bool raw = is_raw(info, image) || intrinsics_of(info, true) == intrinsics_of(info, false);
+    return calibrated_camera_info(info, v[0], v[1], v[2], v[3],
+                                  raw ? ImageKind::raw : ImageKind::rectified);
   }
 
   /// The pixel at which a point appears.
@@ -94,13 +92,6 @@ struct PinholeCamera {
 
  private:
   static constexpr int kUndistortions = 30;  ///< of a fixed-point iteration
-
-  [[nodiscard]] static bool is_raw(const CameraInfo& info) {
-    const bool has_k = info.k[0] != 0.0 || info.k[4] != 0.0;
-    const bool has_p = info.p[0] != 0.0 || info.p[5] != 0.0;
-    const bool bends = std::any_of(info.d.begin(), info.d.end(), [](double d) { return d != 0.0; });
-    return has_k && (bends || !has_p);
-  }
 
   /// Fills in k1 k2 p1 p2 k3.
   static void add_distortion(const CameraInfo& info, std::array<double, 9>& s) {

@@ -21,6 +21,9 @@
 //   kOwnFrame                            features are in the sensor's frame, never in a virtual one
 //   kOriented                            features have an orientation
 //   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels
+//   calibrated(camera_info, parameters)  makes it a camera: its camera_info with corrected intrinsics;
+//                                        its settings begin with fx fy cx cy
+//   image                                a member of type ImageKind: raw or rectified images
 //   Corrected<Q>                         its own derivatives, in place of those by jets
 //
 // DepthCamera has all but predict().

@@ -142,7 +142,7 @@ class ExactSearch {
     return std::any_of(moves_.begin(), moves_.end(), [&](const Move& move) {
       const Observation* seen = sample.observation(move.sensor);
       return seen != nullptr && seen->camera &&
-             mounted(move.sensor).sensor().type() != DepthCamera::kType;
+             mounted(move.sensor).sensor().delivers(Quantity::pixel);
     });
   }
 

@@ -13,14 +13,15 @@ namespace detail {
 
 /// True if the features of an observation are pixels.
 [[nodiscard]] inline bool measures_pixels(const MountedSensor& sensor, const Observation& seen) {
-  return seen.camera && sensor.sensor().type() != DepthCamera::kType;
+  return seen.camera && sensor.sensor().delivers(Quantity::pixel);
 }
 
 /// Errors of a point of a depth camera: along the columns, the rows and the ray.
-[[nodiscard]] inline std::vector<FeatureChange> errors_of_depth(const Observation& seen,
+[[nodiscard]] inline std::vector<FeatureChange> errors_of_depth(const AnySensor& sensor,
+                                                                const Observation& seen,
                                                                 const Vector3<double>& p,
                                                                 const MeasurementNoise& noise) {
-  const std::array<double, 6> settings = DepthCamera::settings(seen);
+  const std::vector<double> settings = sensor.settings(seen);
   const double z = p.z();
   return {{{noise.pixel * z / settings[0], 0.0, 0.0}},
           {{0.0, noise.pixel * z / settings[1], 0.0}},
@@ -62,7 +63,7 @@ KINECAL_INLINE std::vector<FeatureChange> errors_of(const MountedSensor& sensor,
   std::vector<FeatureChange> errors;
   const bool is_pixel = detail::measures_pixels(sensor, seen);
   if (!feature.sigma && seen.camera && !is_pixel) {
-    errors = detail::errors_of_depth(seen, feature.point, noise);
+    errors = detail::errors_of_depth(sensor.sensor(), seen, feature.point, noise);
   } else {
     const double size = feature.sigma.value_or(is_pixel ? noise.pixel : noise.point);
     for (Eigen::Index axis = 0; axis < (is_pixel ? 2 : 3); ++axis) {

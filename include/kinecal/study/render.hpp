@@ -28,10 +28,10 @@ class Renderer {
   /// @param code  of the LEDs that shine; 0: none
   [[nodiscard]] Picture render(const Scene& scene, const PoseInCamera& pose_of, int code) const;
 
-  [[nodiscard]] const Lens& lens() const { return lens_; }  ///< of the camera
+  [[nodiscard]] const SimulatedLens& lens() const { return lens_; }  ///< of the camera
 
  private:
-  Lens lens_;
+  SimulatedLens lens_;
   double grazing_;
   Image<Vector3<double>> corners_;  ///< rays through the corners of pixels
 };

@@ -15,7 +15,7 @@ namespace detail {
 
 /// The light that a lens spreads around an LED that shines: a Gaussian as wide as the LED.  No depth
 /// is measured where it is bright.
-inline void add_glow(const Lens& lens, const Flat& flat, Picture& picture) {
+inline void add_glow(const SimulatedLens& lens, const Flat& flat, Picture& picture) {
   const Vector3<double>& centre = flat.pose.translation;
   const Vector3<double> ray = centre / centre.z();
   const Eigen::Vector2d pixel = lens.project(centre);

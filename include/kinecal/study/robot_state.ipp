@@ -24,7 +24,7 @@ namespace kinecal::detail {
 /// Adds the errors of a setup's truth to its camera.
 [[nodiscard]] inline SimulatedSetup with_camera_errors(SimulatedSetup setup) {
   for (std::size_t i = 0; i < setup.camera.errors.size(); ++i) {
-    const auto& part = DepthCamera::kParameters[i].name;
+    const std::string_view part = kCameraErrors[i];
     const int index = setup.truth.find(parameter_name(setup.camera_name, part));
     if (index >= 0) setup.camera.errors[i] = setup.truth[index].value;
   }

@@ -2,21 +2,26 @@
 //
 //   depth, as the driver reports it: z / (1 + z_scaling) - z_offset + noise z^2, in steps of disparity
 //
-// The parameters are those of DepthCamera and PinholeCamera, which correct for them.
+// The parameters are those of camera2d and camera3d, which correct for them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "kinecal/capture/view.hpp"
-#include "kinecal/sensors/pinhole_camera.hpp"
+#include "kinecal/sensors/lens.hpp"
 #include "kinecal/study/seeded_random.hpp"
 
 namespace kinecal {
 
 /// 640 x 480 pixels, 554 pixels of focal length, no distortion.
 [[nodiscard]] CameraInfo typical_camera_info();
+
+/// The errors of a camera, as parameters of camera2d and camera3d name them.
+inline constexpr std::array<std::string_view, 6> kCameraErrors = {"fx", "fy",       "cx",
+                                                                  "cy", "z_offset", "z_scaling"};
 
 /// A camera.
 struct SimulatedCamera {
@@ -37,28 +42,20 @@ struct SimulatedCamera {
   bool has_holes = true;        ///< no depth at edges, at bright lights and at grazing angles
 };
 
-/// How a camera's lens projects, truly.
-class Lens {
+/// How a camera's lens projects, truly, and how its driver believes that it does.
+class SimulatedLens : public Lens {
  public:
   /// @throws SettingsError  if the camera_info cannot be of a camera
-  explicit Lens(const SimulatedCamera& camera);
-
-  /// The pixel at which a point appears.
-  /// @param p_camera  (3) metres, in the optical frame; z > 0
-  [[nodiscard]] Eigen::Vector2d project(const Vector3<double>& p_camera) const;
-
-  /// What a pixel shows.
-  /// @returns  (3) direction (x, y, 1) in the optical frame
-  [[nodiscard]] Vector3<double> ray(double u, double v) const;
+  explicit SimulatedLens(const SimulatedCamera& camera);
 
   /// What a pixel shows according to the driver, which does not know the errors.
   /// @returns  (3) direction (x, y, 1)
-  [[nodiscard]] Vector3<double> reported_ray(double u, double v) const;
+  [[nodiscard]] Vector3<double> reported_ray(double u, double v) const {
+    return reported_.ray(u, v);
+  }
 
  private:
-  ImageKind image_;
-  std::array<double, 9> settings_{};
-  std::array<double, 4> errors_{};
+  Lens reported_;
 };
 
 /// A picture without noise: what a perfect sensor measures behind this lens.
@@ -70,7 +67,7 @@ struct Picture {
 
 /// What a camera makes of a picture: image and cloud of a view; without stamp and joints.
 /// @param random  of the noise
-[[nodiscard]] View photograph(const SimulatedCamera& camera, const Lens& lens,
+[[nodiscard]] View photograph(const SimulatedCamera& camera, const SimulatedLens& lens,
                               const Picture& picture, SeededRandom& random);
 
 }  // namespace kinecal

@@ -22,26 +22,9 @@ KINECAL_INLINE CameraInfo typical_camera_info() {
   return info;
 }
 
-KINECAL_INLINE Lens::Lens(const SimulatedCamera& camera) : image_(camera.image) {
-  settings_ = PinholeCamera{image_}.settings({"camera", {}, camera.info});
-  std::copy_n(camera.errors.begin(), errors_.size(), errors_.begin());
-}
-
-KINECAL_INLINE Eigen::Vector2d Lens::project(const Vector3<double>& p_camera) const {
-  return PinholeCamera{image_}.predict(p_camera, settings_, errors_);
-}
-
-KINECAL_INLINE Vector3<double> Lens::ray(double u, double v) const {
-  const Measurement<PinholeCamera, double> pixel{
-      .point = {u, v, 0.0}, .rotation = Matrix3<double>::Identity(), .settings = settings_};
-  return PinholeCamera{image_}.place(pixel, errors_).direction;
-}
-
-KINECAL_INLINE Vector3<double> Lens::reported_ray(double u, double v) const {
-  const Measurement<PinholeCamera, double> pixel{
-      .point = {u, v, 0.0}, .rotation = Matrix3<double>::Identity(), .settings = settings_};
-  return PinholeCamera{image_}.place(pixel, std::array<double, 4>{}).direction;
-}
+KINECAL_INLINE SimulatedLens::SimulatedLens(const SimulatedCamera& camera)
+    : Lens(camera.info, camera.image, std::span(camera.errors).first(4)),
+      reported_(camera.info, camera.image) {}
 
 namespace detail {
 
@@ -146,7 +129,7 @@ inline double reported_depth(const SimulatedCamera& camera, double focal_length,
   return raw >= camera.nearest && raw <= camera.farthest ? raw : std::nan("");
 }
 
-inline PointCloud measured_points(const SimulatedCamera& camera, const Lens& lens,
+inline PointCloud measured_points(const SimulatedCamera& camera, const SimulatedLens& lens,
                                   const Picture& picture, SeededRandom& random) {
   NoiseRows noise(random);
   const double focal_length = 1.0 / (lens.reported_ray(1.0, 0.0) - lens.reported_ray(0, 0)).x();
@@ -168,7 +151,7 @@ inline PointCloud measured_points(const SimulatedCamera& camera, const Lens& len
 
 }  // namespace detail
 
-KINECAL_INLINE View photograph(const SimulatedCamera& camera, const Lens& lens,
+KINECAL_INLINE View photograph(const SimulatedCamera& camera, const SimulatedLens& lens,
                                const Picture& picture, SeededRandom& random) {
   View view;
   view.frame = camera.frame;

@@ -108,7 +108,7 @@ class SimulatedRobot {
   [[nodiscard]] Pose<double> in_camera(const std::string& link) const;
 
   /// The true projection of the camera.
-  [[nodiscard]] const Lens& lens() const;
+  [[nodiscard]] const SimulatedLens& lens() const;
 
   /// What it was made of.
   [[nodiscard]] const SimulatedSetup& setup() const;

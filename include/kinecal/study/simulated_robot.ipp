@@ -182,7 +182,7 @@ KINECAL_INLINE Pose<double> SimulatedRobot::in_camera(const std::string& link) c
   return state_->in_camera(link, true_positions());
 }
 
-KINECAL_INLINE const Lens& SimulatedRobot::lens() const {
+KINECAL_INLINE const SimulatedLens& SimulatedRobot::lens() const {
   return state_->renderer.lens();
 }
 

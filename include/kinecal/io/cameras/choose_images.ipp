@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "kinecal/io/cameras/image_fits.ipp"
 #include "kinecal/io/doubts/some_samples.ipp"
 #include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/io/registry.hpp"
 
 namespace kinecal {
 
@@ -32,7 +32,10 @@ struct ImageOptions {
 };
 
 [[nodiscard]] inline ImageOptions image_options(std::span<const Sample> samples,
-                                                const std::string& camera) {
+                                                const std::string& camera,
+                                               const SensorEntry& entry) {
+  const std::shared_ptr<const AnySensor> as_raw = entry.make(ImageKind::raw),
+                                         as_rectified = entry.make(ImageKind::rectified);
   ImageOptions options;
   for (const Sample& sample : samples) {
     const Observation* seen = sample.observation(camera);
@@ -42,14 +45,14 @@ struct ImageOptions {
     for (const double d : info.d) options.bends = options.bends || d != 0.0;
     const double trace = info.r[0] + info.r[4] + info.r[8];
     if (trace > 1.0) options.turn = std::acos(std::min(1.0, 0.5 * (trace - 1.0)));
-    std::array<double, 9> raw{}, rectified{};
+    std::vector<double> raw, rectified;
     try {
-      rectified = PinholeCamera{ImageKind::rectified}.settings(*seen);
+      rectified = as_rectified->settings(*seen);
     } catch (const SettingsError&) {
       options.rectified = false;
     }
     try {
-      raw = PinholeCamera{ImageKind::raw}.settings(*seen);
+      raw = as_raw->settings(*seen);
     } catch (const SettingsError& e) {
       options.no_raw = e.what();
     }
@@ -112,14 +115,14 @@ inline void warn_of_turned_image(const Config& config, const ModelConfig& camera
 KINECAL_INLINE void choose_images(Config& config, const Robot& robot,
                                   std::span<const Sample> samples, Diagnostics& diagnostics) {
   for (const ModelConfig& camera : detail::models_of(config)) {
-    if (camera.type != PinholeCamera::kType) continue;
+    if (!detail::has_image(camera)) continue;
     ImageKind given = ImageKind::automatic;
     for (const StepConfig& step : config.steps) {
       for (const ModelConfig& model : step.models) {
         if (model.name == camera.name && given == ImageKind::automatic) given = model.image;
       }
     }
-    const detail::ImageOptions options = detail::image_options(samples, camera.name);
+    const detail::ImageOptions options = detail::image_options(samples, camera.name, *registry().sensor(camera.type));
     if (given != ImageKind::automatic) {
       detail::set_image(config, camera.name, given);
     } else if (options.seen) {

@@ -29,11 +29,17 @@ struct ImageFit {
   }
 };
 
+/// True if a model is of a type with the key `image`.
+[[nodiscard]] inline bool has_image(const ModelConfig& model) {
+  const SensorEntry* entry = registry().sensor(model.type);
+  return entry != nullptr && entry->has_image;
+}
+
 /// Sets the image of a camera in the steps that do not give it.
 inline void set_image(Config& config, const std::string& camera, ImageKind image) {
   for (StepConfig& step : config.steps) {
     for (ModelConfig& model : step.models) {
-      const bool open = model.type == PinholeCamera::kType && model.image == ImageKind::automatic;
+      const bool open = has_image(model) && model.image == ImageKind::automatic;
       if (open && model.name == camera) model.image = image;
     }
   }

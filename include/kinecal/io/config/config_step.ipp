@@ -37,13 +37,24 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   return map.count("max_num_iterations", fallback);
 }
 
-/// `image: raw | rectified` of a camera2d.
+/// Names of the types of models with the key `image`.
+[[nodiscard]] inline std::string types_with_image() {
+  std::string names;
+  for (const SensorEntry& entry : registry().sensors()) {
+    if (entry.has_image) names += (names.empty() ? "" : " and ") + entry.type;
+  }
+  return names;
+}
+
+/// `image: raw | rectified` of a camera that has images.
 [[nodiscard]] inline ImageKind read_image(ConfigMap& map, const ModelConfig& model) {
   const auto image = map.text("image");
   if (!image) return ImageKind::automatic;
   const SourceLocation place = map.find("image")->place;
-  if (!model.type.empty() && model.type != PinholeCamera::kType) {
-    map.error(place, "image is a key of camera2d, but the type is '" + model.type + "'");
+  const SensorEntry* entry = registry().sensor(model.type);
+  if (entry != nullptr && !entry->has_image) {
+    map.error(place, "image is a key of " + types_with_image() + ", but the type is '" +
+                         model.type + "'");
   }
   if (*image == "raw") return ImageKind::raw;
   if (*image == "rectified") return ImageKind::rectified;

@@ -15,7 +15,7 @@
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/doubts/occurrences.hpp"
 #include "kinecal/io/doubts/sensor_points.hpp"
-#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/io/registry.hpp"
 
 namespace kinecal::detail {
 
@@ -78,8 +78,9 @@ inline void check_depth_points(const RecordedPoints& recorded, std::span<const S
   std::vector<Vector3<double>> pixels;
   for (std::size_t i = 0; i < recorded.points.size(); ++i) {
     const std::size_t s = recorded.samples[i];
-    const auto settings = DepthCamera::settings(*samples[s].observation(recorded.model.name));
-    pixels.push_back(DepthCamera::measurement(recorded.points[i], settings));
+    const Observation& seen = *samples[s].observation(recorded.model.name);
+    const AnySensor& sensor = *registry().sensor(recorded.model.type)->sensor;
+    pixels.push_back(sensor.measurement(recorded.points[i], sensor.settings(seen)));
     if (pixels.back().z() > 0.0) continue;
     diagnostics.error(
         place_of(samples, s),
@@ -87,8 +88,8 @@ inline void check_depth_points(const RecordedPoints& recorded, std::span<const S
             "sensor '{}' has a point {:.4g} m away, which its driver made of a depth of "
             "{:.4g} m by z_offset_mm {:.6g} and z_scaling {:.6g} of ext_camera_info; one of "
             "them is wrong",
-            recorded.model.name, recorded.points[i].z(), pixels.back().z(), 1e3 * settings[4],
-            settings[5]));
+            recorded.model.name, recorded.points[i].z(), pixels.back().z(), 1e3 * seen.camera->z_offset,
+            seen.camera->z_scaling));
     return;
   }
   const CameraInfo* camera = sized_camera(recorded, samples);

@@ -152,7 +152,7 @@ KINECAL_INLINE void check_sensor_points(const Config& config, const Robot& robot
     const SensorEntry* entry = registry().sensor(recorded.model.type);
     if (recorded.in_metres) {
       check_distances(recorded, reach, samples, diagnostics);
-      if (recorded.model.type == DepthCamera::kType) {
+      if (measures_depth(*entry->sensor)) {
         check_depth_points(recorded, samples, diagnostics);
       }
     } else if (entry->sensor->delivers(Quantity::pixel)) {

@@ -28,15 +28,6 @@ struct CalibratedCamera {
   bool measures_depth = false;
 };
 
-/// Which of its matrices a camera2d used in an observation.
-[[nodiscard]] inline ImageKind used_image(const AnySensor& sensor, const Observation& seen) {
-  if (sensor.type() != PinholeCamera::kType) return ImageKind::automatic;
-  const std::vector<double> s = sensor.settings(seen);
-  const auto& k = seen.camera->k;
-  const bool by_k = s[0] == k[0] && s[1] == k[4] && s[2] == k[2] && s[3] == k[5];
-  return by_k ? ImageKind::raw : ImageKind::rectified;
-}
-
 [[nodiscard]] inline std::vector<CalibratedCamera> calibrated_cameras(
     const Calibration& calibration, const ParameterTable& table, std::span<const Sample> samples) {
   std::vector<CalibratedCamera> cameras;
@@ -45,19 +36,15 @@ struct CalibratedCamera {
       const Mount& mount = mounted.mount();
       const auto same = [&](const auto& camera) { return camera.mount.name == mount.name; };
       if (std::any_of(cameras.begin(), cameras.end(), same)) continue;
-      const auto find = [&](const char* part) {
-        return table.find(parameter_name(mount.parameter_prefix(), part));
-      };
-      if (mounted.sensor().parameters().empty() || find("fx") < 0) continue;  // not a camera
-      const auto value = [&](const char* part) { return table[find(part)].value; };
+      if (!mounted.sensor().is_camera()) continue;
       for (const Sample& sample : samples) {
         const Observation* seen = sample.observation(mount.name);
         if (seen == nullptr || !seen->camera) continue;
-        cameras.push_back(
-            {mount,
-             calibrated_camera_info(*seen->camera, value("fx"), value("fy"), value("cx"),
-                                    value("cy"), used_image(mounted.sensor(), *seen)),
-             find("z_scaling") >= 0});
+        const Eigen::VectorXd all = table.values();
+        const std::vector<double> own =
+            mounted.own_values({all.data(), static_cast<std::size_t>(all.size())});
+        cameras.push_back({mount, mounted.sensor().calibrated(*seen->camera, own),
+                           measures_depth(mounted.sensor())});
         break;
       }
     }

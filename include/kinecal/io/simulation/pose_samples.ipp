@@ -8,8 +8,10 @@
 #include <set>
 #include <utility>
 
+#include "kinecal/io/registry.hpp"
 #include "kinecal/io/simulation/pose_samples.hpp"
 #include "kinecal/io/simulation/studied_models.ipp"
+#include "kinecal/sensors/lens.hpp"
 #include "kinecal/study/true_robot.hpp"
 
 namespace kinecal {
@@ -24,8 +26,7 @@ class PoseSampling {
         models_(studied_models(plan, config)),
         nominal_(plan.setup.robot, {}, {}),
         points_(features_of(plan.target)),
-        settings_(PinholeCamera{plan.setup.camera.image}.settings(
-            {"camera", {}, plan.setup.camera.info})) {
+        lens_(plan.setup.camera.info, plan.setup.camera.image) {
     link_T_points_ = is_board(plan.target) ? plan.target.pose : Pose<double>{};
     chain_T_link_ = rigid(models_.chain->frame, plan.target.link);
   }
@@ -106,7 +107,7 @@ class PoseSampling {
   }
 
   [[nodiscard]] Eigen::Vector2d pixel(const Vector3<double>& p) const {
-    return PinholeCamera{plan_.setup.camera.image}.predict(p, settings_, std::array<double, 4>{});
+    return lens_.project(p);
   }
 
   [[nodiscard]] std::string view_fault(const Vector3<double>& p) const {
@@ -122,7 +123,7 @@ class PoseSampling {
   }
 
   [[nodiscard]] Vector3<double> measured(const Vector3<double>& p) const {
-    if (models_.camera->type == DepthCamera::kType) return p;
+    if (measures_depth(*registry().sensor(models_.camera->type)->sensor)) return p;
     const Eigen::Vector2d at = pixel(p);
     return {at.x(), at.y(), 0.0};
   }
@@ -131,7 +132,7 @@ class PoseSampling {
   StudiedModels models_;
   TrueRobot nominal_;
   std::vector<Vector3<double>> points_;
-  std::array<double, 9> settings_;
+  Lens lens_;
   Pose<double> link_T_points_, chain_T_link_;
 };
 

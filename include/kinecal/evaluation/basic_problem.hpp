@@ -1,0 +1,99 @@
+// A calibration problem with its samples in batches, for evaluation in any scalar.  Include
+// basic_problem.ipp to evaluate in another scalar than packets, such as double.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/evaluation/block_term.hpp"
+#include "kinecal/evaluation/evaluator.hpp"
+#include "kinecal/problem/any_problem.hpp"
+
+namespace kinecal {
+
+/// A calibration problem.  Add sensors, then error blocks and priors, then samples.
+/// @tparam S  scalar of the evaluation: a packet, or double for one sample at a time
+template <class S>
+class BasicProblem final : public AnyProblem {
+ public:
+  using AnyProblem::AnyProblem;
+  /// For without_samples().
+  BasicProblem(const BasicProblem& other, AnyProblem::WithoutSamples without)
+      : AnyProblem(other, without), evaluations_(other.evaluations_), codes_(other.codes_) {}
+
+  /// Adds a sensor.
+  /// @param walks  compiled walks along its chains, if there are any
+  /// @throws  as AnyProblem::add_built_in()
+  template <Sensor M>
+  void add_sensor(const M& sensor, const Mount& mount,
+                  const std::vector<detail::CompiledWalk<S>>& walks = {}) {
+    if constexpr (detail::kIsOneOf<M, BuiltInSensor>) {
+      add_built_in(sensor, mount);
+    } else {
+      add_sensor_of_type(sensor, mount);
+    }
+    set_walks(walks);
+  }
+  /// The same, for a sensor of the built-in types, which the library has compiled.
+  void add_built_in(const BuiltInSensor& sensor, const Mount& mount) override;
+
+  /// Adds an error block between sensors that have been added.
+  /// @throws  as AnyProblem::add_built_in()
+  template <ErrorBlock B>
+  void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
+                 const TermOptions& options = {}) {
+    if constexpr (detail::kIsOneOf<B, BuiltInBlock>) {
+      add_built_in(name, block, sensors, options);
+    } else {
+      add_block_of_type(name, block, sensors, options);
+    }
+  }
+  /// The same, for a block of the built-in types, which the library has compiled.
+  void add_built_in(const std::string& name, const BuiltInBlock& block,
+                    const std::vector<std::string>& sensors, const TermOptions& options) override;
+
+  /// How the term of an error block is evaluated.
+  [[nodiscard]] const detail::TermCode<S>& code(int term) const {
+    return *codes_[static_cast<std::size_t>(term)];
+  }
+  /// How a sensor is evaluated.
+  [[nodiscard]] const detail::SensorEvaluation<S>& evaluation_of(std::size_t sensor) const {
+    return evaluations_[sensor];
+  }
+  /// The samples, by layout.
+  [[nodiscard]] const std::vector<detail::Batches<S>>& batches() const { return batches_; }
+
+  [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
+                                                        int threads = 1) const override;
+  [[nodiscard]] std::unique_ptr<AnyProblem> without_samples() const override;
+
+ private:
+  template <class M>
+  void add_sensor_of_type(const M& sensor, const Mount& mount) {
+    this->mount(detail::behind_interface(sensor), mount);
+    evaluations_.push_back({std::make_shared<const detail::SensorCodeOf<M, S>>(sensor), {}});
+  }
+  template <class B>
+  void add_block_of_type(const std::string& name, const B& block,
+                         const std::vector<std::string>& sensors, const TermOptions& options) {
+    add_term({.name = name,
+              .options = options,
+              .quantities = kQuantities<B>,
+              .conditions = kConditionsOfBlock<B>,
+              .feature_size = kResiduals<B>},
+             sensors, parameters_of(block));
+    codes_.push_back(std::make_shared<const detail::BlockTerm<B, S>>(block));
+  }
+  void set_walks(const std::vector<detail::CompiledWalk<S>>& walks);
+  void add_to_batch(std::size_t index, const detail::SampleLayout& layout,
+                    std::span<const double> numbers) override;
+  std::vector<int> renumber_in_batches(std::span<const int> numbers) override;
+
+  std::vector<detail::SensorEvaluation<S>> evaluations_;           ///< of each sensor
+  std::vector<std::shared_ptr<const detail::TermCode<S>>> codes_;  ///< of each term
+  std::vector<detail::Batches<S>> batches_;                        ///< by layout
+};
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/evaluation/basic_problem.ipp"
+#endif

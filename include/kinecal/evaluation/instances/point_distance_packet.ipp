@@ -1,9 +1,0 @@
-// The error block PointDistance in packets.
-// SPDX-License-Identifier: Apache-2.0
-#include "kinecal/evaluation/instances/built_in.ipp"
-
-namespace kinecal {
-
-template class detail::BlockTerm<PointDistance, Packet>;
-
-}  // namespace kinecal

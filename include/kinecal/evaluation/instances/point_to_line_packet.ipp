@@ -1,9 +1,0 @@
-// The error block PointToLine in packets.
-// SPDX-License-Identifier: Apache-2.0
-#include "kinecal/evaluation/instances/built_in.ipp"
-
-namespace kinecal {
-
-template class detail::BlockTerm<PointToLine, Packet>;
-
-}  // namespace kinecal

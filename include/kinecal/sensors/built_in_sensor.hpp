@@ -1,0 +1,45 @@
+// The sensors that the library has compiled.  A new one for everyone is its header and its name here.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <variant>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/sensors/any_sensor.hpp"
+#include "kinecal/sensors/chain_point.hpp"
+#include "kinecal/sensors/depth_camera.hpp"
+#include "kinecal/sensors/pinhole_camera.hpp"
+
+namespace kinecal {
+
+/// A sensor of a built-in type; configurations name it by its kType.
+using BuiltInSensor = std::variant<ChainPoint, DepthCamera, PinholeCamera, ChainPose>;
+
+/// A built-in sensor behind the common interface.
+[[nodiscard]] std::shared_ptr<const AnySensor> any_built_in(const BuiltInSensor& sensor);
+
+/// The camera that takes images: a lens without depth.
+/// @param info   selects the lens by its distortion
+[[nodiscard]] std::shared_ptr<const AnySensor> camera_of(const CameraInfo& info,
+                                                         ImageKind image = ImageKind::automatic);
+
+namespace detail {
+/// True for a type of a variant.
+template <class T, class Variant>
+inline constexpr bool kIsOneOf = false;
+template <class T, class... Ts>
+inline constexpr bool kIsOneOf<T, std::variant<Ts...>> = (std::is_same_v<T, Ts> || ...);
+
+/// Any sensor behind the common interface: built-in types are compiled in the library.
+template <Sensor M>
+[[nodiscard]] std::shared_ptr<const AnySensor> behind_interface(const M& sensor) {
+  if constexpr (kIsOneOf<M, BuiltInSensor>) return any_built_in(sensor);
+  return any_sensor(sensor);
+}
+}  // namespace detail
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/sensors/built_in_sensor.ipp"
+#endif

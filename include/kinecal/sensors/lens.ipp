@@ -1,0 +1,17 @@
+// Definitions of lens.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/sensors/built_in_sensor.hpp"
+#include "kinecal/sensors/lens.hpp"
+
+namespace kinecal {
+
+KINECAL_INLINE Lens::Lens(const CameraInfo& info, ImageKind image, std::span<const double> errors)
+    : camera_(camera_of(info, image)),
+      settings_(camera_->settings({"camera", {}, info})),
+      errors_(camera_->parameters().size(), 0.0) {
+  std::copy_n(errors.begin(), std::min(errors.size(), errors_.size()), errors_.begin());
+}
+
+}  // namespace kinecal

@@ -1,0 +1,113 @@
+// Samples that are left out of a problem, and sigmas that are set: as if it had been made so.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kinecal/evaluation/any_evaluator.hpp"
+#include "support/noisy_scene.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::NoisyScene;
+
+/// All rows of a problem, by sample and term.
+std::map<std::pair<int, int>, Eigen::VectorXd> rows_of(const AnyProblem& problem,
+                                                       const Eigen::VectorXd& values) {
+  std::map<std::pair<int, int>, Eigen::VectorXd> all;
+  EXPECT_FALSE(evaluate(problem, NoisyScene::span(values), nullptr,
+                        [&](int term, int sample, const TermResiduals& rows) {
+                          all[{sample, term}] = rows.factor.cwiseProduct(rows.residual);
+                        }));
+  return all;
+}
+
+/// Samples of two layouts: every third one lacks a feature, another has ids or sigmas.
+std::vector<Sample> unlike_samples(int count) {
+  std::vector<Sample> samples = NoisyScene(count).samples;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (Observation& seen : samples[i].observations) {
+      if (i % 3 == 1) seen.features.pop_back();
+      if (i % 5 != 2) continue;
+      for (std::size_t f = 0; f < seen.features.size(); ++f) {
+        seen.features[f].id = 10 + static_cast<int>(f);
+        if (f % 2 == 0) seen.features[f].sigma = 1e-3 * (1.0 + static_cast<double>(f));
+      }
+    }
+  }
+  return samples;
+}
+
+void expect_same(const AnyProblem& one, const AnyProblem& other, const Eigen::VectorXd& values,
+                 const FreeSet& free) {
+  ASSERT_EQ(one.num_samples(), other.num_samples());
+  EXPECT_EQ(one.num_residuals(), other.num_residuals());
+  EXPECT_EQ(one.touched_parameters(), other.touched_parameters());
+  EXPECT_EQ(one.samples_of(0), other.samples_of(0));
+  const auto a = rows_of(one, values), b = rows_of(other, values);
+  EXPECT_EQ(a, b);
+  for (int i = 0; i < one.num_samples(); ++i) {
+    EXPECT_EQ(one.source(i), other.source(i));
+    EXPECT_EQ(one.feature(0, i, 1).text(), other.feature(0, i, 1).text());
+  }
+  const NormalEquations of_one = normal_equations(one, NoisyScene::span(values), &free);
+  const NormalEquations of_other = normal_equations(other, NoisyScene::span(values), &free);
+  constexpr double kRounding = 1e-13;  // sums in another order
+  EXPECT_NEAR(of_one.cost, of_other.cost, kRounding * of_other.cost);
+  EXPECT_LE((of_one.hessian - of_other.hessian).norm(), kRounding * of_other.hessian.norm());
+}
+
+TEST(LeftOutSamples, AreAsIfTheyHadNeverBeenAdded) {
+  const NoisyScene scene(1);
+  std::vector<Sample> samples = unlike_samples(40);
+  const std::unique_ptr<AnyProblem> problem = scene.problem(samples);
+  std::vector<int> numbers(samples.size());
+  for (const std::set<int>& left_out : {std::set<int>{0, 1, 7, 39}, {}, {35}, {2, 3, 4, 5, 6, 8}}) {
+    problem->exclude(left_out);
+    for (auto i = left_out.rbegin(); i != left_out.rend(); ++i) samples.erase(samples.begin() + *i);
+    expect_same(*problem, *scene.problem(samples), scene.truth, scene.free());
+  }
+  problem->add_sample(samples[0]);
+  samples.push_back(samples[0]);
+  expect_same(*problem, *scene.problem(samples), scene.truth, scene.free());
+}
+
+TEST(LeftOutSamples, OfALayoutLeaveNothingThatTouchesItsParameters) {
+  NoisyScene scene(4);
+  const std::unique_ptr<AnyProblem> problem = scene.problem(scene.samples);
+  EXPECT_FALSE(problem->touched_parameters().empty());
+  problem->exclude({0, 1, 2, 3});
+  EXPECT_TRUE(problem->touched_parameters().empty());
+  EXPECT_EQ(problem->num_samples(), 0);
+  EXPECT_EQ(problem->num_residuals(), 0);
+  EXPECT_EQ(normal_equations(*problem, NoisyScene::span(scene.truth), nullptr).cost, 0.0);
+}
+
+TEST(Sigma, OfABlockCanBeSetWhenSamplesHaveBeenAdded) {
+  NoisyScene stated(1), estimated(1);
+  stated.options = {.scale = 2.0, .sigma = 0.003, .loss = {LossType::huber, 1.0}};
+  estimated.options = {.scale = 2.0, .loss = {LossType::huber, 1.0}};
+  const std::vector<Sample> samples = unlike_samples(20);
+  const std::unique_ptr<AnyProblem> problem = estimated.problem(samples);
+  problem->set_sigma(0, 0.5);
+  problem->set_sigma(0, 0.003);
+  expect_same(*problem, *stated.problem(samples), stated.truth, stated.free());
+  EXPECT_THROW(problem->set_sigma(0, 0.0), std::invalid_argument);
+  EXPECT_THROW(problem->set_sigma(0, std::nan("")), std::invalid_argument);
+}
+
+TEST(WithoutSamples, AProblemTakesOthers) {
+  NoisyScene scene(6), other(9, 5);
+  const std::unique_ptr<AnyProblem> problem = scene.problem(scene.samples);
+  problem->set_sigma(0, 0.002);
+  const std::unique_ptr<AnyProblem> copy = problem->without_samples();
+  EXPECT_EQ(copy->num_samples(), 0);
+  EXPECT_EQ(copy->num_residuals(), 0);
+  for (const Sample& sample : other.samples) copy->add_sample(sample);
+  NoisyScene with_sigma(1);
+  with_sigma.options.sigma = 0.002;
+  expect_same(*copy, *with_sigma.problem(other.samples), scene.truth, scene.free());
+  EXPECT_EQ(problem->num_samples(), 6);
+}
+
+}  // namespace
+}  // namespace kinecal
