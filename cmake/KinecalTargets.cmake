@@ -1,8 +1,8 @@
 # The libraries, one for each set of dependencies:
-#   kinecal::core     geometry ... crate           Eigen, threads
-#   kinecal::solve    solve, trust                 + Ceres
-#   kinecal::capture  capture, study               optional: apriltag, OpenCV
-#   kinecal::io       io, report                   + urdfdom, libyaml, pugixml, fmt, zlib; optional
+#   kinecal::core     text ... crate               Eigen, threads
+#   kinecal::solve    solve, trust                 core, Ceres
+#   kinecal::capture  capture                      core; optional: apriltag, OpenCV
+#   kinecal::io       study, files ... tools       solve, capture, urdfdom, libyaml, pugixml, fmt, zlib; optional
 #                                                    libraries: KinecalOptional.cmake
 #   kinecal::kinecal  all of them
 #   kinecal::headers  no library: every source compiles what it includes
@@ -62,20 +62,22 @@ function(kinecal_group_sources result name count folder)
 endfunction()
 
 # kinecal_add_library(<name> FOLDERS <folder>... LINK <target>... [UNIT <count>] [OPTIMIZE <flag>]
-#                     [PRIVATE_LINK <target>...])
+#                     [PRIVATE_LINK <target>...] [ALONE <file>...])
 #
 # FOLDERS       of include/kinecal: their headers, and the .ipp beside a header of the same name, which
 #               are compiled once
+# ALONE         of these folders: .ipp that are units of their own with KINECAL_UNITY, too
 # UNIT          so many sources are one translation unit with KINECAL_UNITY
 # OPTIMIZE      in place of Release's -O3
 # LINK          what the headers include
 # PRIVATE_LINK  what only the .ipp files include
 function(kinecal_add_library name)
-  cmake_parse_arguments(ARG "" "UNIT;OPTIMIZE" "FOLDERS;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "UNIT;OPTIMIZE" "FOLDERS;LINK;PRIVATE_LINK;ALONE" ${ARGN})
   set(target kinecal_${name})
   set(include ${PROJECT_SOURCE_DIR}/include/kinecal)
   set(headers "")
   set(units "")
+  set(alone "")
   foreach(folder IN LISTS ARG_FOLDERS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${include}/${folder}/*.hpp)
     list(APPEND headers ${found} ${include}/${folder}.hpp)
@@ -97,8 +99,13 @@ function(kinecal_add_library name)
     endif()
   else()
     set(scope PUBLIC)
-    kinecal_group_sources(units ${name} ${ARG_UNIT} ${PROJECT_SOURCE_DIR}/include
-                          ${units})
+    list(TRANSFORM ARG_ALONE PREPEND ${include}/)
+    if(ARG_ALONE)
+      list(REMOVE_ITEM units ${ARG_ALONE})
+      kinecal_group_sources(alone ${name} 1 ${PROJECT_SOURCE_DIR}/include ${ARG_ALONE})
+    endif()
+    kinecal_group_sources(units ${name} ${ARG_UNIT} ${PROJECT_SOURCE_DIR}/include ${units})
+    list(PREPEND units ${alone})
     add_library(${target} ${units})
     target_link_libraries(${target} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK}
                           $<BUILD_INTERFACE:kinecal_build_options>)
@@ -131,18 +138,19 @@ target_compile_definitions(kinecal_headers INTERFACE KINECAL_HEADER_ONLY)
 target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
 
 kinecal_add_library(core UNIT 16
-  FOLDERS geometry kinematics parameters samples sensors errors problem evaluation crate testing core
+  ALONE evaluation/problem.ipp  # all blocks and sensors: it takes longest
+  FOLDERS text geometry kinematics parameters samples sensors errors problem evaluation crate testing core
           linkage
   LINK Eigen3::Eigen Threads::Threads)
+kinecal_add_library(capture UNIT 30
+  FOLDERS capture
+  LINK kinecal_core)
 kinecal_add_library(solve UNIT 50
   FOLDERS solve trust
   LINK kinecal_core Ceres::ceres)
-kinecal_add_library(capture UNIT 30
-  FOLDERS capture study
-  LINK kinecal_solve)
 kinecal_add_library(io UNIT 33 OPTIMIZE -O2
-  FOLDERS io report
-  LINK kinecal_capture
+  FOLDERS study files config robots report tools
+  LINK kinecal_capture kinecal_solve
   PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB)
 include(KinecalOptional)
 include(KinecalPage)

@@ -13,7 +13,7 @@
 #include "commands.hpp"
 #include "fit.hpp"
 #include "input.hpp"
-#include "kinecal/io/doubts/judge_causes.hpp"
+#include "kinecal/config/doubts/judge_causes.hpp"
 #include "kinecal/report.hpp"
 #include "output.hpp"
 #include "output_file.hpp"

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
 
 namespace kinecal::cli {
 

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "interruption.hpp"
-#include "kinecal/io/diagnostics.hpp"
-#include "kinecal/io/results/file_set.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/report/checksum.hpp"
 
 namespace kinecal::cli {

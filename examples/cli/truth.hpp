@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinecal/io/capture/session_follower.hpp"
+#include "kinecal/config/capture/session_follower.hpp"
 
 namespace kinecal::cli {
 

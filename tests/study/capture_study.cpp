@@ -15,9 +15,9 @@
 
 #include "kinecal/capture/find_leds.hpp"
 #include "kinecal/capture/session.hpp"
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/capture/session_end.hpp"
-#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/capture/session_end.hpp"
+#include "kinecal/config/read_config.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 #include "support/simulated_fetch.hpp"

@@ -1,5 +1,5 @@
 // A Foxglove bridge on loopback with a simulated robot behind it: the reference server of the protocol,
-// from npm (tests/io/bridge/server).  It is started and ended with this object.
+// from npm (tests/robots/server).  It is started and ended with this object.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kinecal/io/bridge/child_process.hpp"
+#include "kinecal/robots/child_process.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 
@@ -24,7 +24,7 @@ inline std::string why_no_bridge_server() {
     if (std::system("command -v npm node flock > /dev/null") != 0) {
       return std::string("node and npm are not installed");
     }
-    const std::string call = source_folder() + "/tests/io/bridge/server/install.sh " + folder +
+    const std::string call = source_folder() + "/tests/robots/server/install.sh " + folder +
                              " > " + folder + ".log 2>&1";
     return std::system(call.c_str()) == 0
                ? std::string()

@@ -1,5 +1,5 @@
 // A simulated robot of this process behind the Foxglove bridge of bridge_server.hpp, which asks it for
-// joint states and views (tests/io/bridge/server/remote.mjs).
+// joint states and views (tests/robots/server/remote.mjs).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,8 +13,8 @@
 #include <string>
 #include <thread>
 
-#include "kinecal/io/bridge/child_process.hpp"
-#include "kinecal/io/bridge/json_value.hpp"
+#include "kinecal/robots/child_process.hpp"
+#include "kinecal/robots/json_value.hpp"
 #include "kinecal/study/simulated_robot.hpp"
 #include "support/bridge_server.hpp"
 

@@ -1,0 +1,27 @@
+// The camera_info file that ROS drivers load.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// True for the message that ROS sends for a sensor that is not a camera: all of it is zero.
+[[nodiscard]] bool is_blank(const CameraInfo& camera);
+
+/// The camera_info file of a camera, all numbers with full precision.
+/// @param camera_name  the driver's name of the camera
+[[nodiscard]] std::string to_camera_info_yaml(const CameraInfo& camera,
+                                              const std::string& camera_name);
+
+/// The same as ROS 2 prints the message: sensor_msgs/CameraInfo without its header.
+[[nodiscard]] std::string to_camera_message_yaml(const CameraInfo& camera);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/cameras/camera_info.ipp"
+#endif
