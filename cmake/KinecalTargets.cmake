@@ -1,9 +1,9 @@
 # The libraries, one for each set of dependencies:
 #   kinecal::core     geometry ... crate           Eigen, threads
-#   kinecal::solve    solve, trust                 + Ceres
+#   kinecal::solve    solve, trust                 + Ceres, Boost's headers
 #   kinecal::capture  capture, study               optional: apriltag, OpenCV
-#   kinecal::io       io, report                   + urdfdom, libyaml, pugixml, fmt, zlib; optional
-#                                                    libraries: KinecalOptional.cmake
+#   kinecal::io       io, report                   + urdfdom, libyaml, pugixml, fmt, zlib, nlohmann-json,
+#                                                    libcrypto; optional libraries: KinecalOptional.cmake
 #   kinecal::kinecal  all of them
 #   kinecal::headers  no library: every source compiles what it includes
 include(GNUInstallDirs)
@@ -12,10 +12,13 @@ set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that fetches kinecal link
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Ceres 2.1 REQUIRED)
+find_package(Boost 1.74 REQUIRED)
 find_package(urdfdom REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(fmt REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET GLOBAL yaml-0.1)
@@ -142,14 +145,16 @@ kinecal_add_library(core UNIT 16
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(solve UNIT 50
   FOLDERS solve trust
-  LINK kinecal_core Ceres::ceres)
+  LINK kinecal_core Ceres::ceres
+  PRIVATE_LINK Boost::headers)
 kinecal_add_library(capture UNIT 30
   FOLDERS capture study
   LINK kinecal_solve)
 kinecal_add_library(io UNIT 33 OPTIMIZE -O2
   FOLDERS io report
-  LINK kinecal_capture
-  PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB)
+  LINK kinecal_capture nlohmann_json::nlohmann_json
+  PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB
+               OpenSSL::Crypto Boost::headers)
 include(KinecalOptional)
 include(KinecalPage)
 if(NOT KINECAL_HEADER_ONLY)
