@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "interruption.hpp"
+#include "kinecal/io/checksum.hpp"
 #include "kinecal/io/diagnostics.hpp"
 #include "kinecal/io/results/file_set.hpp"
-#include "kinecal/report/checksum.hpp"
 
 namespace kinecal::cli {
 namespace {

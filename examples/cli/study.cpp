@@ -13,10 +13,10 @@
 
 #include "commands.hpp"
 #include "interruption.hpp"
+#include "kinecal/io/checksum.hpp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/io/results/file_set.hpp"
 #include "kinecal/io/text_file.hpp"
-#include "kinecal/report/checksum.hpp"
 #include "output_file.hpp"
 #include "process_group.hpp"
 #include "progress.hpp"

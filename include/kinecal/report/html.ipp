@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "kinecal/report/chart_style.hpp"
-#include "kinecal/report/checksum.hpp"
+#include "kinecal/io/checksum.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/html_sections.ipp"
 #include "kinecal/report/html_tables.ipp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,7 +11,8 @@
 
 #include "kinecal/io/bags/bag.hpp"
 #include "kinecal/io/bridge/bridge_frames.hpp"
-#include "kinecal/io/bridge/json_value.hpp"
+#include "kinecal/io/json/json_text.hpp"
+#include "kinecal/io/json/json_value.hpp"
 #include "kinecal/io/printable.hpp"
 #include "kinecal/linkage.hpp"
 
@@ -109,20 +111,19 @@ KINECAL_INLINE BinaryFrame parse_binary_frame(Bytes bytes) {
 }
 
 KINECAL_INLINE std::string subscribe_frame(std::uint32_t subscription, std::uint32_t channel) {
-  return R"({"op":"subscribe","subscriptions":[{"id":)" + std::to_string(subscription) +
-         R"(,"channelId":)" + std::to_string(channel) + "}]}";
+  const Json link = {{"id", subscription}, {"channelId", channel}};
+  return json_text({{"op", "subscribe"}, {"subscriptions", Json::array({link})}});
 }
 
 KINECAL_INLINE std::string advertise_frame(std::uint32_t id, const std::string& topic,
                                            const BridgeSchema& schema) {
-  const auto field = [](const char* name, const std::string& text) {
-    return std::string(",\"") + name + "\":" + json_text(text);
-  };
-  std::string frame = R"({"op":"advertise","channels":[{"id":)" + std::to_string(id);
-  frame += field("topic", topic) + field("encoding", schema.encoding);
-  frame += field("schemaName", schema.type) + field("schema", schema.definition);
-  if (!schema.definition_kind.empty()) frame += field("schemaEncoding", schema.definition_kind);
-  return frame + "}]}";
+  Json channel = {{"id", id},
+                  {"topic", topic},
+                  {"encoding", schema.encoding},
+                  {"schemaName", schema.type},
+                  {"schema", schema.definition}};
+  if (!schema.definition_kind.empty()) channel["schemaEncoding"] = schema.definition_kind;
+  return json_text({{"op", "advertise"}, {"channels", Json::array({channel})}});
 }
 
 KINECAL_INLINE std::string publish_frame(std::uint32_t id, Bytes message) {
