@@ -22,10 +22,11 @@ inline constexpr SceneColor kMeasured = {0.1, 0.7, 0.3, 1.0};     ///< points af
 inline constexpr SceneColor kPredicted = {0.95, 0.55, 0.1, 1.0};  ///< the same
 inline constexpr SceneColor kBad = {0.9, 0.15, 0.15, 1.0};        ///< of a sample that does not fit
 
+// There are many of these: fields that are given to Json in braces take twice as long.
 [[nodiscard]] inline Json xyz_json(double x, double y, double z) {
-  return {{"x", rounded(x, kEntityDigits)},
-          {"y", rounded(y, kEntityDigits)},
-          {"z", rounded(z, kEntityDigits)}};
+  return Json::object_t{{"x", rounded(x, kEntityDigits)},
+                        {"y", rounded(y, kEntityDigits)},
+                        {"z", rounded(z, kEntityDigits)}};
 }
 [[nodiscard]] inline Json xyz_json(const ScenePoint& p) {
   return xyz_json(p[0], p[1], p[2]);
@@ -33,10 +34,10 @@ inline constexpr SceneColor kBad = {0.9, 0.15, 0.15, 1.0};        ///< of a samp
 
 [[nodiscard]] inline Json quaternion_json(const Matrix3<double>& rotation) {
   const Eigen::Vector4d q = quaternion(rotation).normalized();
-  return {{"x", rounded(q(0), 9)},
-          {"y", rounded(q(1), 9)},
-          {"z", rounded(q(2), 9)},
-          {"w", rounded(q(3), 9)}};
+  return Json::object_t{{"x", rounded(q(0), 9)},
+                        {"y", rounded(q(1), 9)},
+                        {"z", rounded(q(2), 9)},
+                        {"w", rounded(q(3), 9)}};
 }
 
 [[nodiscard]] inline Json entity_pose(const Pose<double>& pose) {
@@ -46,10 +47,10 @@ inline constexpr SceneColor kBad = {0.9, 0.15, 0.15, 1.0};        ///< of a samp
 }
 
 [[nodiscard]] inline Json color_json(const SceneColor& color) {
-  return {{"r", rounded(color[0], 3)},
-          {"g", rounded(color[1], 3)},
-          {"b", rounded(color[2], 3)},
-          {"a", rounded(color[3], 3)}};
+  return Json::object_t{{"r", rounded(color[0], 3)},
+                        {"g", rounded(color[1], 3)},
+                        {"b", rounded(color[2], 3)},
+                        {"a", rounded(color[3], 3)}};
 }
 
 [[nodiscard]] inline Json time_json(std::int64_t nanoseconds) {

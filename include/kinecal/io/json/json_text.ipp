@@ -66,7 +66,9 @@ KINECAL_INLINE std::string json_lines(const Json& json) {
 
 KINECAL_INLINE Json rounded(double value, int digits) {
   if (!std::isfinite(value)) return 0;
-  const double scale = std::pow(10.0, digits), number = std::round(value * scale) / scale;
+  double scale = 1.0;
+  for (int i = 0; i < digits; ++i) scale *= 10.0;
+  const double number = std::round(value * scale) / scale;
   constexpr double kWhole = 1e15;
   if (std::abs(number) < kWhole && number == std::floor(number)) {
     return static_cast<std::int64_t>(number);  // 1 is shorter than 1.0
