@@ -140,7 +140,7 @@ file(GLOB KINECAL_INSTANCES CONFIGURE_DEPENDS
 
 kinecal_add_library(core UNIT 16
   INSTANCES ${KINECAL_INSTANCES}
-  FOLDERS geometry kinematics parameters samples sensors errors problem evaluation crate testing core
+  FOLDERS text geometry kinematics parameters samples sensors errors problem evaluation crate testing core
           linkage
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(solve UNIT 50

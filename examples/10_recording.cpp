@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "kinecal/errors.hpp"
-#include "kinecal/io/recordings/read_recording.hpp"
+#include "kinecal/files/recordings/read_recording.hpp"
 #include "kinecal/solve.hpp"
 #include "robots/mobile_manipulator.hpp"
 

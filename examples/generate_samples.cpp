@@ -11,9 +11,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "kinecal/io/samples/write_samples.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
-#include "kinecal/io/yaml/yaml_text.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/files/yaml/yaml_text.hpp"
 #include "true_robot.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "kinecal/io/samples/read_samples.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
 #include "made_samples.hpp"
 
 #ifndef KINECAL_DATA_DEFAULT

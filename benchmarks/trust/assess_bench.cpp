@@ -13,10 +13,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/samples/read_samples.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/trust.hpp"
 
 namespace kinecal {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/capture/capture_config.hpp"
+#include "kinecal/config/capture/capture_config.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/samples/sample.hpp"
 

@@ -7,10 +7,10 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/camera_info.hpp"
-#include "kinecal/io/cameras/read_camera_file.hpp"
-#include "kinecal/io/diagnostics.hpp"
-#include "kinecal/io/printable.hpp"
+#include "kinecal/files/cameras/camera_info.hpp"
+#include "kinecal/files/cameras/read_camera_file.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 
 namespace kinecal::cli {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/doubts/rising.hpp"
+#include "kinecal/config/doubts/rising.hpp"
 
 namespace kinecal::cli {
 

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/doubts/rising.hpp"
-#include "kinecal/io/json/json_text.hpp"
-#include "kinecal/io/printable.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/charts/parameters.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/printable.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "output_file.hpp"
 #include "report.hpp"

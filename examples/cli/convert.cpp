@@ -1,6 +1,6 @@
 // kinecal convert: samples and poses from one format to another.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/io/recordings/convert.hpp"
+#include "kinecal/files/recordings/convert.hpp"
 
 #include <fmt/core.h>
 
@@ -10,13 +10,13 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/bags/mcap/write_mcap.hpp"
-#include "kinecal/io/csv/read_csv_samples.hpp"
-#include "kinecal/io/recordings/bag_topics.hpp"
-#include "kinecal/io/recordings/pose_messages.hpp"
-#include "kinecal/io/recordings/write_recording.hpp"
-#include "kinecal/io/results/file_set.hpp"
-#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/files/bags/mcap/write_mcap.hpp"
+#include "kinecal/files/csv/read_csv_samples.hpp"
+#include "kinecal/files/recordings/bag_topics.hpp"
+#include "kinecal/files/recordings/pose_messages.hpp"
+#include "kinecal/files/recordings/write_recording.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "words.hpp"

@@ -1,6 +1,6 @@
 // kinecal detect: samples from photographs with a table of joint positions, and from recordings.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/io/detect/detect.hpp"
+#include "kinecal/tools/detect/detect.hpp"
 
 #include <fmt/core.h>
 
@@ -19,14 +19,14 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/evaluation/parallel.hpp"
-#include "kinecal/io/cameras/read_camera_file.hpp"
-#include "kinecal/io/detect/contact_sheet.hpp"
-#include "kinecal/io/printable.hpp"
-#include "kinecal/io/recordings/write_recording.hpp"
-#include "kinecal/io/results/file_set.hpp"
-#include "kinecal/io/text_file.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/files/cameras/read_camera_file.hpp"
+#include "kinecal/files/recordings/write_recording.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
+#include "kinecal/tools/detect/contact_sheet.hpp"
 #include "look.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"

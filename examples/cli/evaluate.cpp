@@ -7,8 +7,8 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/json/json_text.hpp"
-#include "kinecal/io/printable.hpp"
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/text/printable.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
 #include "words.hpp"

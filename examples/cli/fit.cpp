@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/doubts/check_offsets.hpp"
-#include "kinecal/io/doubts/likely_causes.hpp"
-#include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/doubts/check_offsets.hpp"
+#include "kinecal/config/doubts/likely_causes.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/trust/capture_causes.hpp"
 #include "kinecal/trust/ruined.hpp"
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "kinecal/io/init/initial_config.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/tools/init/initial_config.hpp"
 #include "output_file.hpp"
 #include "question.hpp"
 

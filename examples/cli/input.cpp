@@ -10,14 +10,14 @@
 #include <span>
 #include <system_error>
 
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/cameras/choose_images.hpp"
-#include "kinecal/io/cameras/set_camera.hpp"
-#include "kinecal/io/config/hold_parameters.hpp"
-#include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/doubts/find_doubts.hpp"
-#include "kinecal/io/printable.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/choose_images.hpp"
+#include "kinecal/config/doubts/find_doubts.hpp"
+#include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/cameras/set_camera.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/printable.hpp"
 #include "progress.hpp"
 
 namespace kinecal::cli {

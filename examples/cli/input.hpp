@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "kinecal/io/config/config.hpp"
-#include "kinecal/io/diagnostics.hpp"
-#include "kinecal/io/recordings/read_recording.hpp"
+#include "kinecal/config/config.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/recordings/read_recording.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal::cli {

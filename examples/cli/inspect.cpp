@@ -8,10 +8,10 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/printable.hpp"
-#include "kinecal/io/recordings/bag_topics.hpp"
-#include "kinecal/io/recordings/pose_messages.hpp"
+#include "kinecal/files/recordings/bag_topics.hpp"
+#include "kinecal/files/recordings/pose_messages.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/printable.hpp"
 #include "words.hpp"
 
 namespace kinecal::cli {

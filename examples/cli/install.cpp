@@ -1,6 +1,6 @@
 // kinecal install: puts a result on the robot, and back.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/io/install/install.hpp"
+#include "kinecal/tools/install/install.hpp"
 
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/printable.hpp"
+#include "kinecal/text/printable.hpp"
 
 namespace kinecal::cli {
 namespace {

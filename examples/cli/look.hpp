@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/detect/contact_sheet.hpp"
-#include "kinecal/io/detect/detect.hpp"
-#include "kinecal/io/detect/image_folder.hpp"
-#include "kinecal/io/detect/recorded_views.hpp"
+#include "kinecal/tools/detect/contact_sheet.hpp"
+#include "kinecal/tools/detect/detect.hpp"
+#include "kinecal/tools/detect/image_folder.hpp"
+#include "kinecal/tools/detect/recorded_views.hpp"
 
 namespace kinecal::cli {
 

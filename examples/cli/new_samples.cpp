@@ -9,14 +9,14 @@
 #include <nlohmann/json.hpp>
 
 #include "input.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/doubts/joint_positions.hpp"
+#include "kinecal/config/doubts/repeated_samples.hpp"
+#include "kinecal/config/doubts/sensor_points.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/camera_info.hpp"
-#include "kinecal/io/cameras/set_camera.hpp"
-#include "kinecal/io/doubts/joint_positions.hpp"
-#include "kinecal/io/doubts/repeated_samples.hpp"
-#include "kinecal/io/doubts/sensor_points.hpp"
-#include "kinecal/io/doubts/used_joints.hpp"
+#include "kinecal/files/cameras/camera_info.hpp"
+#include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/report/text.hpp"
 
 namespace kinecal::cli {

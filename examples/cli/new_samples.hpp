@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/doubts/rising.hpp"
-#include "kinecal/io/json/json_text.hpp"
+#include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/findings.hpp"
 #include "result.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/results/file_set.hpp"
-#include "kinecal/io/results/result_files.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/results/result_files.hpp"
 #include "kinecal/report/findings.hpp"
 
 namespace kinecal::cli {

@@ -3,7 +3,7 @@
 
 #include <system_error>
 
-#include "kinecal/io/results/file_set.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "report.hpp"
 
 namespace kinecal::cli {

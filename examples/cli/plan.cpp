@@ -11,9 +11,9 @@
 #include <set>
 
 #include "commands.hpp"
-#include "kinecal/io/capture/session_follower.hpp"
-#include "kinecal/io/printable.hpp"
+#include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/printable.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "output_file.hpp"
 #include "plan_page.hpp"

@@ -11,11 +11,11 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/printable.hpp"
-#include "kinecal/io/results/file_set.hpp"
-#include "kinecal/io/text_file.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/text_file.hpp"
 #include "kinecal/report/chart_style.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 
 namespace kinecal::cli {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <set>
 
-#include "kinecal/io/urdf/velocity_limits.hpp"
+#include "kinecal/files/urdf/velocity_limits.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "words.hpp"
 

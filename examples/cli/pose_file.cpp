@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "input.hpp"
-#include "kinecal/io/recordings/pose_messages.hpp"
-#include "kinecal/io/recordings/write_recording.hpp"
-#include "kinecal/io/results/file_set.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/files/recordings/pose_messages.hpp"
+#include "kinecal/files/recordings/write_recording.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/text/nearest_name.hpp"
 #include "output_file.hpp"
 #include "words.hpp"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/capture/capture_config.hpp"
-#include "kinecal/io/poses/poses.hpp"
+#include "kinecal/config/capture/capture_config.hpp"
+#include "kinecal/files/poses/poses.hpp"
 
 namespace kinecal::cli {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/files/diagnostics.hpp"
 
 namespace kinecal::cli {
 namespace {

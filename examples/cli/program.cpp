@@ -17,8 +17,8 @@
 
 #include "commands.hpp"
 #include "describe.hpp"
-#include "kinecal/io/printable.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/io/printable.hpp"
+#include "kinecal/text/printable.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <optional>
 
-#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/files/diagnostics.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <limits>
 
-#include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/doubts/rising.hpp"
-#include "kinecal/io/install/result_folder.hpp"
-#include "kinecal/io/json/json_value.hpp"
-#include "kinecal/io/text_file.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/json/json_value.hpp"
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/tools/install/result_folder.hpp"
 #include "output.hpp"
 
 namespace kinecal::cli {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/io/config/config.hpp"
+#include "kinecal/config/config.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/trust/drift.hpp"

@@ -8,9 +8,9 @@
 
 #include "input.hpp"
 #include "interruption.hpp"
-#include "kinecal/io/bridge/pipe_robot.hpp"
-#include "kinecal/io/bridge/ros_robot.hpp"
-#include "kinecal/io/simulation/simulation_plan.hpp"
+#include "kinecal/robots/pipe_robot.hpp"
+#include "kinecal/robots/ros_robot.hpp"
+#include "kinecal/tools/simulation/simulation_plan.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "kinecal/capture/any_robot.hpp"
-#include "kinecal/io/capture/capture_config.hpp"
+#include "kinecal/config/capture/capture_config.hpp"
 
 namespace kinecal::cli {
 

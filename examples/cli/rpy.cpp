@@ -11,8 +11,8 @@
 #include <numbers>
 
 #include "commands.hpp"
-#include "kinecal/io/diagnostics.hpp"
-#include "kinecal/io/yaml/yaml_text.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/yaml/yaml_text.hpp"
 
 namespace kinecal::cli {
 namespace {

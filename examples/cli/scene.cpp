@@ -5,8 +5,8 @@
 
 #include <sstream>
 
-#include "kinecal/io/bags/mcap/write_mcap.hpp"
-#include "kinecal/io/urdf/visuals.hpp"
+#include "kinecal/files/bags/mcap/write_mcap.hpp"
+#include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/report/scene_mcap.hpp"
 #include "kinecal/report/scene_meshes.hpp"
 #include "output_file.hpp"

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "commands.hpp"
-#include "kinecal/io/printable.hpp"
 #include "kinecal/study/study_summary.hpp"
+#include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"

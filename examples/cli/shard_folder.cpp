@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "interruption.hpp"
-#include "kinecal/io/checksum.hpp"
-#include "kinecal/io/diagnostics.hpp"
-#include "kinecal/io/results/file_set.hpp"
+#include "kinecal/files/checksum.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/results/file_set.hpp"
 
 namespace kinecal::cli {
 namespace {

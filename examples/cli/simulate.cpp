@@ -7,10 +7,10 @@
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/io/results/file_set.hpp"
-#include "kinecal/io/simulation/photographs.hpp"
-#include "kinecal/io/text_file.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/tools/simulation/photographs.hpp"
 #include "progress.hpp"
 
 namespace kinecal::cli {

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "input.hpp"
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/simulation/pose_samples.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/tools/simulation/pose_samples.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/ruined.hpp"

@@ -10,10 +10,10 @@
 
 #include "commands.hpp"
 #include "kinecal/capture/capture_pose.hpp"
-#include "kinecal/io/config/config.hpp"
-#include "kinecal/io/simulation/simulation_plan.hpp"
+#include "kinecal/config/config.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/study/repeatability.hpp"
+#include "kinecal/tools/simulation/simulation_plan.hpp"
 
 namespace kinecal::cli {
 

@@ -9,8 +9,8 @@
 #include <sstream>
 #include <utility>
 
-#include "kinecal/io/diagnostics.hpp"
-#include "kinecal/io/results/file_set.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/results/file_set.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "kinecal/io/json/json_text.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/charts/spread.hpp"
 #include "kinecal/report/text.hpp"
 #include "words.hpp"

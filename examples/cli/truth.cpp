@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "kinecal/io/simulation/simulation_plan.hpp"
+#include "kinecal/tools/simulation/simulation_plan.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/pose_change.hpp"
 

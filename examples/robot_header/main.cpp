@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/io/results/file_set.hpp"
-#include "kinecal/io/urdf/robot_header.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/urdf/robot_header.hpp"
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "../cli/output.hpp"
-#include "kinecal/io/recordings/read_recording.hpp"
-#include "kinecal/io/samples/write_samples.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/files/recordings/read_recording.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/solve/calibrate.hpp"

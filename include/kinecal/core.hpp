@@ -11,3 +11,4 @@
 #include "kinecal/problem.hpp"
 #include "kinecal/samples.hpp"
 #include "kinecal/sensors.hpp"
+#include "kinecal/text.hpp"

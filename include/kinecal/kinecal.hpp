@@ -3,9 +3,12 @@
 #pragma once
 
 #include "kinecal/capture.hpp"
+#include "kinecal/config.hpp"
 #include "kinecal/core.hpp"
-#include "kinecal/io.hpp"
+#include "kinecal/files.hpp"
 #include "kinecal/report.hpp"
+#include "kinecal/robots.hpp"
 #include "kinecal/solve.hpp"
 #include "kinecal/study.hpp"
+#include "kinecal/tools.hpp"
 #include "kinecal/trust.hpp"

@@ -22,7 +22,6 @@
 #include "kinecal/trust/pose_elsewhere.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 #include "kinecal/trust/prior_pulls.hpp"
-#include "kinecal/trust/reading.hpp"
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/reluctance.hpp"
 #include "kinecal/trust/ruined.hpp"

@@ -20,8 +20,9 @@ const fs::path kHeaders = fs::path(test::source_folder()) / "include/kinecal";
 
 /// A folder may include those before it.
 const std::vector<std::string> kFolders = {
-    "geometry", "kinematics", "parameters", "samples", "sensors", "errors", "problem", "evaluation",
-    "crate",    "testing",    "solve",      "trust",   "capture", "study",  "io",      "report"};
+    "text",    "geometry",   "kinematics", "parameters", "samples", "sensors", "errors",
+    "problem", "evaluation", "crate",      "testing",    "solve",   "trust",   "capture",
+    "study",   "files",      "config",     "robots",     "report",  "tools"};
 /// For tests: no umbrella header of the whole tree includes it.
 const std::string kForTests = "testing";
 
@@ -100,7 +101,7 @@ TEST(Architecture, CoreSeesEigenAndTheStandardLibraryOnly) {
     }
     if (target.starts_with("urdf") || target.starts_with("yaml-cpp/") || target == "yaml.h" ||
         target == "pugixml.hpp") {
-      EXPECT_EQ(folder, "io") << header << " includes " << target;
+      EXPECT_EQ(folder, "files") << header << " includes " << target;
     }
   }
 }
@@ -140,11 +141,11 @@ TEST(Architecture, CoreIncludesTheFoldersThatNeedOnlyEigenAndKinecalIncludesTheR
   EXPECT_THAT(included_by("kinecal.hpp"), testing::UnorderedElementsAreArray(rest));
 }
 
-/// What io/ declares in a .ipp without a header of the same name is not for users.  (Other folders
+/// What files/ declares in a .ipp without a header of the same name is not for users.  (Other folders
 /// also have .ipp files that only instantiate what their headers declare.)
 TEST(Architecture, WhatNoHeaderDeclaresIsInDetail) {
   int insides = 0;
-  for (const auto& file : fs::recursive_directory_iterator(kHeaders / "io")) {
+  for (const auto& file : fs::recursive_directory_iterator(kHeaders / "files")) {
     fs::path header = file.path();
     if (header.extension() != ".ipp" || fs::exists(header.replace_extension(".hpp"))) continue;
     ++insides;
@@ -164,25 +165,23 @@ constexpr int kMostLines = 200, kMostLinesOfAnException = 300;
 
 /// Sorted by name; what has become short enough is removed from here.
 constexpr LongSource kLongSources[] = {
+    {"config/assemble.ipp", "from all of a configuration to problems, in one pass"},
+    {"config/parameters_from_config.ipp", "every kind of parameter that a configuration names"},
     {"errors/error_block.hpp", "the concept: every kind of block, its inputs and its size"},
-    {"evaluation/block_rows.hpp",
-     "one class template: from every kind of block to the one format of rows"},
-    {"evaluation/block_term.hpp",
-     "one class template: a term evaluates, sums and lays out its rows alike"},
+    {"evaluation/block_rows.hpp", "one class template: from every kind of block to the one format of rows"},
+    {"evaluation/block_term.hpp", "one class template: a term evaluates, sums and lays out its rows alike"},
+    {"files/bags/mcap/messages.ipp", "one reader: records, chunks and index of a file"},
+    {"files/bags/mcap/write_mcap.ipp", "one writer: records, chunks, index and summary of a file"},
+    {"files/bags/ros1/read_bag.ipp", "one reader: records, chunks and index of a bag"},
+    {"files/csv/read_csv_samples.ipp", "from rows to samples, with a message for each mistake"},
+    {"files/messages/definition.ipp", "the grammar of .msg files and its parser"},
+    {"files/samples/sample_schema.ipp", "one table: every key of a sample"},
+    {"files/yaml/config_map.ipp", "one class: a map of a configuration, its types and its errors"},
     {"geometry/jet.hpp", "one scalar with all its operators and functions"},
     {"geometry/packet.hpp", "a scalar and its functions for every instruction set"},
-    {"io/assemble.ipp", "from all of a configuration to problems, in one pass"},
-    {"io/bags/mcap/messages.ipp", "one reader: records, chunks and index of a file"},
-    {"io/bags/mcap/write_mcap.ipp", "one writer: records, chunks, index and summary of a file"},
-    {"io/bags/ros1/read_bag.ipp", "one reader: records, chunks and index of a bag"},
-    {"io/config/config_map.ipp", "one class: a map of a configuration, its types and its errors"},
-    {"io/csv/read_csv_samples.ipp", "from rows to samples, with a message for each mistake"},
-    {"io/install/launch_folder.ipp", "one sequence of file operations that may stop anywhere"},
-    {"io/messages/definition.ipp", "the grammar of .msg files and its parser"},
-    {"io/parameters_from_config.ipp", "every kind of parameter that a configuration names"},
-    {"io/samples/sample_schema.ipp", "one table: every key of a sample"},
     {"kinematics/twist_walker.hpp", "the derivation of the twists and its one walker"},
     {"parameters/free_parameters.hpp", "every kind of free parameter as a type"},
+    {"tools/install/launch_folder.ipp", "one sequence of file operations that may stop anywhere"},
 };
 
 TEST(Architecture, EveryHeaderHasALicence) {

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/solve.hpp"
 
 int main(int argc, char** argv) {

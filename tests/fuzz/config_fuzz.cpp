@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "kinecal/io/config/read_config.hpp"
+#include "kinecal/config/read_config.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const int file = memfd_create("config", 0);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kinecal/io/bags/rosbag2/db3_messages.ipp"
+#include "kinecal/files/bags/rosbag2/db3_messages.ipp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<std::uint8_t> bytes(data, data + size);  // SQLite demands what it may write to

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "kinecal/io/bags/mcap/read_mcap.hpp"
+#include "kinecal/files/bags/mcap/read_mcap.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "kinecal/io/meshes/read_mesh.hpp"
+#include "kinecal/files/meshes/read_mesh.hpp"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "kinecal/io/messages/decode.hpp"
-#include "kinecal/io/messages/encode.hpp"
-#include "kinecal/io/messages/known_definitions.hpp"
-#include "kinecal/io/recordings/message_samples.ipp"
+#include "kinecal/files/messages/decode.hpp"
+#include "kinecal/files/messages/encode.hpp"
+#include "kinecal/files/messages/known_definitions.hpp"
+#include "kinecal/files/recordings/message_samples.ipp"
 
 namespace {
 

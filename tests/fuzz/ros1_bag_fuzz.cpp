@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "kinecal/io/bags/ros1/read_bag.hpp"
+#include "kinecal/files/bags/ros1/read_bag.hpp"
 
 namespace {
 

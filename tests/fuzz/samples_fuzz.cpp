@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "kinecal/io/samples/sample_file.ipp"
+#include "kinecal/files/samples/sample_file.ipp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const std::size_t piece : {std::size_t{64}, kinecal::detail::SampleFile::kPieceBytes}) {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/urdf/patch_urdf.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
-#include "kinecal/io/urdf/visuals.hpp"
+#include "kinecal/files/urdf/patch_urdf.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/files/urdf/visuals.hpp"
 
 namespace {
 

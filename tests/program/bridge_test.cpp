@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/recordings/read_recording.hpp"
-#include "kinecal/io/samples/read_samples.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/recordings/read_recording.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"

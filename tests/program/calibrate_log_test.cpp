@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
 #include "support/arm_scene.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"

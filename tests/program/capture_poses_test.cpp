@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/poses/poses.hpp"
-#include "kinecal/io/recordings/pose_messages.hpp"
+#include "kinecal/files/poses/poses.hpp"
+#include "kinecal/files/recordings/pose_messages.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
 

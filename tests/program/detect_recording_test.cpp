@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "kinecal/io/cameras/read_camera_file.hpp"
-#include "kinecal/io/detect/image_folder.hpp"
-#include "kinecal/io/images/png_bytes.hpp"
-#include "kinecal/io/images/read_image.hpp"
-#include "kinecal/io/samples/read_samples.hpp"
+#include "kinecal/files/cameras/read_camera_file.hpp"
+#include "kinecal/files/images/png_bytes.hpp"
+#include "kinecal/files/images/read_image.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/tools/detect/image_folder.hpp"
 #include "support/paths.hpp"
 #include "support/recording.hpp"
 #include "support/run_program.hpp"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
 

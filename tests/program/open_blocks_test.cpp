@@ -9,8 +9,8 @@
 #include <optional>
 #include <random>
 
-#include "kinecal/io/samples/write_samples.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"

@@ -13,8 +13,8 @@
 #include <pugixml.hpp>
 #include <random>
 
-#include "kinecal/io/camera_info.hpp"
-#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/files/cameras/camera_info.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"

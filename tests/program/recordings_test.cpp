@@ -7,11 +7,11 @@
 #include <fstream>
 #include <string>
 
-#include "kinecal/io/bags/mcap/read_mcap.hpp"
-#include "kinecal/io/bags/mcap/write_mcap.hpp"
-#include "kinecal/io/recordings/convert.hpp"
-#include "kinecal/io/samples/read_samples.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/files/bags/mcap/read_mcap.hpp"
+#include "kinecal/files/bags/mcap/write_mcap.hpp"
+#include "kinecal/files/recordings/convert.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"

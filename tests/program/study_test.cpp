@@ -6,7 +6,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "kinecal/io/poses/poses.hpp"
+#include "kinecal/files/poses/poses.hpp"
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
 

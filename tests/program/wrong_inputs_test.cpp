@@ -12,8 +12,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "kinecal/io/samples/read_samples.hpp"
-#include "kinecal/io/samples/write_samples.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
 #include "support/arm_scene.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <limits>
 
-#include "kinecal/io/messages/make.ipp"
-#include "kinecal/io/recordings/bag_output.hpp"
+#include "kinecal/files/messages/make.ipp"
+#include "kinecal/files/recordings/bag_output.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace kinecal {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "kinecal/io/checksum.hpp"
-#include "kinecal/io/json/json_text.hpp"
+#include "kinecal/files/checksum.hpp"
+#include "kinecal/files/json/json_text.hpp"
 
 namespace kinecal {
 namespace {

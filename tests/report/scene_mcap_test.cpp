@@ -9,7 +9,7 @@
 #include <map>
 #include <sstream>
 
-#include "kinecal/io/bags/mcap/read_mcap.hpp"
+#include "kinecal/files/bags/mcap/read_mcap.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/noisy_scene.hpp"
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/doubts/find_doubts.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/geometry/rpy.hpp"
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/doubts/find_doubts.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "support/temporary_folder.hpp"
 

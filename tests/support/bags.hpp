@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/io/bags/bag.hpp"
-#include "kinecal/io/diagnostics.hpp"
+#include "kinecal/files/bags/bag.hpp"
+#include "kinecal/files/diagnostics.hpp"
 
 namespace kinecal {
 

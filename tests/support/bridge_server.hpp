@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kinecal/io/bridge/child_process.hpp"
+#include "kinecal/robots/child_process.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 

@@ -6,10 +6,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/samples/read_samples.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal::test {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "kinecal/capture/view.hpp"
-#include "kinecal/io/messages/make.ipp"
-#include "kinecal/io/messages/message_fields.ipp"
-#include "kinecal/io/recordings/bag_output.hpp"
+#include "kinecal/files/messages/make.ipp"
+#include "kinecal/files/messages/message_fields.ipp"
+#include "kinecal/files/recordings/bag_output.hpp"
 
 namespace kinecal::test {
 

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/bags/ros1/read_bag.hpp"
-#include "kinecal/io/bags/ros1/write_bag.hpp"
+#include "kinecal/files/bags/ros1/read_bag.hpp"
+#include "kinecal/files/bags/ros1/write_bag.hpp"
 
 namespace kinecal::test {
 

@@ -13,10 +13,10 @@
 #include <string>
 #include <thread>
 
-#include "kinecal/io/bridge/child_process.hpp"
-#include "kinecal/io/checksum.hpp"
-#include "kinecal/io/json/json_text.hpp"
-#include "kinecal/io/json/json_value.hpp"
+#include "kinecal/files/checksum.hpp"
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/json/json_value.hpp"
+#include "kinecal/robots/child_process.hpp"
 #include "kinecal/study/simulated_robot.hpp"
 #include "support/bridge_server.hpp"
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/poses/poses.hpp"
-#include "kinecal/io/recordings/pose_messages.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
-#include "kinecal/io/urdf/velocity_limits.hpp"
+#include "kinecal/files/poses/poses.hpp"
+#include "kinecal/files/recordings/pose_messages.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/files/urdf/velocity_limits.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/study/simulated_robot.hpp"
 #include "kinecal/study/true_robot.hpp"

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/assemble.hpp"
-#include "kinecal/io/config/read_config.hpp"
-#include "kinecal/io/samples/read_samples.hpp"
-#include "kinecal/io/urdf/read_urdf.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
 #include "support/data.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinecal/io/results/result_files.hpp"
+#include "kinecal/files/results/result_files.hpp"
 #include "kinecal/trust.hpp"
 #include "support/calibrated.hpp"
 #include "support/data.hpp"

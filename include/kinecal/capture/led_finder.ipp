@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "kinecal/capture/led_finder.hpp"
-#include "kinecal/trust/reading.hpp"
+#include "kinecal/text/reading.hpp"
 
 namespace kinecal {
 

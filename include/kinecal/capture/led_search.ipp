@@ -7,7 +7,7 @@
 #include "kinecal/capture/led_search.hpp"
 #include "kinecal/capture/surface_point.hpp"
 #include "kinecal/capture/view_checks.hpp"
-#include "kinecal/trust/reading.hpp"
+#include "kinecal/text/reading.hpp"
 
 namespace kinecal {
 namespace detail {

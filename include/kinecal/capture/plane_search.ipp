@@ -5,7 +5,7 @@
 
 #include "kinecal/capture/plane_search.hpp"
 #include "kinecal/capture/spread.hpp"
-#include "kinecal/trust/reading.hpp"
+#include "kinecal/text/reading.hpp"
 
 namespace kinecal {
 namespace detail {

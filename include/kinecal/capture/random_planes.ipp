@@ -6,7 +6,7 @@
 
 #include "kinecal/capture/random_planes.hpp"
 #include "kinecal/errors/plane_fit.hpp"
-#include "kinecal/trust/reading.hpp"
+#include "kinecal/text/reading.hpp"
 
 namespace kinecal {
 namespace detail {

@@ -8,7 +8,7 @@
 #include "kinecal/capture/robot_body.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
 

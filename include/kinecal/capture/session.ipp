@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "kinecal/capture/session.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
 

@@ -6,7 +6,7 @@
 
 #include "kinecal/capture/spread.hpp"
 #include "kinecal/capture/view_checks.hpp"
-#include "kinecal/trust/reading.hpp"
+#include "kinecal/text/reading.hpp"
 
 namespace kinecal {
 namespace detail {

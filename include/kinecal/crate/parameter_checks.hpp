@@ -5,7 +5,7 @@
 
 #include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/kinematics/known_name.hpp"
-#include "kinecal/kinematics/sentence.hpp"
+#include "kinecal/text/sentence.hpp"
 
 namespace kinecal::detail {
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/kinematics/fixed_string.hpp"
 #include "kinecal/kinematics/known_name.hpp"
-#include "kinecal/kinematics/sentence.hpp"
 #include "kinecal/kinematics/static_robot.hpp"
+#include "kinecal/text/fixed_string.hpp"
+#include "kinecal/text/sentence.hpp"
 
 namespace kinecal::detail {
 

@@ -11,7 +11,7 @@
 #include <array>
 #include <utility>
 
-#include "kinecal/kinematics/nearest_name.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
 

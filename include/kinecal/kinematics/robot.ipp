@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "kinecal/kinematics/chain_fold.hpp"
-#include "kinecal/kinematics/nearest_name.hpp"
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
 

@@ -15,9 +15,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/kinematics/fixed_string.hpp"
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/parameters/parameter.hpp"
+#include "kinecal/text/fixed_string.hpp"
 
 namespace kinecal {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "kinecal/kinematics/nearest_name.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
 

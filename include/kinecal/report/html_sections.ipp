@@ -11,7 +11,7 @@
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/svg_text.hpp"
 #include "kinecal/report/text.hpp"
-#include "kinecal/trust/reading.hpp"
+#include "kinecal/text/reading.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 
 namespace kinecal::detail {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "kinecal/io/json/json_text.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/json_state.ipp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/io/json/json_text.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/trust/drift.hpp"
 

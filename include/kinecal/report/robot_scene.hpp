@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/meshes/mesh.hpp"
-#include "kinecal/io/urdf/visuals.hpp"
+#include "kinecal/files/meshes/mesh.hpp"
+#include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/kinematics/joint_model.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/report/findings.hpp"

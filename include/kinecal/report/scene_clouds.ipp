@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "kinecal/io/recordings/recorded_clouds.hpp"
+#include "kinecal/files/recordings/recorded_clouds.hpp"
 #include "kinecal/report/scene_clouds.hpp"
 
 namespace kinecal {

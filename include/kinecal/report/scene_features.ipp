@@ -13,7 +13,7 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/report/scene_points.ipp"
-#include "kinecal/trust/reading.hpp"
+#include "kinecal/text/reading.hpp"
 
 namespace kinecal::detail {
 

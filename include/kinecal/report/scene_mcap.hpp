@@ -14,7 +14,7 @@
 
 #include <iosfwd>
 
-#include "kinecal/io/bags/codec/compression.hpp"
+#include "kinecal/files/bags/codec/compression.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/report/robot_scene.hpp"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/bags/mcap/write_mcap.hpp"
+#include "kinecal/files/bags/mcap/write_mcap.hpp"
 #include "kinecal/report/scene_entities.ipp"
 #include "kinecal/report/scene_mcap.hpp"
 #include "kinecal/report/scene_schemas.ipp"

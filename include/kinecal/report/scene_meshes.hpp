@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "kinecal/io/meshes/find_mesh.hpp"
+#include "kinecal/files/meshes/find_mesh.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/report/robot_scene.hpp"
 

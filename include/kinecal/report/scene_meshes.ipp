@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/io/meshes/read_mesh.hpp"
-#include "kinecal/io/printable.hpp"
+#include "kinecal/files/meshes/read_mesh.hpp"
 #include "kinecal/report/scene_meshes.hpp"
+#include "kinecal/text/printable.hpp"
 
 namespace kinecal {
 

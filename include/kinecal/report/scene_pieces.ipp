@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/io/checksum.hpp"
-#include "kinecal/io/json/json_text.hpp"
+#include "kinecal/files/checksum.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/robot_scene.hpp"
 
 namespace kinecal::detail {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/io/json/json_text.hpp"
+#include "kinecal/files/json/json_text.hpp"
 
 namespace kinecal::detail {
 

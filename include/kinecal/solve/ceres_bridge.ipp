@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kinecal/kinematics/nearest_name.hpp"
 #include "kinecal/solve/ceres_bridge.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
 

@@ -31,8 +31,8 @@
 #include <string_view>
 #include <vector>
 
+#include "kinecal/text/reading.hpp"
 #include "kinecal/trust/assess.hpp"
-#include "kinecal/trust/reading.hpp"
 
 namespace kinecal {
 

@@ -1,0 +1,28 @@
+// Umbrella header of config/: configurations of both dialects, and problems made of them.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/capture/capture_config.hpp"
+#include "kinecal/config/capture/session_end.hpp"
+#include "kinecal/config/capture/session_follower.hpp"
+#include "kinecal/config/choose_images.hpp"
+#include "kinecal/config/config.hpp"
+#include "kinecal/config/doubts/check_offsets.hpp"
+#include "kinecal/config/doubts/enough_samples.hpp"
+#include "kinecal/config/doubts/find_doubts.hpp"
+#include "kinecal/config/doubts/initial_values.hpp"
+#include "kinecal/config/doubts/joint_positions.hpp"
+#include "kinecal/config/doubts/likely_causes.hpp"
+#include "kinecal/config/doubts/occurrences.hpp"
+#include "kinecal/config/doubts/repeated_samples.hpp"
+#include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/config/doubts/sensor_points.hpp"
+#include "kinecal/config/doubts/urdf_units.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/doubts/xacro_left.hpp"
+#include "kinecal/config/hold_parameters.hpp"
+#include "kinecal/config/parameters_from_config.hpp"
+#include "kinecal/config/read_config.hpp"
+#include "kinecal/config/register.hpp"
+#include "kinecal/config/registry.hpp"

@@ -1,0 +1,72 @@
+// What to capture, and how: robot_calibration's capture.yaml in both dialects.
+//
+//   chains:                                     which joints move, by which controllers
+//   - {name: arm, topic: /arm_controller/follow_joint_trajectory, joints: [...]}
+//   duration: 2.0                               of a motion, seconds
+//   features:                                   what to look for, in which topics
+//     led_finder: {type: robot_calibration/LedFinder, topic: ..., camera_sensor_name: camera, ...}
+//
+// In ROS 2, `chains` and `features` are lists of names, with a map for each beside them, all under
+// <node>: ros__parameters.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "kinecal/capture/april_tag_finder.hpp"
+#include "kinecal/capture/charuco_finder.hpp"
+#include "kinecal/capture/checkerboard_finder.hpp"
+#include "kinecal/capture/led_finder.hpp"
+#include "kinecal/capture/plane_finder.hpp"
+#include "kinecal/capture/robot_finder.hpp"
+#include "kinecal/capture/scan_finder.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/robot.hpp"
+
+namespace kinecal {
+
+/// Joints that one controller moves.
+struct CaptureChain {
+  std::string name;                 ///< for messages
+  std::string topic;                ///< of the controller's action
+  std::vector<std::string> joints;  ///< that it moves
+};
+
+/// Settings of a finder of any type.
+using FinderSettings = std::variant<LedFinder, CheckerboardSettings, AprilTagSettings,
+                                    CharucoSettings, PlaneFinder, ScanFinder, RobotFinder>;
+
+/// A finder and where its views come from.
+struct CaptureFinder {
+  std::string name;               ///< as poses name it
+  std::string type;               ///< "LedFinder"
+  std::string topic;              ///< of its images, clouds or scans
+  std::string camera_info;        ///< topic of its camera's settings
+  std::string action = {};        ///< that switches LEDs
+  std::string region_frame = {};  ///< link in which a region is given; empty: the camera's frame
+  FinderSettings settings;        ///< their frames are not on a robot yet: see on_robot()
+  SourceLocation place;           ///< in the file
+};
+
+/// All of a file.
+struct CaptureConfig {
+  std::vector<CaptureChain> chains;    ///< none: every joint of a pose moves
+  double duration = 2.0;               ///< of a motion at least, seconds
+  std::vector<CaptureFinder> finders;  ///< at least one
+};
+
+/// Reads a file.  All errors are collected; with errors the result is incomplete.
+/// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
+[[nodiscard]] CaptureConfig read_capture_config(const std::string& path, Diagnostics& diagnostics);
+
+/// Settings of a finder whose regions and LEDs move with a robot's links.
+/// @throws InputError  naming the link that the robot does not have
+[[nodiscard]] FinderSettings on_robot(const CaptureFinder& finder, const Robot& robot);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/config/capture/capture_config.ipp"
+#endif

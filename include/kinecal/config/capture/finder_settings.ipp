@@ -1,0 +1,172 @@
+// Finders of a capture.yaml, one type after the other.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "kinecal/config/capture/capture_config.hpp"
+#include "kinecal/config/config_items.ipp"
+
+namespace kinecal::detail {
+
+[[nodiscard]] inline Vector3<double> read_corner(ConfigMap& map, const std::string& prefix,
+                                                 const Vector3<double>& fallback) {
+  return {map.number(prefix + "x", fallback.x()), map.number(prefix + "y", fallback.y()),
+          map.number(prefix + "z", fallback.z())};
+}
+
+/// An integer of at least zero.
+[[nodiscard]] inline int read_index(ConfigMap& map, const std::string& key, int fallback) {
+  const double number = map.number(key, fallback);
+  if (number >= 0.0 && number <= 1e6 && number == static_cast<int>(number)) {
+    return static_cast<int>(number);
+  }
+  map.error(map.place(), key + " is not an integer from 0");
+  return fallback;
+}
+
+/// Sensors of a finder of a target, and of which kind its corners are.
+inline void read_target(ConfigMap& map, TargetSettings& target) {
+  target.camera_sensor = map.text("camera_sensor_name").value_or(target.camera_sensor);
+  target.chain_sensor = map.text("chain_sensor_name").value_or(target.chain_sensor);
+  target.frame = map.text("frame_id").value_or(target.frame);
+  target.quality.min_square = map.positive("min_square", target.quality.min_square);
+}
+
+[[nodiscard]] inline LedFinder read_led_finder(ConfigMap& map) {
+  LedFinder finder;
+  finder.camera_sensor = map.text("camera_sensor_name").value_or(finder.camera_sensor);
+  finder.chain_sensor = map.text("chain_sensor_name").value_or(finder.chain_sensor);
+  finder.frame = map.text("gripper_led_frame").value_or(finder.frame);
+  finder.threshold = map.positive("threshold", finder.threshold);
+  finder.max_iterations = map.count("max_iterations", finder.max_iterations);
+  finder.max_error = map.positive("max_error", finder.max_error);
+  finder.max_inconsistency = map.positive("max_inconsistency", finder.max_inconsistency);
+  map.ignore({"debug_image", "debug"});
+  for (const ConfigEntry& element : map.list("poses")) {
+    const std::string subject = "LED " + std::to_string(finder.leds.size() + 1);
+    auto led = map.map(element, subject);
+    if (!led) continue;
+    led->set_subject(subject);
+    const std::string name = led->text("topic").value_or(subject);
+    finder.leds.push_back({led->count("code", 0), name, read_corner(*led, "", {0, 0, 0})});
+    for (const char* key : {"code", "x", "y", "z"}) {
+      if (led->peek(key) == nullptr) led->error(led->place(), std::string(key) + " is missing");
+    }
+    led->report_unknown();
+  }
+  if (finder.leds.empty()) map.error(map.place(), "poses has no LEDs");
+  return finder;
+}
+
+[[nodiscard]] inline CheckerboardSettings read_checkerboard(ConfigMap& map, CornerKind corners) {
+  CheckerboardSettings board;
+  board.points_x = map.count("points_x", board.points_x);
+  board.points_y = map.count("points_y", board.points_y);
+  board.size = map.positive("size", board.size);
+  board.target.corners = corners;
+  read_target(map, board.target);
+  map.ignore({"debug"});
+  return board;
+}
+
+[[nodiscard]] inline AprilTagSettings read_april_tags(ConfigMap& map, CornerKind corners) {
+  AprilTagSettings tags;
+  tags.columns = read_index(map, "columns", 0);
+  tags.rows = read_index(map, "rows", 0);
+  tags.size = map.positive("size", 0.0);
+  tags.spacing = map.number("spacing", tags.spacing);
+  tags.first_id = read_index(map, "first_id", tags.first_id);
+  tags.family = map.text("family").value_or(tags.family);
+  tags.border = map.count("border", tags.border);
+  tags.min_tags = map.count("min_tags", tags.min_tags);
+  tags.target.corners = corners;
+  read_target(map, tags.target);
+  for (const ConfigEntry& element : map.list("tags")) {
+    auto tag = map.map(element, "tag");
+    if (!tag) continue;
+    const int id = read_index(*tag, "id", 0);
+    tags.tags.push_back({id, tag->positive("size", tags.size), read_corner(*tag, "", {0, 0, 0})});
+    tag->report_unknown();
+  }
+  return tags;
+}
+
+[[nodiscard]] inline CharucoSettings read_charuco(ConfigMap& map, CornerKind corners) {
+  CharucoSettings board;
+  board.squares_x = map.count("squares_x", board.squares_x);
+  board.squares_y = map.count("squares_y", board.squares_y);
+  board.square_size = map.positive("square_size", board.square_size);
+  board.marker_size = map.positive("marker_size", board.marker_size);
+  board.dictionary = map.text("dictionary").value_or(board.dictionary);
+  board.first_id = read_index(map, "first_id", board.first_id);
+  board.legacy = map.flag("legacy", board.legacy);
+  board.min_corners = map.count("min_corners", board.min_corners);
+  board.target.corners = corners;
+  read_target(map, board.target);
+  map.ignore({"debug"});
+  return board;
+}
+
+[[nodiscard]] inline PlaneFinder read_plane_finder(ConfigMap& map) {
+  PlaneFinder finder;
+  finder.camera_sensor = map.text("camera_sensor_name").value_or(finder.camera_sensor);
+  finder.region.frame = map.text("transform_frame").value_or("");
+  finder.region.least = read_corner(map, "min_", finder.region.least);
+  finder.region.most = read_corner(map, "max_", finder.region.most);
+  finder.points_max = static_cast<std::size_t>(map.count("points_max", 60));
+  finder.search.tolerance = map.positive("tolerance", finder.search.tolerance);
+  finder.search.iterations = map.count("ransac_iterations", finder.search.iterations);
+  finder.search.normal = {map.number("normal_a", 0.0), map.number("normal_b", 0.0),
+                          map.number("normal_c", 0.0)};
+  finder.search.normal_angle = map.positive("normal_angle", finder.search.normal_angle);
+  map.ignore({"ransac_points", "initial_sample_distance", "debug", "debug_cloud"});
+  return finder;
+}
+
+[[nodiscard]] inline ScanFinder read_scan_finder(ConfigMap& map) {
+  ScanFinder finder;
+  finder.sensor = map.text("sensor_name").value_or(finder.sensor);
+  finder.frame = map.text("transform_frame").value_or("");
+  finder.least = read_corner(map, "min_", finder.least);
+  finder.most = read_corner(map, "max_", finder.most);
+  finder.z_repeats = map.count("z_repeats", finder.z_repeats);
+  finder.z_offset = map.number("z_offset", finder.z_offset);
+  map.ignore({"debug"});
+  return finder;
+}
+
+[[nodiscard]] inline RobotFinder read_robot_finder(ConfigMap& map) {
+  RobotFinder finder{.plane = read_plane_finder(map)};
+  finder.robot_sensor = map.text("robot_sensor_name").value_or(finder.robot_sensor);
+  finder.least = read_corner(map, "min_robot_", finder.least);
+  finder.most = read_corner(map, "max_robot_", finder.most);
+  return finder;
+}
+
+/// Reads the settings of each type; upstream's names.
+inline const std::map<std::string, FinderSettings (*)(ConfigMap&)> kFinderTypes = {
+    {"LedFinder", [](ConfigMap& map) -> FinderSettings { return read_led_finder(map); }},
+    {"CheckerboardFinder",
+     [](ConfigMap& map) -> FinderSettings { return read_checkerboard(map, CornerKind::points); }},
+    {"CheckerboardFinder2d",
+     [](ConfigMap& map) -> FinderSettings { return read_checkerboard(map, CornerKind::pixels); }},
+    {"AprilTagFinder",
+     [](ConfigMap& map) -> FinderSettings { return read_april_tags(map, CornerKind::points); }},
+    {"AprilTagFinder2d",
+     [](ConfigMap& map) -> FinderSettings { return read_april_tags(map, CornerKind::pixels); }},
+    {"CharucoFinder",
+     [](ConfigMap& map) -> FinderSettings { return read_charuco(map, CornerKind::points); }},
+    {"CharucoFinder2d",
+     [](ConfigMap& map) -> FinderSettings { return read_charuco(map, CornerKind::pixels); }},
+    {"PlaneFinder", [](ConfigMap& map) -> FinderSettings { return read_plane_finder(map); }},
+    {"ScanFinder", [](ConfigMap& map) -> FinderSettings { return read_scan_finder(map); }},
+    {"RobotFinder", [](ConfigMap& map) -> FinderSettings { return read_robot_finder(map); }},
+};
+
+}  // namespace kinecal::detail

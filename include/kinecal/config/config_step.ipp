@@ -1,0 +1,160 @@
+// One step of a configuration, in either dialect.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/config/config_blocks.ipp"
+#include "kinecal/config/config_free.ipp"
+
+namespace kinecal::detail {
+
+/// The configuration so far, and what later steps need to know about it.
+struct ConfigProgress {
+  Config config;
+  FreeAxes free_axes;  ///< free in one of the steps so far
+};
+
+/// base_link, verbose and max_num_iterations of the file or of a step.
+/// @return  max_num_iterations, or the fallback
+inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress) {
+  map.ignore({"verbose"});
+  if (const auto link = map.text("base_link")) {
+    const SourceLocation place = map.find("base_link")->place;
+    if (!progress.config.base_link_place) {
+      progress.config.base_link = *link;
+      progress.config.base_link_place = place;
+    } else if (*link != progress.config.base_link) {
+      map.error(place, "base_link '" + *link + "' differs from '" + progress.config.base_link +
+                           "' in line " + std::to_string(progress.config.base_link_place->line) +
+                           "; all steps must have the same base_link");
+    }
+  }
+  return map.count("max_num_iterations", fallback);
+}
+
+/// `image: raw | rectified` of a camera2d.
+[[nodiscard]] inline ImageKind read_image(ConfigMap& map, const ModelConfig& model) {
+  const auto image = map.text("image");
+  if (!image) return ImageKind::automatic;
+  const SourceLocation place = map.find("image")->place;
+  if (!model.type.empty() && model.type != PinholeCamera::kType) {
+    map.error(place, "image is a key of camera2d, but the type is '" + model.type + "'");
+  }
+  if (*image == "raw") return ImageKind::raw;
+  if (*image == "rectified") return ImageKind::rectified;
+  map.error(place, "image '" + *image + "' is neither raw nor rectified" +
+                       did_you_mean(*image, std::vector<std::string>{"raw", "rectified"}));
+  return ImageKind::automatic;
+}
+
+/// @return  the model; its type is empty if it is unknown
+[[nodiscard]] inline ModelConfig read_model(ConfigItem& item) {
+  ModelConfig model{item.name, "", "", item.name, item.place, ImageKind::automatic};
+  if (!item.map) return model;
+  ConfigMap& map = *item.map;
+  std::vector<std::string> types;
+  for (const SensorEntry& entry : registry().sensors()) types.push_back(entry.type);
+  types.emplace_back("chain");
+  const std::string type = map.required_text("type").value_or("");
+  if (std::find(types.begin(), types.end(), type) != types.end()) {
+    model.type = type == "chain" ? "chain3d" : type;
+  } else if (!type.empty()) {
+    map.error(map.find("type")->place,
+              "type '" + type + "' is not a model" + did_you_mean(type, types));
+  }
+  model.frame = map.required_text("frame").value_or("");
+  model.param_name = map.text("param_name").value_or(item.name);
+  model.image = read_image(map, model);
+  map.ignore({"topic", "camera_info_topic"});  // used while samples are recorded
+  map.report_unknown();
+  return model;
+}
+
+/// Reports a list that is missing or empty.
+inline void require_items(const ConfigMap& map, const ConfigItemKind& kind) {
+  const ConfigEntry* entry = map.peek(kind.list);
+  const bool missing = entry == nullptr || entry->value.is_null();
+  if (!missing && !(entry->value.is_list() && entry->value.items.empty())) return;
+  map.error(entry == nullptr ? map.place() : entry->place,
+            "no " + kind.noun + " is given; list at least one under '" + kind.list + "'");
+}
+
+inline void check_step(const ConfigMap& map, StepConfig& step) {
+  require_items(map, kModelItems);
+  require_items(map, kErrorBlockItems);
+  check_free_parameters(map, step);
+  std::vector<std::string> free;
+  for (const FreeParamConfig& parameter : free_parameters(step)) free.push_back(parameter.name);
+  check_bounds(map, step.bounds, free, "in this step");
+  if (free.empty()) {
+    map.error(map.place(),
+              "nothing is free; name parameters under 'free_params' or frames under "
+              "'free_frames'");
+  }
+}
+
+/// Reads a step and adds it to the configuration.
+/// @param map   the step's keys
+/// @param find  how the dialect finds the items of a list
+inline void read_step(ConfigMap& map, const FindConfigItems& find, const std::string& name,
+                      int max_num_iterations, ConfigProgress& progress) {
+  StepConfig step;
+  step.name = name;
+  step.place = map.place();
+  step.max_num_iterations = read_settings(map, max_num_iterations, progress);
+  for (ConfigItem& item : find(map, kModelItems)) step.models.push_back(read_model(item));
+  read_free_params(map, step);
+  for (ConfigItem& item : find(map, kFreeFrameItems)) {
+    step.free_frames.push_back(read_free_frame(item));
+    const FreeFrameConfig& frame = step.free_frames.back();
+    auto& axes = progress.free_axes[frame.name];
+    for (std::size_t i = 0; i < 6; ++i) axes[i] = axes[i] || frame.axes[i];
+  }
+  std::vector<InitialValueConfig> fixed;
+  for (ConfigItem& item : find(map, kFixedFrameItems)) {
+    for (const InitialValueConfig& value : read_fixed_frame(item, step)) fixed.push_back(value);
+  }
+  for (ConfigItem& item : find(map, kInitialValueItems)) {
+    step.frame_initial_values.push_back(read_frame_initial_value(item, progress.free_axes));
+  }
+  for (ConfigItem& item : find(map, kErrorBlockItems)) {
+    step.error_blocks.push_back(read_block(item, step.models));
+  }
+  step.initial_values = read_initial_values(map);
+  step.initial_values.insert(step.initial_values.end(), fixed.begin(), fixed.end());
+  step.bounds = read_bounds(map);
+  check_step(map, step);
+  map.report_unknown();
+  progress.config.steps.push_back(std::move(step));
+}
+
+/// initial_values and bounds of a file with several steps.  Values are set before the first step.
+/// Bounds hold in every step in which the parameter is free and which does not bound it itself.
+inline void share_values(ConfigMap& map, ConfigProgress& progress) {
+  std::vector<StepConfig>& steps = progress.config.steps;
+  const std::vector<InitialValueConfig> values = read_initial_values(map);
+  std::vector<BoundConfig> bounds = read_bounds(map);
+  if (steps.empty()) return;
+  const auto add = [](auto& own, const auto& shared) {
+    const auto has_name = [&](const auto& item) { return item.name == shared.name; };
+    if (std::none_of(own.begin(), own.end(), has_name)) own.push_back(shared);
+  };
+  for (const InitialValueConfig& value : values) add(steps.front().initial_values, value);
+  std::vector<std::string> all_free;
+  for (StepConfig& step : steps) {
+    for (const FreeParamConfig& parameter : free_parameters(step)) {
+      all_free.push_back(parameter.name);
+      for (const BoundConfig& bound : bounds) {
+        if (bound.name == parameter.name) add(step.bounds, bound);
+      }
+    }
+  }
+  check_bounds(map, bounds, all_free, "in any step");
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,182 @@
+// Joints whose names and positions were exchanged: positions outside the limits that are inside
+// under another joint's name.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/config/doubts/joint_limits.ipp"
+#include "kinecal/config/doubts/occurrences.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/files/diagnostics.hpp"
+
+namespace kinecal::detail {
+
+/// True if so many of all positions are no matter of single bad captures.
+[[nodiscard]] inline bool are_many(std::size_t count, std::size_t all) {
+  return 20 * count >= all && (count >= 2 || all == 1);
+}
+
+/// Number of positions of one joint that are outside the limits of another.
+[[nodiscard]] inline std::size_t count_outside(const UsedJoint& limits, const UsedJoint& of) {
+  return static_cast<std::size_t>(
+      std::count_if(of.positions.begin(), of.positions.end(),
+                    [&](double position) { return is_outside(limits, position); }));
+}
+
+/// Two joints whose positions fit when their names are exchanged.
+struct ExchangedPair {
+  std::size_t a = 0, b = 0;
+  std::size_t outside = 0;  ///< positions outside the limits as they are named
+  bool both_outside = false;
+};
+
+/// Number of positions outside the limits of their own joint, of all joints.
+[[nodiscard]] inline std::size_t count_all_outside(std::span<const UsedJoint> joints) {
+  std::size_t outside = 0;
+  for (const UsedJoint& joint : joints) outside += count_outside(joint, joint);
+  return outside;
+}
+
+/// Pairs that explain all positions outside the limits, those that explain most first.
+[[nodiscard]] inline std::vector<ExchangedPair> exchanged_pairs(std::span<const UsedJoint> joints) {
+  std::vector<ExchangedPair> pairs;
+  const std::size_t outside = count_all_outside(joints);
+  for (std::size_t a = 0; a < joints.size(); ++a) {
+    for (std::size_t b = a + 1; b < joints.size(); ++b) {
+      const UsedJoint &first = joints[a], &second = joints[b];
+      if (turns(first.joint.type) != turns(second.joint.type)) continue;
+      const std::size_t of_a = count_outside(first, first), of_b = count_outside(second, second);
+      const std::size_t all = first.positions.size() + second.positions.size();
+      const std::size_t after = count_outside(first, second) + count_outside(second, first);
+      const std::size_t of_others = outside - of_a - of_b;
+      if (!are_many(of_a + of_b, all / 2) || 50 * (after + of_others) > all) continue;
+      pairs.push_back({a, b, of_a + of_b, of_a > 0 && of_b > 0});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(), [](const ExchangedPair& x, const ExchangedPair& y) {
+    return x.both_outside != y.both_outside ? x.both_outside : x.outside > y.outside;
+  });
+  return pairs;
+}
+
+/// Error, or doubt if only few positions show it: names of two joints are exchanged.
+/// @returns  indices of the joints that were reported
+inline std::vector<std::size_t> report_exchanged(std::span<const UsedJoint> joints,
+                                                 std::span<const Sample> samples,
+                                                 Diagnostics& diagnostics) {
+  const std::vector<ExchangedPair> pairs = exchanged_pairs(joints);
+  if (pairs.empty()) return {};
+  const ExchangedPair& best = pairs.front();
+  const bool a_is_outside = count_outside(joints[best.a], joints[best.a]) > 0;
+  const UsedJoint& shown = joints[a_is_outside ? best.a : best.b];
+  std::size_t at = 0;
+  while (!is_outside(shown, shown.positions[at])) ++at;
+  std::string others;
+  for (std::size_t i = 1; i < std::min<std::size_t>(pairs.size(), 3); ++i) {
+    others += fmt::format("{}'{}' and '{}'", i == 1 ? "; others that fit: " : ", ",
+                          joints[pairs[i].a].joint.name, joints[pairs[i].b].joint.name);
+  }
+  const std::string text = fmt::format(
+      "position of '{}' is {:.4g}; its limits are {}; all positions of '{}' and '{}' are within "
+      "their limits if these two names are exchanged{}; compare the order of names and positions "
+      "with the driver",
+      shown.joint.name, shown.positions[at], shown.limits_text(), joints[best.a].joint.name,
+      joints[best.b].joint.name, others);
+  const std::size_t half = shown.positions.size() / 2;
+  const SourceLocation place = place_of(samples, shown.samples[at]);
+  if (best.both_outside || best.outside > half) {
+    diagnostics.error(place, text);
+  } else {
+    diagnostics.doubt(place, text);
+  }
+  return {best.a, best.b};
+}
+
+/// Another order of the joints: joint j has the positions that are named after joint order[j].
+struct JointOrder {
+  std::vector<std::size_t> order;
+  const char* how;
+};
+
+/// Orders that drivers and people produce.
+[[nodiscard]] inline std::vector<JointOrder> joint_orders(std::span<const UsedJoint> joints) {
+  std::vector<std::size_t> sorted(joints.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::vector<std::size_t> reversed(sorted.rbegin(), sorted.rend()), inverse = sorted;
+  std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
+    return joints[a].joint.name < joints[b].joint.name;
+  });
+  for (std::size_t i = 0; i < sorted.size(); ++i) inverse[sorted[i]] = i;
+  return {{sorted, "if they are in the order of the chain and the names in that of the alphabet"},
+          {inverse, "if they are in the order of the alphabet and the names in that of the chain"},
+          {reversed, "if they are in reverse order"}};
+}
+
+/// Error: names and positions are in different orders.
+/// @returns  true if it was reported
+inline bool report_order(std::span<const UsedJoint> joints, std::span<const Sample> samples,
+                         Diagnostics& diagnostics) {
+  std::size_t all = 0;
+  for (const UsedJoint& joint : joints) all += joint.positions.size();
+  const auto first = std::find_if(joints.begin(), joints.end(), [](const UsedJoint& joint) {
+    return count_outside(joint, joint) > 0;
+  });
+  if (first == joints.end() || !are_many(count_all_outside(joints), samples.size())) return false;
+  for (const auto& [order, how] : joint_orders(joints)) {
+    std::size_t after = 0;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      after += count_outside(joints[j], joints[order[j]]);
+    }
+    if (50 * after > all) continue;
+    std::size_t at = 0;
+    while (!is_outside(*first, first->positions[at])) ++at;
+    diagnostics.error(
+        place_of(samples, first->samples[at]),
+        fmt::format("position of '{}' is {:.4g}; its limits are {}; all positions are within their "
+                    "limits {}; compare the order of names and positions with the driver",
+                    first->joint.name, first->positions[at], first->limits_text(), how));
+    return true;
+  }
+  return false;
+}
+
+/// Error, or doubt if only few positions show it: the positions of one joint have the wrong sign.
+/// @returns  indices of the joints that were reported: none or one
+inline std::vector<std::size_t> report_negated(std::span<const UsedJoint> joints,
+                                               std::span<const Sample> samples,
+                                               Diagnostics& diagnostics) {
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const UsedJoint& joint = joints[j];
+    const std::size_t all = joint.positions.size(), outside = count_outside(joint, joint);
+    if (!are_many(outside, all) || 50 * (count_all_outside(joints) - outside) > all) continue;
+    UsedJoint negated = joint;
+    for (double& position : negated.positions) position = -position;
+    if (50 * count_outside(joint, negated) > all) continue;
+    std::size_t at = 0;
+    while (!is_outside(joint, joint.positions[at])) ++at;
+    const SourceLocation place = place_of(samples, joint.samples[at]);
+    const std::string text = fmt::format(
+        "position of '{}' is {:.4g}; its limits are {}; all of its positions are within them with "
+        "the other sign; compare the direction of the joint with the driver",
+        joint.joint.name, joint.positions[at], joint.limits_text());
+    if (2 * outside > all) {
+      diagnostics.error(place, text);
+    } else {
+      diagnostics.doubt(place, text);
+    }
+    return {j};
+  }
+  return {};
+}
+
+}  // namespace kinecal::detail

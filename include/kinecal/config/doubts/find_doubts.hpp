@@ -1,0 +1,42 @@
+// What looks wrong in the input of a calibration, before anything is solved.
+//
+// Errors are what cannot be right, doubts what could be.  Each finding stands once, with the place
+// where it occurs first, and names the likely cause.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/solve/calibrate.hpp"
+
+namespace kinecal {
+
+/// The input of a calibration, as it was read and assembled.
+struct CalibrationInput {
+  const Config& config;          ///< from read_config()
+  const Robot& robot;            ///< from parse_urdf()
+  const std::string& urdf_text;  ///< the text of the URDF
+  const std::string& urdf;       ///< its name in messages: its file
+  std::span<const Sample>
+      samples;  ///< may be empty: then the robot and the configuration are checked
+  const Calibration& calibration;       ///< from assemble()
+  Recorded recorded = Recorded::after;  ///< when the samples were recorded
+  bool is_part = false;                 ///< there are more samples elsewhere: these may be few
+};
+
+/// Adds what looks wrong to the errors, doubts and warnings.  The URDF is checked first, then joint
+/// positions, then points: a wrong unit in one makes the next look wrong, too, so it is not
+/// reported.  If there are errors already, only the URDF and initial values are checked.
+void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/config/doubts/find_doubts.ipp"
+#endif

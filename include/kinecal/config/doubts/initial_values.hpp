@@ -1,0 +1,19 @@
+// Initial values of a configuration: degrees, millimetres, absurd numbers.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal::detail {
+
+/// Error: a number that cannot be meant.  Doubt: a frame that starts more than a turn away, which
+/// looks like degrees, or more than 100 m, which looks like millimetres.
+void check_initial_values(const Config& config, Diagnostics& diagnostics);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/config/doubts/initial_values.ipp"
+#endif

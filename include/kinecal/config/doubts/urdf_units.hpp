@@ -1,0 +1,25 @@
+// Lengths and angles of a URDF: millimetres, degrees.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal::detail {
+
+/// Error: origins between the base link and a model in millimetres, kilometres or degrees.  Doubt: a
+/// single one of them; limits in degrees.  Warning: a lower limit above the upper one.
+/// @param text               the URDF, as parse_urdf() took it
+/// @param name_for_messages  its file
+void check_urdf_units(const Config& config, const Robot& robot, const std::string& text,
+                      const std::string& name_for_messages, Diagnostics& diagnostics);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/config/doubts/urdf_units.ipp"
+#endif

@@ -1,0 +1,52 @@
+// The joints whose measured positions a calibration uses, with these positions.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal::detail {
+
+/// A joint between the base link and some model, and where it was.
+struct UsedJoint {
+  Joint joint;                       ///< as in the URDF
+  std::vector<double> positions;     ///< radians or metres, of the samples that have it
+  std::vector<std::size_t> samples;  ///< index of the sample of each position
+  std::optional<JointLimits>
+      limits;  ///< of the URDF, if they say something: lower < upper, and for
+               ///< a joint that turns less than four turns
+
+  /// Greatest position less least position.
+  [[nodiscard]] double range() const;
+  /// "[-3.1, 3.1] rad" or "±3.1 rad"; the joint must have limits.
+  [[nodiscard]] std::string limits_text() const;
+};
+
+/// The models of all steps, each name once.
+[[nodiscard]] std::vector<ModelConfig> models_of(const Config& config);
+
+/// Names of the models whose features are not points in metres: cameras that see pixels, readings.
+[[nodiscard]] std::set<std::string> pixel_models(const Config& config);
+
+/// Joints between the base link and the frames of models, fixed ones included, in the robot's order.
+/// Models that do not fit the robot are left out.
+[[nodiscard]] std::vector<const Joint*> joints_between(const Config& config, const Robot& robot);
+
+/// Joints whose measured positions move some model of the configuration, in the robot's order; a
+/// joint that mimics another is represented by that other.
+[[nodiscard]] std::vector<UsedJoint> used_joints(const Config& config, const Robot& robot,
+                                                 std::span<const Sample> samples);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/config/doubts/used_joints.ipp"
+#endif

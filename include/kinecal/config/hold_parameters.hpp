@@ -1,0 +1,23 @@
+// Holding parameters that a configuration frees.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// Holds parameters at their initial values: no step frees them any more.
+/// @param names        of free parameters: "elbow_flex_joint", "gripper_led_frame_x"
+/// @param diagnostics  gets an error for a name that no step frees, with the nearest that one does
+void hold_parameters(Config& config, const std::vector<std::string>& names,
+                     Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/config/hold_parameters.ipp"
+#endif

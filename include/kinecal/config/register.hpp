@@ -1,0 +1,69 @@
+// Adds types of sensors and error blocks of your own to the registry.
+//
+// They are compiled here, in packets for the flags of your program.  So link the static libraries
+// of kinecal, not those for several instruction sets.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/config/registry.hpp"
+#include "kinecal/evaluation/problem.hpp"
+
+namespace kinecal {
+
+/// The numbers of an error block in a configuration, by key.
+using BlockNumbers = std::map<std::string, double>;
+
+namespace detail {
+
+/// @throws std::invalid_argument  if the problem is evaluated by a library of other flags
+[[nodiscard]] inline Problem& problem_of_program(AnyProblem& problem) {
+  if (auto* own = dynamic_cast<Problem*>(&problem)) return *own;
+  throw std::invalid_argument("the problem is evaluated for another instruction set");
+}
+
+}  // namespace detail
+
+/// Adds a type of sensor: configurations name it M::kType.
+/// @throws std::invalid_argument  if the name is taken
+template <Sensor M>
+void register_sensor(const M& model) {
+  registry().add(SensorEntry{std::string(M::kType), any_sensor(model),
+                             [model](AnyProblem& problem, const Mount& mount) {
+                               detail::problem_of_program(problem).add_sensor(model, mount);
+                             }});
+}
+
+/// Adds a type of error block: configurations name it B::kType.
+/// @param keys     of each sensor, in the order of the block's arguments: {{"model_a"}, {"model_b"}}
+/// @param numbers  keys of its numbers and their defaults
+/// @param make     the block with given numbers; may throw std::invalid_argument
+/// @throws std::invalid_argument  if the name is taken, or the keys are not one for each sensor
+template <ErrorBlock B>
+void register_block(
+    const std::vector<std::vector<std::string>>& keys,
+    std::vector<std::pair<std::string, double>> numbers = {},
+    std::function<B(const BlockNumbers&)> make = [](const BlockNumbers&) { return B{}; }) {
+  if (keys.size() != kQuantities<B>.size()) {
+    throw std::invalid_argument(std::string(B::kType) + ": keys of " + std::to_string(keys.size()) +
+                                " sensors for a block of " + std::to_string(kQuantities<B>.size()));
+  }
+  BlockEntry entry;
+  entry.type = entry.read_as = B::kType;
+  entry.unit = "1";
+  if constexpr (requires { B::kUnit; }) entry.unit = B::kUnit;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    entry.sensors.push_back({keys[i], kQuantities<B>[i]});
+  }
+  entry.numbers = std::move(numbers);
+  entry.parameters = [make](const BlockConfig& config) {
+    const auto infos = parameters_of(make(config.numbers));
+    return std::vector<ParameterInfo>(infos.begin(), infos.end());
+  };
+  entry.add = [make](AnyProblem& problem, const BlockConfig& config, const TermOptions& options) {
+    detail::problem_of_program(problem).add_block(config.name, make(config.numbers), config.models,
+                                                  options);
+  };
+  registry().add(std::move(entry));
+}
+
+}  // namespace kinecal

@@ -1,0 +1,90 @@
+// The types of sensors and error blocks that a configuration can name.
+//
+// Built-in types are entries of the registry.  A program adds its own, before it reads a
+// configuration (register.hpp), and then reads them like the others:
+//
+//   kinecal::register_sensor(DrawWire{});
+//   kinecal::register_block<WireLength>({{"wire"}, {"model"}});
+//
+// Change the registry before other threads read configurations.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/problem/any_problem.hpp"
+
+namespace kinecal {
+
+/// A type of sensor in configurations.
+struct SensorEntry {
+  std::string type;                         ///< `type:` of a model
+  std::shared_ptr<const AnySensor> sensor;  ///< what is known of it
+  /// Adds a sensor of this type to a problem.
+  std::function<void(AnyProblem&, const Mount&)> add;
+};
+
+/// A sensor of an error block in configurations.
+struct BlockSensorEntry {
+  std::vector<std::string> keys;        ///< the usual one first: "model_a"
+  Quantity quantity = Quantity::point;  ///< what the block takes of it
+};
+
+/// A type of error block in configurations.
+struct BlockEntry {
+  std::string type;                                     ///< `type:` of an error block
+  std::string read_as;                                  ///< the type that it is another name of
+  std::string unit;                                     ///< of the residual
+  std::vector<BlockSensorEntry> sensors;                ///< in the order of the block's arguments
+  std::vector<std::pair<std::string, double>> numbers;  ///< keys and defaults; "scale" is a factor
+                                                        ///< of the residual in every block
+  bool has_param = false;                               ///< it has a key `param`: a prior
+  bool is_upstream = false;  ///< of robot_calibration, whose files may have keys that we ignore
+  /// The block's own parameters.
+  /// @throws std::exception  if the numbers of the block are impossible
+  std::function<std::vector<ParameterInfo>(const BlockConfig&)> parameters;
+  /// Adds a block of this type to a problem.
+  /// @throws std::exception  if its numbers are impossible or its sensors do not fit
+  std::function<void(AnyProblem&, const BlockConfig&, const TermOptions&)> add;
+};
+
+/// The types of sensors and error blocks, in the order in which they were added.
+class Registry {
+ public:
+  /// The built-in types.
+  Registry();
+
+  /// Adds a type.
+  /// @throws std::invalid_argument  if the name is taken
+  /// @{
+  void add(SensorEntry entry);
+  void add(BlockEntry entry);
+  /// @}
+
+  /// The type of this name; nullptr if there is none.
+  /// @{
+  [[nodiscard]] const SensorEntry* sensor(const std::string& type) const;
+  [[nodiscard]] const BlockEntry* block(const std::string& type) const;
+  /// @}
+  [[nodiscard]] const std::vector<SensorEntry>& sensors() const { return sensors_; }  ///< all
+  [[nodiscard]] const std::vector<BlockEntry>& blocks() const { return blocks_; }     ///< all
+
+ private:
+  std::vector<SensorEntry> sensors_;
+  std::vector<BlockEntry> blocks_;
+};
+
+/// The registry of this program.
+[[nodiscard]] Registry& registry();
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/config/registry.ipp"
+#endif

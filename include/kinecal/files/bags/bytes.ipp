@@ -1,0 +1,29 @@
+// What messages say about bytes.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "kinecal/files/bags/bytes.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal::detail {
+
+KINECAL_INLINE std::string at_byte(std::uint64_t place) {
+  return "byte " + std::to_string(place) + ": ";
+}
+
+KINECAL_INLINE std::string byte_count(std::uint64_t count) {
+  return std::to_string(count) + (count == 1 ? " byte" : " bytes");
+}
+
+KINECAL_INLINE void ByteReader::fail(const std::string& what) const {
+  throw BytesError(at_byte(place()) + what);
+}
+
+KINECAL_INLINE void ByteReader::fail_short_of(std::uint64_t count) const {
+  fail("expected " + byte_count(count) + ", " + std::to_string(left()) + " left; is it cut off?");
+}
+
+}  // namespace kinecal::detail

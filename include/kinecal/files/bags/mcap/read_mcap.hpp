@@ -1,0 +1,40 @@
+// Reads MCAP files, in which ROS 2 records by default: chunks of messages, plain, LZ4 or zstd.
+//
+// One chunk at a time is in memory, packed and unpacked.  Check sums of chunks and of the index are
+// checked; that of the whole file is not, since it would require reading everything.
+//
+// It is read by hand, as Debian 12 has no library for MCAP.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include "kinecal/files/bags/bag.hpp"
+#include "kinecal/files/diagnostics.hpp"
+
+namespace kinecal {
+
+/// Reads the wanted messages of a file, in its order.
+/// @param in           seekable
+/// @param name         of the file, with which messages begin
+/// @param diagnostics  receives what is wrong with the file: at most one error, at which reading
+///                     ends, and as a warning that the recording was interrupted; then all whole
+///                     chunks are read.  Only what the reader's functions throw is thrown.
+void read_mcap(std::istream& in, const std::string& name, const BagReader& reader,
+               Diagnostics& diagnostics);
+
+/// The same for a file.
+/// @param path  of an .mcap file
+/// @param name  of the file, with which messages begin
+void read_mcap(const std::string& path, const std::string& name, const BagReader& reader,
+               Diagnostics& diagnostics);
+
+/// The same; messages begin with the path.
+void read_mcap(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/bags/mcap/read_mcap.ipp"
+#endif

@@ -1,0 +1,55 @@
+// Hands over the messages of an MCAP file, and reports what is wrong with it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fstream>
+#include <istream>
+#include <optional>
+#include <string>
+
+#include "kinecal/files/bags/byte_file.ipp"
+#include "kinecal/files/bags/mcap/messages.ipp"
+#include "kinecal/files/bags/mcap/read_mcap.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+KINECAL_INLINE void read_mcap(std::istream& in, const std::string& name, const BagReader& reader,
+                              Diagnostics& diagnostics) {
+  std::optional<detail::ByteFile> file;
+  std::optional<detail::McapMessages> messages;
+  const auto advance = [&]() -> std::optional<BagMessage> {
+    try {
+      if (!messages) {
+        file.emplace(in);
+        file->show_progress(reader.meter, "reading " + name);
+        messages.emplace(*file, reader, SourceLocation{name, 0}, diagnostics);
+      }
+      return messages->next();
+    } catch (const detail::BytesError& e) {
+      diagnostics.error({name, 0}, e.what());
+      return std::nullopt;
+    }
+  };
+  // What the reader throws is not an error of the file.
+  while (const std::optional<BagMessage> message = advance()) reader.handle(*message);
+}
+
+KINECAL_INLINE void read_mcap(const std::string& path, const std::string& name,
+                              const BagReader& reader, Diagnostics& diagnostics) {
+  std::ifstream in;
+  try {
+    in = detail::open_bytes(path);
+  } catch (const detail::BytesError& e) {
+    diagnostics.error({name, 0}, e.what());
+    return;
+  }
+  read_mcap(in, name, reader, diagnostics);
+}
+
+KINECAL_INLINE void read_mcap(const std::string& path, const BagReader& reader,
+                              Diagnostics& diagnostics) {
+  read_mcap(path, path, reader, diagnostics);
+}
+
+}  // namespace kinecal

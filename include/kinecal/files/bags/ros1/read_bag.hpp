@@ -1,0 +1,31 @@
+// Reads a ROS 1 bag, version 2.0, as `rosbag record` writes it, with one chunk at a time in memory.
+//
+// An interrupted recording is read as far as it goes, with a warning.  That is why it is read by hand:
+// rosbag_storage refuses it until `rosbag reindex` has rewritten it, and brings parts of ROS 1 with it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include "kinecal/files/bags/bag.hpp"
+#include "kinecal/files/diagnostics.hpp"
+
+namespace kinecal {
+
+/// Reads the wanted messages in the order of the file, which is nearly that of recording.
+/// @param in           seekable
+/// @param name         of the bag, with which messages begin
+/// @param diagnostics  receives every error with its byte.  Only what the reader's functions throw
+///                     is thrown.
+void read_ros1_bag(std::istream& in, const std::string& name, const BagReader& reader,
+                   Diagnostics& diagnostics);
+
+/// @param diagnostics  also receives that the file cannot be read
+void read_ros1_bag(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/bags/ros1/read_bag.ipp"
+#endif

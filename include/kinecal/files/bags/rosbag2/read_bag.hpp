@@ -1,0 +1,30 @@
+// Reads a ROS 2 bag: a folder with metadata.yaml and the files that it lists, .db3 or .mcap.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/files/bags/bag.hpp"
+#include "kinecal/files/diagnostics.hpp"
+
+namespace kinecal {
+
+/// Reads the wanted messages of a bag, file after file.  The reader is asked about topics file by
+/// file, too.
+/// @param folder       with metadata.yaml
+/// @param diagnostics  receives what is wrong with the bag.  If a listed file is missing, nothing
+///                     is read.  Only what the reader's functions throw is thrown.
+void read_ros2_bag(const std::string& folder, const BagReader& reader, Diagnostics& diagnostics);
+
+namespace detail {
+
+/// Reads one file of a bag, .mcap, .db3 or either in zstd; its first bytes say which.
+void read_ros2_bag_file(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
+
+}  // namespace detail
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/bags/rosbag2/read_bag.ipp"
+#endif

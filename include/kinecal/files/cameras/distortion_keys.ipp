@@ -1,0 +1,131 @@
+// The keys under which people keep a lens distortion.
+//
+// OpenCV's own samples call it distortion_coefficients, tutorials dist_coeffs, distCoeff, distortion,
+// D and so on.  A matrix that looks like a distortion under a key that is none of these must not get
+// lost: without it a calibration with raw images is off by all of the distortion.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinecal/files/yaml/config_map.ipp"
+
+namespace kinecal::detail {
+
+/// A key in small letters and digits only: "distCoeffs" and "dist_coeffs" are the same.
+[[nodiscard]] inline std::string plain_key(const std::string& key) {
+  std::string plain;
+  for (const char c : key) {
+    if (c >= 'A' && c <= 'Z') plain += static_cast<char>(c + 32);
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) plain += c;
+  }
+  return plain;
+}
+
+/// True for a well-known key of a distortion: "D", or "distortion" and its short forms with or without
+/// "camera" or "lens" before it and "coefficients" or the like after it.
+[[nodiscard]] inline bool is_distortion_key(const std::string& key) {
+  const std::string plain = plain_key(key);
+  if (plain == "d") return true;
+  std::string_view rest = plain;
+  for (const std::string_view before : {"camera", "lens", "cam", "cv"}) {
+    if (!rest.starts_with(before)) continue;
+    rest.remove_prefix(before.size());
+    break;
+  }
+  for (const std::string_view word : {"distortions", "distortion", "distort", "dist"}) {
+    if (!rest.starts_with(word)) continue;
+    rest.remove_prefix(word.size());
+    static constexpr std::string_view kEnds[] = {
+        "",     "coefficients", "coefficient", "coeffs",    "coeff", "coefs",
+        "coef", "parameters",   "params",      "parameter", "param", "vector",
+        "vec",  "matrix",       "mat",         "array",     "values"};
+    return std::find(std::begin(kEnds), std::end(kEnds), rest) != std::end(kEnds);
+  }
+  return false;
+}
+
+/// The numbers of a list or a matrix, row after row; empty for anything else.
+[[nodiscard]] inline std::vector<double> numbers_in(const YamlNode& value) {
+  const YamlNode* list = value.is_map() ? value.find("data") : &value;
+  std::vector<double> numbers;
+  if (list == nullptr || !list->is_list()) return numbers;
+  for (const YamlNode& item : list->items) {
+    const std::vector<double> inside = numbers_in(item);
+    numbers.insert(numbers.end(), inside.begin(), inside.end());
+    if (const auto number = config_number(item)) numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+/// True for one coefficient by its usual name: k1 to k6, p1, p2.
+[[nodiscard]] inline bool is_coefficient(const ConfigEntry& entry) {
+  const std::string plain = plain_key(entry.key);
+  const bool named =
+      plain.size() == 2 &&
+      ((plain[0] == 'k' && plain[1] >= '1' && plain[1] <= '6') || plain == "p1" || plain == "p2");
+  const auto number = config_number(entry.value);
+  return named && number && *number != 0.0;
+}
+
+/// True for a key of which distortions are meant, whatever its spelling: "distorsion", "kc", "radial".
+[[nodiscard]] inline bool sounds_like_distortion(const std::string& key) {
+  const std::string plain = plain_key(key);
+  if (plain.find("distan") != std::string::npos || plain.starts_with("undist")) return false;
+  for (const char* word : {"dist", "radial", "tangential", "coef"}) {
+    if (plain.find(word) != std::string::npos) return true;
+  }
+  static const std::vector<std::string> known = {"distortion_coefficients", "distortion"};
+  return plain == "kc" || nearest_name(key, known).has_value();
+}
+
+/// True for numbers that could be those of a distortion: 4, 5, 8, 12 or 14, not all of them integers.
+[[nodiscard]] inline bool could_be_distortion(const std::vector<double>& numbers) {
+  constexpr std::array<std::size_t, 5> kSizes = {4, 5, 8, 12, 14};
+  return std::find(kSizes.begin(), kSizes.end(), numbers.size()) != kSizes.end() &&
+         std::any_of(numbers.begin(), numbers.end(),
+                     [](double v) { return v != std::floor(v) && std::abs(v) < 1e3; });
+}
+
+/// True for keys of other numbers that OpenCV's programs write: errors of views, poses, quaternions.
+[[nodiscard]] inline bool is_of_something_else(const std::string& key) {
+  const std::string plain = plain_key(key);
+  for (const char* word :
+       {"err", "rms", "rotation", "translation", "rvec", "tvec", "quat", "orient", "pose",
+        "extrinsic", "point", "roi", "size", "stddev", "deviation"}) {
+    if (plain.find(word) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// Where a distortion is missing: an error for each entry that could be it.
+/// @param known     keys that were read, in any spelling
+/// @param intended  the key of the distortion in this format
+/// @param any_name  whether a matrix of the right size counts whatever its key
+/// @returns         whether there is such an entry
+inline bool refuse_lost_distortion(ConfigMap& file, const std::vector<std::string>& known,
+                                   const std::string& intended, bool any_name) {
+  bool found = false;
+  for (const ConfigEntry& entry : file.entries()) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+    const std::vector<double> numbers = numbers_in(entry.value);
+    const bool sounds = sounds_like_distortion(entry.key) && !numbers.empty();
+    const bool fits = any_name && could_be_distortion(numbers) && !is_of_something_else(entry.key);
+    if (!sounds && !fits && !is_coefficient(entry)) continue;
+    found = true;
+    (void)file.use(entry.key);  // reported here
+    file.error(entry.place,
+               "unknown key '" + entry.key +
+                   "': is it the distortion of the lens, which would be lost?  Then " +
+                   (is_coefficient(entry) ? "list the coefficients under '" : "call it '") +
+                   intended + "', else remove it or give the distortion as well");
+  }
+  return found;
+}
+
+}  // namespace kinecal::detail

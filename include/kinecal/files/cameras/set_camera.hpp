@@ -1,0 +1,26 @@
+// A camera for samples that were recorded without one.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// Gives a camera to those observations of a sensor that were recorded without one.
+/// @param argument     "NAME=FILE", or "NAME=FILE:cam1" for a file with several cameras
+/// @param diagnostics  receives an error if no sample has the sensor, and a warning if some
+///                     observations have a camera already
+/// @throws InputError  if the argument or the file cannot be read
+void set_camera(std::vector<Sample>& samples, const std::string& argument,
+                Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/cameras/set_camera.ipp"
+#endif

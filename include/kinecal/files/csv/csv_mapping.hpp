@@ -1,0 +1,97 @@
+// The meaning of a table's columns: a small YAML file.
+//
+//   separator: comma                # comma (default), semicolon, tab or space
+//   header: true                    # the first row contains the columns' names; default true
+//   joints:
+//     unit: degrees                 # radians (default) or degrees; metres or millimetres for
+//     columns: {joint_1: q1, ...}   #   prismatic joints: sliding: {unit: ..., columns: ...}
+//   conditions: {temperature: t_air}   # numbers that come with each sample, in units of your own
+//   observations:
+//    - sensor: arm
+//      frame: reflector
+//      constant: [0, 0, 0]          # the same point in every row; unit as for points.  Several:
+//                                   #   [[0, 0, 0], [0.1, 0, 0]]
+//    - sensor: tracker
+//      frame: tracker_frame
+//      unit: millimetres            # metres (default) or millimetres
+//      points: [[[tx, dx], [ty, dy], [tz, dz]]]   # a list of columns means their sum
+//    - sensor: camera
+//      frame: optical_frame
+//      pixels: [[u1, v1], [u2, v2]]
+//      ids: [4, 7]                  # of the points, pixels or constants: what pairs the sensors'
+//                                   #   features.  From columns: id_columns: [tag1, tag2]
+//
+// A column is given by its name or by its number from 1.  Each point becomes a feature.  A sensor may
+// occur several times, each time with another frame: its features follow one another.  If the frame
+// changes from row to row, frame_column: reflector takes the place of frame.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/geometry/rotation.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// A column as the user names it.
+struct CsvColumn {
+  std::string name;      ///< as in the header, or its number from 1
+  SourceLocation place;  ///< where the mapping names it
+};
+
+/// Columns to add up; usually one.
+using CsvSum = std::vector<CsvColumn>;
+
+/// The unit of a column; radians or metres if both are false.
+struct CsvUnit {
+  bool degrees = false;      ///< else radians
+  bool millimetres = false;  ///< else metres
+};
+
+/// The position of one joint in every sample.
+struct CsvJoint {
+  std::string name;  ///< of the joint in the URDF
+  CsvSum columns;    ///< whose sum is its position
+  CsvUnit unit;      ///< of the columns
+};
+
+/// A condition of every sample: a temperature, a load.
+struct CsvCondition {
+  std::string name;  ///< of the condition
+  CsvSum columns;    ///< whose sum it is
+};
+
+/// One observation of every sample.
+struct CsvObservation {
+  std::string sensor;                         ///< sensor_name of the observation
+  std::string frame;                          ///< in which its points are given
+  CsvSum frame_column;                        ///< one column that names the frame; empty: `frame`
+  CsvUnit unit;                               ///< of the columns of its points
+  std::vector<std::array<CsvSum, 3>> points;  ///< the third sum of a pixel is empty: zero
+  std::vector<Vector3<double>> constants;     ///< metres
+  std::vector<int> ids;                       ///< of each point or constant; empty: not given here
+  CsvSum id_columns;                          ///< one column for each; empty: see `ids`
+};
+
+/// What the columns of a table mean.
+struct CsvMapping {
+  char separator = ',';                      ///< between cells; ' ' for one or more blanks
+  bool header = true;                        ///< the first row names the columns
+  std::vector<CsvJoint> joints;              ///< positions in every sample
+  std::vector<CsvCondition> conditions;      ///< of every sample
+  std::vector<CsvObservation> observations;  ///< of every sample
+};
+
+/// Reads the meaning of columns.  It collects all errors; with errors, the mapping is incomplete.
+/// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
+[[nodiscard]] CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/csv/csv_mapping.ipp"
+#endif

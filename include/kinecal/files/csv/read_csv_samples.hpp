@@ -1,0 +1,39 @@
+// Samples from a table: each row is a pose of the robot and its observations.
+//
+// A feature with a missing value becomes NaN and gets no weight.  If its id is missing, too, it is left
+// out.  A row in which a joint's position
+// is missing is left out, with a warning.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinecal/files/csv/csv_mapping.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// Samples from the text of a table.
+/// @param file         name of the table in messages and in Sample::source
+/// @param diagnostics  receives errors and warnings, each with "file:line: "
+[[nodiscard]] std::vector<Sample> csv_samples(std::string_view text, const CsvMapping& mapping,
+                                              const std::string& file, Diagnostics& diagnostics);
+
+/// Reads samples from a table.  It collects all errors.
+/// @param csv          the table
+/// @param mapping      the meaning of its columns: csv_mapping.hpp
+/// @param diagnostics  receives errors and warnings, each with "file:line: "
+/// @throws InputError  if a file cannot be read
+[[nodiscard]] std::vector<Sample> read_csv_samples(const std::string& csv,
+                                                   const std::string& mapping,
+                                                   Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/csv/read_csv_samples.ipp"
+#endif

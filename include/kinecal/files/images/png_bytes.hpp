@@ -1,0 +1,34 @@
+// Images as the bytes of PNG files, to write them together with other files.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "kinecal/capture/image.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal::detail {
+
+/// A colour, 0 to 255 each.
+struct Rgb {
+  std::uint8_t red = 0, green = 0, blue = 0;
+};
+
+/// A PNG file with 8 bits for each pixel.
+/// @throws std::invalid_argument  if the image is empty
+[[nodiscard]] std::string png_bytes(const GrayImage& image);
+
+/// A PNG file with 16 bits for each pixel, such as a depth image in millimetres.
+/// @throws std::invalid_argument  if the image is empty
+[[nodiscard]] std::string png_bytes(const Image<std::uint16_t>& image);
+
+/// A PNG file in colour.
+/// @throws std::invalid_argument  if the image is empty
+[[nodiscard]] std::string png_bytes(const Image<Rgb>& image);
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/images/png_bytes.ipp"
+#endif

@@ -1,0 +1,46 @@
+// Finds the mesh files that a URDF names: package://fetch_description/meshes/base_link.dae.
+//
+// A package is looked for, in this order, in the folders that the user gives, in those of ROS_PACKAGE_PATH,
+// in <prefix>/share of AMENT_PREFIX_PATH, and in the folders above the URDF.  Nothing is fetched from a
+// network, and nothing outside of the folders that were found is read: a URDF may come from anywhere.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// A mesh that cannot be drawn; a sentence without its name.
+struct MeshError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Where packages and meshes may be.
+struct MeshPlaces {
+  std::filesystem::path urdf = {};                       ///< folder of the URDF
+  std::vector<std::filesystem::path> given = {};         ///< packages, or folders of packages
+  std::vector<std::filesystem::path> ros_packages = {};  ///< ROS_PACKAGE_PATH
+  std::vector<std::filesystem::path> prefixes = {};      ///< AMENT_PREFIX_PATH
+};
+
+/// The places for a URDF, with those of the environment.
+/// @param urdf   its file
+/// @param given  by the user
+[[nodiscard]] MeshPlaces mesh_places(const std::filesystem::path& urdf,
+                                     const std::vector<std::string>& given = {});
+
+/// The file of a mesh.
+/// @param name  package://..., file://..., or relative to the URDF
+/// @throws MeshError  if there is none, or it is outside of its package
+[[nodiscard]] std::filesystem::path find_mesh(const std::string& name, const MeshPlaces& places);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/meshes/find_mesh.ipp"
+#endif

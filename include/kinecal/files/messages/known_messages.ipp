@@ -1,0 +1,138 @@
+// The messages that kinecal reads and writes, as ROS 1 and ROS 2 define them.
+// Source: packages std_msgs, geometry_msgs, sensor_msgs, robot_calibration_msgs.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "kinecal/files/bags/bag.hpp"
+
+namespace kinecal::detail {
+
+struct KnownMessage {
+  std::string_view type, fields;
+  std::string_view md5 = {};  ///< in ROS 1, of those that can be written
+};
+
+/// With the fields of ROS 2; known_fields() gives those of ROS 1.
+inline constexpr std::array kKnownMessages = {
+    KnownMessage{"robot_calibration_msgs/CalibrationData",
+                 "sensor_msgs/JointState joint_states\n"
+                 "Observation[] observations\n",
+                 "a9a1a8b53ea9e13de6dae25608004191"},
+    KnownMessage{"robot_calibration_msgs/CaptureConfig",
+                 "sensor_msgs/JointState joint_states\n"
+                 "string[] features\n",
+                 "f347b595aa5cb3d9820e25d6d41f25cd"},
+    KnownMessage{"robot_calibration_msgs/Observation",
+                 "string sensor_name\n"
+                 "geometry_msgs/PointStamped[] features\n"
+                 "ExtendedCameraInfo ext_camera_info\n"
+                 "sensor_msgs/PointCloud2 cloud\n"
+                 "sensor_msgs/Image image\n"},
+    KnownMessage{"robot_calibration_msgs/ExtendedCameraInfo",
+                 "sensor_msgs/CameraInfo camera_info\n"
+                 "CameraParameter[] parameters\n"},
+    KnownMessage{"robot_calibration_msgs/CameraParameter",
+                 "string name\n"
+                 "float64 value\n"},
+    KnownMessage{"sensor_msgs/JointState",
+                 "std_msgs/Header header\n"
+                 "string[] name\n"
+                 "float64[] position\n"
+                 "float64[] velocity\n"
+                 "float64[] effort\n",
+                 "3066dcd76a6cfaef579bd0f34173e9fd"},
+    KnownMessage{"sensor_msgs/CameraInfo",
+                 "std_msgs/Header header\n"
+                 "uint32 height\n"
+                 "uint32 width\n"
+                 "string distortion_model\n"
+                 "float64[] d\n"
+                 "float64[9] k\n"
+                 "float64[9] r\n"
+                 "float64[12] p\n"
+                 "uint32 binning_x\n"
+                 "uint32 binning_y\n"
+                 "RegionOfInterest roi\n"},
+    KnownMessage{"sensor_msgs/RegionOfInterest",
+                 "uint32 x_offset\n"
+                 "uint32 y_offset\n"
+                 "uint32 height\n"
+                 "uint32 width\n"
+                 "bool do_rectify\n"},
+    KnownMessage{"sensor_msgs/PointCloud2",
+                 "std_msgs/Header header\n"
+                 "uint32 height\n"
+                 "uint32 width\n"
+                 "PointField[] fields\n"
+                 "bool is_bigendian\n"
+                 "uint32 point_step\n"
+                 "uint32 row_step\n"
+                 "uint8[] data\n"
+                 "bool is_dense\n"},
+    KnownMessage{"sensor_msgs/PointField",
+                 "uint8 INT8=1\n"
+                 "uint8 UINT8=2\n"
+                 "uint8 INT16=3\n"
+                 "uint8 UINT16=4\n"
+                 "uint8 INT32=5\n"
+                 "uint8 UINT32=6\n"
+                 "uint8 FLOAT32=7\n"
+                 "uint8 FLOAT64=8\n"
+                 "string name\n"
+                 "uint32 offset\n"
+                 "uint8 datatype\n"
+                 "uint32 count\n"},
+    KnownMessage{"sensor_msgs/Image",
+                 "std_msgs/Header header\n"
+                 "uint32 height\n"
+                 "uint32 width\n"
+                 "string encoding\n"
+                 "uint8 is_bigendian\n"
+                 "uint32 step\n"
+                 "uint8[] data\n"},
+    KnownMessage{"sensor_msgs/CompressedImage",
+                 "std_msgs/Header header\n"
+                 "string format\n"
+                 "uint8[] data\n"},
+    KnownMessage{"geometry_msgs/PointStamped",
+                 "std_msgs/Header header\n"
+                 "Point point\n"},
+    KnownMessage{"geometry_msgs/Point",
+                 "float64 x\n"
+                 "float64 y\n"
+                 "float64 z\n"},
+    KnownMessage{"std_msgs/Header",
+                 "builtin_interfaces/Time stamp\n"
+                 "string frame_id\n"},
+    KnownMessage{"std_msgs/String", "string data\n", "992ce8a1687cec8c8bd883ec73ca41d1"},
+    KnownMessage{"builtin_interfaces/Time",
+                 "int32 sec\n"
+                 "uint32 nanosec\n"},
+};
+
+[[nodiscard]] inline const KnownMessage* known_message(std::string_view type) {
+  for (const KnownMessage& known : kKnownMessages) {
+    if (known.type == type) return &known;
+  }
+  return nullptr;
+}
+
+[[nodiscard]] inline std::string known_fields(const KnownMessage& known, Encoding encoding) {
+  if (encoding == Encoding::ros1 && known.type == "std_msgs/Header") {
+    return "uint32 seq\ntime stamp\nstring frame_id\n";
+  }
+  std::string fields(known.fields);
+  if (encoding == Encoding::ros1 && known.type == "sensor_msgs/CameraInfo") {
+    for (const char* name : {" d\n", " k\n", " r\n", " p\n"}) {
+      char& letter = fields[fields.find(name) + 1];
+      letter = static_cast<char>(letter - 'a' + 'A');
+    }
+  }
+  return fields;
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,36 @@
+// Definitions of value.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+#include "kinecal/files/messages/value.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+namespace detail {
+
+[[nodiscard]] inline bool same_field(std::string_view a, std::string_view b) {
+  const auto plain = [](std::string_view name) {
+    return name == "secs" ? "sec" : name == "nsecs" ? "nanosec" : name;
+  };
+  a = plain(a);
+  b = plain(b);
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+           return std::tolower(static_cast<unsigned char>(x)) ==
+                  std::tolower(static_cast<unsigned char>(y));
+         });
+}
+
+}  // namespace detail
+
+KINECAL_INLINE const MessageValue* MessageFields::find(std::string_view name) const {
+  for (const auto& [field, value] : fields) {
+    if (detail::same_field(field, name)) return &value;
+  }
+  return nullptr;
+}
+
+}  // namespace kinecal

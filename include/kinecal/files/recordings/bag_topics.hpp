@@ -1,0 +1,42 @@
+// The content of a bag: its topics, their types, how many messages, and what kinecal can use.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinecal/files/bags/bag.hpp"
+#include "kinecal/files/diagnostics.hpp"
+
+namespace kinecal {
+
+/// What kinecal can use a topic for.
+enum class TopicUse { none, samples, poses, urdf };
+
+/// What kinecal can use a topic for, by its type.
+[[nodiscard]] TopicUse use_of(const BagTopic& topic);
+
+/// The use of a topic in words.
+[[nodiscard]] std::string_view to_string(TopicUse use);
+
+/// A topic of a bag and its size.
+struct TopicContent {
+  std::string name;               ///< without a leading slash
+  std::string type;               ///< "sensor_msgs/JointState"
+  TopicUse use = TopicUse::none;  ///< what kinecal can use it for
+  std::int64_t messages = 0;      ///< number of them
+  std::uint64_t bytes = 0;        ///< of all messages
+};
+
+/// All topics of a bag, sorted by name.
+/// @param diagnostics  receives what is wrong with the bag
+[[nodiscard]] std::vector<TopicContent> bag_topics(const std::string& path,
+                                                   Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/recordings/bag_topics.ipp"
+#endif

@@ -1,0 +1,33 @@
+// Samples, and the robot they were recorded on, from a file of any format.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/recordings/read_bag.hpp"
+#include "kinecal/files/samples/read_samples.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// What a recording contains.
+struct Recording {
+  /// As read_samples() returns them.  Sample::source of a bag is "path:number of the message".
+  std::vector<Sample> samples;
+  std::string urdf;  ///< the last /robot_description; empty if there is none
+};
+
+/// Reads YAML, a ROS 1 bag, MCAP or a ROS 2 bag, recognized by its content.
+/// @param diagnostics  receives every error, also that there are no samples
+/// @param threads      as for read_samples()
+/// @param meter        the same
+[[nodiscard]] Recording read_recording(const std::string& path, Diagnostics& diagnostics,
+                                       unsigned threads = 0, const ProgressMeter& meter = {});
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/recordings/read_recording.ipp"
+#endif

@@ -1,0 +1,48 @@
+// A set of files that is written completely or not at all.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "kinecal/files/results/output_file.hpp"
+
+namespace kinecal {
+
+namespace detail {
+class StagingFolder;
+}  // namespace detail
+
+/// A folder into which a set of files will be written.  The constructor checks that this is
+/// possible, before any work is done, and creates the folder if it is missing.
+class OutputFolder {
+ public:
+  /// @throws OutputError  if the folder cannot be created or written to
+  explicit OutputFolder(std::filesystem::path folder);
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Removes the folders that it created and that are still empty.
+  ~OutputFolder();
+
+  /// The folder.
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+
+  /// Writes all files or none; a file of the same name is replaced.
+  /// @throws OutputError  naming the file; the folder is then as it was
+  void write(const std::vector<OutputFile>& files);
+
+ private:
+  void create();
+  /// A temporary folder in the folder, which is created if it is missing.
+  [[nodiscard]] detail::StagingFolder stage();
+
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> created_;
+};
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/results/file_set.ipp"
+#endif

@@ -1,0 +1,63 @@
+// The files that a calibration writes: the robot, its cameras, the values.
+//
+//   calibrated.urdf        the URDF, patched in place
+//   depth_<camera>.yaml    camera_info of each depth camera, and
+//   rgb_<camera>.yaml      of each colour camera
+//   calibration.yaml       lines `name: value`, then the names of the files above, as installers
+//                          read them
+//
+// With upstream's names: calibrated_<date>.urdf, depth_[<camera>_]<date>.yaml and so on.  These
+// leave out the name of a camera called "camera".
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/files/results/output_file.hpp"
+#include "kinecal/files/urdf/patch_urdf.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+struct Calibration;
+struct CalibrationResult;
+class ParameterTable;
+
+/// How result files are written.
+struct ResultFileOptions {
+  OffsetStyle offsets = OffsetStyle::rising;  ///< where the URDF holds joint offsets
+  std::string date = {};  ///< Y_m_d_H_M_S for upstream's names; empty: kinecal's names
+  /// Standard deviations by table index, units of the parameters; infinite: not determined.
+  std::map<int, double> deviations = {};
+};
+
+/// The calibration of each joint of the robot, from the values of the parameters.  Virtual frames
+/// are left out: no URDF contains them.
+[[nodiscard]] std::vector<JointPatch> joint_patches(const Robot& robot,
+                                                    const ParameterTable& table);
+
+/// Why a calibrated camera is physically impossible, as one bad capture far away may make it; empty
+/// if all cameras are possible.
+[[nodiscard]] std::string impossible_camera(const Calibration& calibration,
+                                            const ParameterTable& table,
+                                            std::span<const Sample> samples);
+
+/// The files of a result, with their content.
+/// @param urdf_text  content of the URDF, as it was read
+/// @param urdf_name  its name, for messages
+[[nodiscard]] std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf_text,
+                                                   const std::string& urdf_name,
+                                                   const Calibration& calibration,
+                                                   const CalibrationResult& result,
+                                                   std::span<const Sample> samples,
+                                                   const ResultFileOptions& options);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/results/result_files.ipp"
+#endif

@@ -1,0 +1,189 @@
+// A file of samples, read piece by piece on several threads.
+//
+// The pieces do not depend on the number of threads, and their content is joined in the order of
+// the file.  So samples and messages do not depend on the number of threads either.  Memory holds
+// the samples and one piece for each thread.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <future>
+#include <istream>
+#include <iterator>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/samples/sample_handler.ipp"
+#include "kinecal/files/samples/tool_output.ipp"
+#include "kinecal/files/yaml/yaml_events.ipp"
+#include "kinecal/files/yaml/yaml_pieces.ipp"
+#include "kinecal/samples/progress_meter.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal::detail {
+
+/// The content of a piece of a file.
+struct SamplePiece {
+  std::vector<Sample> samples;
+  SampleErrors errors;
+  std::optional<YamlError> not_yaml;    ///< the reason if it was not read to its end
+  int sample_line = 0;                  ///< where its last sample begins
+  bool last_document_is_empty = false;  ///< as it is after a final `---`
+  bool may_be_cut_off = false;          ///< not YAML in the file's last document
+
+  /// True if the rest of the file is not read.
+  [[nodiscard]] bool stops() const { return not_yaml || errors.too_many(); }
+};
+
+[[nodiscard]] inline SamplePiece read_sample_piece(const std::string& file, YamlPiece piece) {
+  SampleHandler handler(file);
+  SamplePiece read;
+  std::vector<SampleErrors::Message> outputs = take_tool_output(piece);
+  try {
+    YamlEvents events(piece.text, piece.line);
+    while (!handler.builder().errors().too_many() && events.next_document(handler)) {
+    }
+  } catch (const YamlError& e) {
+    read.not_yaml = e;
+    read.may_be_cut_off = !has_marker_from(piece, e.line);
+  }
+  read.samples = handler.take();
+  read.errors = std::move(handler.builder().errors());
+  add_in_order(read.errors, std::move(outputs));
+  read.sample_line = handler.builder().sample_line();
+  read.last_document_is_empty = handler.last_document_is_empty();
+  return read;
+}
+
+class SampleFile {
+ public:
+  /// Bytes of a piece: some 100 samples, so that the threads end at about the same time.
+  static constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
+
+  /// @param file  name of the file in messages
+  SampleFile(std::istream& in, std::string file, std::size_t piece_bytes = kPieceBytes)
+      : file_(std::move(file)), pieces_(in, piece_bytes) {}
+
+  /// Reports how far reading is.
+  /// @param bytes  size of the file
+  void show_progress(std::uintmax_t bytes, const ProgressMeter& meter) {
+    bytes_ = bytes;
+    meter_ = meter;
+  }
+
+  /// Reads the file to its end, or to the first text that is not YAML, or up to too many errors.
+  void read(std::size_t threads) {
+    std::vector<std::future<void>> others;
+    try {
+      while (others.size() + 1 < threads) {
+        others.push_back(std::async(std::launch::async, [this] { work(); }));
+      }
+    } catch (const std::system_error&) {  // no more threads are available: fewer do it
+    }
+    work();
+    for (std::future<void>& other : others) other.get();
+  }
+
+  /// The samples in the order of the file, and what is wrong with them.
+  [[nodiscard]] std::vector<Sample> take(Diagnostics& diagnostics) {
+    std::vector<Sample> samples;
+    SampleErrors all;
+    int sample_line = 0;
+    for (SamplePiece& piece : read_) {
+      std::move(piece.samples.begin(), piece.samples.end(), std::back_inserter(samples));
+      piece.samples = {};
+      for (auto& [line, text] : piece.errors.errors) all.add(line, std::move(text));
+      for (auto& [line, text] : piece.errors.warnings) all.warn_once(line, std::move(text));
+      if (piece.sample_line > 0) sample_line = piece.sample_line;
+      if (piece.not_yaml) all.add(piece.not_yaml->line, not_yaml(piece, sample_line));
+      if (piece.stops() || all.too_many()) break;
+      if (&piece == &read_.back() && is_wrong_at_end(piece, all)) {
+        all.errors.back().text += "; is the file cut off?";
+      }
+    }
+    if (all.errors.empty()) check_end(samples, sample_line, all);
+    report(all, file_, diagnostics);
+    return samples;
+  }
+
+ private:
+  /// One thread's share: the next piece, until there are no more.
+  void work() {
+    for (;;) {
+      std::unique_lock lock(mutex_);
+      std::optional<YamlPiece> piece;
+      if (!stopped_) piece = next();
+      if (!piece) return;
+      done_ += piece->text.size();
+      if (meter_ && bytes_ > 0) {
+        meter_(std::min(1.0, double(done_) / double(bytes_)), "reading " + file_);
+      }
+      SamplePiece& read = read_.emplace_back();  // keeps its address while others are added
+      lock.unlock();
+      read = read_sample_piece(file_, std::move(*piece));
+      if (!read.stops()) continue;
+      lock.lock();
+      stopped_ = true;
+    }
+  }
+
+  [[nodiscard]] std::optional<YamlPiece> next() {
+    try {
+      return pieces_.next();
+    } catch (const YamlError& e) {
+      read_.emplace_back().not_yaml = e;
+      stopped_ = true;
+      return std::nullopt;
+    }
+  }
+
+  [[nodiscard]] static std::string not_yaml(const SamplePiece& piece, int sample_line) {
+    std::string text = fmt::format("not YAML: {}", piece.not_yaml->what());
+    if (sample_line > 0) text += fmt::format("; the last sample begins at line {}", sample_line);
+    return text + (piece.may_be_cut_off ? "; is the file cut off?" : "");
+  }
+
+  /// True if the last error is in the last sample of the file, which no `---` ends.
+  [[nodiscard]] static bool is_wrong_at_end(const SamplePiece& last, const SampleErrors& all) {
+    return !last.last_document_is_empty && last.sample_line > 0 && !all.errors.empty() &&
+           all.errors.back().line >= last.sample_line;
+  }
+
+  /// A recording that was interrupted may end in the middle of a number and still be YAML.
+  void check_end(const std::vector<Sample>& samples, int sample_line, SampleErrors& all) const {
+    if (samples.empty()) {
+      all.add(0, done_ == 0 ? "no samples: the file is empty" : "no samples in this file");
+    } else if (!read_.back().last_document_is_empty) {
+      const char last = pieces_.last();
+      if (last == '\n' || last == '}' || last == ']') {
+        all.warn(sample_line,
+                 "no '---' after this sample, the last one; if the file is cut off, observations "
+                 "are missing");
+      } else {
+        all.add(sample_line,
+                "the file ends within a line of this sample, the last one; if it is not cut off, "
+                "add a line '---'");
+      }
+    }
+  }
+
+  std::string file_;
+  std::mutex mutex_;  ///< guards what follows while threads work
+  YamlPieces pieces_;
+  std::deque<SamplePiece> read_;  ///< in the order of the file
+  bool stopped_ = false;
+  ProgressMeter meter_;
+  std::uintmax_t bytes_ = 0, done_ = 0;  ///< of the file, for the meter
+};
+
+}  // namespace kinecal::detail

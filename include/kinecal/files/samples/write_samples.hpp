@@ -1,0 +1,24 @@
+// Writes samples as read_samples() reads them: one YAML document for each, with the keys of ROS 1.
+//
+// Numbers are the shortest text that reads back as the same double.  Sample::source is not written.
+// A camera that is all zeros (see is_blank) reads back as no camera.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+#include <vector>
+
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// Writes all samples in their order, each followed by `---`.
+/// @throws std::invalid_argument  if a sample has more or fewer positions than joint names; the
+///                                samples before it have then been written
+void write_samples(std::ostream& out, const std::vector<Sample>& samples);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/samples/write_samples.ipp"
+#endif

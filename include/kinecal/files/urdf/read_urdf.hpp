@@ -1,0 +1,30 @@
+// A robot from its URDF, read by urdfdom.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/robot.hpp"
+
+namespace kinecal {
+
+/// The robot that a URDF describes, its joints in the order of the text.
+/// @param text               the URDF, UTF-8
+/// @param name_for_messages  name of the text in messages: its file
+/// @throws InputError  "file:line: message" if the text is not a URDF or its joints are not a tree
+[[nodiscard]] Robot parse_urdf(const std::string& text, const std::string& name_for_messages);
+
+/// The text of a URDF, byte for byte.
+/// @throws InputError  if it cannot be read
+[[nodiscard]] std::string read_urdf_text(const std::string& path);
+
+/// The robot that a URDF file describes.
+/// @throws InputError  if the file cannot be read, and as parse_urdf()
+[[nodiscard]] Robot read_urdf(const std::string& path);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/urdf/read_urdf.ipp"
+#endif

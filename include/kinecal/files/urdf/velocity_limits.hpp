@@ -1,0 +1,23 @@
+// How fast the joints of a URDF may move.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "kinecal/files/diagnostics.hpp"
+
+namespace kinecal {
+
+/// Velocity limits by joint, rad/s or m/s.  Joints without a positive one are left out.
+/// @param text               the URDF, UTF-8
+/// @param name_for_messages  name of the text in messages: its file
+/// @throws InputError  "file:line: message" if the text is not a URDF, or a limit is not a number
+[[nodiscard]] std::map<std::string, double> velocity_limits(const std::string& text,
+                                                            const std::string& name_for_messages);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/urdf/velocity_limits.ipp"
+#endif

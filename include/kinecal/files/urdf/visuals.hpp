@@ -1,0 +1,49 @@
+// What the links of a URDF look like: its <visual> elements.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/geometry/pose.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// Shapes of a URDF.
+enum class VisualShape {
+  box,       ///< about its center
+  cylinder,  ///< about its center, along z
+  sphere,    ///< about its center
+  mesh       ///< of a file
+};
+
+/// What a link looks like, or a part of it.
+struct Visual {
+  std::string link;                            ///< its name
+  Pose<double> link_T_visual;                  ///< metres
+  VisualShape shape = VisualShape::box;        ///< decides which of the numbers count
+  std::array<double, 3> size{};                ///< of a box, metres
+  double radius = 0.0;                         ///< of a cylinder or sphere, metres
+  double length = 0.0;                         ///< of a cylinder, metres
+  std::string mesh = {};                       ///< as the URDF names it: "package://fetch/base.dae"
+  std::array<double, 3> scale{1.0, 1.0, 1.0};  ///< of the mesh
+  std::array<double, 4> color{0.7, 0.7, 0.7, 1.0};  ///< red, green, blue and opacity, 0 to 1
+};
+
+/// The visuals of all links, in the order of the text.  One that cannot be drawn is left out with a
+/// warning.
+/// @param text               the URDF, UTF-8
+/// @param name_for_messages  name of the text in messages: its file
+/// @throws InputError  "file:line: message" if the text is not a URDF
+[[nodiscard]] std::vector<Visual> visuals(const std::string& text,
+                                          const std::string& name_for_messages,
+                                          Diagnostics& diagnostics);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/files/urdf/visuals.ipp"
+#endif

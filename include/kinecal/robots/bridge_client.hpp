@@ -1,0 +1,104 @@
+// What a Foxglove bridge offers, as topics and services with names.
+//
+// A bridge serves the topics and services of ROS 1 and ROS 2 over a WebSocket.  A thread keeps the
+// newest messages of each subscribed topic, so whoever asks after a minute does not get old ones.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/files/bags/bag.hpp"
+#include "kinecal/files/messages/definition.hpp"
+#include "kinecal/files/messages/value.hpp"
+#include "kinecal/robots/socket/web_socket.hpp"
+
+namespace kinecal::detail {
+
+/// By which something must have happened.
+using Deadline = std::chrono::steady_clock::time_point;
+
+/// A message or a service's response, as bytes.
+struct BridgeMessage {
+  std::string name;                                     ///< of the topic or service
+  std::string type;                                     ///< "sensor_msgs/JointState"
+  std::shared_ptr<const MessageDefinition> definition;  ///< of the type
+  Encoding encoding = Encoding::ros1;
+  std::string bytes;
+  Deadline arrival;  ///< when it came
+
+  /// Its fields: views of this message.
+  /// @throws PoseError  naming the topic, if the bytes are not such a message
+  [[nodiscard]] MessageFields fields() const;
+};
+
+/// What a client publishes: a type, with the text of its definition.
+struct PublishedType {
+  std::string name;        ///< "control_msgs/FollowJointTrajectoryActionGoal"
+  std::string definition;  ///< .msg text of ROS 1
+};
+
+/// A connection to a bridge.  Its functions may be called from one thread at a time.
+/// All throw ConnectionError once the connection has ended, with the reason.
+class BridgeClient {
+ public:
+  /// @throws ConnectionError        as WebSocket, or if the bridge does not introduce itself
+  /// @throws std::invalid_argument  as parse_address()
+  explicit BridgeClient(const BridgeOptions& options);
+  BridgeClient(const BridgeClient&) = delete;
+  BridgeClient& operator=(const BridgeClient&) = delete;
+  ~BridgeClient();
+
+  /// Time from now until something must have happened.
+  [[nodiscard]] Deadline deadline() const;
+
+  /// Keeps the newest messages of a topic from now on, also if it appears later or again.
+  /// @param types  those that are read, such as sensor_msgs/JointState; empty: any
+  /// @param keep   messages
+  void subscribe(const std::string& topic, std::vector<std::string> types, std::size_t keep);
+
+  /// The messages of a subscribed topic since the last call, oldest first; waits for one.
+  /// @return  empty if none comes in time
+  /// @throws ConnectionError  if the topic has another type than those that are read, or its
+  ///                          messages are written in a way that kinecal does not read
+  [[nodiscard]] std::vector<BridgeMessage> take(const std::string& topic, Deadline deadline);
+
+  /// The type of a topic, waiting for it to appear; nullopt if it does not in time.
+  [[nodiscard]] std::optional<std::string> topic_type(const std::string& topic, Deadline deadline);
+  /// Whether one of a topic and a service appears in time.
+  [[nodiscard]] bool wait_for(const std::string& topic, const std::string& service,
+                              Deadline deadline);
+  [[nodiscard]] bool has_service(const std::string& service) const;
+
+  /// Why there is nothing on a topic: "the bridge offers no topic '/jonit_states'; did you mean
+  /// '/joint_states'?"
+  [[nodiscard]] std::string why_silent(const std::string& topic) const;
+
+  /// Publishes a message, in ROS 1.
+  /// @throws ConnectionError  if the bridge does not let clients publish
+  void publish(const std::string& topic, const PublishedType& type, const MessageFields& message);
+
+  /// Calls a service, without waiting.  Fields that its request does not have are left out.
+  /// @return  number of the call
+  /// @throws PoseError  if the bridge does not offer it, or its definition cannot be read
+  [[nodiscard]] std::uint32_t call(const std::string& service, const MessageFields& request);
+
+  /// The response to a call; nullopt if it does not come in time.
+  /// @throws PoseError  if the service failed
+  [[nodiscard]] std::optional<BridgeMessage> response(std::uint32_t call, Deadline deadline);
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace kinecal::detail
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/robots/bridge_client.ipp"
+#endif

@@ -1,0 +1,69 @@
+// A robot that a program of yours moves, in any language: it speaks JSON over its standard input and
+// output.
+//
+// One line is one object.  Stamps are whole numbers of nanoseconds, of any clock as long as it is the
+// same for all.  Joint positions are radians or metres, files are relative to the working directory.
+//
+//   {"move": {"names": ["elbow"], "positions": [0.5], "velocity_factor": 1.0}}   starts to move
+//       {}
+//   {"joints": {"after": 17}}                                      waits for positions after that
+//       {"stamp": 18, "names": ["elbow"], "positions": [0.49]}
+//   {"view": {"after": 17}}                                            waits for a view after that
+//       {"stamp": 18, "frame": "camera_optical_frame", "image": "view.png", "depth": "depth.png",
+//        "camera": {"width": 640, "height": 480, "distortion_model": "plumb_bob", "d": [0, 0, 0, 0, 0],
+//                   "k": [9 numbers], "p": [12 numbers]}}
+//   {"light": 3}                                                     lights the LEDs of this code
+//       {"stamp": 18}
+//
+// Images are PNG or JPEG; depth is a gray PNG of 16 bits in millimetres, 0 where nothing was measured.  Instead of a file
+// name they may be {"base64": "..."} of such a file.  A view has an image, depth or both; depth needs
+// the camera.  {"error": "the gripper is hot"} skips the pose.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "kinecal/capture/robot_interface.hpp"
+
+namespace kinecal {
+
+/// How a program is run.
+struct PipeOptions {
+  std::string command;                          ///< for /bin/sh, such as "python3 robot.py"
+  std::chrono::milliseconds time_limit{30000};  ///< for each answer
+  std::function<bool()> interrupted = {};       ///< true ends waiting for an answer
+};
+
+/// An arm, a camera and a lamp: see above.  The functions throw
+///   PoseError        for an error that the program reports, and for an answer that cannot be read:
+///                    what is wrong with it
+///   SilenceError     for an answer that it does not give in time
+///   ConnectionError  once the program has ended: how; for the third answer in a row that cannot be
+///                    read, and where waiting is interrupted
+class PipeRobot {
+ public:
+  /// Starts the program; it is ended with this object.
+  explicit PipeRobot(const PipeOptions& options);
+  PipeRobot(PipeRobot&&) noexcept;
+  PipeRobot& operator=(PipeRobot&&) noexcept;
+  ~PipeRobot();
+
+  void move(const JointTarget& target);
+  [[nodiscard]] MeasuredJoints next_joints(Stamp after);
+  [[nodiscard]] View next_view(Stamp after);
+  [[nodiscard]] Stamp light(int code);
+
+ private:
+  class Pipe;
+  std::unique_ptr<Pipe> pipe_;
+};
+static_assert(Arm<PipeRobot> && Camera<PipeRobot> && Lamp<PipeRobot>);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/robots/pipe_robot.ipp"
+#endif

@@ -1,0 +1,143 @@
+// A robot with ROS 1 or ROS 2 behind a Foxglove bridge: its arm, cameras and lamps.
+//
+//   RosBridge bridge({"ws://fetch:8765"});
+//   RosArm arm(bridge, {.controllers = {{"/arm_controller/follow_joint_trajectory", {"elbow"}}}});
+//   RosCamera camera(bridge, {.cloud = "/head_camera/depth_registered/points"});
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/robot_interface.hpp"
+#include "kinecal/robots/socket/web_socket.hpp"
+
+namespace kinecal {
+
+namespace detail {
+class RosRobot;
+class RosAction;
+class ViewStreams;
+}  // namespace detail
+
+/// A connection to a bridge, and the robot's joint states that come through it.
+class RosBridge {
+ public:
+  /// @param joint_states  topic of sensor_msgs/JointState; several nodes may publish on it
+  /// @throws ConnectionError        naming the address, if no bridge answers there, or the topic is of
+  ///                                another type
+  /// @throws std::invalid_argument  if the address is not of the form ws://host:port
+  explicit RosBridge(const BridgeOptions& options,
+                     const std::string& joint_states = "/joint_states");
+  RosBridge(RosBridge&&) noexcept;
+  RosBridge& operator=(RosBridge&&) noexcept;
+  ~RosBridge();
+
+  /// For the classes below.
+  [[nodiscard]] detail::RosRobot& robot() { return *robot_; }
+
+ private:
+  std::unique_ptr<detail::RosRobot> robot_;
+};
+
+/// A controller that moves joints by control_msgs/FollowJointTrajectory.
+struct JointController {
+  std::string action;               ///< "/arm_controller/follow_joint_trajectory"
+  std::vector<std::string> joints;  ///< that it moves
+};
+
+/// How an arm moves.
+struct RosArmOptions {
+  std::vector<JointController> controllers = {};
+  std::vector<std::string> measured = {};  ///< joints that no controller moves, but are needed
+  double duration = 2.0;                   ///< of a motion at least, seconds; that of capture.yaml
+  double speed = 0.7;  ///< of a joint at most, rad/s or m/s, at velocity factor 1
+  std::map<std::string, double> speeds = {};  ///< the same, of joints that differ
+};
+
+/// Joints that controllers move.
+class RosArm {
+ public:
+  /// @param bridge  must outlive this
+  /// @throws ConnectionError  if the bridge does not offer the actions of the controllers
+  RosArm(RosBridge& bridge, const RosArmOptions& options);
+  RosArm(RosArm&&) noexcept;
+  RosArm& operator=(RosArm&&) noexcept;
+  ~RosArm();
+
+  /// Starts to move; joints without a controller stay.  A controller's other joints are held where
+  /// they are.
+  /// @throws PoseError  if no controller moves any of these joints, or one refuses
+  void move(const JointTarget& target);
+
+  /// All joint positions.  The stamp is the oldest of the controllers' joints.
+  /// @throws SilenceError     if they do not come in time: topic, newest stamp and why
+  /// @throws PoseError        if a controller gave up since the last motion started
+  /// @throws ConnectionError  if the bridge has withdrawn their topic
+  [[nodiscard]] MeasuredJoints next_joints(Stamp after);
+
+ private:
+  detail::RosRobot* robot_;
+  RosArmOptions options_;
+  std::vector<detail::RosAction> actions_;  ///< of the controllers
+};
+static_assert(Arm<RosArm>);
+
+/// Topics of a camera; empty: none.
+struct RosCameraOptions {
+  std::string image = {};  ///< sensor_msgs/Image or CompressedImage
+  std::string depth = {};  ///< the same in depth, registered to the image; needs camera_info
+  std::string cloud = {};  ///< sensor_msgs/PointCloud2; its colour is the image if there is none
+  std::string camera_info = {};  ///< sensor_msgs/CameraInfo
+};
+
+/// A camera whose streams are put together by their stamps.
+class RosCamera {
+ public:
+  /// @param bridge  must outlive this
+  /// @throws std::invalid_argument  if there is neither an image, depth nor a cloud
+  RosCamera(RosBridge& bridge, const RosCameraOptions& options);
+  RosCamera(RosCamera&&) noexcept;
+  RosCamera& operator=(RosCamera&&) noexcept;
+  ~RosCamera();
+
+  /// @throws SilenceError     if none comes in time: topic, newest stamp and why
+  /// @throws PoseError        if its stamps are of another clock than those of the joint states, or
+  ///                          those of its topics have nothing in common
+  /// @throws ConnectionError  if the bridge has withdrawn a topic
+  [[nodiscard]] View next_view(Stamp after);
+
+ private:
+  std::unique_ptr<detail::ViewStreams> streams_;
+};
+static_assert(Camera<RosCamera>);
+
+/// LEDs that an action switches: robot_calibration_msgs/GripperLedCommand.
+class RosLamp {
+ public:
+  /// @param bridge  must outlive this
+  /// @param action  "/gripper_controller/led_action"
+  /// @throws ConnectionError  if the bridge does not offer it
+  RosLamp(RosBridge& bridge, const std::string& action);
+  RosLamp(RosLamp&&) noexcept;
+  RosLamp& operator=(RosLamp&&) noexcept;
+  ~RosLamp();
+
+  /// @return  stamp of the first joint state after the robot reported that it was done
+  /// @throws PoseError  if the robot refuses or does not report it in time
+  [[nodiscard]] Stamp light(int code);
+
+ private:
+  detail::RosRobot* robot_;
+  std::unique_ptr<detail::RosAction> action_;
+};
+static_assert(Lamp<RosLamp>);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/robots/ros_robot.ipp"
+#endif

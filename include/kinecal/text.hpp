@@ -1,0 +1,9 @@
+// Umbrella header of text/: names, numbers and texts for people, and text that the compiler knows.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/text/fixed_string.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
+#include "kinecal/text/reading.hpp"
+#include "kinecal/text/sentence.hpp"

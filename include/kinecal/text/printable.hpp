@@ -1,0 +1,24 @@
+// Texts of files for a terminal: without control characters, which could move the cursor, change
+// colours or hide a message.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// Whether a text contains control characters other than line ends and tabs, or is not UTF-8.
+[[nodiscard]] bool has_control_characters(std::string_view text);
+
+/// The text with control characters, and bytes that are not UTF-8, as "\x1b".  Line ends and tabs
+/// stay.
+[[nodiscard]] std::string printable(std::string_view text);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/text/printable.ipp"
+#endif

@@ -1,0 +1,31 @@
+// Writing numbers for people.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "kinecal/text/reading.hpp"
+
+namespace kinecal {
+
+KINECAL_INLINE std::string reading(double value, std::string_view unit) {
+  double shown = value;
+  const char* of = "";
+  if (unit == "m") {
+    const bool is_large = std::abs(value) >= 1.0;
+    shown = is_large ? value : 1e3 * value;
+    of = is_large ? " m" : " mm";
+  } else if (unit == "rad") {
+    shown = value * 180.0 / std::numbers::pi;
+    of = " deg";
+  } else if (unit == "px") {
+    of = " px";
+  }
+  char text[48];
+  (void)std::snprintf(text, sizeof text, "%.3g%s", shown, of);
+  return text;
+}
+
+}  // namespace kinecal

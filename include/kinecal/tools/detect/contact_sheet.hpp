@@ -1,0 +1,37 @@
+// A contact sheet: one picture of all views and what was found in them, to glance at.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/view.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// A small picture of a view.
+struct Thumbnail {
+  GrayImage image;          ///< at most kThumbnailWidth wide
+  std::vector<Mark> marks;  ///< in its pixels
+  std::string name;         ///< of the image
+  std::string refusal;      ///< why nothing was found; empty if something was
+};
+
+/// Width of a thumbnail, pixels.
+inline constexpr int kThumbnailWidth = 320;
+
+/// Shrinks an image by averages, and its marks with it.
+[[nodiscard]] Thumbnail thumbnail(const GrayImage& image, std::vector<Mark> marks,
+                                  const std::string& name, const std::string& refusal);
+
+/// A PNG of all: what was found is marked green; a view in which nothing was found has a red frame and
+/// the reason below.
+/// @throws std::invalid_argument  if there is none
+[[nodiscard]] std::string contact_sheet(const std::vector<Thumbnail>& thumbnails);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/detect/contact_sheet.ipp"
+#endif

@@ -1,0 +1,45 @@
+// Samples of recorded views: finders look at one view after the other.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/view.hpp"
+#include "kinecal/config/capture/capture_config.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// A finder of recorded views.
+struct ViewFinder {
+  std::string name;                             ///< as the configuration has it
+  std::function<Found(const View& view)> find;  ///< in one view
+};
+
+/// What was found in one view.
+struct Detection {
+  std::vector<Sample> samples;  ///< none if nothing was found; one, or more where finders observe
+                                ///< with the same sensors
+  std::vector<Mark> marks;      ///< of all finders, in pixels of the view
+  std::vector<std::string> refused;  ///< "april_tag_finder: no tag is in the image"
+  std::size_t features = 0;          ///< that were found, by all finders
+};
+
+/// Makes the finder that settings describe.
+/// @throws InputError  "file:line: ..." if settings are impossible, or it cannot work without the
+///                     robot: LEDs have to be switched
+[[nodiscard]] ViewFinder view_finder(const CaptureFinder& finder, const FinderSettings& settings);
+
+/// Runs all finders on a view.
+/// @param source  of the samples, for messages: "poses.csv:3"
+[[nodiscard]] Detection detect(const View& view, std::span<const ViewFinder> finders,
+                               const std::string& source);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/detect/detect.ipp"
+#endif

@@ -1,0 +1,61 @@
+// Positions over time of joints that are published together.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/capture/settling.hpp"
+#include "kinecal/capture/view.hpp"
+#include "kinecal/linkage.hpp"
+
+namespace kinecal {
+
+/// A stretch of time in which all joints stand still.
+struct Standstill {
+  Stamp begin{};  ///< when it begins
+  Stamp end{};    ///< when it ends
+};
+
+namespace detail {
+
+/// Positions of the same joints over time, 100 a second at most: what comes faster is averaged.
+struct JointTrack {
+  std::string topic;               ///< on which they came
+  std::vector<std::string> names;  ///< of joints
+  std::vector<bool> used = {};     ///< whether a joint's positions come from here
+  std::vector<Stamp> stamps = {};  ///< of the positions
+  std::vector<std::vector<double>> rows =
+      {};                               ///< positions of each stamp, in the order of the names
+  Stamp bin = {};                       ///< begin of the last stamp's hundredth
+  Stamp newest = {};                    ///< stamp
+  int readings = 0;                     ///< in the last hundredth
+  std::optional<Standstill> back = {};  ///< where stamps go back by much: from end to begin
+
+  /// Takes positions in the order of the names.
+  void add(Stamp stamp, const std::vector<double>& positions);
+
+  /// Sorts by stamps.
+  void sort();
+
+  /// When some of the joints stand still.
+  /// @param joints  indices
+  [[nodiscard]] std::vector<Standstill> rests(const std::vector<std::size_t>& joints,
+                                              const SettleOptions& options) const;
+
+  /// Indices of the rows within a time, the last one excluded; of the nearest row if there is none.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> near(Stamp stamp, const Standstill& time) const;
+};
+
+/// Stretches that are in both lists.
+[[nodiscard]] std::vector<Standstill> common(const std::vector<Standstill>& a,
+                                             const std::vector<Standstill>& b);
+
+}  // namespace detail
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/detect/joint_track.ipp"
+#endif

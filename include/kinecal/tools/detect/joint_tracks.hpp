@@ -1,0 +1,69 @@
+// Joint positions of a recording over time, and when the robot stood still.
+//
+// Several nodes may publish different joints, on one topic or on several, at different rates.  Each
+// list of joints is a track of its own; the robot stands still while all of them do.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "kinecal/capture/settling.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/linkage.hpp"
+#include "kinecal/tools/detect/joint_track.hpp"
+
+namespace kinecal {
+
+/// The joints of a recording.
+class JointTracks {
+ public:
+  /// Takes a message of joint states.  One without positions says nothing.
+  /// @param topic  on which it came
+  void add(const std::string& topic, const MeasuredJoints& reading);
+
+  /// Decides where each joint's positions come from, after all were added.  A joint on two topics is
+  /// taken from `joint_states`.
+  /// @param topics  that are used; empty: all
+  /// @param file    name of the recording in messages
+  /// @param diagnostics  receives: no positions, a topic of `topics` that is not there, a joint on two
+  ///                     topics, stamps that go back, joints that were measured a few times only
+  void choose(const std::vector<std::string>& topics, const std::string& file,
+              Diagnostics& diagnostics);
+
+  /// All stretches of at least options.window, sorted.
+  /// @param restless  joints that need not stand still
+  [[nodiscard]] std::vector<Standstill> standstills(const std::set<std::string>& restless = {},
+                                                    const SettleOptions& options = {}) const;
+
+  /// Joints that never stand still, whatever others do.
+  [[nodiscard]] std::vector<std::string> never_still(const SettleOptions& options = {}) const;
+
+  /// All joints that are measured.
+  [[nodiscard]] std::set<std::string> names() const;
+
+  /// Mean positions of all joints near a moment of a standstill.
+  [[nodiscard]] MeasuredJoints positions(Stamp stamp, const Standstill& during) const;
+
+  /// From the first to the last reading; nullopt if there is none.
+  [[nodiscard]] std::optional<Standstill> span() const;
+
+ private:
+  [[nodiscard]] bool measures(const std::string& topic, const std::string& joint) const;
+  void choose_topics(const std::vector<std::string>& topics, const std::string& file,
+                     Diagnostics& diagnostics);
+  void settle_conflicts(const std::string& file, Diagnostics& diagnostics);
+  std::vector<detail::JointTrack> tracks_;
+  /// Messages in which a joint's position is not a number, by topic and joint.
+  std::map<std::pair<std::string, std::string>, int> not_finite_;
+  std::set<std::string> silent_;  ///< topics with messages, but no positions
+};
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/detect/joint_tracks.ipp"
+#endif

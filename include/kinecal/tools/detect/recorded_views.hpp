@@ -1,0 +1,98 @@
+// Views of a recording, one of each time that the robot stood still.
+//
+// The recording is read twice: first for the joints and for when images come, which shows when the
+// robot stood still; then for a few images of each standstill.  So memory holds the images of few
+// standstills, however long the recording is.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "kinecal/linkage.hpp"
+#include "kinecal/samples/progress_meter.hpp"
+#include "kinecal/tools/detect/joint_tracks.hpp"
+#include "kinecal/tools/detect/view_topics.hpp"
+
+namespace kinecal {
+
+/// What is taken from a recording, and how.
+struct RecordingOptions {
+  std::string path;                       ///< ROS 1 bag, ROS 2 bag or MCAP
+  std::vector<std::string> joints = {};   ///< topics of joint states, without slash; empty: all
+  std::set<std::string> restless = {};    ///< joints that need not stand still
+  std::string depth = {};                 ///< topic of depth that goes with images
+  std::string frame = {};                 ///< of the camera; empty: as the messages have it
+  std::optional<CameraInfo> camera = {};  ///< instead of camera_info, of the only camera
+  SettleOptions settle = {};              ///< when joints stand still
+};
+
+namespace detail {
+struct RecordedSurvey;
+struct RawView;
+}  // namespace detail
+
+/// A standstill, and messages of views in it.
+struct RecordedStandstill {
+  std::size_t number = 0;  ///< from 0, in the order of time
+  std::string source;      ///< "drive.bag at 12.300 s": since the first joint states
+  Standstill time;         ///< when it was
+  std::size_t bytes = 0;   ///< of the messages
+  std::vector<std::vector<std::shared_ptr<detail::RawView>>> views;  ///< a few of each camera
+};
+
+/// The view of a camera in a standstill, or why there is none.
+struct RecordedView {
+  std::optional<View> view = {};  ///< with the joints of its moment
+  std::string refusal = {};       ///< empty if there is one
+  bool compared = true;           ///< false: of a single image, which may have moved
+};
+
+/// A recording: see above.
+class RecordedViews {
+ public:
+  /// Reads the recording for the first time.
+  /// @param diagnostics  receives why nothing can be used (no or other clocks' joint states, topics
+  ///                     that are missing or cannot be chosen, no standstill) and what is left out
+  RecordedViews(RecordingOptions options, const std::vector<CaptureFinder>& finders,
+                Diagnostics& diagnostics, const ProgressMeter& meter = {});
+  ~RecordedViews();
+  RecordedViews(RecordedViews&&) noexcept;
+  RecordedViews& operator=(RecordedViews&&) noexcept;
+
+  [[nodiscard]] std::size_t standstills() const { return times_.size(); }  ///< how many there are
+  /// Topics of each camera: finders that look through the same ones share it.
+  [[nodiscard]] const std::vector<ViewTopics>& cameras() const { return cameras_; }
+  /// The camera of a finder, by its place in the list.
+  [[nodiscard]] std::size_t camera_of(std::size_t finder) const { return camera_of_.at(finder); }
+
+  /// Reads the recording again.
+  /// @param handle  takes each standstill, when its last message was read
+  void read(const std::function<void(RecordedStandstill)>& handle,
+            const ProgressMeter& meter = {}) const;
+
+  /// The best view of a camera in a standstill.  Several threads may call it.
+  [[nodiscard]] RecordedView view(const RecordedStandstill& standstill, std::size_t camera) const;
+
+ private:
+  void choose_cameras(const std::vector<CaptureFinder>& finders, Diagnostics& diagnostics);
+  /// Messages of a camera in a standstill that are worth a look: a few, spread over its middle.
+  [[nodiscard]] std::vector<std::shared_ptr<detail::RawView>> planned(const Standstill& time,
+                                                                      std::size_t camera) const;
+
+  RecordingOptions options_;
+  std::unique_ptr<detail::RecordedSurvey> survey_;
+  std::vector<ViewTopics> cameras_;
+  std::vector<std::size_t> camera_of_;  ///< of each finder
+  std::vector<Standstill> times_;
+};
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/detect/recorded_views.ipp"
+#endif

@@ -1,0 +1,39 @@
+// The first configuration of a robot: its URDF and a few answers in, commented YAML out.
+//
+// Pure functions: the program asks the questions and writes the file.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/tools/init/init_answers.hpp"
+#include "kinecal/tools/init/robot_parts.hpp"
+
+namespace kinecal {
+
+/// Reports a link that the robot does not have, or a missing answer.
+/// @param option  of the command line, for messages
+void check_init_link(const Robot& robot, const std::string& option, const std::string& link,
+                     Diagnostics& diagnostics);
+
+/// Reports a name that a frame cannot have if the URDF does not contain the frame.
+void check_init_frame(const Robot& robot, const std::string& option, const std::string& name,
+                      Diagnostics& diagnostics);
+
+/// Reports a name that a camera cannot have because another model has it.
+void check_init_camera_name(const std::string& option, const std::string& name,
+                            Diagnostics& diagnostics);
+
+/// The text of a configuration, in robot_calibration's dialect of ROS 1.
+/// @param given  the base and the names of frames may be left out: with_proposals()
+/// @throws InputError  "--option: what is wrong; what to do": a link that does not exist or cannot
+///                     be reached, or a target that determines nothing of this robot
+[[nodiscard]] std::string initial_config(const Robot& robot, const InitAnswers& given);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/init/initial_config.ipp"
+#endif

@@ -1,0 +1,52 @@
+// The result of a calibration, read back from the folder that it was written to.
+//
+//   calibration[_<date>].yaml   values by name, and the names of the other files: urdf, depth_info,
+//                               rgb_info; for further cameras left_depth_info and so on
+//   report.json                 whether the calibration converged, and the verdict
+//
+// The date is the one in the name of calibration_<date>.yaml, or else the time at which
+// calibration.yaml was written.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/results/output_file.hpp"
+
+namespace kinecal {
+
+/// A camera file of a result.
+struct ResultCamera {
+  std::string prefix;  ///< of its keys: empty, or "left_" for a further camera
+  bool depth = false;  ///< depth_info, else rgb_info
+  std::string name;    ///< camera_name in the file
+  OutputFile file;     ///< camera_info
+};
+
+/// The files that a calibration wrote.
+struct ResultFolder {
+  std::string date;                          ///< Y_m_d_H_M_S
+  OutputFile urdf;                           ///< the calibrated URDF
+  OutputFile values;                         ///< the file of the parameters
+  std::vector<ResultCamera> cameras;         ///< the calibrated cameras
+  std::map<std::string, double> parameters;  ///< name and value: radians, metres or relative
+  std::optional<bool> converged;             ///< nothing if there is no report
+  std::string refusal;                       ///< why not to use it, if the report says so
+};
+
+/// Reads a result.  The URDF and the camera files are read as a robot would read them, so that no
+/// broken file is installed.
+/// @throws InputError  if something is missing or broken
+[[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& folder);
+
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/install/result_folder.ipp"
+#endif

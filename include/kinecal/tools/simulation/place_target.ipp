@@ -1,0 +1,182 @@
+// Where the target of a simulation is, for simulation_plan.ipp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/study/tag_grid.hpp"
+#include "kinecal/tools/simulation/simulation_plan.hpp"
+
+namespace kinecal::detail {
+
+/// Corners of a rectangle around the origin, in the plane of x and y.
+[[nodiscard]] inline std::vector<Vector3<double>> rectangle(double width, double height) {
+  const double x = 0.5 * width, y = 0.5 * height;
+  return {{-x, -y, 0.0}, {x, -y, 0.0}, {x, y, 0.0}, {-x, y, 0.0}};
+}
+
+[[nodiscard]] inline bool is_board(const SimulatedTarget& target) {
+  return target.type == "checkerboard" || target.type == "apriltag";
+}
+
+/// Width and height of a board with its margin, metres.
+[[nodiscard]] inline std::pair<double, double> board_size(const SimulatedTarget& target) {
+  if (target.type == "checkerboard") {
+    return {(target.columns + 3) * target.size, (target.rows + 3) * target.size};
+  }
+  const double bit = target.size / kTagBits;
+  return {(target.columns * (kTagBits + kTagGap) + kTagGap) * bit,
+          (target.rows * (kTagBits + kTagGap) + kTagGap) * bit};
+}
+
+/// The frame in the middle of a target, as that of a patch: link_T_middle.
+[[nodiscard]] inline Pose<double> middle_of(const SimulatedTarget& target) {
+  if (!is_board(target)) return target.pose;
+  const auto [width, height] = board_size(target);
+  const bool has_tags = target.type == "apriltag";
+  const double before = has_tags ? target.size * kTagGap / kTagBits : 2.0 * target.size;
+  Pose<double> middle{Matrix3<double>::Identity(),
+                      {0.5 * width - before, 0.5 * height - before, 0.0}};
+  if (has_tags) middle.rotation = Vector3<double>(1.0, -1.0, -1.0).asDiagonal();  // y up
+  return target.pose * middle;
+}
+
+/// Sets the pose of a target by its middle.
+inline void set_middle(SimulatedTarget& target, const Pose<double>& link_T_middle) {
+  target.pose = {};
+  target.pose = link_T_middle * middle_of(target).inverse();
+}
+
+/// What is to be seen of a target, metres, in its link.
+[[nodiscard]] inline std::vector<Vector3<double>> points_of(const SimulatedTarget& target) {
+  if (!target.leds.empty()) return target.leds;
+  constexpr double kLedsX = 0.06, kLedsY = 0.05, kFloor = 0.4;  // metres
+  std::vector<Vector3<double>> points = rectangle(kLedsX, kLedsY);
+  if (target.type == "ground") points = rectangle(kFloor, kFloor);
+  if (is_board(target)) points = rectangle(board_size(target).first, board_size(target).second);
+  for (Vector3<double>& point : points) point = middle_of(target) * point;
+  return points;
+}
+
+/// The goal of a view of a target.
+inline void set_goal(SimulationPlan& plan) {
+  const SimulatedTarget& target = plan.target;
+  const SimulatedCamera& camera = plan.setup.camera;
+  ViewGoal& goal = plan.goal;
+  goal.base = plan.setup.base;
+  goal.camera = camera.frame;
+  goal.info = camera.info;
+  goal.image = camera.image;
+  goal.target = target.link;
+  goal.points = points_of(target);
+  goal.front = -middle_of(target).rotation.col(2);
+  constexpr double kNear = 0.2, kFar = 2.0, kFarFloor = 3.0, kGap = 0.05;  // metres
+  constexpr double kBoard = 0.35, kLeds = 0.03;                            // of the image's width
+  goal.nearest = camera.has_depth ? camera.nearest + kGap : kNear;
+  goal.farthest = target.type == "ground" ? kFarFloor : kFar;
+  if (camera.has_depth) goal.farthest = std::min(goal.farthest, camera.farthest);
+  goal.least_size = is_board(target) ? kBoard : kLeds;
+  if (target.type == "ground") goal.most_angle = 70.0 * std::numbers::pi / 180.0;
+  goal.margin = 0.12;  // the true robot looks elsewhere than its URDF
+  goal.ground = -0.01;
+}
+
+/// Length of the way to a link, metres.
+[[nodiscard]] inline double reach_of(const Robot& robot, const std::string& link) {
+  double reach = 0.0;
+  for (const Joint* joint : joints_to_root(robot, link)) reach += joint->origin.translation.norm();
+  return reach;
+}
+
+/// Places in which a target may be seen, the most usual first: link_T_middle.
+[[nodiscard]] inline std::vector<Pose<double>> usual_places(const Robot& robot,
+                                                            const SimulationPlan& plan) {
+  const Vector3<double> x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  std::vector<Pose<double>> places;
+  if (plan.target.link != plan.setup.base) {  // in a gripper
+    constexpr double kOnTop = 0.04;           // metres
+    for (const Vector3<double>& front :
+         {z, Vector3<double>(-x), Vector3<double>(-z), y, Vector3<double>(-y), x}) {
+      places.push_back(facing(kOnTop * front, front));
+    }
+    return places;
+  }
+  const double reach = reach_of(robot, plan.setup.camera.frame);
+  for (const double share : {0.4, 0.6, 0.9, 1.3}) {
+    places.push_back(facing(share * reach * x, z, -x));
+    if (plan.target.type == "ground") continue;
+    for (const double height : {0.3, 0.6}) {
+      places.push_back(facing(share * reach * x + height * reach * z, -x));
+    }
+  }
+  return places;
+}
+
+/// Places a target where the camera can see it, and sets the goal.
+/// @throws InputError  if it is nowhere
+inline void place_target(SimulationPlan& plan) {
+  if (plan.target.has_pose) {
+    set_goal(plan);
+    return;
+  }
+  constexpr int kTrial = 3;
+  std::string why;
+  for (const Pose<double>& place : usual_places(plan.setup.robot, plan)) {
+    set_middle(plan.target, place);
+    set_goal(plan);
+    try {
+      if (poses_with_view_of(plan.setup.robot, plan.goal, kTrial).size() == kTrial) return;
+      why = "few poses in which '" + plan.goal.camera + "' sees the target on '" +
+            plan.goal.target + "'";
+    } catch (const std::runtime_error& e) {
+      why = e.what();
+    }
+  }
+  throw InputError(why +
+                   "; give its place in the scene: target: {link: LINK, xyz: [x, y, z], rpy: "
+                   "[r, p, y]}");
+}
+
+/// Adds what is to be seen: target, floor and wall.
+inline void furnish(SimulationPlan& plan) {
+  SimulatedTarget& target = plan.target;
+  Scene& scene = plan.setup.scene;
+  constexpr double kInfinite = std::numeric_limits<double>::infinity(), kWall = 4.0;  // metres
+  add_ground(scene);
+  scene.patches.push_back({.pose = facing({kWall, 0.0, 0.0}, {-1.0, 0.0, 0.0}),
+                           .width = kInfinite,
+                           .height = kInfinite,
+                           .albedo = 0.6});
+  if (target.type == "ground") return;
+  double width = 0.0, height = 0.0;
+  const Pose<double> middle_T_link = middle_of(target).inverse();
+  for (const Vector3<double>& point : plan.goal.points) {
+    width = std::max(width, 2.0 * std::abs((middle_T_link * point).x()));
+    height = std::max(height, 2.0 * std::abs((middle_T_link * point).y()));
+  }
+  const bool flat = is_board(target);
+  const double margin = flat ? 0.0 : 0.03, depth = flat ? 0.01 : 0.05;  // metres
+  constexpr double kBehind = 0.0005;
+  const Pose<double> body{Matrix3<double>::Identity(), {0.0, 0.0, kBehind + 0.5 * depth}};
+  add_box(scene, target.link, middle_of(target) * body, {width + margin, height + margin, depth});
+  if (target.type == "apriltag") {
+    const Pose<double> middle_T_corner{Matrix3<double>::Identity(), {-width / 2, -height / 2, 0.0}};
+    add_picture(scene, target.link, middle_of(target) * middle_T_corner,
+                std::make_shared<const GrayImage>(tag_grid_picture(target.columns, target.rows)),
+                width);
+  } else if (flat) {
+    add_checkerboard(scene, target.link, target.pose, target.columns, target.rows, target.size);
+  } else {
+    target.leds = plan.goal.points;
+    add_leds(scene, target.link, target.leds, *plan.goal.front);
+  }
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,125 @@
+#include "kinecal/config/capture/capture_config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "support/data.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace kinecal::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A file with this text.
+struct CaptureFile {
+  explicit CaptureFile(const std::string& text) {
+    std::ofstream(path()) << text;
+    config = read_capture_config(path(), diagnostics);
+  }
+  [[nodiscard]] std::string path() const { return (folder.path() / "capture.yaml").string(); }
+
+  TemporaryFolder folder;
+  Diagnostics diagnostics;
+  CaptureConfig config;
+};
+
+TEST(CaptureConfig, ReadsThoseOfTheFetch) {
+  KINECAL_NEEDS_DATA("fetch");
+  Diagnostics diagnostics;
+  const auto folder = data_folder() / "fetch";
+  const CaptureConfig both =
+      read_capture_config((folder / "capture_with_ground.yaml").string(), diagnostics);
+  const CaptureConfig board =
+      read_capture_config((folder / "capture_checkerboards.yaml").string(), diagnostics);
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.warnings, IsEmpty());
+  ASSERT_EQ(both.chains.size(), 2u);
+  EXPECT_EQ(both.chains[1].topic, "/head_controller/follow_joint_trajectory");
+  EXPECT_THAT(both.chains[1].joints, ElementsAre("head_pan_joint", "head_tilt_joint"));
+  ASSERT_EQ(both.finders.size(), 2u);
+  const auto& leds = std::get<LedFinder>(both.finders[0].settings);
+  EXPECT_EQ(both.finders[0].action, "/gripper_controller/led_action");
+  EXPECT_EQ(leds.threshold, 500.0);
+  EXPECT_EQ(leds.max_iterations, 25);
+  ASSERT_EQ(leds.leds.size(), 4u);
+  EXPECT_EQ(leds.leds[3].code, 8);
+  EXPECT_EQ(leds.leds[3].position, Vector3<double>(0.1044, -0.0355, 0.0396));
+  const auto& ground = std::get<PlaneFinder>(both.finders[1].settings);
+  EXPECT_EQ(both.finders[1].region_frame, "base_link");
+  EXPECT_EQ(ground.region.least.z(), -2.0);
+  EXPECT_EQ(std::get<CheckerboardSettings>(board.finders.at(0).settings).target.corners,
+            CornerKind::points);
+  EXPECT_EQ(board.finders[0].camera_info, "/head_camera/depth_registered/camera_info");
+}
+
+TEST(CaptureConfig, ReadsTheDialectOfRos2) {
+  const CaptureFile file(
+      "robot_calibration:\n  ros__parameters:\n    chains: [arm]\n"
+      "    arm: {topic: /arm/follow_joint_trajectory, joints: [elbow, wrist]}\n"
+      "    features: [board, tags, both]\n"
+      "    board: {type: 'robot_calibration::CheckerboardFinder2d', topic: /camera/image_raw,\n"
+      "            points_x: 7, points_y: 5, size: 0.03}\n"
+      "    tags: {type: AprilTagFinder2d, topic: /camera/image_raw, columns: 6, rows: 5,\n"
+      "           size: 0.04, spacing: 0.25}\n"
+      "    both: {type: CharucoFinder, topic: /camera/points, squares_x: 8, dictionary: "
+      "DICT_5X5_100}\n");
+  EXPECT_THAT(file.diagnostics.errors, IsEmpty());
+  ASSERT_EQ(file.config.finders.size(), 3u);
+  EXPECT_EQ(std::get<CharucoSettings>(file.config.finders[2].settings).squares_x, 8);
+  const auto& board = std::get<CheckerboardSettings>(file.config.finders[0].settings);
+  EXPECT_EQ(board.points_x, 7);
+  EXPECT_EQ(board.target.corners, CornerKind::pixels);
+  EXPECT_EQ(std::get<AprilTagSettings>(file.config.finders[1].settings).spacing, 0.25);
+  EXPECT_THAT(file.config.chains.at(0).joints, ElementsAre("elbow", "wrist"));
+}
+
+/// The first error of a finder with this text.
+std::string first_error(const std::string& finder) {
+  const CaptureFile file("features:\n  led_finder:\n" + finder);
+  return file.diagnostics.errors.empty() ? "no error" : file.diagnostics.errors.front();
+}
+
+TEST(CaptureConfig, ErrorsNameTheLineAndWhatWasProbablyMeant) {
+  EXPECT_THAT(first_error("    type: robot_calibration/LedFindr\n"),
+              HasSubstr("capture.yaml:3: finder 'led_finder': type 'robot_calibration/LedFindr' is "
+                        "not a finder; did you mean 'LedFinder'?"));
+  EXPECT_THAT(first_error("    type: LedFinder\n"), HasSubstr("poses has no LEDs"));
+  EXPECT_THAT(first_error("    type: LedFinder\n    poses:\n    - {code: 1, x: 0.1, y: 0.2}\n"),
+              HasSubstr("LED 1: z is missing"));
+  EXPECT_THAT(first_error("    type: CheckerboardFinder\n    points_x: 0\n"),
+              HasSubstr("points_x"));
+  EXPECT_THAT(first_error("    type: CheckerboardFinder\n    pionts_x: 5\n"),
+              HasSubstr("unknown key 'pionts_x'; did you mean 'points_x'?"));
+  EXPECT_THAT(first_error("    topic: /points\n"), HasSubstr("type is missing"));
+  EXPECT_THAT(CaptureFile("chains: []\n").diagnostics.errors,
+              ElementsAre(HasSubstr("features has no finders")));
+  EXPECT_THAT(CaptureFile("- 1\n").diagnostics.errors, ElementsAre(HasSubstr("not a map")));
+}
+
+TEST(CaptureConfig, PutsRegionsOnTheRobot) {
+  const Robot robot = parse_urdf(
+      "<robot name='r'><link name='base'/><link name='eye'/><joint name='pan' type='revolute'>"
+      "<parent link='base'/><child link='eye'/><origin xyz='0 0 1'/><axis xyz='0 0 1'/>"
+      "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>",
+      "r.urdf");
+  CaptureFile file("features:\n  ground:\n    {type: PlaneFinder, transform_frame: base}\n");
+  const FinderSettings settings = on_robot(file.config.finders.at(0), robot);
+  const PoseOfView& base_T_camera = std::get<PlaneFinder>(settings).region.frame_T_camera;
+  View view;
+  view.frame = "eye";
+  EXPECT_FALSE(base_T_camera(view).has_value());  // the position of the joint is missing
+  view.joints = {{}, {"pan"}, {0.5}};
+  EXPECT_EQ(base_T_camera(view)->translation, Vector3<double>(0, 0, 1));
+  file.config.finders[0].region_frame = "bse";
+  EXPECT_THROW((void)on_robot(file.config.finders[0], robot), InputError);
+}
+
+}  // namespace
+}  // namespace kinecal::test

@@ -1,0 +1,350 @@
+// Samples from tables: every column where it belongs, every error with its place and name.
+#include "kinecal/files/csv/read_csv_samples.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <locale>
+
+#include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace kinecal {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+namespace fs = std::filesystem;
+
+const char* const kMapping = R"(joints:
+  unit: degrees
+  columns: {pan: q1, tilt: q2}
+sliding:
+  unit: millimetres
+  columns: {lift: [l, dl]}
+observations:
+ - sensor: arm
+   frame: smr
+   constant: [0, 0.5, 0]
+ - sensor: tracker
+   frame: tracker_frame
+   unit: millimetres
+   points: [[x, y, z], [[x, dx], [y, dy], [z, dz]]]
+ - sensor: camera
+   frame: optical
+   pixels: [[u, v]]
+)";
+
+const char* const kTable =
+    "q1,q2,l,dl,x,y,z,dx,dy,dz,u,v\n"
+    "90,-45,100,0.5,1000.1,2,3,0.1,0.2,0.3,320.5,240\n";
+
+class ReadCsvSamples : public test::FolderTest {
+ protected:
+  std::vector<Sample> read(const std::string& table = kTable,
+                           const std::string& mapping = kMapping) {
+    write("t.csv", table);
+    write("m.yaml", mapping);
+    diagnostics_ = {};
+    return read_csv_samples((folder_ / "t.csv").string(), (folder_ / "m.yaml").string(),
+                            diagnostics_);
+  }
+  /// The table or mapping with one piece of text replaced.
+  static std::string with(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+
+  Diagnostics diagnostics_;
+};
+
+TEST_F(ReadCsvSamples, PutsEveryColumnWhereItBelongs) {
+  const auto samples = read();
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  const Sample& sample = samples.front();
+  EXPECT_THAT(sample.joint_names, ElementsAre("pan", "tilt", "lift"));
+  EXPECT_DOUBLE_EQ(sample.joint_positions[0], std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(sample.joint_positions[1], -std::numbers::pi / 4);
+  EXPECT_EQ(sample.joint_positions[2], 0.1005);
+  EXPECT_EQ(sample.source, (folder_ / "t.csv").string() + ":2");
+  ASSERT_EQ(sample.observations.size(), 3u);
+  EXPECT_EQ(sample.observations[0].sensor, "arm");
+  EXPECT_EQ(sample.observations[0].features[0].frame, "smr");
+  EXPECT_EQ(sample.observations[0].features[0].point, Vector3<double>(0.0, 0.5, 0.0));
+  const auto& tracked = sample.observations[1].features;
+  ASSERT_EQ(tracked.size(), 2u);
+  EXPECT_EQ(tracked[0].point, Vector3<double>(1.0001, 0.002, 0.003)) << "as the text stands";
+  EXPECT_LE((tracked[1].point - Vector3<double>(1.0002, 0.0022, 0.0033)).norm(), 1e-15);
+  EXPECT_EQ(sample.observations[2].features[0].point, Vector3<double>(320.5, 240.0, 0.0));
+}
+
+TEST_F(ReadCsvSamples, TakesIdsFromTheMappingOrFromColumns) {
+  const std::string mapping =
+      "joints: {columns: {pan: q}}\nobservations:\n"
+      "- {sensor: arm, frame: board, constant: [[0, 0, 0], [0.1, 0, 0], [0.2, 0, 0]], ids: [4, 5, "
+      "7]}\n"
+      "- {sensor: camera, frame: optical, pixels: [[u, v], [w, x]], id_columns: [tag, other]}\n";
+  const std::string table = "q,tag,u,v,other,w,x\n0.1,7,1,2,4,3,4\n0.2,,,,5,3,4\n";
+  const auto samples = read(table, mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 2u);
+  const auto ids = [&](std::size_t sample, std::size_t sensor) {
+    std::vector<std::optional<int>> all;
+    for (const Feature& f : samples[sample].observations[sensor].features) all.push_back(f.id);
+    return all;
+  };
+  EXPECT_THAT(ids(0, 0), ElementsAre(4, 5, 7));
+  EXPECT_THAT(ids(0, 1), ElementsAre(7, 4));
+  EXPECT_THAT(ids(1, 1), ElementsAre(5)) << "the other one was not seen";
+  EXPECT_EQ(samples[1].observations[1].features[0].point, Vector3<double>(3.0, 4.0, 0.0));
+
+  (void)read(with(table, "7,1,2", ",1,2"), mapping);
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("t.csv:2: column 'tag' has no id")));
+  (void)read(with(table, "7,1,2", "7.5,1,2"), mapping);
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("t.csv:2: column 'tag' has no id")));
+  (void)read(table, with(mapping, "[4, 5, 7]", "[4, 5]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:3: sensor 'arm': has 2 ids")));
+  (void)read(table, with(mapping, "[4, 5, 7]", "[4, 5, -7]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("'-7' is not a whole number from 0")));
+  (void)read(table, with(mapping, "[tag, other]", "[tag, othr]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:4: column 'othr'")));
+  (void)read(table, with(mapping, "[tag, other]", "[tag, other], ids: [1, 2]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("has ids and id_columns")));
+}
+
+TEST_F(ReadCsvSamples, TakesConditionsFromColumns) {
+  const std::string mapping =
+      kMapping + std::string("conditions: {temperature: u, load: [l, dl]}\n");
+  const auto samples = read(kTable, mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_EQ(samples[0].conditions,
+            (std::map<std::string, double>{{"temperature", 320.5}, {"load", 100.5}}));
+  (void)read(kTable, with(mapping, "temperature: u", "temperature: uu"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:18: column 'uu'")));
+  (void)read(kTable, with(mapping, "{temperature: u, load: [l, dl]}", "[u]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:18: conditions")));
+}
+
+TEST_F(ReadCsvSamples, TakesColumnsByNumberWhereThereIsNoHeader) {
+  const std::string mapping =
+      "separator: semicolon\nheader: false\njoints: {columns: {pan: 1}}\n"
+      "observations: [{sensor: arm, frame: hand, points: [[2, 3, 4]]}]\n";
+  const auto samples = read("0.5;1;2;3\r\n\r\n0.25;4;5;6\r\n;;;\r\n", mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_EQ(samples[1].joint_positions[0], 0.25);
+  EXPECT_EQ(samples[1].observations[0].features[0].point, Vector3<double>(4.0, 5.0, 6.0));
+}
+
+TEST_F(ReadCsvSamples, MakesAMissingValueAFeatureWithoutWeight) {
+  for (const char* missing : {"", "nan", "NaN", "NA", "-"}) {
+    const auto samples = read(with(kTable, "1000.1", missing));
+    ASSERT_THAT(diagnostics_.errors, IsEmpty()) << missing;
+    EXPECT_FALSE(samples[0].observations[1].features[0].point.allFinite());
+    EXPECT_FALSE(samples[0].observations[1].features[1].point.allFinite());
+    EXPECT_TRUE(samples[0].observations[2].features[0].point.allFinite());
+  }
+}
+
+TEST_F(ReadCsvSamples, LeavesOutARowWithoutAJointAndSaysSo) {
+  const std::string whole = "91,-44,100,0.5,1000,2,3,0.1,0.2,0.3,320,240\n";
+  EXPECT_THAT(read(with(kTable, "-45", "") + whole), testing::SizeIs(1));
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("t.csv:2: joint 'tilt' has no")));
+}
+
+/// As where a comma is the decimal point.
+struct DecimalComma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
+TEST_F(ReadCsvSamples, RefusesATableOfWhichNoRowIsLeft) {
+  EXPECT_THAT(read(with(kTable, "90,-45", "90,")), IsEmpty());
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("t.csv: no row has a position of every joint")));
+}
+
+TEST_F(ReadCsvSamples, DoubtsNumbersOfWhichTheUnitIsMissing) {
+  (void)read();
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+  const std::string twice = kTable + std::string("91,-44,100,0.5,1000,2,3,0.1,0.2,0.3,320,240\n");
+  (void)read(twice,
+             with(with(kMapping, "  unit: degrees\n", ""),
+                  "   frame: tracker_frame\n   unit: millimetres\n", "   frame: tracker_frame\n"));
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(HasSubstr("t.csv:2: joint 'pan' is at 90 radians or metres; is a unit"),
+                          HasSubstr("t.csv:2: joint 'tilt' is at -45 radians or metres"),
+                          HasSubstr("t.csv:2: sensor 'tracker' is at 1000.1 metres")));
+}
+
+TEST_F(ReadCsvSamples, AConstantHasTheUnitOfItsObservation) {
+  const auto samples = read(kTable, with(kMapping, "constant: [0, 0.5, 0]",
+                                         "unit: millimetres\n   constant: [0, 500, 0]"));
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_EQ(samples.at(0).observations.at(0).features.at(0).point, Vector3<double>(0, 0.5, 0));
+}
+
+TEST_F(ReadCsvSamples, TakesSeveralFramesOfOneSensor) {
+  const auto samples = read("q1,ax,ay,az,bx,by,bz\n0.5,1,2,3,4,5,6\n",
+                            "joints: {columns: {pan: q1}}\nobservations:\n"
+                            " - {sensor: arm, frame: smr_1, constant: [0, 0, 0]}\n"
+                            " - {sensor: tracker, frame: laser, points: [[ax, ay, az]]}\n"
+                            " - {sensor: arm, frame: board, constant: [[0, 0, 0], [0.1, 0, 0]]}\n"
+                            " - {sensor: tracker, frame: laser, points: [[bx, by, bz]]}\n");
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 1u);
+  ASSERT_EQ(samples[0].observations.size(), 2u);
+  const auto& arm = samples[0].observation("arm")->features;
+  ASSERT_EQ(arm.size(), 3u);
+  EXPECT_EQ(arm[0].frame, "smr_1");
+  EXPECT_EQ(arm[1].frame, "board");
+  EXPECT_EQ(arm[2].frame, "board");
+  EXPECT_EQ(arm[2].point, Vector3<double>(0.1, 0.0, 0.0));
+  const auto& tracker = samples[0].observation("tracker")->features;
+  ASSERT_EQ(tracker.size(), 2u);
+  EXPECT_EQ(tracker[1].point, Vector3<double>(4.0, 5.0, 6.0));
+}
+
+TEST_F(ReadCsvSamples, TakesTheFrameOfARowFromAColumn) {
+  const std::string mapping =
+      "joints: {columns: {pan: q1}}\nobservations:\n"
+      " - {sensor: arm, frame_column: ball, constant: [0, 0, 0]}\n"
+      " - {sensor: tracker, frame: laser, points: [[x, y, z]]}\n";
+  const std::string table = "q1,ball,x,y,z\n0.5,smr_a,1,2,3\n0.6,smr_b,1,2,3\n";
+  const auto samples = read(table, mapping);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_EQ(samples[0].observation("arm")->features[0].frame, "smr_a");
+  EXPECT_EQ(samples[1].observation("arm")->features[0].frame, "smr_b");
+  EXPECT_EQ(samples[1].observation("tracker")->features[0].frame, "laser");
+  (void)read(with(table, "smr_b", ""), mapping);
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("t.csv:3: column 'ball' is empty; it names the frame")));
+  (void)read(table, with(mapping, "frame_column: ball", "frame: hand, frame_column: ball"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("m.yaml:3: sensor 'arm': has frame and")));
+  (void)read(table, with(mapping, "frame_column: ball", "frame_column: [ball, x]"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("one column names the frame")));
+}
+
+TEST_F(ReadCsvSamples, SaysThatAHeaderLooksLikeData) {
+  const std::string mapping =
+      "joints: {columns: {pan: 1}}\n"
+      "observations: [{sensor: arm, frame: hand, points: [[2, 3, 4]]}]\n";
+  EXPECT_THAT(read("0.5,1,2,3\n0.25,4,5,6\n", mapping), testing::SizeIs(1));
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(AllOf(HasSubstr("t.csv:1: row 1 looks like data"),
+                                                       HasSubstr("write 'header: false'"))));
+  (void)read("1,2,3,4\n0.25,4,5,6\n", mapping);
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty()) << "it counts the columns";
+  (void)read("0.5,1,2,3\n0.25,4,5,6\n", "header: false\n" + mapping);
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+  (void)read("0.5,1,2,3\n0.25,4,5,6\n", with(mapping, "pan: 1", "pan: q1"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("column 'q1' is not in the table's header")));
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("row 1 looks like data")));
+}
+
+TEST_F(ReadCsvSamples, DoesNotDependOnTheLocale) {
+  const std::locale before =
+      std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  (void)std::setlocale(LC_ALL, "de_DE.UTF-8");  // of the C library too, where it is installed
+  const auto samples = read();
+  std::locale::global(before);
+  ASSERT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_EQ(samples[0].observations[2].features[0].point, Vector3<double>(320.5, 240.0, 0.0));
+  EXPECT_EQ(samples[0].observations[0].features[0].point.y(), 0.5) << "of the mapping";
+}
+
+TEST_F(ReadCsvSamples, ReportsAMissingColumnAndTheNearestName) {
+  (void)read(kTable, with(kMapping, "dx]", "dxx]"));
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(AllOf(HasSubstr("m.yaml:14: column 'dxx'"), HasSubstr("is not in"))));
+  (void)read(with(kTable, "q1", "joint_1"), with(kMapping, "q1", "jiont_1"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(AllOf(HasSubstr("m.yaml:3: column 'jiont_1'"),
+                                                     HasSubstr("did you mean 'joint_1'?"))));
+  (void)read(kTable, with(kMapping, "q1", "13"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("has columns 1 to 12")));
+  (void)read(kTable, std::string("header: false\n") + kMapping);
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("the table has no header")));
+  (void)read(with(kTable, "q2", "q1"), with(kMapping, "q2", "2"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("column 'q1' occurs twice")));
+}
+
+TEST_F(ReadCsvSamples, SuspectsTheSeparatorWhereThereIsOneColumn) {
+  (void)read(kTable, std::string("separator: semicolon\n") + kMapping);
+  EXPECT_THAT(diagnostics_.errors, testing::Each(HasSubstr("is the separator right?")));
+}
+
+TEST_F(ReadCsvSamples, ReportsCellsThatAreNotNumbers) {
+  (void)read(with(kTable, "1000.1", "1000.1mm"));
+  EXPECT_THAT(diagnostics_.errors,
+              testing::Each(HasSubstr("t.csv:2: column 'x' is '1000.1mm', which is not a number")));
+  (void)read(with(kTable, "320.5", "\"320,5\""));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a decimal point, not a comma")));
+  (void)read(with(kTable, "320.5", "inf"));
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("not a finite number")));
+  (void)read(with(kTable, ",320.5,240", ""));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("the row has 10 cells")));
+}
+
+TEST_F(ReadCsvSamples, CountsMistakesThatRepeatThemselves) {
+  std::string table = kTable;
+  for (int i = 0; i < 50; ++i) table += "a,0,0,0,0,0,0,0,0,0,0,0\n";
+  (void)read(table);
+  EXPECT_EQ(diagnostics_.errors.size(), 21u);
+  EXPECT_THAT(diagnostics_.errors.back(), HasSubstr("t.csv: 30 more cells"));
+}
+
+TEST_F(ReadCsvSamples, ReportsErrorsOfTheMappingWithTheirLines) {
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"separator: colon\njoints:", "m.yaml:1: separator 'colon' is not one of"},
+      {"jionts:", "m.yaml:1: unknown key 'jionts'; did you mean 'joints'?"},
+      {"joints: {unit: degree}\nignored:", "m.yaml:1: joints: unit 'degree' is not one of"},
+      {"header: maybe\njoints:", "m.yaml:1: header is 'maybe', not true or false"}};
+  for (const auto& [text, message] : wrong) {
+    (void)read(kTable, with(kMapping, "joints:", text));
+    EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr(message))) << text;
+  }
+  (void)read(kTable, with(kMapping, "[[u, v]]", "[[u]]"));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(AllOf(HasSubstr("m.yaml:17: sensor 'camera'"),
+                                                           HasSubstr("two columns"))));
+  (void)read(kTable, with(kMapping, "constant: [0, 0.5, 0]", "constant: [0, 0.5]"));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("m.yaml:10: sensor 'arm'")));
+  (void)read(kTable, with(kMapping, "   constant: [0, 0.5, 0]\n", ""));
+  EXPECT_THAT(diagnostics_.errors, testing::Contains(HasSubstr("has none of points, pixels")));
+  (void)read(kTable, with(kMapping, "sensor: camera", "sensor: arm"));
+  EXPECT_THAT(diagnostics_.errors,
+              testing::Contains(HasSubstr("sensor 'arm': has pixels here and points")));
+  (void)read(kTable, "[1, 2]");
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the file is a list, not a map")));
+}
+
+TEST_F(ReadCsvSamples, ReportsFilesThatAreEmptyOrMissing) {
+  (void)read("");
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the table has no rows")));
+  EXPECT_THROW((void)read_csv_samples("nowhere.csv", (folder_ / "m.yaml").string(), diagnostics_),
+               InputError);
+  EXPECT_THROW((void)read_csv_samples((folder_ / "t.csv").string(), "nowhere.yaml", diagnostics_),
+               InputError);
+}
+
+TEST(CsvExample, IsReadAsItsReadmeSays) {
+  const std::string folder = test::source_folder() + "/examples/csv/";
+  Diagnostics diagnostics;
+  const auto samples =
+      read_csv_samples(folder + "tracker.csv", folder + "columns.yaml", diagnostics);
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.warnings, IsEmpty());
+  ASSERT_EQ(samples.size(), 60u);
+  EXPECT_FALSE(samples[17].observation("tracker")->features[0].point.allFinite());
+  EXPECT_EQ(samples[17].source, folder + "tracker.csv:19");
+}
+
+}  // namespace
+}  // namespace kinecal

@@ -1,0 +1,204 @@
+#include "kinecal/robots/pipe_robot.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "support/error_of.hpp"
+#include "support/paths.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::error_of;
+using testing::AllOf;
+using testing::HasSubstr;
+
+PipeRobot example() {
+  return PipeRobot({"python3 " + test::source_folder() + "/examples/pipe_robot/robot.py"});
+}
+
+/// A program that answers each request with this.
+PipeRobot answering(const std::string& answer) {
+  return PipeRobot(
+      {"while read line; do echo '" + answer + "'; done", std::chrono::milliseconds(500)});
+}
+
+TEST(PipeRobot, TheExampleMovesAndMeasures) {
+  PipeRobot robot = example();
+  robot.move({{"pan"}, {0.5}, 0.5});
+  const MeasuredJoints first = robot.next_joints(Stamp::min());
+  MeasuredJoints joints = first;
+  while (joints.stamp < first.stamp + std::chrono::milliseconds(500)) {
+    const Stamp before = joints.stamp;
+    joints = robot.next_joints(before);
+    ASSERT_GT(joints.stamp, before);
+  }
+  EXPECT_LT(first.position("pan").value(), 0.3);
+  EXPECT_EQ(joints.position("pan").value(), 0.5);
+}
+
+TEST(PipeRobot, TheExampleSeesWhatMovesAndWhatIsLit) {
+  PipeRobot robot = example();
+  const Stamp lit = robot.light(8);
+  const View view = robot.next_view(lit);
+  EXPECT_GT(view.stamp, lit);
+  EXPECT_EQ(view.frame, "camera_optical_frame");
+  ASSERT_EQ(view.image.width, 64);
+  ASSERT_EQ(view.image.height, 48);
+  EXPECT_EQ(view.image(0, 0), 8);
+  EXPECT_EQ(view.image(32, 20), 200);
+  EXPECT_EQ(view.image(50, 20), 10);
+  EXPECT_EQ(view.camera.value().p[2], 31.5);
+}
+
+TEST(PipeRobot, AnErrorOfTheProgramSkipsThePose) {
+  PipeRobot robot = example();
+  EXPECT_THAT(error_of([&] {
+                robot.move({{"pan"}, {2.0}});
+              }),
+              AllOf(HasSubstr("pose: "), HasSubstr("robot.py': move: pan turns from -1.5")));
+  robot.move({{"pan"}, {1.0}});
+}
+
+TEST(PipeRobot, AnAnswerThatCannotBeReadIsNamed) {
+  const auto joints = [](const std::string& answer) {
+    return error_of([&] { (void)answering(answer).next_joints(Stamp(5)); });
+  };
+  EXPECT_THAT(joints("garbage"),
+              AllOf(HasSubstr("pose: "), HasSubstr("joints: the answer cannot be "
+                                                   "read: 'garbage' is not JSON")));
+  EXPECT_THAT(joints(std::string(200, ' ') + "{] " + std::string(200, ' ')),
+              HasSubstr("  {]...' is not JSON, from character 202 on"));
+  EXPECT_THAT(joints("{"), HasSubstr("'{' is not JSON: it ends too early"));
+  EXPECT_THAT(joints(R"({"stamp": 1e999})"), HasSubstr("it has a number that is too large"));
+  EXPECT_THAT(joints("{}"), HasSubstr("it has no field 'stamp'"));
+  EXPECT_THAT(joints(R"({"stamp": "now"})"), HasSubstr("field 'stamp' is string"));
+  EXPECT_THAT(joints(R"({"stamp": 5})"), HasSubstr("its stamp, 5, is not after 5 ns"));
+  EXPECT_THAT(joints(R"({"stamp": 6, "names": ["a"], "positions": []})"),
+              HasSubstr("there are 1 names and 0 positions"));
+  EXPECT_THAT(joints(R"({"stamp": 6, "names": ["a"], "positions": ["b"]})"),
+              HasSubstr("field 'positions[0]' is string; expected a number"));
+}
+
+TEST(PipeRobot, TheThirdUnreadableAnswerInARowEndsTheSession) {
+  const auto ask = [](PipeRobot& robot) { return error_of([&] { (void)robot.light(1); }); };
+  PipeRobot garbage = answering("garbage");
+  EXPECT_THAT(ask(garbage), HasSubstr("pose: "));
+  EXPECT_THAT(ask(garbage), HasSubstr("pose: "));
+  EXPECT_THAT(ask(garbage), AllOf(HasSubstr("connection: "), HasSubstr("3 answers in a row")));
+  PipeRobot other({"while read a; do echo x; read b; echo x; read c; echo '{\"stamp\": 1}'; done"});
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_THAT(ask(other), HasSubstr("pose: "));
+    EXPECT_THAT(ask(other), HasSubstr("pose: "));
+    EXPECT_EQ(other.light(1), Stamp(1));
+  }
+}
+
+TEST(PipeRobot, LinesThatNobodyAskedForAnswerNothing) {
+  PipeRobot robot(
+      {"echo ready; n=0; while read a; do n=$((n+1)); echo \"{\\\"stamp\\\": $n}\"; echo log; "
+       "done"});
+  for (int i = 1; i <= 5; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the line is there
+    EXPECT_EQ(robot.light(1), Stamp(i));
+  }
+}
+
+TEST(PipeRobot, WaitingCanBeInterrupted) {
+  bool interrupted = false;
+  PipeRobot robot(
+      {"sleep 60", std::chrono::seconds(30), [&] { return std::exchange(interrupted, true); }});
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THAT(error_of([&] { (void)robot.light(1); }), HasSubstr("connection: interrupted"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+TEST(PipeRobot, AViewThatCannotBeReadIsNamed) {
+  const auto view = [](const std::string& answer) {
+    return error_of([&] {
+      (void)answering(R"({"stamp": 6, "frame": "f", )" + answer + "}").next_view(Stamp(5));
+    });
+  };
+  EXPECT_THAT(view(R"("x": 1)"), HasSubstr("it has neither 'image' nor 'depth'"));
+  EXPECT_THAT(view(R"("image": "/none.png")"), HasSubstr("'/none.png' cannot be read"));
+  EXPECT_THAT(view(R"("image": {"base64": "?"})"), HasSubstr("base64"));
+  EXPECT_THAT(view(R"("image": {"base64": "aGVsbG8="})"), HasSubstr("the image"));
+  EXPECT_THAT(view(R"("depth": "d.png")"), HasSubstr("depth needs the field 'camera'"));
+  EXPECT_THAT(view(R"("camera": {"width": 1, "height": 1, "k": [1]})"),
+              HasSubstr("field 'k' has 1 numbers; expected 9"));
+}
+
+/// Gray, 16 bits: 1000, 0, 65535.
+const std::string kDepthPng =
+    "iVBORw0KGgoAAAANSUhEUgAAAAMAAAABEAAAAABuG5crAAAAD0lEQVR4nGNgfsHA8P8/AAeeAuqgSIs/"
+    "AAAAAElFTkSuQmCC";
+/// Colour: white, black.
+const std::string kColourPng =
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR4nGP4//8/AwMDAA74Av7Ji4P1"
+    "AAAAAElFTkSuQmCC";
+
+TEST(PipeRobot, DepthIsInMillimetresAndZeroIsNoPoint) {
+  const View view =
+      answering(R"({"stamp": 6, "frame": "f", "depth": {"base64": ")" + kDepthPng +
+                R"("}, "camera": {"width": 3, "height": 1, "k": [2, 0, 0, 0, 2, 0, 0, 0, 1]}})")
+          .next_view(Stamp(5));
+  ASSERT_EQ(view.points.width, 3);
+  EXPECT_FLOAT_EQ(view.points(0, 0).z(), 1.0F);
+  EXPECT_TRUE(std::isnan(view.points(1, 0).z()));
+  EXPECT_FLOAT_EQ(view.points(2, 0).z(), 65.535F);
+  EXPECT_FLOAT_EQ(view.points(2, 0).x(), 65.535F);  // (u - cx) z / fx with u = fx
+}
+
+TEST(PipeRobot, ColourBecomesBrightnessButNotDepth) {
+  const std::string colour = R"({"stamp": 6, "frame": "f", "image": {"base64": ")" + kColourPng;
+  const View view = answering(colour + "\"}}").next_view(Stamp(5));
+  EXPECT_EQ(view.image(0, 0), 255);
+  EXPECT_EQ(view.image(1, 0), 0);
+  std::string depth =
+      colour + R"("}, "camera": {"width": 2, "height": 1, "k": )" + "[2, 0, 0, 0, 2, 0, 0, 0, 1]}}";
+  depth.replace(depth.find("image"), 5, "depth");
+  EXPECT_THAT(error_of([&] { (void)answering(depth).next_view(Stamp(5)); }),
+              HasSubstr("the answer cannot be read: the image"));
+}
+
+TEST(PipeRobot, AProgramThatEndsEndsTheSession) {
+  PipeRobot robot({"read line; exit 5"});
+  EXPECT_THAT(error_of([&] { (void)robot.light(1); }),
+              HasSubstr("connection: 'read line; exit 5' ended with exit code 5"));
+  EXPECT_THAT(error_of([&] { (void)robot.light(1); }), HasSubstr("connection: "));
+}
+
+TEST(PipeRobot, AnAnswerThatComesTooLateIsNotTheNextOne) {
+  PipeRobot robot({"read a; sleep 0.6; echo '{\"stamp\": 1}'; read b; echo '{\"stamp\": 2}'",
+                   std::chrono::milliseconds(200)});
+  EXPECT_THAT(error_of([&] { (void)robot.light(1); }), HasSubstr("no answer within 0.200 s"));
+  EXPECT_THAT(error_of([&] { (void)robot.light(1); }), HasSubstr("it still has not answered"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(800));
+  EXPECT_EQ(robot.light(2), Stamp(2));
+}
+
+TEST(PipeRobot, AProgramThatAnswersNoMoreIsSilentSinceItsLastAnswer) {
+  PipeRobot robot({"read a; echo '{\"stamp\": 7}'; sleep 60", std::chrono::milliseconds(100)});
+  EXPECT_EQ(robot.light(1), Stamp(7));
+  const auto silence = [&](int code) {
+    try {
+      (void)robot.light(code);
+    } catch (const SilenceError& error) {
+      EXPECT_THAT(error.stream, HasSubstr("light"));
+      return error.newest;
+    }
+    return std::optional<Stamp>();
+  };
+  EXPECT_EQ(silence(2), Stamp(7));
+  EXPECT_EQ(silence(3), Stamp(7)) << "it still has not answered";
+}
+
+}  // namespace
+}  // namespace kinecal

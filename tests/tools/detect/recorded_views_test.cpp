@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/detect/recorded_views.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "support/recording.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace kinecal {
+namespace {
+
+using test::kTourStart;
+using test::Recorder;
+using test::Tour;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A bright square that moves with a joint.
+GrayImage picture(double position) {
+  GrayImage image(64, 48, 30);
+  const int left = 20 + static_cast<int>(std::lround(20.0 * position));
+  for (int v = 20; v < 40; ++v) {
+    for (int u = left; u < left + 20; ++u) {
+      if (image.contains(u, v)) image(u, v) = 200;
+    }
+  }
+  return image;
+}
+
+CameraInfo small_camera() {
+  CameraInfo camera;
+  camera.width = 64;
+  camera.height = 48;
+  camera.p = {60, 0, 32, 0, 0, 60, 24, 0, 0, 0, 1, 0};
+  return camera;
+}
+
+/// What is recorded beside the usual.
+struct TourRecording {
+  Encoding encoding = Encoding::cdr;
+  bool joints = true, camera_info = true;
+  int binning = 0;
+  Stamp camera_ahead{};                                     ///< stamps of images
+  std::string image_encoding = "mono8";                     ///< as images have it
+  std::function<void(Recorder&, Stamp, double)> more = {};  ///< at 50 Hz
+  std::function<GrayImage(double position, double time)> scene = {};
+};
+
+class RecordedViewsTest : public test::FolderTest {
+ protected:
+  Tour tour_{{"pan", "tilt"}, {{0.0, 0.1}, {0.5, -0.2}, {-0.5, 0.3}}};
+  std::vector<CaptureFinder> finders_ = {{"board",
+                                          "CheckerboardFinder2d",
+                                          "/cam/image",
+                                          "/cam/camera_info",
+                                          "",
+                                          "",
+                                          CheckerboardSettings{},
+                                          {"c.yaml", 2}}};
+  Diagnostics diagnostics_;
+
+  void record(const TourRecording& how = {}, const std::string& name = "a.mcap") {
+    Recorder to(path(name), how.encoding);
+    to.camera_ahead = how.camera_ahead;
+    test::play(
+        tour_,
+        [&](Stamp stamp, double time) {
+          const auto at = tour_.positions(time);
+          if (how.joints) {  // by two nodes
+            to.joints("/joint_states", {stamp, {"pan"}, {at[0]}});
+            to.joints("/joint_states", {stamp + std::chrono::milliseconds(3), {"tilt"}, {at[1]}});
+          }
+          if (how.more) how.more(to, stamp, time);
+        },
+        [&](Stamp stamp, double time) {
+          const double position = tour_.positions(time)[0];
+          if (how.camera_info) {
+            to.camera_info("/cam/camera_info", stamp, small_camera(), how.binning);
+          }
+          to.image("/cam/image", stamp, how.scene ? how.scene(position, time) : picture(position),
+                   how.image_encoding);
+        });
+    to.finish();
+  }
+
+  [[nodiscard]] std::string path(const std::string& name = "a.mcap") const {
+    return (folder_ / name).string();
+  }
+
+  RecordedViews open(RecordingOptions options = {}) {
+    if (options.path.empty()) options.path = path();
+    return {std::move(options), finders_, diagnostics_};
+  }
+
+  static std::vector<RecordedView> views_of(const RecordedViews& recording) {
+    std::vector<RecordedView> views(recording.standstills());
+    recording.read([&](const RecordedStandstill& standstill) {
+      views.at(standstill.number) = recording.view(standstill, 0);
+    });
+    return views;
+  }
+};
+
+TEST_F(RecordedViewsTest, WarnsOfImagesThatAreNotTheFullOnes) {
+  for (const Encoding encoding : {Encoding::cdr, Encoding::ros1}) {
+    record({.encoding = encoding, .binning = 2});
+    EXPECT_EQ(open().standstills(), 3u);
+    ASSERT_EQ(diagnostics_.warnings.size(), 1u);
+    EXPECT_THAT(diagnostics_.warnings[0],
+                AllOf(HasSubstr("topic 'cam/camera_info'"), HasSubstr("binning 2 x 2")));
+    diagnostics_ = {};
+  }
+}
+
+TEST_F(RecordedViewsTest, EachStandstillGivesAViewWithItsJoints) {
+  for (const Encoding encoding : {Encoding::cdr, Encoding::ros1}) {
+    record({.encoding = encoding});
+    const RecordedViews recording = open();
+    EXPECT_THAT(diagnostics_.errors, IsEmpty());
+    EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+    const auto views = views_of(recording);
+    ASSERT_EQ(views.size(), tour_.poses.size());
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      ASSERT_TRUE(views[i].view) << views[i].refusal;
+      const View& view = *views[i].view;
+      EXPECT_EQ(view.frame, "optical");
+      EXPECT_EQ(view.camera.value().p, small_camera().p);
+      EXPECT_EQ(view.image.pixels, picture(tour_.poses[i][0]).pixels);
+      EXPECT_NEAR(view.joints.position("pan").value(), tour_.poses[i][0], tour_.noise);
+      EXPECT_NEAR(view.joints.position("tilt").value(), tour_.poses[i][1], tour_.noise);
+      EXPECT_EQ(tour_.pose_at(std::chrono::duration<double>(view.stamp - kTourStart).count()), i);
+      EXPECT_EQ(view.joints.stamp, view.stamp);
+    }
+  }
+}
+
+TEST_F(RecordedViewsTest, WithoutJointsThereAreNoViews) {
+  record({.joints = false});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a.mcap: has no joint positions")));
+}
+
+TEST_F(RecordedViewsTest, StampsOfAnotherClockAreAnErrorOrADoubt) {
+  record({.camera_ahead = std::chrono::hours(1)});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("they are of another clock")));
+  diagnostics_ = {};
+  record({.camera_ahead = std::chrono::milliseconds(1500)});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.doubts,
+              ElementsAre(HasSubstr("topic 'cam/image': its stamps are 1.500 s ahead of those")));
+}
+
+TEST_F(RecordedViewsTest, ARobotThatNeverRestsIsAnErrorThatNamesTheJoint) {
+  const auto scanner = [](Recorder& to, Stamp stamp, double time) {
+    to.joints("/joint_states", {stamp, {"scanner"}, {3.0 * time}});
+  };
+  record({.more = scanner});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("joints 'scanner' always move")));
+  diagnostics_ = {};
+  EXPECT_EQ(open({.path = path(), .restless = {"scanner"}}).standstills(), 3U);
+  (void)open({.path = path(), .restless = {"scaner"}});
+  EXPECT_THAT(diagnostics_.errors,
+              ElementsAre(HasSubstr("has no joint 'scaner'; did you mean 'scanner'?")));
+}
+
+TEST_F(RecordedViewsTest, ARobotThatAlwaysMovesShouldRest) {
+  const auto turning = [](Recorder& to, Stamp stamp, double time) {
+    to.joints("/joint_states", {stamp, {"pan", "tilt"}, {0.3 * time, 0.2 * time}});
+  };
+  record({.joints = false, .more = turning});
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("let it rest for a second in each pose")));
+}
+
+TEST_F(RecordedViewsTest, AnImageThatMovesWhileTheJointsRestIsRefused) {
+  const auto passer_by = [](double position, double time) {
+    const bool second = time > 1.5 && time < 2.5;
+    return second ? picture(1.5 * std::sin(20.0 * time)) : picture(position);
+  };
+  record({.scene = passer_by});
+  const auto views = views_of(open());
+  ASSERT_EQ(views.size(), 3U);
+  EXPECT_TRUE(views[0].view && views[2].view);
+  EXPECT_THAT(views[1].refusal, HasSubstr("the image moves although the joints stand still"));
+}
+
+TEST_F(RecordedViewsTest, UnknownEncodingsAreRefusedWithTheirTopic) {
+  record({.image_encoding = "rainbow"});
+  for (const RecordedView& view : views_of(open())) {
+    EXPECT_THAT(view.refusal, HasSubstr("topic 'cam/image': images of encoding 'rainbow' are not"));
+  }
+}
+
+TEST_F(RecordedViewsTest, TheUsersCameraTakesThePlaceOfAMissingOne) {
+  record({.camera_info = false});
+  EXPECT_FALSE(views_of(open()).at(0).view.value().camera);
+  EXPECT_THAT(diagnostics_.warnings, ElementsAre(HasSubstr("has no camera_info")));
+  diagnostics_ = {};
+  const auto views = views_of(open({.path = path(), .frame = "eye", .camera = small_camera()}));
+  EXPECT_THAT(diagnostics_.warnings, IsEmpty());
+  EXPECT_TRUE(views.at(0).view.value().camera);
+  EXPECT_EQ(views.at(0).view.value().frame, "eye");
+}
+
+TEST_F(RecordedViewsTest, ATruncatedRecordingGivesWhatItHas) {
+  record({.encoding = Encoding::ros1}, "a.bag");
+  const auto size = std::filesystem::file_size(folder_ / "a.bag");
+  std::filesystem::resize_file(folder_ / "a.bag", size * 6 / 10);
+  const RecordedViews recording = open({.path = path("a.bag")});
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  EXPECT_THAT(diagnostics_.warnings, testing::Contains(HasSubstr("a.bag")));
+  const auto views = views_of(recording);
+  ASSERT_FALSE(views.empty());
+  EXPECT_LT(views.size(), 3U);
+  EXPECT_TRUE(views.front().view);
+}
+
+TEST_F(RecordedViewsTest, DamagedMessagesAreCounted) {
+  const auto uneven = [](Recorder& to, Stamp stamp, double) {
+    to.joints("/joint_states", {stamp, {"a", "b"}, {1.0}});
+  };
+  record({.more = uneven});
+  EXPECT_EQ(open().standstills(), 3U);
+  EXPECT_THAT(diagnostics_.warnings,
+              ElementsAre(HasSubstr("messages cannot be read; the first: it has 2 names of joints "
+                                    "and 1 positions")));
+}
+
+TEST_F(RecordedViewsTest, FindersOfTheSameTopicsShareACamera) {
+  finders_.push_back(finders_.front());
+  record();
+  const RecordedViews recording = open();
+  EXPECT_EQ(recording.cameras().size(), 1U);
+  EXPECT_EQ(recording.camera_of(1), 0U);
+}
+
+TEST_F(RecordedViewsTest, DepthOfTheSameMomentGivesAPointForEachPixel) {
+  finders_.push_back(finders_.front());
+  finders_.back().type = "CheckerboardFinder";
+  const auto depth = [](Recorder& to, Stamp stamp, double time) {
+    const auto distance = static_cast<std::uint16_t>(time < 1.2 ? 1000 : 2000);
+    const Stamp late = stamp + std::chrono::milliseconds(10);
+    to.depth("/cam/depth", late, Image<std::uint16_t>(64, 48, distance));
+  };
+  record({.more = depth});
+  const RecordedViews recording = open();
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  ASSERT_EQ(recording.cameras().size(), 2U);
+  std::vector<float> distances;
+  recording.read([&](const RecordedStandstill& standstill) {
+    EXPECT_TRUE(recording.view(standstill, 0).view.value().points.empty());
+    const View view = recording.view(standstill, recording.camera_of(1)).view.value();
+    EXPECT_EQ(view.points.width, view.image.width);
+    distances.push_back(view.points(10, 10).z());
+  });
+  EXPECT_THAT(distances, ElementsAre(1.0F, 2.0F, 2.0F));
+}
+
+TEST_F(RecordedViewsTest, WhatIsNotABagIsAnError) {
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a.mcap: does not exist")));
+  diagnostics_ = {};
+  write("a.mcap", "samples: []\n");
+  (void)open();
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("a.mcap: is not a bag")));
+}
+
+}  // namespace
+}  // namespace kinecal
