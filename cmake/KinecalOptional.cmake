@@ -1,4 +1,4 @@
-# Optional libraries: for some bags, images, boards and live robots.  Without one of them kinecal
+# Optional libraries: for some bags, images and boards.  Without one of them kinecal
 # builds, and the error for what needs it names the missing library.  Of those that were found
 #   KINECAL_OPTIONAL_<target>_LIBRARIES  has the CMake packages, for kinecalConfig.cmake
 #   KINECAL_OPTIONAL_<target>_FLAGS      has the linker flags, for pkg-config
@@ -61,11 +61,3 @@ kinecal_add_optional(io PNG TARGETS PNG::PNG DEBIAN libpng-dev
   FLAGS -lpng DEFINE KINECAL_HAVE_PNG FOR "PNG images")
 kinecal_add_optional(io JPEG TARGETS JPEG::JPEG DEBIAN libjpeg-dev
   FLAGS -ljpeg DEFINE KINECAL_HAVE_JPEG FOR "JPEG images")
-
-# Live robots: header-only libraries, of which nothing is linked.
-find_package(Boost 1.74 QUIET)
-find_package(nlohmann_json QUIET)
-kinecal_add_optional(io Boost TARGETS Boost::headers DEBIAN libboost-dev
-  FLAGS "" DEFINE KINECAL_HAVE_BOOST FOR "robots behind a Foxglove bridge")
-kinecal_add_optional(io nlohmann_json TARGETS nlohmann_json::nlohmann_json DEBIAN nlohmann-json3-dev
-  FLAGS "" DEFINE KINECAL_HAVE_JSON FOR "live robots")

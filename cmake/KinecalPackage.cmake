@@ -18,7 +18,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS  # what the headers include and kinecalConfig.cmake looks for
   "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), liburdfdom-dev, libyaml-dev, \
-libpugixml-dev, libfmt-dev, zlib1g-dev, pkg-config")
+libpugixml-dev, libfmt-dev, zlib1g-dev, libboost-dev (>= 1.74), nlohmann-json3-dev (>= 3.11), \
+libssl-dev (>= 3.0), pkg-config")
 foreach(package IN LISTS KINECAL_OPTIONAL_PACKAGES)
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", ${package}")
 endforeach()

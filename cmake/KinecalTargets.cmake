@@ -1,9 +1,10 @@
 # The libraries, one for each set of dependencies:
 #   kinecal::core     text ... crate               Eigen, threads
-#   kinecal::solve    solve, trust                 core, Ceres
 #   kinecal::capture  capture                      core; optional: apriltag, OpenCV
-#   kinecal::io       study, files ... tools       solve, capture, urdfdom, libyaml, pugixml, fmt, zlib; optional
-#                                                    libraries: KinecalOptional.cmake
+#   kinecal::solve    solve, trust                 core, Ceres, Boost's headers
+#   kinecal::io       study, files ... tools       capture, solve, urdfdom, libyaml, pugixml, fmt, zlib,
+#                                                    nlohmann-json, libcrypto; optional libraries:
+#                                                    KinecalOptional.cmake
 #   kinecal::kinecal  all of them
 #   kinecal::headers  no library: every source compiles what it includes
 include(GNUInstallDirs)
@@ -12,10 +13,13 @@ set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that fetches kinecal link
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Ceres 2.1 REQUIRED)
+find_package(Boost 1.74 REQUIRED)
 find_package(urdfdom REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(fmt REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET GLOBAL yaml-0.1)
@@ -147,11 +151,13 @@ kinecal_add_library(capture UNIT 30
   LINK kinecal_core)
 kinecal_add_library(solve UNIT 50
   FOLDERS solve trust
-  LINK kinecal_core Ceres::ceres)
+  LINK kinecal_core Ceres::ceres
+  PRIVATE_LINK Boost::headers)
 kinecal_add_library(io UNIT 33 OPTIMIZE -O2
   FOLDERS study files config robots report tools
-  LINK kinecal_capture kinecal_solve
-  PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB)
+  LINK kinecal_capture kinecal_solve nlohmann_json::nlohmann_json
+  PRIVATE_LINK urdfdom::urdfdom_model PkgConfig::libyaml pugixml::pugixml fmt::fmt ZLIB::ZLIB
+               OpenSSL::Crypto Boost::headers)
 include(KinecalOptional)
 include(KinecalPage)
 if(NOT KINECAL_HEADER_ONLY)

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -44,8 +46,10 @@ namespace detail {
   return text;
 }
 
-[[nodiscard]] inline std::string json_number(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "null";
+/// With six digits; null if it was not measured.
+[[nodiscard]] inline nlohmann::ordered_json json_number(const std::optional<double>& value) {
+  if (!value) return nullptr;
+  return std::strtod(fmt::format("{:.6g}", *value).c_str(), nullptr);
 }
 
 }  // namespace detail
@@ -105,22 +109,24 @@ inline void print_solves(const Report& report, const std::vector<int>& counts) {
 /// {"rows": [{"name", "residual_ns", "residual_jacobian_ns", "normal_equations_ns",
 ///            "solve_ms": {"100": ..}}], "peak_gflops", "isa", "threads"}
 [[nodiscard]] inline std::string to_json(const Report& report) {
-  std::string rows;
+  using Json = nlohmann::ordered_json;
+  Json rows = Json::array();
   for (const Row& row : report.rows) {
-    std::string solves;
+    Json solves = Json::object();
     for (const auto& [n, solved] : row.solves) {
-      solves += fmt::format("{}\"{}\":{}", solves.empty() ? "" : ",", n,
-                            detail::json_number(1e3 * solved.seconds));
+      solves[std::to_string(n)] = detail::json_number(1e3 * solved.seconds);
     }
-    rows += fmt::format(
-        "{}{{\"name\":\"{}\",\"residual_ns\":{},\"residual_jacobian_ns\":{},"
-        "\"normal_equations_ns\":{},\"solve_ms\":{{{}}}}}",
-        rows.empty() ? "" : ",", row.name, detail::json_number(row.residual_ns),
-        detail::json_number(row.residual_jacobian_ns), detail::json_number(row.normal_equations_ns),
-        solves);
+    rows.push_back({{"name", row.name},
+                    {"residual_ns", detail::json_number(row.residual_ns)},
+                    {"residual_jacobian_ns", detail::json_number(row.residual_jacobian_ns)},
+                    {"normal_equations_ns", detail::json_number(row.normal_equations_ns)},
+                    {"solve_ms", solves}});
   }
-  return fmt::format("{{\"rows\":[{}],\"peak_gflops\":{},\"isa\":\"{}\",\"threads\":{}}}\n", rows,
-                     detail::json_number(report.peak_gflops), instruction_set(), report.threads);
+  const Json all = {{"rows", rows},
+                    {"peak_gflops", detail::json_number(report.peak_gflops)},
+                    {"isa", instruction_set()},
+                    {"threads", report.threads}};
+  return all.dump() + "\n";
 }
 
 /// @throws std::runtime_error  if the file cannot be written

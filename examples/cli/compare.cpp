@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "commands.hpp"
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/charts/parameters.hpp"
 #include "kinecal/report/html.hpp"
-#include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/trust/pose_change.hpp"
@@ -203,34 +204,36 @@ std::string text_of(const Assembled& a, const Assembled& b, const Comparison& al
 }
 
 std::string json_of(const Assembled& a, const Assembled& b, const Comparison& all) {
-  std::string parameters, others, pose = "null";
+  using detail::Json;
+  Json parameters = Json::array(), others = Json::array(), pose;
   for (const auto* list : {&all.moved, &all.equal}) {
     for (const Difference& of : *list) {
-      parameters += fmt::format(
-          R"({}{{"name": {}, "unit": {}, "a": {}, "b": {}, "sigma": {}, "moved": {}}})",
-          parameters.empty() ? "\n    " : ",\n    ", detail::json_string(of.name),
-          detail::json_string(of.unit), detail::json_number(of.a), detail::json_number(of.b),
-          detail::json_number(of.deviation), list == &all.moved);
+      parameters.push_back({{"name", of.name},
+                            {"unit", of.unit},
+                            {"a", of.a},
+                            {"b", of.b},
+                            {"sigma", of.deviation},
+                            {"moved", list == &all.moved}});
     }
   }
   for (const NotCompared& of : all.others) {
-    others += fmt::format(R"({}{{"name": {}, "why": {}}})", others.empty() ? "\n    " : ",\n    ",
-                          detail::json_string(of.name), detail::json_string(of.why));
+    others.push_back({{"name", of.name}, {"why", of.why}});
   }
   if (all.pose && all.change.poses > 0) {
-    pose = fmt::format(
-        R"({{"frame": {}, "in": {}, "poses": {}, "position": {}, "rotation": {}, )"
-        R"("worst_position": {}, "worst_rotation": {}}})",
-        detail::json_string(all.pose->frame.name()), detail::json_string(all.pose->in.name()),
-        all.change.poses, detail::json_number(all.change.position),
-        detail::json_number(all.change.rotation), detail::json_number(all.change.worst_position),
-        detail::json_number(all.change.worst_rotation));
+    pose = {{"frame", all.pose->frame.name()},
+            {"in", all.pose->in.name()},
+            {"poses", all.change.poses},
+            {"position", all.change.position},
+            {"rotation", all.change.rotation},
+            {"worst_position", all.change.worst_position},
+            {"worst_rotation", all.change.worst_rotation}};
   }
-  return fmt::format(
-      "{{\n  \"a\": {},\n  \"b\": {},\n  \"limit\": {},\n  \"parameters\": [{}],\n"
-      "  \"not_compared\": [{}],\n  \"pose\": {}\n}}\n",
-      detail::json_string(a.result.folder), detail::json_string(b.result.folder), kMoved,
-      parameters, others, pose);
+  return detail::json_lines({{"a", a.result.folder},
+                             {"b", b.result.folder},
+                             {"limit", kMoved},
+                             {"parameters", parameters},
+                             {"not_compared", others},
+                             {"pose", pose}});
 }
 
 /// The same as a page, with the chart of a report's parameters.

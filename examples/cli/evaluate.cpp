@@ -3,10 +3,11 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/report/json.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/text/printable.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
@@ -16,11 +17,11 @@ namespace kinecal::cli {
 namespace {
 
 std::string json(const Result& result, const NewSamples& fresh) {
-  return fmt::format(
-      "{{\n  \"result\": {},\n  \"verdict\": {},\n  \"samples\": {},\n  \"assumed\": {},\n"
-      "  \"error_blocks\": {}\n}}\n",
-      detail::json_string(result.folder), detail::json_string(result.verdict), fresh.samples.size(),
-      detail::json_string(fresh.assumed), fit_json(result, fresh));
+  return detail::json_lines({{"result", result.folder},
+                             {"verdict", result.verdict},
+                             {"samples", fresh.samples.size()},
+                             {"assumed", fresh.assumed},
+                             {"error_blocks", fit_json(result, fresh)}});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "input.hpp"
 #include "kinecal/config/assemble.hpp"
@@ -16,7 +17,6 @@
 #include "kinecal/evaluation/any_evaluator.hpp"
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
-#include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
 
 namespace kinecal::cli {
@@ -226,26 +226,24 @@ std::string fit_text(const Result& result, const NewSamples& fresh) {
          table.str();
 }
 
-std::string fit_json(const Result& result, const NewSamples& fresh) {
+detail::Json fit_json(const Result& result, const NewSamples& fresh) {
   const AnyProblem& problem = fresh.problem();
   const auto norms = feature_norms(problem, {fresh.values.data(), fresh.values.size()});
-  std::string list;
+  detail::Json list = detail::Json::array();
   for (int t = 0; t < problem.num_terms(); ++t) {
     const auto& distances = norms[static_cast<std::size_t>(t)];
     if (distances.empty()) continue;
     const Term& term = problem.term(t);
     const FittedBlock& then = fitted_block(result, term.name);
-    list +=
-        fmt::format(R"({}{{"name": {}, "unit": {}, "features": {}, "distance": {}, "worst": {}, )"
-                    R"("calibration": {}, "held_out": {}}})",
-                    list.empty() ? "\n    " : ",\n    ", detail::json_string(term.name),
-                    detail::json_string(term.options.unit), distances.size(),
-                    detail::json_number(root_mean_square(distances)),
-                    detail::json_number(*std::max_element(distances.begin(), distances.end())),
-                    detail::json_number(then.distance),
-                    then.held_out ? detail::json_number(*then.held_out) : "null");
+    list.push_back({{"name", term.name},
+                    {"unit", term.options.unit},
+                    {"features", distances.size()},
+                    {"distance", root_mean_square(distances)},
+                    {"worst", *std::max_element(distances.begin(), distances.end())},
+                    {"calibration", then.distance},
+                    {"held_out", then.held_out ? detail::Json(*then.held_out) : detail::Json()}});
   }
-  return "[" + list + "\n  ]";
+  return list;
 }
 
 std::string worst_text(const Result& result, const NewSamples& fresh) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinecal/config/doubts/rising.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/findings.hpp"
 #include "result.hpp"
 
@@ -42,7 +43,7 @@ struct NewSampleOptions {
 /// A line for each error block: distances now, and in the calibration.
 [[nodiscard]] std::string fit_text(const Result& result, const NewSamples& fresh);
 /// The same as a JSON list.
-[[nodiscard]] std::string fit_json(const Result& result, const NewSamples& fresh);
+[[nodiscard]] detail::Json fit_json(const Result& result, const NewSamples& fresh);
 
 /// The worst samples, by file and line.
 [[nodiscard]] std::string worst_text(const Result& result, const NewSamples& fresh);

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "kinecal/report/checksum.hpp"
+#include "kinecal/files/checksum.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/scene_clouds.hpp"

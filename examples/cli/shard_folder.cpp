@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "interruption.hpp"
+#include "kinecal/files/checksum.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/results/file_set.hpp"
-#include "kinecal/report/checksum.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "commands.hpp"
 #include "interruption.hpp"
+#include "kinecal/files/checksum.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
-#include "kinecal/report/checksum.hpp"
 #include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 #include "process_group.hpp"

@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/charts/spread.hpp"
-#include "kinecal/report/json.hpp"
 #include "kinecal/report/text.hpp"
 #include "words.hpp"
 
@@ -310,44 +311,45 @@ std::string study_text(const StudyInput& input, const StudyResult& result) {
 }
 
 std::string study_json(const StudyInput& input, const StudyResult& result) {
+  using detail::Json;
   const std::vector<std::string> names = free_names(input);
-  std::string groups;
+  Json groups = Json::array();
   for (const StudyGroup& group : result.groups) {
-    std::string parameters;
+    Json parameters = Json::array();
     for (std::size_t p = 0; p < names.size(); ++p) {
       const ParameterSpread& of = group.parameters[p];
-      parameters += fmt::format(
-          R"({}{{"name": {}, "unit": {}, "truth": {}, "mean": {}, "variance": {}, "predicted": {}}})",
-          p == 0 ? "" : ",\n      ", detail::json_string(names[p]),
-          detail::json_string(unit_of(input, p)), detail::json_number(of.truth),
-          detail::json_number(of.mean), detail::json_number(of.variance),
-          detail::json_number(of.predicted));
+      parameters.push_back({{"name", names[p]},
+                            {"unit", unit_of(input, p)},
+                            {"truth", of.truth},
+                            {"mean", of.mean},
+                            {"variance", of.variance},
+                            {"predicted", of.predicted}});
     }
-    std::string numbers;
-    for (const auto& [name, value] : {std::pair("position", group.position),
-                                      {"varied_position", group.varied_position},
-                                      {"predicted_position", group.predicted_position},
-                                      {"free_targets", group.free_targets},
-                                      {"worst_position", group.worst_position},
-                                      {"rotation", group.rotation},
-                                      {"reprojection", group.reprojection},
-                                      {"systematic", group.systematic},
-                                      {"nonlinearity", group.nonlinearity}}) {
-      numbers += fmt::format(R"("{}": {}, )", name, detail::json_number(value));
-    }
-    groups += fmt::format(
-        R"({}{{"robot": {}, "poses": {}, "trials": {}, "failed": {}, "ruined": {}, "left_out": {}, )"
-        R"({}"parameters": [)"
-        "\n      {}]}}",
-        groups.empty() ? "\n    " : ",\n    ", group.robot + 1, group.poses, group.trials,
-        group.failed, group.ruined, group.left_out, numbers, parameters);
+    groups.push_back({{"robot", group.robot + 1},
+                      {"poses", group.poses},
+                      {"trials", group.trials},
+                      {"failed", group.failed},
+                      {"ruined", group.ruined},
+                      {"left_out", group.left_out},
+                      {"position", group.position},
+                      {"varied_position", group.varied_position},
+                      {"predicted_position", group.predicted_position},
+                      {"free_targets", group.free_targets},
+                      {"worst_position", group.worst_position},
+                      {"rotation", group.rotation},
+                      {"reprojection", group.reprojection},
+                      {"systematic", group.systematic},
+                      {"nonlinearity", group.nonlinearity},
+                      {"parameters", parameters}});
   }
-  return fmt::format(
-      "{{\n  \"robot\": {},\n  \"frame\": {},\n  \"in\": {},\n  \"unit\": {},\n  \"limit\": {},\n"
-      "  \"jobs\": {},\n  \"done\": {},\n  \"groups\": [{}]\n}}\n",
-      detail::json_string(input.robot.name()), detail::json_string(input.setup.frame.name()),
-      detail::json_string(input.setup.in.name()), detail::json_string(unit_of_study(input)),
-      detail::json_number(result.limit), result.jobs, result.done, groups);
+  return detail::json_lines({{"robot", input.robot.name()},
+                             {"frame", input.setup.frame.name()},
+                             {"in", input.setup.in.name()},
+                             {"unit", unit_of_study(input)},
+                             {"limit", result.limit},
+                             {"jobs", result.jobs},
+                             {"done", result.done},
+                             {"groups", groups}});
 }
 
 }  // namespace kinecal::cli

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/report/json.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "new_samples.hpp"
@@ -187,46 +188,50 @@ std::string next_text(const Check& check) {
                      name_of(check, drift.movers.front()));
 }
 
-std::string json(const Check& check, const Mover& mover, bool alike) {
-  std::string parameters;
+detail::Json json(const Check& check, const Mover& mover, bool alike) {
+  using detail::Json;
+  Json parameters = Json::array();
   for (std::size_t i = 0; i < mover.parameters.size(); ++i) {
-    parameters +=
-        fmt::format(R"({}{{"name": {}, "change": {}, "sigma": {}}})", i == 0 ? "" : ", ",
-                    detail::json_string(check.table()[mover.parameters[i]].name),
-                    detail::json_number(mover.change[i]), detail::json_number(mover.deviation[i]));
+    parameters.push_back({{"name", check.table()[mover.parameters[i]].name},
+                          {"change", mover.change[i]},
+                          {"sigma", mover.deviation[i]}});
   }
   const PoseChange pose = change_of_pose(check, mover);
-  return fmt::format(
-      R"({{"owner": {}, "is_frame": {}, "explains": {}, "alike": {}, "statistic": {}, )"
-      R"("freedom": {}, "pose_position": {}, "pose_rotation": {}, "parameters": [{}]}})",
-      detail::json_string(mover.owner), mover.is_frame, mover.explains, alike,
-      detail::json_number(mover.statistic), mover.freedom,
-      pose.poses > 0 ? detail::json_number(pose.position) : "null",
-      pose.poses > 0 ? detail::json_number(pose.rotation) : "null", parameters);
+  return {{"owner", mover.owner},
+          {"is_frame", mover.is_frame},
+          {"explains", mover.explains},
+          {"alike", alike},
+          {"statistic", mover.statistic},
+          {"freedom", mover.freedom},
+          {"pose_position", pose.poses > 0 ? Json(pose.position) : Json()},
+          {"pose_rotation", pose.poses > 0 ? Json(pose.rotation) : Json()},
+          {"parameters", parameters}};
 }
 
 std::string json(const Check& check) {
+  using detail::Json;
   const Drift& drift = check.drift;
-  std::string movers, missed;
-  for (std::size_t i = 0; i < drift.movers.size(); ++i) {
-    movers += (i == 0 ? "\n    " : ",\n    ") +
-              json(check, drift.movers[i], static_cast<int>(i) < drift.alike);
+  Json movers = Json::array(), missed = Json::array();
+  for (const Mover& mover : drift.movers) {
+    movers.push_back(json(check, mover, std::ssize(movers) < drift.alike));
   }
   for (const MissedSample& sample : drift.missed) {
-    missed += fmt::format(
-        R"({}{{"sample": {}, "source": {}, "times": {}}})", missed.empty() ? "" : ", ",
-        sample.sample + 1,
-        detail::json_string(check.fresh.samples[static_cast<std::size_t>(sample.sample)].source),
-        detail::json_number(sample.times));
+    missed.push_back(
+        {{"sample", sample.sample + 1},
+         {"source", check.fresh.samples[static_cast<std::size_t>(sample.sample)].source},
+         {"times", sample.times}});
   }
-  return fmt::format(
-      "{{\n  \"result\": {},\n  \"holds\": {},\n  \"probability\": {},\n  \"level\": {},\n"
-      "  \"statistic\": {},\n  \"freedom\": {},\n  \"samples\": {},\n  \"assumed\": {},\n"
-      "  \"bad_samples\": [{}],\n  \"moved\": [{}],\n  \"error_blocks\": {}\n}}\n",
-      detail::json_string(check.result.folder), drift.holds, detail::json_number(drift.probability),
-      check.level, detail::json_number(drift.statistic), drift.freedom, check.fresh.samples.size(),
-      detail::json_string(check.fresh.assumed), missed, movers,
-      fit_json(check.result, check.fresh));
+  return detail::json_lines({{"result", check.result.folder},
+                             {"holds", drift.holds},
+                             {"probability", drift.probability},
+                             {"level", check.level},
+                             {"statistic", drift.statistic},
+                             {"freedom", drift.freedom},
+                             {"samples", check.fresh.samples.size()},
+                             {"assumed", check.fresh.assumed},
+                             {"bad_samples", missed},
+                             {"moved", movers},
+                             {"error_blocks", fit_json(check.result, check.fresh)}});
 }
 
 }  // namespace

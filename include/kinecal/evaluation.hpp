@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/evaluation/basic_problem.hpp"
 #include "kinecal/evaluation/block_rows.hpp"
 #include "kinecal/evaluation/block_term.hpp"
 #include "kinecal/evaluation/compiled_walk.hpp"

@@ -5,7 +5,6 @@
 #include "kinecal/robots/bridge_client.hpp"
 #include "kinecal/robots/bridge_frames.hpp"
 #include "kinecal/robots/child_process.hpp"
-#include "kinecal/robots/json_value.hpp"
 #include "kinecal/robots/pipe_robot.hpp"
 #include "kinecal/robots/ros_action.hpp"
 #include "kinecal/robots/ros_robot.hpp"

@@ -11,8 +11,8 @@ function(expect_not_found components expected)
   endif()
 endfunction()
 expect_not_found("" "component 'kinecal' needs what was not found: \
-Ceres 2.1, urdfdom, pugixml, fmt, ZLIB, libyaml")
-expect_not_found("core;solve" "component 'solve' needs what was not found: Ceres 2.1 ")
+Ceres 2.1, Boost 1.74, urdfdom, pugixml, fmt, ZLIB, libyaml, nlohmann_json 3.11, OpenSSL 3.0")
+expect_not_found("core;solve" "component 'solve' needs what was not found: Ceres 2.1, Boost 1.74 ")
 expect_not_found(cor "there is no component 'cor', only core, solve, capture, io, kinecal and headers")
 
 execute_process(COMMAND ${configure_core} -DCOMPONENTS=core COMMAND_ERROR_IS_FATAL ANY)

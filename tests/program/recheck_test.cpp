@@ -237,10 +237,12 @@ TEST_F(Recheck, RefusesAResultThatWasChanged) {
     write("out/" + file, before);
   };
   refused("calibration.yaml", "elbow: -0.0", "elbow: -0.1", "'elbow' is -0.1");
-  refused("report.json", "\"covariance\"", "\"variance\"", "report.json:1: has no 'covariance'");
+  refused("report.json", "\"covariance\"", "\"variance\"",
+          "report.json: it has no field 'covariance'");
   refused("report.json", "\"verdict\": \"good\"", "\"verdict\": \"do not use\"",
           "was judged 'do not use'");
-  refused("report.json", "\"lower\": [\n    [", "\"lower\": [\n    [1.0, ", "not a lower triangle");
+  refused("report.json", "\"lower\": [\n      [", "\"lower\": [\n      [1.0, ",
+          "not a lower triangle");
   replace_in("out/config.yaml", " - elbow\n", "");
   const Outcome compared = run(test::kinecal_program() + " compare out out");
   EXPECT_EQ(compared.code, 1) << compared.out;

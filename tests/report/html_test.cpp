@@ -6,7 +6,7 @@
 #include <limits>
 #include <pugixml.hpp>
 
-#include "kinecal/report/checksum.hpp"
+#include "kinecal/files/checksum.hpp"
 
 namespace kinecal {
 namespace {

@@ -122,10 +122,13 @@ TEST(JsonReport, IsWrittenOfARunThatDidNotEnd) {
   EXPECT_THAT(summary_text(failed), testing::StartsWith("verdict: do not use\n  - failed\n"));
 }
 
-TEST(JsonReport, WritesNullForNotANumber) {
-  EXPECT_EQ(detail::json_number(std::nan("")), "null");
-  EXPECT_EQ(detail::json_number(0.1), "0.1");
-  EXPECT_EQ(detail::json_string("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
+TEST(JsonReport, WritesNullForNotANumberAndAnyName) {
+  Findings failed;
+  failed.judgement.add(Grade::do_not_use, "a\"b\\c\n\xFF");
+  failed.assessments.emplace_back().uncertainty.design_effect = std::nan("");
+  const YAML::Node json = YAML::Load(json_report(failed));
+  EXPECT_EQ(json["reasons"][0].as<std::string>(), "a\"b\\c\n\xEF\xBF\xBD");
+  EXPECT_TRUE(json["design_effect"].IsNull());
 }
 
 TEST(Summary, BeginsWithTheVerdictAndShowsDistancesAndDeviations) {

@@ -7,37 +7,24 @@
 
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 
-#include "kinecal/report/scene_text.hpp"
+#include "kinecal/files/checksum.hpp"
+#include "kinecal/files/json/json_text.hpp"
 
 namespace kinecal {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The value of a base64 digit.
-unsigned digit(char c) {
-  const std::string all = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  return static_cast<unsigned>(all.find(c));
-}
-
 template <class T>
 std::vector<T> numbers_of(const std::string& base64) {
-  std::string bytes;
-  for (std::size_t i = 0; i + 3 < base64.size(); i += 4) {
-    unsigned bits = 0, padding = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool pad = base64[i + k] == '=';
-      padding += pad ? 1 : 0;
-      bits = bits << 6 | (pad ? 0 : digit(base64[i + k]));
-    }
-    for (unsigned k = 0; k < 3 - padding; ++k) {
-      bytes += static_cast<char>(bits >> (16 - 8 * k) & 255);
-    }
-  }
+  const std::string bytes = from_base64(base64).value();
   std::vector<T> numbers(bytes.size() / sizeof(T));
   std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(T));
   return numbers;
@@ -137,21 +124,23 @@ TEST(SceneJson, NamesCannotEndAScriptNorBreakTheText) {
   for (const char* forbidden : {"<", ">", "&", "\n", "\xE2\x80\xA8", "\xE2\x80\xA9", "\xFF"}) {
     EXPECT_THAT(text, Not(HasSubstr(forbidden)));
   }
-  const YAML::Node json = YAML::Load(text);
-  EXPECT_EQ(json["links"][1]["name"].as<std::string>(), evil);
-  EXPECT_EQ(json["names"][0].as<std::string>(), scene.names[0]);
-  const std::string r = "\xEF\xBF\xBD";
-  EXPECT_EQ(json["samples"][0]["source"].as<std::string>(),
-            "bad " + r + r + r + r + r + r + " bytes" + r + r);
+  const auto json = nlohmann::json::parse(text);
+  EXPECT_EQ(json["links"][1]["name"], evil);
+  EXPECT_EQ(json["names"][0], scene.names[0]);
+  EXPECT_THAT(json["samples"][0]["source"].get<std::string>(),
+              AllOf(StartsWith("bad \xEF\xBF\xBD"), HasSubstr("\xEF\xBF\xBD bytes\xEF\xBF\xBD")));
 }
 
 TEST(SceneJson, NumbersAreShortAndAlwaysNumbers) {
-  EXPECT_EQ(detail::short_number(0.1234567, 5), "0.12346");
-  EXPECT_EQ(detail::short_number(-0.000001, 5), "0");
-  EXPECT_EQ(detail::short_number(100.0, 5), "100");
-  EXPECT_EQ(detail::short_number(1500.0, 0), "1500");
-  EXPECT_EQ(detail::short_number(kNaN, 5), "0");
-  EXPECT_EQ(detail::short_number(std::numeric_limits<double>::infinity(), 5), "0");
+  const auto text = [](double value, int digits) {
+    return detail::json_text(detail::rounded(value, digits));
+  };
+  EXPECT_EQ(text(0.1234567, 5), "0.12346");
+  EXPECT_EQ(text(-0.000001, 5), "0");
+  EXPECT_EQ(text(100.0, 5), "100");
+  EXPECT_EQ(text(1500.0, 0), "1500");
+  EXPECT_EQ(text(kNaN, 5), "0");
+  EXPECT_EQ(text(std::numeric_limits<double>::infinity(), 5), "0");
   RobotScene scene = one_of_everything();
   scene.joints[0].origin.translation.setConstant(kNaN);
   scene.samples[0].q[0] = kNaN;

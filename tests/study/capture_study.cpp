@@ -17,6 +17,7 @@
 #include "kinecal/capture/session.hpp"
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/capture/session_end.hpp"
+#include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"

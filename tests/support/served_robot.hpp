@@ -8,34 +8,19 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <sstream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
+#include "kinecal/files/checksum.hpp"
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/json/json_value.hpp"
 #include "kinecal/robots/child_process.hpp"
-#include "kinecal/robots/json_value.hpp"
 #include "kinecal/study/simulated_robot.hpp"
 #include "support/bridge_server.hpp"
 
 namespace kinecal::test {
-
-/// Bytes as text.
-inline std::string base64(const std::string& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t at = i + k;
-      three = three << 8 | (at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += i + k > bytes.size() ? '=' : kDigits[three >> (18 - 6 * k) & 63U];
-    }
-  }
-  return text;
-}
 
 /// Points and gray colours of a view as four floats each, as PointCloud2 has them.
 inline std::string cloud_bytes(const View& view) {
@@ -49,14 +34,6 @@ inline std::string cloud_bytes(const View& view) {
     bytes.append(point, 16);
   }
   return bytes;
-}
-
-template <class Numbers>
-std::string json_numbers(const Numbers& numbers) {
-  std::ostringstream text;
-  text.precision(17);
-  for (const double number : numbers) text << (text.tellp() > 0 ? ", " : "[") << number;
-  return text.str() + "]";
 }
 
 /// A bridge and the robot behind it; both end with this object.
@@ -83,36 +60,35 @@ class ServedRobot {
     try {
       while (!ended_) {
         const auto line = process_.read_line(kStep);
-        if (line) process_.write_line(answer(detail::JsonValue::parse(*line)), kLimit);
+        if (line)
+          process_.write_line(detail::json_text(answer(detail::JsonValue::parse(*line))), kLimit);
       }
     } catch (const std::exception& error) {
       ADD_FAILURE() << "the robot behind the bridge: " << error.what();
     }
   }
 
-  [[nodiscard]] std::string answer(const detail::JsonValue& request) {
+  [[nodiscard]] detail::Json answer(const detail::JsonValue& request) {
     if (const auto joints = request.find("joints")) {
       const MeasuredJoints now = robot_.next_joints(Stamp(joints->integer("after")));
-      std::string names;
-      for (const std::string& name : now.names) {
-        names += (names.empty() ? "" : ", ") + detail::json_text(name);
-      }
-      return stamped(now.stamp) + R"(, "names": [)" + names + R"(], "positions": )" +
-             json_numbers(now.positions) + "}";
+      return {{"stamp", now.stamp.count()}, {"names", now.names}, {"positions", now.positions}};
     }
     if (const auto view = request.find("view")) {
       const View seen = robot_.next_view(Stamp(view->integer("after")));
       const CameraInfo& camera = seen.camera.value();
-      return stamped(seen.stamp) + R"(, "frame": )" + detail::json_text(seen.frame) +
-             R"(, "width": )" + std::to_string(seen.points.width) + R"(, "height": )" +
-             std::to_string(seen.points.height) + R"(, "points": ")" + base64(cloud_bytes(seen)) +
-             R"(", "k": )" + json_numbers(camera.k) + R"(, "p": )" + json_numbers(camera.p) + "}";
+      return {{"stamp", seen.stamp.count()},
+              {"frame", seen.frame},
+              {"width", seen.points.width},
+              {"height", seen.points.height},
+              {"points", base64(cloud_bytes(seen))},
+              {"k", camera.k},
+              {"p", camera.p}};
     }
     if (request.find("light")) {
-      return stamped(robot_.light(static_cast<int>(request.integer("light")))) + "}";
+      return {{"stamp", robot_.light(static_cast<int>(request.integer("light"))).count()}};
     }
-    move(request.find("move").value());
-    return "{}";
+    move(request.at("move"));
+    return detail::Json::object();
   }
 
   /// Controllers move their joints at the same time; the robot is given the goals of all.
@@ -126,10 +102,6 @@ class ServedRobot {
       target.positions.push_back(position);
     }
     robot_.move(target);
-  }
-
-  [[nodiscard]] static std::string stamped(Stamp stamp) {
-    return R"({"stamp": )" + std::to_string(stamp.count());
   }
 
   SimulatedRobot& robot_;

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
+#include "kinecal/files/checksum.hpp"
 #include "kinecal/report/chart_style.hpp"
-#include "kinecal/report/checksum.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/html_sections.ipp"
 #include "kinecal/report/html_tables.ipp"

@@ -3,22 +3,11 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "kinecal/linkage.hpp"
 #include "kinecal/report/findings.hpp"
 
 namespace kinecal {
-
-namespace detail {
-
-/// A string as JSON writes it.
-[[nodiscard]] std::string json_string(std::string_view text);
-
-/// A number as JSON writes it: full precision; null if it is not finite.
-[[nodiscard]] std::string json_number(double value);
-
-}  // namespace detail
 
 /// The whole report.  Costs are 1/2 sum of squares; rms is per residual component; mean, median and
 /// max are of the features' norms.  Units are metres, radians and pixels; `sigma` of a parameter is one

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/json_state.ipp"
 
@@ -13,127 +13,112 @@ namespace kinecal {
 
 namespace detail {
 
-KINECAL_INLINE std::string json_string(std::string_view text) {
-  std::string json = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      json += '\\';
-      json += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      json += fmt::format("\\u{:04x}", static_cast<int>(c));
-    } else {
-      json += c;
-    }
-  }
-  return json + "\"";
+[[nodiscard]] inline Json json(const Statistics& s) {
+  return {{"rms", s.rms}, {"mean", s.mean}, {"median", s.median}, {"max", s.max}};
 }
 
-KINECAL_INLINE std::string json_number(double value) {
-  return std::isfinite(value) ? fmt::format("{}", value) : "null";
+[[nodiscard]] inline Json json(const FoundMinimum& minimum) {
+  return {{"cost", minimum.cost}, {"solves", minimum.solves}};
 }
 
-[[nodiscard]] inline std::string json(const Statistics& s) {
-  return fmt::format(R"({{"rms": {}, "mean": {}, "median": {}, "max": {}}})", json_number(s.rms),
-                     json_number(s.mean), json_number(s.median), json_number(s.max));
+[[nodiscard]] inline Json json(const StartSummary& starts) {
+  if (!starts.searched()) return nullptr;
+  const auto write = [](const FoundMinimum& minimum) { return json(minimum); };
+  return {{"frames", starts.frames},
+          {"starts", starts.starts},
+          {"random_starts", starts.random_starts},
+          {"failed", starts.failed},
+          {"minima", json_list(starts.minima, write)},
+          {"taken", starts.taken < 0 ? Json() : Json(starts.taken)}};
 }
 
-[[nodiscard]] inline std::string json(const StartSummary& starts) {
-  if (!starts.searched()) return "null";
-  std::string frames, minima;
-  for (const std::string& frame : starts.frames) {
-    frames += (frames.empty() ? "" : ", ") + json_string(frame);
-  }
-  for (const FoundMinimum& minimum : starts.minima) {
-    minima += fmt::format(R"({}{{"cost": {}, "solves": {}}})", minima.empty() ? "" : ", ",
-                          json_number(minimum.cost), minimum.solves);
-  }
-  return fmt::format(
-      R"({{"frames": [{}], "starts": {}, "random_starts": {}, "failed": {}, "minima": [{}], )"
-      R"("taken": {}}})",
-      frames, starts.starts, starts.random_starts, starts.failed, minima,
-      starts.taken < 0 ? "null" : std::to_string(starts.taken));
+[[nodiscard]] inline Json json(const StepResult& step) {
+  return {{"name", step.name},
+          {"iterations", step.iterations},
+          {"initial_cost", step.initial_cost},
+          {"final_cost", step.final_cost},
+          {"seconds", step.seconds},
+          {"num_residuals", step.num_residuals},
+          {"num_parameters", step.num_parameters},
+          {"form", to_string(step.form)},
+          {"costs", step.costs},
+          {"starts", json(step.starts)}};
 }
 
-[[nodiscard]] inline std::string json(const StepResult& step) {
-  return fmt::format(
-      R"({{"name": {}, "iterations": {}, "initial_cost": {}, "final_cost": {}, "seconds": {}, )"
-      R"("num_residuals": {}, "num_parameters": {}, "form": {}, "costs": {}, "starts": {}}})",
-      json_string(step.name), step.iterations, json_number(step.initial_cost),
-      json_number(step.final_cost), json_number(step.seconds), step.num_residuals,
-      step.num_parameters, json_string(to_string(step.form)), json_row(step.costs, json_number),
-      json(step.starts));
+[[nodiscard]] inline Json json(const BlockStatistics& block) {
+  return {{"name", block.name},   {"type", block.type},           {"unit", block.unit},
+          {"count", block.count}, {"before", json(block.before)}, {"after", json(block.after)}};
 }
 
-[[nodiscard]] inline std::string json(const BlockStatistics& block) {
-  return fmt::format(
-      R"({{"name": {}, "type": {}, "unit": {}, "count": {}, "before": {}, "after": {}}})",
-      json_string(block.name), json_string(block.type), json_string(block.unit), block.count,
-      json(block.before), json(block.after));
-}
-
-[[nodiscard]] inline std::string json(const Observability& observability,
-                                      const ParameterTable& table) {
+[[nodiscard]] inline Json json(const Observability& observability, const ParameterTable& table) {
   const auto combination = [&](const Combination& of) { return json(of, table); };
-  const auto name = [&](int parameter) { return json_string(table[parameter].name); };
-  return fmt::format(R"({{"rank": {}, "condition": {}, "unobservable": {}, "hold": {}}})",
-                     observability.rank, json_number(observability.condition),
-                     json_row(observability.unobservable, combination),
-                     json_row(observability.hold, name));
+  const auto name = [&](int parameter) { return table[parameter].name; };
+  return {{"rank", observability.rank},
+          {"condition", observability.condition},
+          {"unobservable", json_list(observability.unobservable, combination)},
+          {"hold", json_list(observability.hold, name)}};
 }
 
-[[nodiscard]] inline std::string json(const BlockNoise& noise, const HeldOutError* error) {
-  return fmt::format(
-      R"({{"name": {}, "unit": {}, "sigma": {}, "robust_sigma": {}, "sigma_given": {}, )"
-      R"("features": {}, "components": {}, "freedom": {}, "fitted": {}, "held_out": {}}})",
-      json_string(noise.block), json_string(noise.unit), json_number(noise.sigma),
-      json_number(noise.robust), noise.given > 0.0 ? json_number(noise.given) : "null",
-      noise.features, noise.components, json_number(noise.freedom),
-      error == nullptr ? "null" : json_number(error->fitted),
-      error == nullptr ? "null" : json_number(error->held_out));
+[[nodiscard]] inline Json json(const BlockNoise& noise, const HeldOutError* error) {
+  return {{"name", noise.block},
+          {"unit", noise.unit},
+          {"sigma", noise.sigma},
+          {"robust_sigma", noise.robust},
+          {"sigma_given", noise.given > 0.0 ? Json(noise.given) : Json()},
+          {"features", noise.features},
+          {"components", noise.components},
+          {"freedom", noise.freedom},
+          {"fitted", error == nullptr ? Json() : Json(error->fitted)},
+          {"held_out", error == nullptr ? Json() : Json(error->held_out)}};
 }
 
-[[nodiscard]] inline std::string json(const LeftOutSample& sample) {
-  return fmt::format(R"({{"sample": {}, "source": {}, "why": {}}})", sample.number,
-                     json_string(sample.source), json_string(sample.why));
+[[nodiscard]] inline Json json(const LeftOutSample& sample) {
+  return {{"sample", sample.number}, {"source", sample.source}, {"why", sample.why}};
 }
 
-[[nodiscard]] inline std::string json(const PoseUncertainty& pose) {
-  return fmt::format(
-      R"({{"frame": {}, "link": {}, "in": {}, "in_link": {}, "position": {}, "rotation": {}, "worst_position": {}, )"
-      R"("worst_rotation": {}, "determined": {}}})",
-      json_string(pose.frame), json_string(pose.link), json_string(pose.in),
-      json_string(pose.in_link), json_number(pose.position), json_number(pose.rotation),
-      json_number(pose.worst_position), json_number(pose.worst_rotation), pose.determined);
+[[nodiscard]] inline Json json(const PoseUncertainty& pose) {
+  return {{"frame", pose.frame},
+          {"link", pose.link},
+          {"in", pose.in},
+          {"in_link", pose.in_link},
+          {"position", pose.position},
+          {"rotation", pose.rotation},
+          {"worst_position", pose.worst_position},
+          {"worst_rotation", pose.worst_rotation},
+          {"determined", pose.determined}};
 }
 
-[[nodiscard]] inline std::string json_parameter(const Findings& findings, int i) {
+[[nodiscard]] inline Json json_parameter(const Findings& findings, int i) {
   const Parameter& parameter = findings.result.table[i];
   const auto deviation = findings.deviation(i);
   const bool known = deviation && std::isfinite(*deviation);
-  return fmt::format(
-      R"({{"name": {}, "value": {}, "initial": {}, "unit": {}, "sigma": {}, "significant": {}}})",
-      json_string(parameter.name), json_number(parameter.value), json_number(parameter.initial),
-      json_string(parameter.unit), known ? json_number(*deviation) : "null",
-      known && note_on(parameter, *deviation).empty());
+  return {{"name", parameter.name},
+          {"value", parameter.value},
+          {"initial", parameter.initial},
+          {"unit", parameter.unit},
+          {"sigma", known ? Json(*deviation) : Json()},
+          {"significant", known && note_on(parameter, *deviation).empty()}};
 }
 
-[[nodiscard]] inline std::string json_capture(const Findings& findings, const Assessment& step,
-                                              const CaptureError& error) {
-  const auto sample = static_cast<std::size_t>(error.sample);
-  return json({findings.numbers[sample], findings.sources[sample],
-               capture_text(error, step) + cause_text(findings, error.sample)});
+[[nodiscard]] inline Json json_captures(const Findings& findings, const Assessment& step) {
+  Json bad = Json::array();
+  for (const CaptureError& error : step.captures) {
+    if (!error.bad) continue;
+    const auto sample = static_cast<std::size_t>(error.sample);
+    bad.push_back(
+        json(LeftOutSample{findings.numbers[sample], findings.sources[sample],
+                           capture_text(error, step) + cause_text(findings, error.sample)}));
+  }
+  return bad;
 }
 
 }  // namespace detail
 
 KINECAL_INLINE std::string json_report(const Findings& findings) {
+  using detail::json_list;
   const auto write = [](const auto& item) { return detail::json(item); };
   const CalibrationResult& result = findings.result;
   const Assessment none, &last = findings.assessments.empty() ? none : findings.assessments.back();
-  std::vector<CaptureError> bad;
-  for (const CaptureError& error : last.captures) {
-    if (error.bad) bad.push_back(error);
-  }
   const auto noise = [&](const BlockNoise& of) {
     return detail::json(of,
                         detail::of_block(findings.assessments, &Assessment::held_out, of.block));
@@ -141,31 +126,26 @@ KINECAL_INLINE std::string json_report(const Findings& findings) {
   const auto observability = [&](const Assessment& step) {
     return detail::json(step.observability, result.table);
   };
-  std::string images;
-  for (const auto& [sensor, image] : findings.images) {
-    images += (images.empty() ? "" : ", ") + detail::json_string(sensor) + ": " +
-              detail::json_string(image);
-  }
-  return fmt::format(
-      "{{\n  \"verdict\": {},\n  \"reasons\": {},\n  \"converged\": {},\n  \"termination\": {},\n"
-      "  \"steps\": {},\n  \"error_blocks\": {},\n  \"noise\": {},\n  \"design_effect\": {},\n"
-      "  \"parameters\": {},\n"
-      "  \"pose\": {},\n  \"observability\": {},\n  \"bad_samples\": {},\n"
-      "  \"left_out\": {},\n  \"images\": {{{}}},\n  \"covariance\": {},\n  \"poses\": {}\n}}\n",
-      detail::json_string(to_string(findings.judgement.verdict)),
-      detail::json_list(findings.judgement.reasons, detail::json_string), result.converged,
-      detail::json_string(result.termination), detail::json_list(result.steps, write),
-      detail::json_list(result.blocks, write), detail::json_list(last.noise, noise),
-      detail::json_number(last.uncertainty.design_effect),
-      detail::json_list(result.calibrated,
-                        [&](int i) { return detail::json_parameter(findings, i); }),
-      last.pose ? detail::json(*last.pose) : "null",
-      detail::json_list(findings.assessments, observability),
-      detail::json_list(
-          bad,
-          [&](const CaptureError& error) { return detail::json_capture(findings, last, error); }),
-      detail::json_list(findings.left_out, write), images, detail::json_covariance(findings),
-      detail::json(findings.poses));
+  const auto parameter = [&](int i) { return detail::json_parameter(findings, i); };
+  detail::Json images = detail::Json::object();
+  for (const auto& [sensor, image] : findings.images) images[sensor] = image;
+  const detail::Json report = {{"verdict", to_string(findings.judgement.verdict)},
+                               {"reasons", findings.judgement.reasons},
+                               {"converged", result.converged},
+                               {"termination", result.termination},
+                               {"steps", json_list(result.steps, write)},
+                               {"error_blocks", json_list(result.blocks, write)},
+                               {"noise", json_list(last.noise, noise)},
+                               {"design_effect", last.uncertainty.design_effect},
+                               {"parameters", json_list(result.calibrated, parameter)},
+                               {"pose", last.pose ? detail::json(*last.pose) : detail::Json()},
+                               {"observability", json_list(findings.assessments, observability)},
+                               {"bad_samples", detail::json_captures(findings, last)},
+                               {"left_out", json_list(findings.left_out, write)},
+                               {"images", images},
+                               {"covariance", detail::json_covariance(findings)},
+                               {"poses", detail::json(findings.poses)}};
+  return detail::json_lines(report);
 }
 
 }  // namespace kinecal

@@ -5,8 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
-#include "kinecal/report/json.hpp"
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/report/findings.hpp"
 #include "kinecal/trust/drift.hpp"
 
 namespace kinecal {
@@ -43,57 +48,46 @@ namespace detail {
   return state;
 }
 
-/// "{"elbow": 1, "wrist": -0.5}"
-[[nodiscard]] inline std::string json(const Combination& combination, const ParameterTable& table) {
-  std::string factors;
-  for (const auto& [parameter, factor] : combination) {
-    factors += fmt::format("{}{}: {}", factors.empty() ? "" : ", ",
-                           json_string(table[parameter].name), json_number(factor));
-  }
-  return "{" + factors + "}";
+/// {"elbow": 1, "wrist": -0.5}
+[[nodiscard]] inline Json json(const Combination& combination, const ParameterTable& table) {
+  Json factors = Json::object();
+  for (const auto& [parameter, factor] : combination) factors[table[parameter].name] = factor;
+  return factors;
 }
 
-/// "[\n    a,\n    b\n  ]"
 template <class Items, class Write>
-[[nodiscard]] std::string json_list(const Items& items, Write&& write) {
-  std::string list;
-  for (const auto& item : items) list += (list.empty() ? "\n    " : ",\n    ") + write(item);
-  return list.empty() ? "[]" : "[" + list + "\n  ]";
-}
-
-/// "[a, b]"
-template <class Items, class Write>
-[[nodiscard]] std::string json_row(const Items& items, Write&& write) {
-  std::string row;
-  for (const auto& item : items) row += (row.empty() ? "" : ", ") + write(item);
-  return "[" + row + "]";
+[[nodiscard]] Json json_list(const Items& items, Write&& write) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(write(item));
+  return list;
 }
 
 /// Parameters, the lower triangle of their covariance row by row, and combinations that nothing
 /// determines, along which it is zero.
-[[nodiscard]] inline std::string json_covariance(const Findings& findings) {
-  if (findings.assessments.empty()) return "null";
+[[nodiscard]] inline Json json_covariance(const Findings& findings) {
+  if (findings.assessments.empty()) return nullptr;
   const ParameterTable& table = findings.result.table;
   const CalibratedState state = state_of_steps(findings.assessments);
-  std::vector<std::vector<double>> rows;
+  Json lower = Json::array();
   for (Eigen::Index i = 0; i < state.covariance.rows(); ++i) {
-    rows.emplace_back();
-    for (Eigen::Index j = 0; j <= i; ++j) rows.back().push_back(state.covariance(i, j));
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j <= i; ++j) row.push_back(state.covariance(i, j));
+    lower.push_back(std::move(row));
   }
-  const auto name = [&](int p) { return json_string(table[p].name); };
-  const auto row = [](const auto& numbers) { return json_row(numbers, json_number); };
+  const auto name = [&](int p) { return table[p].name; };
   const auto combination = [&](const Combination& of) { return json(of, table); };
-  return fmt::format("{{\n  \"parameters\": {},\n  \"lower\": {},\n  \"undetermined\": {}\n  }}",
-                     json_row(state.parameters, name), json_list(rows, row),
-                     json_list(state.undetermined, combination));
+  return {{"parameters", json_list(state.parameters, name)},
+          {"lower", std::move(lower)},
+          {"undetermined", json_list(state.undetermined, combination)}};
 }
 
 /// Joint positions, to six digits.
-[[nodiscard]] inline std::string json(const RecordedPoses& poses) {
-  const auto number = [](double value) { return fmt::format("{:.6g}", value); };
-  const auto row = [&](const auto& numbers) { return json_row(numbers, number); };
-  return fmt::format("{{\n  \"joints\": {},\n  \"positions\": {}\n  }}",
-                     json_row(poses.joints, json_string), json_list(poses.positions, row));
+[[nodiscard]] inline Json json(const RecordedPoses& poses) {
+  const auto number = [](double value) {
+    return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+  };
+  const auto row = [&](const auto& numbers) { return json_list(numbers, number); };
+  return {{"joints", poses.joints}, {"positions", json_list(poses.positions, row)}};
 }
 
 }  // namespace detail

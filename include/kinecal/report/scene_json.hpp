@@ -33,7 +33,7 @@
 namespace kinecal {
 
 /// The scene as JSON in the form above.  It may stand in an HTML <script>: it has no <, > and &, and is
-/// UTF-8 whatever the names are.
+/// ASCII whatever the names are.
 [[nodiscard]] std::string scene_json(const RobotScene& scene);
 
 }  // namespace kinecal

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
-#include "kinecal/report/json.hpp"
 #include "kinecal/report/scene_json.hpp"
 #include "kinecal/report/scene_pieces.ipp"
 
@@ -16,125 +14,144 @@ namespace kinecal {
 
 namespace detail {
 
-[[nodiscard]] inline std::string scene_json(const SceneVisual& of) {
+[[nodiscard]] inline Json scene_tree(const SceneVisual& of) {
   const Visual& visual = of.visual;
-  std::string shape;
+  Json json;
   switch (visual.shape) {
     case VisualShape::box:
-      shape = fmt::format(R"("kind":"box","size":{})", numbers_json(visual.size, kLengthDigits));
+      json = {{"kind", "box"}, {"size", rounded_list(visual.size, kLengthDigits)}};
       break;
     case VisualShape::cylinder:
-      shape = fmt::format(R"("kind":"cylinder","radius":{},"length":{})",
-                          short_number(visual.radius, kLengthDigits),
-                          short_number(visual.length, kLengthDigits));
+      json = {{"kind", "cylinder"},
+              {"radius", rounded(visual.radius, kLengthDigits)},
+              {"length", rounded(visual.length, kLengthDigits)}};
       break;
     case VisualShape::sphere:
-      shape =
-          fmt::format(R"("kind":"sphere","radius":{})", short_number(visual.radius, kLengthDigits));
+      json = {{"kind", "sphere"}, {"radius", rounded(visual.radius, kLengthDigits)}};
       break;
     case VisualShape::mesh:
-      if (of.mesh < 0) return {};
-      shape = fmt::format(R"("kind":"mesh","mesh":{},"scale":{})", of.mesh,
-                          numbers_json(visual.scale, kAngleDigits));
+      json = {
+          {"kind", "mesh"}, {"mesh", of.mesh}, {"scale", rounded_list(visual.scale, kAngleDigits)}};
   }
   const auto& [r, g, b, opacity] = visual.color;
-  return fmt::format(R"({{{},"pose":{},"color":{}}})", shape, pose_json(visual.link_T_visual),
-                     numbers_json(ScenePoint{r, g, b}, 3));
+  json["pose"] = pose_json(visual.link_T_visual);
+  json["color"] = rounded_list(ScenePoint{r, g, b}, 3);
+  return json;
 }
 
-[[nodiscard]] inline std::string scene_json(const SceneLink& link) {
-  const std::string visuals =
-      compact_list(link.visuals, [](const SceneVisual& of) { return scene_json(of); });
-  return fmt::format(R"({{"name":{}{}}})", html_json_string(link.name),
-                     visuals == "[]" ? "" : R"(,"visuals":)" + visuals);
+[[nodiscard]] inline Json scene_tree(const SceneLink& link) {
+  Json json = {{"name", link.name}};
+  for (const SceneVisual& visual : link.visuals) {
+    const bool is_found = visual.visual.shape != VisualShape::mesh || visual.mesh >= 0;
+    if (is_found) json["visuals"].push_back(scene_tree(visual));
+  }
+  return json;
 }
 
-[[nodiscard]] inline std::string scene_json(const char* key,
-                                            const std::optional<SceneCorrection>& of) {
-  if (!of) return {};
+[[nodiscard]] inline Json scene_tree(const SceneCorrection& of) {
+  Json json = {{"t", rounded_list(of.t, kAngleDigits)},
+               {"r", rounded_list(of.r, kAngleDigits)},
+               {"offset", rounded(of.offset, kAngleDigits)}};
   const bool models =
-      std::any_of(of->model.begin(), of->model.end(), [](double value) { return value != 0.0; });
-  return fmt::format(R"(,"{}":{{"t":{},"r":{},"offset":{}{}}})", key,
-                     numbers_json(of->t, kAngleDigits), numbers_json(of->r, kAngleDigits),
-                     short_number(of->offset, kAngleDigits),
-                     models ? R"(,"model":)" + numbers_json(of->model, kAngleDigits) : "");
+      std::any_of(of.model.begin(), of.model.end(), [](double value) { return value != 0.0; });
+  if (models) json["model"] = rounded_list(of.model, kAngleDigits);
+  return json;
 }
 
-[[nodiscard]] inline std::string scene_json(const SceneJoint& joint) {
-  return fmt::format(
-      R"({{"name":{},"type":"{}","parent":{},"child":{},"origin":{},"axis":{},"drive":[{},{},{}]{}{}{}}})",
-      html_json_string(joint.name), to_string(joint.type), joint.parent, joint.child,
-      pose_json(joint.origin), numbers_json(joint.axis, kAngleDigits), joint.drive,
-      short_number(joint.multiplier, kAngleDigits), short_number(joint.offset, kAngleDigits),
-      scene_json("before", joint.before), scene_json("after", joint.after),
-      joint.is_virtual ? R"(,"virtual":true)" : "");
+[[nodiscard]] inline Json scene_tree(const ScenePair& pair) {
+  return Json::array({rounded_list(pair[0], kLengthDigits), rounded_list(pair[1], kLengthDigits)});
 }
 
-[[nodiscard]] inline std::string scene_json(const Mesh& mesh) {
-  return fmt::format(R"({{"vertices":"{}","triangles":"{}"}})", base64_of(mesh.vertices),
-                     base64_of(mesh.triangles));
+/// Fields of what is there.
+template <class T>
+void add_before_after(const std::optional<T>& before, const std::optional<T>& after, Json& json) {
+  if (before) json["before"] = scene_tree(*before);
+  if (after) json["after"] = scene_tree(*after);
 }
 
-[[nodiscard]] inline std::string scene_json(const char* key, const std::optional<ScenePair>& pair) {
-  if (!pair) return {};
-  return fmt::format(R"(,"{}":[{},{}])", key, numbers_json((*pair)[0], kLengthDigits),
-                     numbers_json((*pair)[1], kLengthDigits));
+[[nodiscard]] inline Json scene_tree(const SceneJoint& joint) {
+  Json json = {{"name", joint.name},
+               {"type", to_string(joint.type)},
+               {"parent", joint.parent},
+               {"child", joint.child},
+               {"origin", pose_json(joint.origin)},
+               {"axis", rounded_list(joint.axis, kAngleDigits)},
+               {"drive", Json::array({joint.drive, rounded(joint.multiplier, kAngleDigits),
+                                      rounded(joint.offset, kAngleDigits)})}};
+  add_before_after(joint.before, joint.after, json);
+  if (joint.is_virtual) json["virtual"] = true;
+  return json;
 }
 
-[[nodiscard]] inline std::string scene_json(const SceneFeature& feature) {
-  return fmt::format(R"({{"block":{},"name":{}{}{}{}}})", feature.block,
-                     html_json_string(feature.name), scene_json("before", feature.before),
-                     scene_json("after", feature.after),
-                     feature.error.empty() ? "" : R"(,"error":)" + html_json_string(feature.error));
+[[nodiscard]] inline Json scene_tree(const Mesh& mesh) {
+  return {{"vertices", base64_of(mesh.vertices)}, {"triangles", base64_of(mesh.triangles)}};
 }
 
-[[nodiscard]] inline std::string scene_json(const SceneSample& sample) {
-  return fmt::format(
-      R"({{"number":{},"source":{},"bad":{}{},"q":{}{},"features":{}}})", sample.number,
-      html_json_string(sample.source), sample.bad,
-      sample.note.empty() ? "" : R"(,"note":)" + html_json_string(sample.note),
-      numbers_json(sample.q, kAngleDigits),
-      sample.cloud.empty() ? ""
-                           : fmt::format(R"(,"cloud":"{}","cloud_link":{})",
-                                         base64_of(sample.cloud), sample.cloud_link),
-      compact_list(sample.features, [](const SceneFeature& of) { return scene_json(of); }));
+[[nodiscard]] inline Json scene_tree(const SceneFeature& feature) {
+  Json json = {{"block", feature.block}, {"name", feature.name}};
+  add_before_after(feature.before, feature.after, json);
+  if (!feature.error.empty()) json["error"] = feature.error;
+  return json;
 }
 
-[[nodiscard]] inline std::string scene_json(const SceneCamera& camera) {
-  const auto pixels = [](double value) { return short_number(value, 3); };
-  return fmt::format(
-      R"({{"name":{},"link":{},"pose":[0,0,0,0,0,0,1],"width":{},"height":{},"fx":{},"fy":{},"cx":{},"cy":{}}})",
-      html_json_string(camera.name), camera.link, pixels(camera.width), pixels(camera.height),
-      pixels(camera.fx), pixels(camera.fy), pixels(camera.cx), pixels(camera.cy));
+[[nodiscard]] inline Json scene_tree(const SceneSample& sample) {
+  Json json = {{"number", sample.number}, {"source", sample.source}, {"bad", sample.bad}};
+  if (!sample.note.empty()) json["note"] = sample.note;
+  json["q"] = rounded_list(sample.q, kAngleDigits);
+  if (!sample.cloud.empty()) {
+    json["cloud"] = base64_of(sample.cloud);
+    json["cloud_link"] = sample.cloud_link;
+  }
+  Json& features = json["features"] = Json::array();
+  for (const SceneFeature& feature : sample.features) features.push_back(scene_tree(feature));
+  return json;
+}
+
+[[nodiscard]] inline Json scene_tree(const SceneCamera& camera) {
+  const auto pixels = [](double value) { return rounded(value, 3); };
+  return {{"name", camera.name},
+          {"link", camera.link},
+          {"pose", pose_json({})},
+          {"width", pixels(camera.width)},
+          {"height", pixels(camera.height)},
+          {"fx", pixels(camera.fx)},
+          {"fy", pixels(camera.fy)},
+          {"cx", pixels(camera.cx)},
+          {"cy", pixels(camera.cy)}};
+}
+
+template <class Items>
+[[nodiscard]] Json scene_list(const Items& items) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(scene_tree(item));
+  return list;
 }
 
 /// Points in metres, errors in millimetres.
-[[nodiscard]] inline std::string workspace_json(const RobotScene& scene) {
-  if (scene.workspace.empty()) return {};
-  const auto point = [](const std::array<double, 4>& of) {
-    return fmt::format("[{},{},{},{}]", short_number(of[0], 3), short_number(of[1], 3),
-                       short_number(of[2], 3), short_number(1e3 * of[3], 4));
-  };
-  return R"(,"workspace":{"unit":"mm","points":)" + compact_list(scene.workspace, point) + "}";
+[[nodiscard]] inline Json workspace_json(const RobotScene& scene) {
+  Json points = Json::array();
+  for (const auto& [x, y, z, error] : scene.workspace) {
+    points.push_back(
+        Json::array({rounded(x, 3), rounded(y, 3), rounded(z, 3), rounded(1e3 * error, 4)}));
+  }
+  return {{"unit", "mm"}, {"points", std::move(points)}};
 }
 
 }  // namespace detail
 
 KINECAL_INLINE std::string scene_json(const RobotScene& scene) {
-  const auto item = [](const auto& of) { return detail::scene_json(of); };
-  std::string json = fmt::format(R"({{"base":{},"links":{},"joints":{})", scene.base,
-                                 detail::compact_list(scene.links, item),
-                                 detail::compact_list(scene.joints, item));
-  json += R"(,"meshes":)" + detail::compact_list(scene.meshes, item);
-  json += R"(,"names":)" + detail::compact_list(scene.names, detail::html_json_string);
-  json += R"(,"samples":)" + detail::compact_list(scene.samples, item);
-  json += R"(,"blocks":)" + detail::compact_list(scene.blocks, detail::html_json_string);
-  json += R"(,"cameras":)" + detail::compact_list(scene.cameras, item);
-  json += detail::workspace_json(scene);
-  if (!scene.thinned.empty()) {
-    json += R"(,"thinned":)" + detail::html_json_string(scene.thinned);
-  }
-  return json + "}";
+  using detail::scene_list;
+  detail::Json json = {{"base", scene.base},
+                       {"links", scene_list(scene.links)},
+                       {"joints", scene_list(scene.joints)},
+                       {"meshes", scene_list(scene.meshes)},
+                       {"names", scene.names},
+                       {"samples", scene_list(scene.samples)},
+                       {"blocks", scene.blocks},
+                       {"cameras", scene_list(scene.cameras)}};
+  if (!scene.workspace.empty()) json["workspace"] = detail::workspace_json(scene);
+  if (!scene.thinned.empty()) json["thinned"] = scene.thinned;
+  return detail::json_in_html(json);
 }
 
 }  // namespace kinecal

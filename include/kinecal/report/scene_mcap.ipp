@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <span>
 #include <string>
@@ -42,7 +43,7 @@ class SceneMessages {
 
   [[nodiscard]] std::string transforms(std::size_t sample) const {
     const std::span<const double> q = scene_.samples[sample].q;
-    std::string all;
+    Json all = Json::array();
     for (const bool after : {true, false}) {
       for (const SceneJoint& joint : scene_.joints) {
         add_transform(frame(joint.parent, after), frame(joint.child, after),
@@ -56,7 +57,7 @@ class SceneMessages {
     }
     add_transform(frame(scene_.base, true), frame(root_, false), root_T_base.inverse(),
                   times_[sample], all);
-    return R"({"transforms":[)" + all + "]}";
+    return json_text({{"transforms", std::move(all)}});
   }
 
   /// The links; lines from joint to joint if the URDF has no shapes.
@@ -73,7 +74,7 @@ class SceneMessages {
     if (entities.empty()) {
       for (const SceneJoint& joint : scene_.joints) entities.push_back(bone(joint, after));
     }
-    return update_json(entities, times_.empty() ? 0 : times_.front());
+    return update_text(std::move(entities), times_.empty() ? 0 : times_.front());
   }
 
   /// Measured and predicted points.
@@ -102,7 +103,7 @@ class SceneMessages {
       if (sample.bad) text += "\n" + sample.note;
       entity.add_text(text, Vector3<double>(0.0, 0.0, kTextHeight), paint);
     }
-    return update_json({entity}, times_[n]);
+    return update_text({std::move(entity)}, times_[n]);
   }
 
  private:
@@ -132,13 +133,13 @@ class SceneMessages {
   }
 
   static void add_transform(const std::string& parent, const std::string& child,
-                            const Pose<double>& pose, std::int64_t time, std::string& all) {
+                            const Pose<double>& pose, std::int64_t time, Json& all) {
     const Vector3<double>& t = pose.translation;
-    all += fmt::format(
-        R"({}{{"timestamp":{},"parent_frame_id":{},"child_frame_id":{},"translation":{},)"
-        R"("rotation":{}}})",
-        all.empty() ? "" : ",", time_json(time), html_json_string(parent), html_json_string(child),
-        xyz_json(t.x(), t.y(), t.z()), quaternion_json(pose.rotation));
+    all.push_back({{"timestamp", time_json(time)},
+                   {"parent_frame_id", parent},
+                   {"child_frame_id", child},
+                   {"translation", xyz_json(t.x(), t.y(), t.z())},
+                   {"rotation", quaternion_json(pose.rotation)}});
   }
 
   [[nodiscard]] SceneEntity bone(const SceneJoint& joint, bool after) const {
@@ -173,9 +174,9 @@ KINECAL_INLINE void write_scene(const RobotScene& scene, std::ostream& out,
     writer.write(topic, time, {reinterpret_cast<const std::byte*>(json.data()), json.size()});
   };
   constexpr const char* kUpdate = "foxglove.SceneUpdate";
-  const std::string schema = detail::scene_update_schema();
-  const auto transforms =
-      add("transforms", "foxglove.FrameTransforms", detail::frame_transforms_schema());
+  const std::string schema = detail::json_text(detail::scene_update_schema());
+  const auto transforms = add("transforms", "foxglove.FrameTransforms",
+                              detail::json_text(detail::frame_transforms_schema()));
   const auto robot = add("robot", kUpdate, schema), ghost = add("robot_before", kUpdate, schema),
              errors = add("errors", kUpdate, schema), old = add("errors_before", kUpdate, schema);
   const detail::SceneMessages messages(scene);

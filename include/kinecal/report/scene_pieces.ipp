@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
 #include <bit>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "kinecal/report/checksum.hpp"
+#include "kinecal/files/checksum.hpp"
+#include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/robot_scene.hpp"
-#include "kinecal/report/scene_text.hpp"
 
 namespace kinecal::detail {
 
@@ -19,33 +18,18 @@ inline constexpr int kLengthDigits = 5;  ///< 0.01 mm
 inline constexpr int kAngleDigits = 6;   ///< 0.06 mdeg
 
 template <class Numbers>
-[[nodiscard]] std::string numbers_json(const Numbers& numbers, int digits) {
-  std::string json = "[";
-  for (const double number : numbers) {
-    json += (json.size() > 1 ? "," : "") + short_number(number, digits);
-  }
-  return json + "]";
+[[nodiscard]] Json rounded_list(const Numbers& numbers, int digits) {
+  Json list = Json::array();
+  for (const double number : numbers) list.push_back(rounded(number, digits));
+  return list;
 }
 
 /// [x, y, z, qx, qy, qz, qw]
-[[nodiscard]] inline std::string pose_json(const Pose<double>& pose) {
+[[nodiscard]] inline Json pose_json(const Pose<double>& pose) {
   const Eigen::Vector4d q = quaternion(pose.rotation).normalized();
-  const Vector3<double>& p = pose.translation;
-  return fmt::format("[{},{},{},{},{},{},{}]", short_number(p.x(), kLengthDigits),
-                     short_number(p.y(), kLengthDigits), short_number(p.z(), kLengthDigits),
-                     short_number(q(0), kAngleDigits), short_number(q(1), kAngleDigits),
-                     short_number(q(2), kAngleDigits), short_number(q(3), kAngleDigits));
-}
-
-/// A list; empty items are left out.
-template <class Items, class Write>
-[[nodiscard]] std::string compact_list(const Items& items, const Write& write) {
-  std::string json = "[";
-  for (const auto& item : items) {
-    const std::string text = write(item);
-    if (!text.empty()) json += (json.size() > 1 ? "," : "") + text;
-  }
-  return json + "]";
+  Json json = rounded_list(pose.translation, kLengthDigits);
+  for (const double number : q) json.push_back(rounded(number, kAngleDigits));
+  return json;
 }
 
 /// Numbers of four bytes, least significant byte first, as base64.

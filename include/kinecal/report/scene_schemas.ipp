@@ -3,63 +3,65 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "kinecal/files/json/json_text.hpp"
+
 namespace kinecal::detail {
 
 /// Names of fields and their schemas.
-using SchemaFields = std::vector<std::pair<std::string_view, std::string>>;
+using SchemaFields = std::vector<std::pair<std::string, Json>>;
 
-[[nodiscard]] inline std::string schema_object(std::string_view title, const SchemaFields& fields) {
-  std::string properties;
-  for (const auto& [name, schema] : fields) {
-    properties += (properties.empty() ? "\"" : ",\"") + std::string(name) + "\":" + schema;
-  }
-  return R"({"title":")" + std::string(title) + R"(","type":"object","properties":{)" + properties +
-         "}}";
+[[nodiscard]] inline Json schema_of(const char* type) {
+  return {{"type", type}};
 }
 
-[[nodiscard]] inline std::string schema_list(const std::string& item) {
-  return R"({"type":"array","items":)" + item + "}";
+[[nodiscard]] inline Json schema_object(std::string_view title, const SchemaFields& fields) {
+  Json properties = Json::object();
+  for (const auto& [name, schema] : fields) properties[name] = schema;
+  return {{"title", title}, {"type", "object"}, {"properties", std::move(properties)}};
 }
 
-inline const std::string kNumberSchema = R"({"type":"number"})";
-inline const std::string kTextSchema = R"({"type":"string"})";
-inline const std::string kIntegerSchema = R"({"type":"integer"})";
-inline const std::string kFlagSchema = R"({"type":"boolean"})";
+[[nodiscard]] inline Json schema_list(const Json& item) {
+  return {{"type", "array"}, {"items", item}};
+}
+
+inline const Json kNumberSchema = schema_of("number"), kTextSchema = schema_of("string"),
+                  kIntegerSchema = schema_of("integer"), kFlagSchema = schema_of("boolean");
 
 /// Of a point in time or of a duration: seconds and nanoseconds.
-[[nodiscard]] inline std::string time_schema(std::string_view title) {
-  const std::string fraction = R"({"type":"integer","minimum":0,"maximum":999999999})";
+[[nodiscard]] inline Json time_schema(std::string_view title) {
+  const Json fraction = {{"type", "integer"}, {"minimum", 0}, {"maximum", 999999999}};
   return schema_object(title, {{"sec", kIntegerSchema}, {"nsec", fraction}});
 }
 
-[[nodiscard]] inline std::string vector_schema(std::string_view title) {
+[[nodiscard]] inline Json vector_schema(std::string_view title) {
   return schema_object(title, {{"x", kNumberSchema}, {"y", kNumberSchema}, {"z", kNumberSchema}});
 }
 
-[[nodiscard]] inline std::string quaternion_schema() {
+[[nodiscard]] inline Json quaternion_schema() {
   return schema_object(
       "foxglove.Quaternion",
       {{"x", kNumberSchema}, {"y", kNumberSchema}, {"z", kNumberSchema}, {"w", kNumberSchema}});
 }
 
-[[nodiscard]] inline std::string pose_schema() {
+[[nodiscard]] inline Json pose_schema() {
   return schema_object("foxglove.Pose", {{"position", vector_schema("foxglove.Vector3")},
                                          {"orientation", quaternion_schema()}});
 }
 
-[[nodiscard]] inline std::string color_schema() {
+[[nodiscard]] inline Json color_schema() {
   return schema_object(
       "foxglove.Color",
       {{"r", kNumberSchema}, {"g", kNumberSchema}, {"b", kNumberSchema}, {"a", kNumberSchema}});
 }
 
-[[nodiscard]] inline std::string frame_transforms_schema() {
-  const std::string transform =
+[[nodiscard]] inline Json frame_transforms_schema() {
+  const Json transform =
       schema_object("foxglove.FrameTransform", {{"timestamp", time_schema("time")},
                                                 {"parent_frame_id", kTextSchema},
                                                 {"child_frame_id", kTextSchema},
@@ -69,21 +71,21 @@ inline const std::string kFlagSchema = R"({"type":"boolean"})";
 }
 
 /// Of a shape: its pose, what else it has, and its color.
-[[nodiscard]] inline std::string shape_schema(std::string_view title, const SchemaFields& more) {
+[[nodiscard]] inline Json shape_schema(std::string_view title, const SchemaFields& more) {
   SchemaFields fields = {{"pose", pose_schema()}};
   fields.insert(fields.end(), more.begin(), more.end());
   fields.emplace_back("color", color_schema());
   return schema_list(schema_object(title, fields));
 }
 
-[[nodiscard]] inline std::string scene_update_schema() {
-  const std::string size = vector_schema("foxglove.Vector3"),
-                    points = schema_list(vector_schema("foxglove.Point3")),
-                    colors = schema_list(color_schema()), indices = schema_list(kIntegerSchema);
-  const std::string deletion = schema_object(
+[[nodiscard]] inline Json scene_update_schema() {
+  const Json size = vector_schema("foxglove.Vector3"),
+             points = schema_list(vector_schema("foxglove.Point3")),
+             colors = schema_list(color_schema()), indices = schema_list(kIntegerSchema);
+  const Json deletion = schema_object(
       "foxglove.SceneEntityDeletion",
       {{"timestamp", time_schema("time")}, {"type", kIntegerSchema}, {"id", kTextSchema}});
-  const std::string pair =
+  const Json pair =
       schema_object("foxglove.KeyValuePair", {{"key", kTextSchema}, {"value", kTextSchema}});
   const SchemaFields fields = {
       {"timestamp", time_schema("time")},

@@ -1,7 +1,8 @@
 // Writing a chart as SVG: marks, texts, axes, with one title and one description for screen readers.
 //
 // Colours are classes only (chart_style.hpp), so a chart is light or dark as its page is.  Coordinates
-// are those of the viewBox, y downwards.
+// are those of the viewBox, y downwards.  That is why it is written by hand: the SVG of plotting libraries, and
+// of Cairo, has fixed colours, glyphs in place of text, and no descriptions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -3,15 +3,17 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "kinecal/files/bags/bag.hpp"
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/json/json_value.hpp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/robots/bridge_frames.hpp"
-#include "kinecal/robots/json_value.hpp"
 #include "kinecal/text/printable.hpp"
 
 namespace kinecal::detail {
@@ -109,20 +111,19 @@ KINECAL_INLINE BinaryFrame parse_binary_frame(Bytes bytes) {
 }
 
 KINECAL_INLINE std::string subscribe_frame(std::uint32_t subscription, std::uint32_t channel) {
-  return R"({"op":"subscribe","subscriptions":[{"id":)" + std::to_string(subscription) +
-         R"(,"channelId":)" + std::to_string(channel) + "}]}";
+  const Json link = {{"id", subscription}, {"channelId", channel}};
+  return json_text({{"op", "subscribe"}, {"subscriptions", Json::array({link})}});
 }
 
 KINECAL_INLINE std::string advertise_frame(std::uint32_t id, const std::string& topic,
                                            const BridgeSchema& schema) {
-  const auto field = [](const char* name, const std::string& text) {
-    return std::string(",\"") + name + "\":" + json_text(text);
-  };
-  std::string frame = R"({"op":"advertise","channels":[{"id":)" + std::to_string(id);
-  frame += field("topic", topic) + field("encoding", schema.encoding);
-  frame += field("schemaName", schema.type) + field("schema", schema.definition);
-  if (!schema.definition_kind.empty()) frame += field("schemaEncoding", schema.definition_kind);
-  return frame + "}]}";
+  Json channel = {{"id", id},
+                  {"topic", topic},
+                  {"encoding", schema.encoding},
+                  {"schemaName", schema.type},
+                  {"schema", schema.definition}};
+  if (!schema.definition_kind.empty()) channel["schemaEncoding"] = schema.definition_kind;
+  return json_text({{"op", "advertise"}, {"channels", Json::array({channel})}});
 }
 
 KINECAL_INLINE std::string publish_frame(std::uint32_t id, Bytes message) {

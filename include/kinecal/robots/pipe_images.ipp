@@ -5,39 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "kinecal/files/checksum.hpp"
 #include "kinecal/files/images/read_image.hpp"
-#include "kinecal/robots/json_value.hpp"
+#include "kinecal/files/json/json_value.hpp"
 #include "kinecal/text/printable.hpp"
 
 namespace kinecal::detail {
-
-/// Source: RFC 4648; line ends and padding may be left out.
-/// @throws JsonError  if a character is not of base64
-[[nodiscard]] inline std::string from_base64(std::string_view text) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    if (c == '=' || c == '\n' || c == '\r') continue;
-    const std::size_t digit = kDigits.find(c);
-    if (digit == std::string_view::npos) throw JsonError("the base64 has a character that is none");
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes.push_back(static_cast<char>(bits >> count & 0xff));
-  }
-  return bytes;
-}
 
 /// The image of a file name or of {"base64": "..."}.
 /// @param decode  decode_image or decode_depth
@@ -45,7 +23,11 @@ namespace kinecal::detail {
 /// @throws InputError  if it is not such an image
 template <class Decode>
 [[nodiscard]] auto pipe_image(const JsonValue& image, Decode&& decode) {
-  if (!image.is_text()) return decode(from_base64(image.text("base64")), "the image");
+  if (!image.is_text()) {
+    const auto bytes = from_base64(image.text("base64"));
+    if (!bytes) throw JsonError("the base64 has a character that is none");
+    return decode(*bytes, "the image");
+  }
   const std::string name = image.as_text();
   std::ifstream file(name, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};

@@ -3,20 +3,20 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <chrono>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/json/json_value.hpp"
 #include "kinecal/files/messages/message_fields.ipp"
 #include "kinecal/linkage.hpp"
 #include "kinecal/robots/child_process.hpp"
-#include "kinecal/robots/json_value.hpp"
 #include "kinecal/robots/pipe_images.ipp"
 #include "kinecal/robots/pipe_robot.hpp"
 #include "kinecal/text/printable.hpp"
@@ -31,7 +31,7 @@ class PipeRobot::Pipe {
   /// Sends a request and gives the answer to what reads it.
   /// @param what  the request in messages: "view"
   template <class Read>
-  auto ask(const std::string& what, const std::string& request, Read&& read) {
+  auto ask(const std::string& what, const detail::Json& request, Read&& read) {
     const std::string who = "'" + process_.command() + "': " + what + ": ";
     // What comes before the request does not answer it: a greeting, a line of a log, or what is late for
     // the last one.
@@ -45,7 +45,7 @@ class PipeRobot::Pipe {
           who + "it still has not answered to the last request, '" + unanswered_ + "'",
           process_.command() + ": " + unanswered_, answered_[unanswered_]);
     }
-    process_.write_line("{\"" + what + "\": " + request + "}", time_limit_);
+    process_.write_line(detail::json_text({{what, request}}), time_limit_);
     const auto line = process_.read_line(time_limit_);
     if (!line) {
       ++late_;
@@ -96,20 +96,6 @@ class PipeRobot::Pipe {
 
 namespace detail {
 
-template <class Items, class F>
-[[nodiscard]] std::string json_list(const Items& items, F&& text) {
-  std::string list = "[";
-  for (const auto& item : items) list += (list.size() > 1 ? ", " : "") + text(item);
-  return list + "]";
-}
-
-/// Shortest text that is the same number.
-[[nodiscard]] inline std::string json_decimal(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
 [[nodiscard]] inline Stamp stamp_of(const JsonValue& answer) {
   return Stamp(answer.integer("stamp"));
 }
@@ -122,8 +108,8 @@ template <class Items, class F>
                   std::to_string(after.count()) + " ns");
 }
 
-[[nodiscard]] inline std::string after_text(Stamp after) {
-  return "{\"after\": " + std::to_string(after.count()) + "}";
+[[nodiscard]] inline Json after_json(Stamp after) {
+  return {{"after", after.count()}};
 }
 
 }  // namespace detail
@@ -135,15 +121,14 @@ KINECAL_INLINE PipeRobot& PipeRobot::operator=(PipeRobot&&) noexcept = default;
 KINECAL_INLINE PipeRobot::~PipeRobot() = default;
 
 KINECAL_INLINE void PipeRobot::move(const JointTarget& target) {
-  const std::string request =
-      "{\"names\": " + detail::json_list(target.names, detail::json_text) +
-      ", \"positions\": " + detail::json_list(target.positions, detail::json_decimal) +
-      ", \"velocity_factor\": " + detail::json_decimal(target.velocity_factor) + "}";
+  const detail::Json request = {{"names", target.names},
+                                {"positions", target.positions},
+                                {"velocity_factor", target.velocity_factor}};
   (void)pipe_->ask("move", request, [](const detail::JsonValue&) { return true; });
 }
 
 KINECAL_INLINE MeasuredJoints PipeRobot::next_joints(Stamp after) {
-  return pipe_->ask("joints", detail::after_text(after), [after](const detail::JsonValue& answer) {
+  return pipe_->ask("joints", detail::after_json(after), [after](const detail::JsonValue& answer) {
     MeasuredJoints joints;
     joints.stamp = detail::stamp_after(answer, after);
     joints.names = answer.texts("names");
@@ -157,7 +142,7 @@ KINECAL_INLINE MeasuredJoints PipeRobot::next_joints(Stamp after) {
 }
 
 KINECAL_INLINE View PipeRobot::next_view(Stamp after) {
-  return pipe_->ask("view", detail::after_text(after), [after](const detail::JsonValue& answer) {
+  return pipe_->ask("view", detail::after_json(after), [after](const detail::JsonValue& answer) {
     View view;
     view.stamp = detail::stamp_after(answer, after);
     view.frame = answer.text("frame");
@@ -176,7 +161,7 @@ KINECAL_INLINE View PipeRobot::next_view(Stamp after) {
 }
 
 KINECAL_INLINE Stamp PipeRobot::light(int code) {
-  return pipe_->ask("light", std::to_string(code),
+  return pipe_->ask("light", code,
                     [](const detail::JsonValue& answer) { return detail::stamp_of(answer); });
 }
 

@@ -1,9 +1,5 @@
-// How likely a statistic is as large by chance: the upper tail of the F distribution.
-//
-//   P(F > f) = I_x(b/2, a/2),  x = b / (b + a f)      I the regularized incomplete beta function
-//
-// for a ratio of mean squares with a and b degrees of freedom.  With b = infinity, a F is chi-square.
-// Source: Press et al., Numerical Recipes, 6.4 (the continued fraction of Lentz) and 6.14.
+// How likely a statistic is as large by chance: the upper tails of the F and the chi-square distribution,
+// by Boost.Math.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,11 +7,16 @@
 
 namespace kinecal {
 
-/// Probability that F is larger than f.
+/// Probability that F, a ratio of mean squares, is larger than f.
 /// @param f  ratio of mean squares, not negative
 /// @param a  degrees of freedom of the numerator, positive
-/// @param b  those of the denominator, positive; beyond 1e7 it counts as infinite
+/// @param b  those of the denominator, positive; if infinite, a F is chi-square
 [[nodiscard]] double f_tail(double f, double a, double b);
+
+/// The sum of `freedom` squares of unit variance that is exceeded with a probability.
+/// @param freedom      degrees of freedom, positive
+/// @param probability  above 0, below 1
+[[nodiscard]] double chi_square_exceeded(double freedom, double probability);
 
 }  // namespace kinecal
 

@@ -1,4 +1,5 @@
-// Messages from the bytes in which ROS 1 and ROS 2 (CDR) write them.
+// Messages from the bytes in which ROS 1 and ROS 2 (CDR) write them.  By hand: a library such as Fast CDR reads
+// types that were compiled in, but a type is known only from the text that its bag carries.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -9,6 +9,7 @@
 // A type without a package belongs to the package that uses it; Header, where that package does not
 // define one, is std_msgs/Header.  The time and duration of ROS 1 are two numbers.  ROS 2 adds
 // bounds (string<=10) and default values.
+// It is parsed by hand: Debian's only parser of .msg text, genmsg, is in Python.
 // Source: ROS 1 wiki, msg; ROS 2 documentation, Interfaces.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -1,7 +1,8 @@
 // Messages as the bytes in which ROS 1 and ROS 2 (CDR) write them.
 //
 // The definition decides what is written.  Fields are found by name; a field that the value does
-// not have is written as zero or empty.  So a message of ROS 1 becomes one of ROS 2, and back.
+// not have is written as zero or empty.  So a message of ROS 1 becomes one of ROS 2, and back.  By hand, as
+// they are read: see decode.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

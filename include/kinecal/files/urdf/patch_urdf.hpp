@@ -1,5 +1,6 @@
 // Calibration written back into the text of a URDF, in place: only the numbers that change are
-// rewritten, every other byte stays as it was.
+// rewritten, every other byte stays as it was.  That is why the text is edited by hand: an XML library writes
+// all of it anew, with its own blanks, quotes and order.
 //
 //   frame correction             origin <- origin * correction
 //   offset, OffsetStyle::rising  <calibration rising="..."> <- rising + offset; `falling` likewise

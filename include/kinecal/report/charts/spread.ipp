@@ -126,14 +126,8 @@ inline void draw_ratio_axis(Drawing& drawing, const SpreadRatios& ratios, const 
 }  // namespace detail
 
 KINECAL_INLINE std::pair<double, double> spread_interval(int freedom, double tail) {
-  constexpr double kInfinite = 1e9, kMost = 50.0;
   const auto ratio_above = [&](double share) {  // of the studies; it falls with the ratio
-    double low = 0.0, high = kMost;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (f_tail(middle, freedom, kInfinite) > share ? low : high) = middle;
-    }
-    return std::sqrt(low);
+    return std::sqrt(chi_square_exceeded(freedom, share) / freedom);
   };
   return {ratio_above(1.0 - tail), ratio_above(tail)};
 }

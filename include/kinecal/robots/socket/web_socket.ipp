@@ -11,11 +11,8 @@
 
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/linkage.hpp"
-#include "kinecal/robots/socket/web_socket.hpp"
-
-#ifdef KINECAL_HAVE_BOOST
 #include "kinecal/robots/socket/connection.ipp"
-#endif
+#include "kinecal/robots/socket/web_socket.hpp"
 
 namespace kinecal::detail {
 
@@ -48,8 +45,6 @@ KINECAL_INLINE SocketAddress parse_address(const std::string& url) {
   return address;
 }
 
-#ifdef KINECAL_HAVE_BOOST
-
 KINECAL_INLINE WebSocket::WebSocket(const BridgeOptions& options, TakeFrame take_frame,
                                     TakeEnd take_end)
     : connection_(
@@ -58,21 +53,6 @@ KINECAL_INLINE WebSocket::WebSocket(const BridgeOptions& options, TakeFrame take
 KINECAL_INLINE void WebSocket::send(bool is_text, std::string bytes) {
   connection_->send(is_text, std::move(bytes));
 }
-
-#else
-
-class WebSocket::Connection {};
-
-KINECAL_INLINE WebSocket::WebSocket(const BridgeOptions& options, TakeFrame, TakeEnd) {
-  (void)parse_address(options.url);
-  throw ConnectionError("bridge '" + options.url +
-                        "': kinecal was built without Boost; install libboost-dev and build it "
-                        "again");
-}
-
-KINECAL_INLINE void WebSocket::send(bool, std::string) {}
-
-#endif
 
 KINECAL_INLINE WebSocket::~WebSocket() = default;
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kinecal/files/cameras/read_camera_file.hpp"
+#include "kinecal/files/json/json_value.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/yaml/config_scalar.ipp"
@@ -90,17 +91,16 @@ namespace detail {
 /// Reads whether the calibration converged, and the first reason not to use it.
 inline void read_report(const std::filesystem::path& report, ResultFolder& result) {
   if (!std::filesystem::exists(report)) return;
-  const YamlNode file = yaml_map(read_text_file(report), report.string());
-  const YamlNode* converged = file.find("converged");
-  result.converged = converged != nullptr ? config_flag(*converged) : std::nullopt;
-  if (!result.converged) {
-    throw InputError(report.string() + ": does not say whether the result converged");
+  try {
+    const JsonValue file = JsonValue::parse(read_text_file(report));
+    if (!file.find("converged")) throw JsonError("does not say whether the result converged");
+    result.converged = file.flag("converged");
+    if (file.text_or("verdict", {}) != "do not use") return;
+    const auto reasons = file.find("reasons") ? file.texts("reasons") : std::vector<std::string>();
+    result.refusal = reasons.empty() ? "do not use" : reasons.front();
+  } catch (const JsonError& error) {
+    throw InputError(report.string() + ": " + error.what());
   }
-  const YamlNode* verdict = file.find("verdict");
-  if (verdict == nullptr || verdict->text != "do not use") return;
-  const YamlNode* reasons = file.find("reasons");
-  const bool has_reason = reasons != nullptr && reasons->is_list() && !reasons->items.empty();
-  result.refusal = has_reason ? reasons->items.front().text : "do not use";
 }
 
 }  // namespace detail

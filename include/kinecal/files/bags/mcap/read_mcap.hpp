@@ -2,6 +2,8 @@
 //
 // One chunk at a time is in memory, packed and unpacked.  Check sums of chunks and of the index are
 // checked; that of the whole file is not, since it would require reading everything.
+//
+// It is read by hand, as Debian 12 has no library for MCAP.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,7 +1,7 @@
 // Writes MCAP files as ROS 2 does: profile ros2, schemas ros2msg, messages in CDR; or of JSON.
 //
 // The same calls write the same bytes.  The index and the summary at the end list what the chunks
-// hold, so that readers go straight to what they want.
+// hold, so that readers go straight to what they want.  By hand: Debian 12 has no library for MCAP.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

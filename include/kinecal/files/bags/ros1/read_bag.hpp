@@ -1,6 +1,7 @@
 // Reads a ROS 1 bag, version 2.0, as `rosbag record` writes it, with one chunk at a time in memory.
 //
-// An interrupted recording is read as far as it goes, with a warning.
+// An interrupted recording is read as far as it goes, with a warning.  That is why it is read by hand:
+// rosbag_storage refuses it until `rosbag reindex` has rewritten it, and brings parts of ROS 1 with it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -6,7 +6,8 @@
 //   bag.write(samples, time, bytes);
 //   bag.close();
 //
-// The same calls write the same bytes.  Without close() the bag is like an interrupted recording.
+// The same calls write the same bytes.  Without close() the bag is like an interrupted recording.  By hand, as
+// it is read: rosbag_storage brings parts of ROS 1 with it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kinecal::detail {
@@ -20,7 +21,7 @@ struct JsonError : std::runtime_error {
 /// A value of a JSON text.  The library that reads it is seen only by json_value.ipp.
 class JsonValue {
  public:
-  /// @throws JsonError  if the text is not JSON, or kinecal was built without a JSON library
+  /// @throws JsonError  if the text is not JSON
   [[nodiscard]] static JsonValue parse(std::string_view text);
 
   /// A field of an object; nullopt if it is not there, null, or this is not an object.
@@ -28,7 +29,9 @@ class JsonValue {
 
   /// Fields of an object that must be there.
   /// @throws JsonError  naming a field that is missing or of another type
+  [[nodiscard]] JsonValue at(const std::string& field) const;
   [[nodiscard]] std::string text(const std::string& field) const;
+  [[nodiscard]] bool flag(const std::string& field) const;
   [[nodiscard]] double number(const std::string& field) const;
   [[nodiscard]] std::uint32_t id(const std::string& field) const;
   [[nodiscard]] std::int64_t integer(const std::string& field) const;
@@ -47,14 +50,18 @@ class JsonValue {
   [[nodiscard]] std::int64_t as_integer() const;  ///< also of 3.0; not of 0.5
   [[nodiscard]] std::uint32_t as_id() const;      ///< 0 to 2^32 - 1
   [[nodiscard]] bool is_text() const;
+  [[nodiscard]] std::vector<JsonValue> as_list() const;
+  [[nodiscard]] std::vector<double> as_numbers() const;
+  [[nodiscard]] std::vector<std::string> as_texts() const;
+  /// Fields of an object with their names, in their order.
+  [[nodiscard]] std::vector<std::pair<std::string, JsonValue>> fields() const;
 
  private:
   struct Tree;
   JsonValue(std::shared_ptr<const Tree> tree, const void* node, std::string place)
       : tree_(std::move(tree)), node_(node), place_(std::move(place)) {}
 
-  [[nodiscard]] JsonValue field(const std::string& field) const;
-  [[nodiscard]] std::vector<JsonValue> as_list() const;
+  [[nodiscard]] JsonValue inside(const void* node, const std::string& field) const;
   [[noreturn]] void fail(const std::string& expected) const;
 
   std::shared_ptr<const Tree> tree_;  ///< the whole text
@@ -62,11 +69,8 @@ class JsonValue {
   std::string place_;                 ///< "channels[0].id"
 };
 
-/// A text as JSON writes it, with quotes.  Bytes that are not UTF-8 become U+FFFD.
-[[nodiscard]] std::string json_text(const std::string& text);
-
 }  // namespace kinecal::detail
 
 #ifdef KINECAL_HEADER_ONLY
-#include "kinecal/robots/json_value.ipp"
+#include "kinecal/files/json/json_value.ipp"
 #endif

@@ -8,36 +8,32 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/json/json_value.hpp"
 #include "kinecal/linkage.hpp"
-#include "kinecal/robots/json_value.hpp"
 #include "kinecal/text/printable.hpp"
-
-#ifdef KINECAL_HAVE_JSON
-#include <nlohmann/json.hpp>
-#endif
 
 namespace kinecal::detail {
 
-#ifdef KINECAL_HAVE_JSON
-
 struct JsonValue::Tree {  // NOLINT(bugprone-exception-escape): moving JSON throws nothing
-  nlohmann::json json;
+  Json json;
 };
 
-[[nodiscard]] inline const nlohmann::json& json_at(const void* node) {
-  return *static_cast<const nlohmann::json*>(node);
+[[nodiscard]] inline const Json& json_at(const void* node) {
+  return *static_cast<const Json*>(node);
 }
 
 KINECAL_INLINE JsonValue JsonValue::parse(std::string_view text) {
   auto tree = std::make_shared<Tree>();
   try {
-    tree->json = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
+    tree->json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
     constexpr std::size_t kShown = 60;
     if (text.empty()) throw JsonError("it is an empty line");
     const std::size_t end =
@@ -49,7 +45,7 @@ KINECAL_INLINE JsonValue JsonValue::parse(std::string_view text) {
     throw JsonError(shown + (error.byte > text.size()
                                  ? ": it ends too early"
                                  : ", from character " + std::to_string(error.byte) + " on"));
-  } catch (const nlohmann::json::exception&) {  // 1e999
+  } catch (const Json::exception&) {  // 1e999
     throw JsonError("it has a number that is too large");
   }
   const void* root = &tree->json;
@@ -57,11 +53,23 @@ KINECAL_INLINE JsonValue JsonValue::parse(std::string_view text) {
 }
 
 KINECAL_INLINE std::optional<JsonValue> JsonValue::find(const std::string& field) const {
-  const nlohmann::json& json = json_at(node_);
+  const Json& json = json_at(node_);
   if (!json.is_object()) return std::nullopt;
   const auto found = json.find(field);
   if (found == json.end() || found->is_null()) return std::nullopt;
-  return JsonValue(tree_, &*found, place_.empty() ? field : place_ + "." + field);
+  return inside(&*found, field);
+}
+
+KINECAL_INLINE JsonValue JsonValue::inside(const void* node, const std::string& field) const {
+  return {tree_, node, place_.empty() ? field : place_ + "." + field};
+}
+
+KINECAL_INLINE std::vector<std::pair<std::string, JsonValue>> JsonValue::fields() const {
+  const Json& json = json_at(node_);
+  if (!json.is_object()) fail("an object");
+  std::vector<std::pair<std::string, JsonValue>> all;
+  for (const auto& [name, value] : json.items()) all.emplace_back(name, inside(&value, name));
+  return all;
 }
 
 KINECAL_INLINE bool JsonValue::is_text() const {
@@ -79,7 +87,7 @@ KINECAL_INLINE double JsonValue::as_number() const {
 }
 
 KINECAL_INLINE std::int64_t JsonValue::as_integer() const {
-  const nlohmann::json& json = json_at(node_);
+  const Json& json = json_at(node_);
   if (json.is_number_unsigned() &&
       json.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) {
     fail("a number below 2^63");
@@ -94,7 +102,7 @@ KINECAL_INLINE std::int64_t JsonValue::as_integer() const {
 KINECAL_INLINE std::vector<JsonValue> JsonValue::as_list() const {
   if (!json_at(node_).is_array()) fail("a list");
   std::vector<JsonValue> items;
-  for (const nlohmann::json& item : json_at(node_)) {
+  for (const Json& item : json_at(node_)) {
     items.push_back({tree_, &item, place_ + "[" + std::to_string(items.size()) + "]"});
   }
   return items;
@@ -107,46 +115,6 @@ KINECAL_INLINE void JsonValue::fail(const std::string& expected) const {
       "; expected " + expected);
 }
 
-KINECAL_INLINE std::string json_text(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-#else
-
-struct JsonValue::Tree {};
-
-KINECAL_INLINE JsonValue JsonValue::parse(std::string_view) {
-  throw JsonError(
-      "kinecal was built without a JSON library; install nlohmann-json3-dev and build it again");
-}
-
-KINECAL_INLINE std::optional<JsonValue> JsonValue::find(const std::string&) const {
-  return {};
-}
-KINECAL_INLINE bool JsonValue::is_text() const {
-  return false;
-}
-KINECAL_INLINE std::string JsonValue::as_text() const {
-  fail("a text");
-}
-KINECAL_INLINE double JsonValue::as_number() const {
-  fail("a number");
-}
-KINECAL_INLINE std::int64_t JsonValue::as_integer() const {
-  fail("a whole number");
-}
-KINECAL_INLINE std::vector<JsonValue> JsonValue::as_list() const {
-  fail("a list");
-}
-KINECAL_INLINE void JsonValue::fail(const std::string& expected) const {
-  throw JsonError(expected);
-}
-KINECAL_INLINE std::string json_text(const std::string& text) {
-  return "\"" + text + "\"";
-}
-
-#endif
-
 KINECAL_INLINE std::uint32_t JsonValue::as_id() const {
   const std::int64_t number = as_integer();
   if (number < 0 || number > std::int64_t{std::numeric_limits<std::uint32_t>::max()}) {
@@ -155,36 +123,47 @@ KINECAL_INLINE std::uint32_t JsonValue::as_id() const {
   return static_cast<std::uint32_t>(number);
 }
 
-KINECAL_INLINE JsonValue JsonValue::field(const std::string& field) const {
+KINECAL_INLINE JsonValue JsonValue::at(const std::string& field) const {
   if (auto found = find(field)) return *found;
   throw JsonError((place_.empty() ? "it" : "'" + printable(place_) + "'") + " has no field '" +
                   field + "'");
 }
 
 KINECAL_INLINE std::string JsonValue::text(const std::string& name) const {
-  return field(name).as_text();
+  return at(name).as_text();
 }
 KINECAL_INLINE double JsonValue::number(const std::string& name) const {
-  return field(name).as_number();
+  return at(name).as_number();
 }
 KINECAL_INLINE std::uint32_t JsonValue::id(const std::string& name) const {
-  return field(name).as_id();
+  return at(name).as_id();
 }
 KINECAL_INLINE std::int64_t JsonValue::integer(const std::string& name) const {
-  return field(name).as_integer();
+  return at(name).as_integer();
 }
 KINECAL_INLINE std::vector<JsonValue> JsonValue::list(const std::string& name) const {
-  return field(name).as_list();
+  return at(name).as_list();
 }
-KINECAL_INLINE std::vector<double> JsonValue::numbers(const std::string& name) const {
+KINECAL_INLINE bool JsonValue::flag(const std::string& name) const {
+  const JsonValue value = at(name);
+  if (!json_at(value.node_).is_boolean()) value.fail("true or false");
+  return json_at(value.node_).get<bool>();
+}
+KINECAL_INLINE std::vector<double> JsonValue::as_numbers() const {
   std::vector<double> numbers;
-  for (const JsonValue& item : list(name)) numbers.push_back(item.as_number());
+  for (const JsonValue& item : as_list()) numbers.push_back(item.as_number());
   return numbers;
 }
-KINECAL_INLINE std::vector<std::string> JsonValue::texts(const std::string& name) const {
+KINECAL_INLINE std::vector<std::string> JsonValue::as_texts() const {
   std::vector<std::string> texts;
-  for (const JsonValue& item : list(name)) texts.push_back(item.as_text());
+  for (const JsonValue& item : as_list()) texts.push_back(item.as_text());
   return texts;
+}
+KINECAL_INLINE std::vector<double> JsonValue::numbers(const std::string& name) const {
+  return at(name).as_numbers();
+}
+KINECAL_INLINE std::vector<std::string> JsonValue::texts(const std::string& name) const {
+  return at(name).as_texts();
 }
 KINECAL_INLINE std::string JsonValue::text_or(const std::string& name,
                                               const std::string& otherwise) const {
