@@ -15,12 +15,12 @@
 #include "input.hpp"
 #include "kinecal/config/doubts/judge_causes.hpp"
 #include "kinecal/report.hpp"
+#include "kinecal/text/counted.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "scene.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -18,11 +18,11 @@
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/report.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 #include "output.hpp"
 #include "process_group.hpp"
 #include "shard_folder.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

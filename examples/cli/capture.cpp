@@ -24,6 +24,7 @@
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/urdf/velocity_limits.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"
@@ -32,7 +33,6 @@
 #include "report.hpp"
 #include "robot_link.hpp"
 #include "truth.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -16,12 +16,12 @@
 #include "kinecal/capture/settling.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"
 #include "robot_link.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

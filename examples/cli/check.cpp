@@ -9,8 +9,8 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/trust/observability.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

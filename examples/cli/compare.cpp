@@ -14,12 +14,12 @@
 #include "kinecal/report/charts/parameters.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "output_file.hpp"
 #include "report.hpp"
 #include "result.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

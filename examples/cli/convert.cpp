@@ -1,6 +1,7 @@
 // kinecal convert: samples and poses from one format to another.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/files/recordings/convert.hpp"
+#include "kinecal/text/counted.hpp"
 
 #include <fmt/core.h>
 
@@ -19,7 +20,6 @@
 #include "kinecal/files/samples/write_samples.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

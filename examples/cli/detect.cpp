@@ -1,7 +1,6 @@
 // kinecal detect: samples from photographs with a table of joint positions, and from recordings.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/tools/detect/detect.hpp"
-
+#include "kinecal/text/counted.hpp"
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -15,10 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "board_turns.hpp"
 #include "commands.hpp"
 #include "input.hpp"
-#include "kinecal/evaluation/parallel.hpp"
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
@@ -27,22 +24,12 @@
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
-#include "look.hpp"
+#include "kinecal/tools/detect/detect_all.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {
-
-/// What is looked at, and by what.
-struct Task {
-  CaptureConfig config;
-  std::optional<Robot> robot;
-  std::optional<CameraInfo> camera;
-  std::vector<PosedImage> images;
-  std::vector<RecordedViews> recordings;
-};
 
 /// @throws InputError  if options do not go together
 void check_options(const DetectOptions& options) {
@@ -71,7 +58,7 @@ void check_links(const DetectOptions& options, const Robot& robot, Diagnostics& 
 }
 
 /// Errors of joints of the photographs that the robot does not have.
-void check_joints(const DetectOptions& options, const Task& task, Diagnostics& diagnostics) {
+void check_joints(const DetectOptions& options, const DetectionInput& task, Diagnostics& diagnostics) {
   if (task.images.empty() || !task.robot) return;
   std::vector<std::string> joints;
   for (const Joint& joint : task.robot->joints()) joints.push_back(joint.name);
@@ -135,27 +122,7 @@ void check_recordings(const std::vector<std::string>& bags) {
   }
 }
 
-/// The finders of a configuration.
-/// @param errors  receives those that cannot work
-std::vector<ViewFinder> make_finders(const Task& task, std::vector<std::string>& errors) {
-  std::vector<ViewFinder> finders;
-  for (const CaptureFinder& finder : task.config.finders) {
-    try {
-      if (!finder.region_frame.empty() && !task.robot) {
-        throw InputError(finder.place.str() + ": finder '" + finder.name +
-                         "' has a region in frame '" + finder.region_frame +
-                         "'; give the robot with --urdf");
-      }
-      finders.push_back(
-          view_finder(finder, task.robot ? on_robot(finder, *task.robot) : finder.settings));
-    } catch (const InputError& error) {
-      errors.emplace_back(error.what());
-    }
-  }
-  return finders;
-}
-
-void read_recordings(const DetectOptions& options, Task& task, Diagnostics& diagnostics) {
+void read_recordings(const DetectOptions& options, DetectionInput& task, Diagnostics& diagnostics) {
   for (const std::string& bag : options.bags) {
     RecordingOptions recording{.path = bag, .frame = options.frame, .camera = task.camera};
     for (const std::string& topic : options.joints) {
@@ -169,8 +136,10 @@ void read_recordings(const DetectOptions& options, Task& task, Diagnostics& diag
   }
 }
 
-Task read_task(const DetectOptions& options, Diagnostics& diagnostics) {
-  Task task;
+DetectionInput read_task(const DetectOptions& options, Diagnostics& diagnostics) {
+  DetectionInput task;
+  task.frame = options.frame;
+  task.links = {options.board_link, options.camera_link};
   task.config = read_capture_config(options.config, diagnostics);
   if (!options.urdf.empty()) {
     task.robot = read_urdf(options.urdf);
@@ -187,44 +156,21 @@ Task read_task(const DetectOptions& options, Diagnostics& diagnostics) {
   return task;
 }
 
-std::vector<Look> look_at_all(const Task& task, const DetectOptions& options) {
-  const auto finders = [&task] {
-    std::vector<std::string> errors;  // were reported: there are none
-    return make_finders(task, errors);
-  };
-  const LookOptions how{finders, detail::number_of_threads(options.threads),
-                        !options.sheet.empty()};
-  std::vector<Look> all;
-  const auto add = [&all](std::vector<Look> more) {
-    all.insert(all.end(), std::make_move_iterator(more.begin()),
-               std::make_move_iterator(more.end()));
-  };
-  if (!task.images.empty()) add(look_at(task.images, task.camera, options.frame, how));
-  for (const RecordedViews& recording : task.recordings) add(look_at(recording, how));
-  return all;
-}
-
-/// Takes samples and pictures from what was found, and prints what was refused.
-/// @returns  how many features were found, in how many photographs or standstills
-std::pair<std::size_t, std::size_t> collect(std::vector<Look> looks, std::vector<Sample>& samples,
-                                            std::vector<Thumbnail>& thumbnails) {
-  std::size_t features = 0, used = 0, single = 0;
+/// Prints what was refused, and what a single image says.
+void print_refusals(const std::vector<Look>& looks) {
+  std::size_t single = 0;
   std::map<std::string, std::size_t> refusals;  // how often, if not yet printed
   for (const Look& look : looks) {
     for (const std::string& refused : look.refused) ++refusals[refused];
   }
-  for (Look& look : looks) {
-    if (!look.samples.empty() && !look.compared) ++single;
+  for (const Look& look : looks) {
+    if (look.found && !look.compared) ++single;
     for (const std::string& refused : look.refused) {
       const std::size_t others = std::exchange(refusals[refused], 0);
       if (others == 0) continue;
       fmt::print(stderr, "warning: {}{}\n", printable(look.source + ": " + refused),
                  others > 1 ? " (and in " + counted(others - 1, "other view") + ")" : "");
     }
-    features += look.features;
-    if (!look.samples.empty()) ++used;
-    std::move(look.samples.begin(), look.samples.end(), std::back_inserter(samples));
-    std::move(look.thumbnails.begin(), look.thumbnails.end(), std::back_inserter(thumbnails));
   }
   if (single > 0) {
     fmt::print(stderr,
@@ -232,7 +178,15 @@ std::pair<std::size_t, std::size_t> collect(std::vector<Look> looks, std::vector
                "images a second\n",
                single == 1 ? "1 standstill is" : std::to_string(single) + " standstills are");
   }
-  return {features, used};
+}
+
+/// The pictures of all looks.
+std::vector<Thumbnail> thumbnails_of(std::vector<Look> looks) {
+  std::vector<Thumbnail> all;
+  for (Look& look : looks) {
+    std::move(look.thumbnails.begin(), look.thumbnails.end(), std::back_inserter(all));
+  }
+  return all;
 }
 
 /// "; 'big' in 16, 'small' in 7" of several targets, by the frames of their features; else empty.
@@ -273,31 +227,34 @@ int detect(const DetectOptions& options) {
   if (!options.sheet.empty()) check_picture(options.sheet, inputs, options.force);
   check_recordings(options.bags);
   Diagnostics diagnostics;
-  const Task task = read_task(options, diagnostics);
+  const DetectionInput task = read_task(options, diagnostics);
   print(diagnostics);
   if (!diagnostics.errors.empty()) return kBadInput;
-  std::vector<Look> looks = look_at_all(task, options);
+  Diagnostics turns;
+  DetectedSamples found;
+  {
+    ProgressLine line;
+    found = detect_all(task, {options.threads, !options.sheet.empty(), line.meter()}, turns);
+  }
+  print_refusals(found.looks);
+  print(turns);
+  const std::size_t count = found.looks.size();
   const std::string noun = options.bags.empty()     ? "image"
                            : options.images.empty() ? "standstill"
                                                     : "view";
-  const std::string seen = counted(looks.size(), noun);
-  const std::size_t count = looks.size();
-  std::vector<Sample> samples;
-  std::vector<Thumbnail> thumbnails;
-  const auto [features, used] = collect(std::move(looks), samples, thumbnails);
-  Diagnostics turns;
-  turn_boards(task.config.finders, task.robot, {options.board_link, options.camera_link}, samples,
-              turns);
-  print(turns);
-  if (!options.sheet.empty()) write_file(options.sheet, contact_sheet(thumbnails));
+  const std::string seen = counted(count, noun);
+  const std::vector<Sample>& samples = found.samples;
+  if (!options.sheet.empty()) {
+    write_file(options.sheet, contact_sheet(thumbnails_of(std::move(found.looks))));
+  }
   if (samples.empty()) {
     fmt::print(stderr, "error: nothing was found in {}; {} was not written\n", seen,
                options.output);
     return kBadInput;
   }
   write(options, samples);
-  fmt::print("wrote {}: {} of {}: {}; {} refused{}\n", options.output, used, seen,
-             counted(features, "feature"), count - used, printable(count_of_targets(samples)));
+  fmt::print("wrote {}: {} of {}: {}; {} refused{}\n", options.output, found.used, seen,
+             counted(found.features, "feature"), count - found.used, printable(count_of_targets(samples)));
   if (!options.sheet.empty()) fmt::print("wrote {}\n", options.sheet);
   return kDone;
 }

@@ -8,10 +8,10 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/files/json/json_text.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

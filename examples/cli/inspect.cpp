@@ -11,8 +11,8 @@
 #include "kinecal/files/recordings/bag_topics.hpp"
 #include "kinecal/files/recordings/pose_messages.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

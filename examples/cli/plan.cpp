@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "output_file.hpp"
@@ -20,7 +21,6 @@
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
 #include "remaining_error.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

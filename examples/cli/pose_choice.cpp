@@ -11,8 +11,8 @@
 #include <set>
 
 #include "kinecal/files/urdf/velocity_limits.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/trust/pose_change.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

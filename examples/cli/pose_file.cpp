@@ -15,9 +15,9 @@
 #include "kinecal/files/recordings/pose_messages.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "output_file.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -8,9 +8,9 @@
 #include <memory>
 #include <span>
 
+#include "kinecal/text/counted.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "pose_choice.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -8,12 +8,12 @@
 
 #include "commands.hpp"
 #include "kinecal/study/study_summary.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
 #include "remaining_error.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

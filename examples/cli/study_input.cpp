@@ -10,12 +10,12 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/tools/simulation/pose_samples.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/ruined.hpp"
 #include "pose_file.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

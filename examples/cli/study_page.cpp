@@ -12,8 +12,8 @@
 #include "kinecal/report/charts/position_spread.hpp"
 #include "kinecal/report/charts/spread.hpp"
 #include "kinecal/report/html.hpp"
+#include "kinecal/text/counted.hpp"
 #include "report.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/charts/spread.hpp"
 #include "kinecal/report/text.hpp"
-#include "words.hpp"
+#include "kinecal/text/counted.hpp"
 
 namespace kinecal::cli {
 namespace {

@@ -10,11 +10,11 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/files/json/json_text.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
-#include "words.hpp"
 
 namespace kinecal::cli {
 namespace {

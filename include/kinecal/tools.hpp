@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/tools/detect/board_turns.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"
+#include "kinecal/tools/detect/detect_all.hpp"
 #include "kinecal/tools/detect/image_folder.hpp"
 #include "kinecal/tools/detect/joint_track.hpp"
 #include "kinecal/tools/detect/joint_tracks.hpp"
+#include "kinecal/tools/detect/look.hpp"
 #include "kinecal/tools/detect/recorded_views.hpp"
 #include "kinecal/tools/detect/still_view.hpp"
 #include "kinecal/tools/detect/view_topics.hpp"

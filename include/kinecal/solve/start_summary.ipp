@@ -35,7 +35,7 @@ KINECAL_INLINE void add_minimum(StartSummary& summary, double cost, double round
   return all;
 }
 
-[[nodiscard]] inline std::string counted(int count, const char* one, const char* several) {
+[[nodiscard]] inline std::string count_of(int count, const char* one, const char* several) {
   return std::to_string(count) + " " + (count == 1 ? one : several);
 }
 
@@ -46,7 +46,7 @@ inline void list_minima(std::ostream& out, const StartSummary& summary) {
     out << "0 minima";
     return;
   }
-  out << counted(static_cast<int>(minima.size()), "minimum, cost", "minima, costs");
+  out << count_of(static_cast<int>(minima.size()), "minimum, cost", "minima, costs");
   for (std::size_t i = 0; i < std::min(kListed, minima.size()); ++i) {
     out << (i == 0 ? " " : ", ") << minima[i].cost;
     if (minima.size() > 1 && static_cast<int>(i) == summary.taken) out << " (taken)";
@@ -69,7 +69,7 @@ KINECAL_INLINE std::string to_string(const StartSummary& summary) {
   }
   if (summary.random_starts > 0) {
     out << (summary.starts > 0 ? ", and " : "")
-        << detail::counted(summary.random_starts, "random start", "random starts")
+        << detail::count_of(summary.random_starts, "random start", "random starts")
         << " (joints within " << random_start::kJointDegrees << " degrees or "
         << 100.0 * random_start::kJointMetres << " cm, frames within "
         << random_start::kFrameDegrees << " degrees and " << 100.0 * random_start::kFrameMetres
@@ -78,7 +78,7 @@ KINECAL_INLINE std::string to_string(const StartSummary& summary) {
   out << "; ";
   detail::list_minima(out, summary);
   if (summary.failed > 0) {
-    out << "; " << detail::counted(summary.failed, "solve", "solves") << " ended in none";
+    out << "; " << detail::count_of(summary.failed, "solve", "solves") << " ended in none";
   }
   return out.str();
 }

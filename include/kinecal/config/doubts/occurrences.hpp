@@ -10,6 +10,7 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/samples/sample.hpp"
+#include "kinecal/text/counted.hpp"
 
 namespace kinecal::detail {
 
@@ -18,11 +19,6 @@ namespace kinecal::detail {
 [[nodiscard]] inline SourceLocation place_of(std::span<const Sample> samples, std::size_t index) {
   const std::string& source = samples[index].source;
   return {source.empty() ? "sample " + std::to_string(index) : source, 0};
-}
-
-/// "1 sample", "3 samples".
-[[nodiscard]] inline std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 /// "0.11 mm", "0.3 px".

@@ -1,5 +1,6 @@
+// Definitions of look.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "look.hpp"
+#pragma once
 
 #include <algorithm>
 #include <filesystem>
@@ -8,10 +9,11 @@
 #include <utility>
 
 #include "kinecal/evaluation/parallel.hpp"
-#include "progress.hpp"
+#include "kinecal/tools/detect/look.hpp"
 
-namespace kinecal::cli {
-namespace {
+namespace kinecal {
+
+namespace detail {
 
 /// Finders of each camera.
 using CameraFinders = std::vector<std::vector<ViewFinder>>;
@@ -44,7 +46,7 @@ class ThreadFinders {
 };
 
 /// Adds observations of another camera at the same moment.
-void join(std::vector<Sample>& all, std::vector<Sample> more) {
+inline void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
   for (Sample& sample : more) {
     const auto is_free = [&](const Sample& other) {
       return std::none_of(
@@ -62,7 +64,7 @@ void join(std::vector<Sample>& all, std::vector<Sample> more) {
 }
 
 /// The picture of a view; of none, a gray one.
-Thumbnail picture(const std::optional<View>& view, std::vector<Mark> marks, const std::string& name,
+[[nodiscard]] inline Thumbnail view_picture(const std::optional<View>& view, std::vector<Mark> marks, const std::string& name,
                   const std::string& reasons) {
   constexpr std::uint8_t kGray = 200;
   if (view && !view->image.empty()) return thumbnail(view->image, std::move(marks), name, reasons);
@@ -71,7 +73,7 @@ Thumbnail picture(const std::optional<View>& view, std::vector<Mark> marks, cons
 
 /// Looks at all views of one moment; the joints are those of the first.
 /// @param source  of the samples, for messages
-Look look(std::vector<RecordedView> views, const CameraFinders& finders, const std::string& source,
+[[nodiscard]] inline Look look_once(std::vector<RecordedView> views, const CameraFinders& finders, const std::string& source,
           const std::string& name, bool thumbnails) {
   Look all;
   all.source = name;
@@ -95,22 +97,20 @@ Look look(std::vector<RecordedView> views, const CameraFinders& finders, const s
     }
     all.features += found.features;
     if (thumbnails) {
-      all.thumbnails.push_back(picture(views[c].view, std::move(found.marks), title, reasons));
+      all.thumbnails.push_back(view_picture(views[c].view, std::move(found.marks), title, reasons));
     }
-    join(all.samples, std::move(found.samples));
+    join_observations(all.samples, std::move(found.samples));
   }
   return all;
 }
 
-}  // namespace
+}  // namespace detail
 
-std::vector<Look> look_at(const std::vector<PosedImage>& images,
+KINECAL_INLINE std::vector<Look> look_at(const std::vector<PosedImage>& images,
                           const std::optional<CameraInfo>& camera, const std::string& frame,
                           const LookOptions& options) {
   const int count = static_cast<int>(images.size());
-  ThreadFinders finders(options, 1, [](std::size_t) { return 0; });
-  ProgressLine line;
-  const ProgressMeter meter = line.meter();
+  detail::ThreadFinders finders(options, 1, [](std::size_t) { return 0; });
   std::mutex metering;
   int done = 0;
   std::vector<Look> looks(images.size());
@@ -125,16 +125,16 @@ std::vector<Look> look_at(const std::vector<PosedImage>& images,
       view.refusal = text.starts_with(name) ? text.substr(name.size()) : text;
     }
     looks[static_cast<std::size_t>(i)] =
-        look({std::move(view)}, finders.of(thread), image.source, image.path, options.thumbnails);
+        detail::look_once({std::move(view)}, finders.of(thread), image.source, image.path, options.thumbnails);
     const std::scoped_lock lock(metering);
-    if (meter) meter(static_cast<double>(++done) / count, "detecting");
+    if (options.meter) options.meter(static_cast<double>(++done) / count, "detecting");
   });
   return looks;
 }
 
-std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& options) {
+KINECAL_INLINE std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& options) {
   const std::size_t cameras = recording.cameras().size();
-  ThreadFinders finders(options, cameras, [&](std::size_t f) { return recording.camera_of(f); });
+  detail::ThreadFinders finders(options, cameras, [&](std::size_t f) { return recording.camera_of(f); });
   std::vector<Look> looks(recording.standstills());
   std::vector<RecordedStandstill> batch;  // those in memory
   std::size_t bytes = 0;                  // of their messages
@@ -143,14 +143,13 @@ std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& opt
       RecordedStandstill& standstill = batch[static_cast<std::size_t>(i)];
       std::vector<RecordedView> views;
       for (std::size_t c = 0; c < cameras; ++c) views.push_back(recording.view(standstill, c));
-      looks[standstill.number] = look(std::move(views), finders.of(thread), standstill.source,
+      looks[standstill.number] = detail::look_once(std::move(views), finders.of(thread), standstill.source,
                                       standstill.source, options.thumbnails);
       standstill.views.clear();
     });
     batch.clear();
     bytes = 0;
   };
-  ProgressLine line;
   recording.read(
       [&](RecordedStandstill standstill) {
         constexpr std::size_t kMost = std::size_t{1} << 29;
@@ -158,9 +157,9 @@ std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& opt
         batch.push_back(std::move(standstill));
         if (static_cast<int>(batch.size()) >= options.threads || bytes > kMost) finish_batch();
       },
-      line.meter());
+      options.meter);
   finish_batch();
   return looks;
 }
 
-}  // namespace kinecal::cli
+}  // namespace kinecal

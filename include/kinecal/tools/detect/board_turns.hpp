@@ -8,9 +8,10 @@
 
 #include "kinecal/config/capture/capture_config.hpp"
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
-namespace kinecal::cli {
+namespace kinecal {
 
 /// Links that camera and board are fixed to.
 struct BoardLinks {
@@ -23,4 +24,8 @@ struct BoardLinks {
 void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<Robot>& robot,
                  const BoardLinks& links, std::vector<Sample>& samples, Diagnostics& diagnostics);
 
-}  // namespace kinecal::cli
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/detect/board_turns.ipp"
+#endif

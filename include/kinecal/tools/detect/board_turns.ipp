@@ -1,5 +1,6 @@
+// Definitions of board_turns.hpp.
 // SPDX-License-Identifier: Apache-2.0
-#include "board_turns.hpp"
+#pragma once
 
 #include <fmt/core.h>
 
@@ -7,13 +8,15 @@
 
 #include "kinecal/capture/board_flips.hpp"
 #include "kinecal/capture/board_order.hpp"
-#include "words.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/tools/detect/board_turns.hpp"
 
-namespace kinecal::cli {
-namespace {
+namespace kinecal {
+
+namespace detail {
 
 /// Frame of a camera's features; empty if there are none.
-std::string frame_of(const std::string& camera, const std::vector<Sample>& samples) {
+[[nodiscard]] inline std::string camera_frame(const std::string& camera, const std::vector<Sample>& samples) {
   for (const Sample& sample : samples) {
     const Observation* seen = sample.observation(camera);
     if (seen != nullptr && !seen->features.empty()) return seen->features.front().frame;
@@ -22,18 +25,18 @@ std::string frame_of(const std::string& camera, const std::vector<Sample>& sampl
 }
 
 /// The first of these that the robot has; empty if there is none.
-std::string link_among(const Robot& robot, const std::string& wanted, const std::string& other) {
+[[nodiscard]] inline std::string link_among(const Robot& robot, const std::string& wanted, const std::string& other) {
   if (!wanted.empty()) return wanted;
   return robot.has_link(other) ? other : "";
 }
 
-std::string text_of(const CaptureFinder& finder, const CheckerboardSettings& board) {
+[[nodiscard]] inline std::string alike_text(const CaptureFinder& finder, const CheckerboardSettings& board) {
   return fmt::format("finder '{}': a board of {}x{} corners looks the same when it is turned",
                      finder.name, board.points_x, board.points_y);
 }
 
 /// What was turned, in words.
-void report(const CaptureFinder& finder, const Flips& flips, const std::vector<Sample>& samples,
+inline void report_turns(const CaptureFinder& finder, const Flips& flips, const std::vector<Sample>& samples,
             Diagnostics& diagnostics) {
   constexpr int kQuarter = 90;  // degrees
   std::string turned, doubtful;
@@ -61,9 +64,9 @@ void report(const CaptureFinder& finder, const Flips& flips, const std::vector<S
   }
 }
 
-}  // namespace
+}  // namespace detail
 
-void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<Robot>& robot,
+KINECAL_INLINE void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<Robot>& robot,
                  const BoardLinks& links, std::vector<Sample>& samples, Diagnostics& diagnostics) {
   constexpr int kFullTurn = 4;  // quarters
   for (const CaptureFinder& finder : finders) {
@@ -71,13 +74,13 @@ void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<
     if (board == nullptr || turns_alike(board->points_x, board->points_y) == kFullTurn) continue;
     std::string in, link;
     if (robot) {
-      in = link_among(*robot, links.board, board->target.frame);
-      link = link_among(*robot, links.camera, frame_of(board->target.camera_sensor, samples));
+      in = detail::link_among(*robot, links.board, board->target.frame);
+      link = detail::link_among(*robot, links.camera, detail::camera_frame(board->target.camera_sensor, samples));
     }
     if (in.empty() || link.empty()) {
       diagnostics.warning(
           finder.place,
-          text_of(finder, *board) +
+          detail::alike_text(finder, *board) +
               "; x is taken as the direction nearest to the image's right. Give --urdf, "
               "--board-link "
               "and --camera-link to have turned boards put right, leave out images in which it is "
@@ -86,9 +89,9 @@ void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<
     }
     try {
       const auto poses = link_poses(*robot, in, link, samples);
-      report(finder, resolve_flips(samples, *board, poses), samples, diagnostics);
+      detail::report_turns(finder, resolve_flips(samples, *board, poses), samples, diagnostics);
     } catch (const std::exception& error) {
-      diagnostics.warning(finder.place, text_of(finder, *board) +
+      diagnostics.warning(finder.place, detail::alike_text(finder, *board) +
                                             ", and turned ones cannot be put "
                                             "right: " +
                                             error.what());
@@ -96,4 +99,4 @@ void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<
   }
 }
 
-}  // namespace kinecal::cli
+}  // namespace kinecal

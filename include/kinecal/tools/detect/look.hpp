@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/linkage.hpp"
+#include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"
 #include "kinecal/tools/detect/image_folder.hpp"
 #include "kinecal/tools/detect/recorded_views.hpp"
 
-namespace kinecal::cli {
+namespace kinecal {
 
 /// Makes the finders of a configuration.  Each thread has its own, since libraries keep state.
 using MakeFinders = std::function<std::vector<ViewFinder>()>;
@@ -21,13 +23,15 @@ using MakeFinders = std::function<std::vector<ViewFinder>()>;
 struct LookOptions {
   MakeFinders finders;
   int threads = 1;
-  bool thumbnails = false;  ///< whether they are wanted
+  bool thumbnails = false;   ///< whether they are wanted
+  ProgressMeter meter = {};  ///< called now and then
 };
 
 /// What was found in a photograph, or in all views of a standstill.
 struct Look {
   std::string source;           ///< "images/0001.png", "drive.bag at 12.300 s"
   std::vector<Sample> samples;  ///< none if nothing was found
+  bool found = false;           ///< samples were found, also if they are kept elsewhere
   std::size_t features = 0;
   std::vector<std::string>
       refused;  ///< views that were not looked at, and finders, with their reasons
@@ -45,4 +49,8 @@ struct Look {
 /// @returns  in the order of time, whatever the number of threads
 [[nodiscard]] std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& options);
 
-}  // namespace kinecal::cli
+}  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/tools/detect/look.ipp"
+#endif
