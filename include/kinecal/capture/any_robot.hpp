@@ -1,4 +1,4 @@
-// A robot whose parts are chosen at run time: simulated, over a network, or a program of the user's.
+// A robot whose parts are chosen at run time: simulated, over a network, or your own program.
 //
 // AnyArm, AnyCamera and AnyLamp are models of the concepts and hold any other model.
 // SPDX-License-Identifier: Apache-2.0
@@ -39,7 +39,7 @@ struct AnyLamp {
 
 static_assert(Arm<AnyArm> && Camera<AnyCamera> && Lamp<AnyLamp>);
 
-/// A robot to be captured, and what it holds alive.
+/// A robot to capture, and the object that owns its parts.
 struct AnyRobot {
   AnyArm arm;
   std::map<std::string, AnyCamera> cameras;  ///< by the name of the finder that looks through it

@@ -1,11 +1,11 @@
-// Finds AprilTags, a grid or single ones on one target, also when only some are in view: a Finder.
+// A Finder for AprilTags, a grid or single ones on one target; some tags may be out of view.
 //
 //   const AprilTagFinder finder({.columns = 6, .rows = 6, .size = 0.088, .spacing = 0.3});
 //
-// A grid is that of Kalibr: the tag of the first id is at the bottom left, ids go to the right, then
-// up; the frame of the target is at the outer bottom left corner of that tag, x right, y up, z towards
-// the viewer.  Tag k has the corners 4 k (bottom left), 4 k + 1 (bottom right), 4 k + 2 (top right) and
-// 4 k + 3 (top left): their ids.  Tags that are not of the target are left alone.
+// The grid is Kalibr's: the tag of the first id is at the bottom left, ids go to the right, then
+// up.  The frame of the target is at the outer bottom left corner of that tag, x right, y up, z
+// towards the viewer.  The corners of tag k have the ids 4 k (bottom left), 4 k + 1 (bottom right),
+// 4 k + 2 (top right) and 4 k + 3 (top left).  Tags that do not belong to the target are ignored.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace kinecal {
 
-/// A tag at a place of its own, upright as in a grid.
+/// A tag at its own place, upright as in a grid.
 struct PlacedTag {
   int id = 0;
   double size = 0.0;                   ///< side of its black border, metres
@@ -27,35 +27,35 @@ struct PlacedTag {
 
 /// A target with tags.
 struct AprilTagSettings {
-  int columns = 0;                   ///< of the grid; 0: there is none, only `tags`
+  int columns = 0;                   ///< of the grid; 0: no grid, only `tags`
   int rows = 0;                      ///< of the grid
   double size = 0.0;                 ///< side of a tag's black border, metres
-  double spacing = 0.3;              ///< gap between tags, as a share of the size (tagSpacing)
+  double spacing = 0.3;              ///< gap between tags, as a fraction of the size (tagSpacing)
   int first_id = 0;                  ///< of the tag at the bottom left
-  std::vector<PlacedTag> tags = {};  ///< in place of a grid or beside it
+  std::vector<PlacedTag> tags = {};  ///< instead of a grid, or besides it
   std::string family = "tag36h11";   ///< one of april_tag_families()
   int border = 1;                    ///< bits of the black border: 2 in Kalibr's own PDFs
-  int max_wrong_bits = 1;            ///< of a tag's code, 0 to 2
-  double min_side = 24.0;            ///< of a tag, pixels; smaller ones are left out
+  int max_wrong_bits = 1;            ///< tolerated in a tag's code, 0 to 2
+  double min_side = 24.0;            ///< of a tag, pixels; ignores smaller ones
   int min_tags = 1;                  ///< that must be seen
-  double decimate = 2.0;             ///< tags are searched in an image smaller by this factor
-  TargetSettings target = {};        ///< its sensors and what is demanded of its image
+  double decimate = 2.0;             ///< searches an image smaller by this factor
+  TargetSettings target = {};        ///< its sensors, and requirements on its image
 };
 
 /// Names of the families of tags.
 [[nodiscard]] const std::vector<std::string>& april_tag_families();
 
-/// Finds the tags of one target, by libapriltag on one thread.  One finder is for one thread at a time.
+/// Finds the tags of one target with libapriltag, on one thread.  Not thread-safe.
 class AprilTagFinder {
  public:
-  /// @throws std::invalid_argument  if the family is unknown, there is no tag, two have one id, a size
-  ///                                is not positive, or check_target() refuses
+  /// @throws std::invalid_argument  if the family is unknown, there is no tag, two have the same
+  ///                                id, a size is not positive, or check_target() throws
   explicit AprilTagFinder(AprilTagSettings settings);
 
-  /// The tags in a view, or why there are none: not there, a tag twice, too small, blurred, ...
+  /// The tags in a view, or why there are none: not visible, a tag twice, too small, blurred, ...
   [[nodiscard]] Found find(const View& view) const;
 
-  /// As it was constructed.
+  /// The settings.
   [[nodiscard]] const AprilTagSettings& settings() const { return settings_; }
   /// All tags of the target, in the order of their ids.
   [[nodiscard]] const std::vector<PlacedTag>& tags() const { return tags_; }

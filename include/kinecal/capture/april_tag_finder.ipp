@@ -58,7 +58,7 @@ KINECAL_INLINE void check_tags(const AprilTagSettings& s, const std::vector<Plac
   }
 }
 
-/// What of the tags in an image is of use.
+/// The usable tags in an image.
 struct TagsSeen {
   std::vector<TargetCorner> corners;
   std::vector<EdgeMeasure> edges[2];

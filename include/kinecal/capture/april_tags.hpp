@@ -1,4 +1,4 @@
-// What kinecal takes from libapriltag: tags in an image, with their corners between the pixels.
+// Wraps libapriltag: finds tags in an image, with sub-pixel corners.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,15 +25,16 @@ struct SeenTag {
 class TagReader {
  public:
   /// @param border      bits of the black border
-  /// @param wrong_bits  of a code that are corrected
-  /// @param decimate    by how much smaller the searched image is
-  /// @throws std::invalid_argument  if the family is unknown, or has a border that cannot be changed
+  /// @param wrong_bits  number of code bits to correct
+  /// @param decimate    factor by which the searched image is smaller
+  /// @throws std::invalid_argument  if the family is unknown, or has a border that cannot be
+  ///                                changed
   TagReader(const std::string& family, int border, int wrong_bits, double decimate);
 
-  /// Tags in an image; none in one that is less than 32 pixels wide or high.
+  /// The tags in an image; none if it is less than 32 pixels wide or high.
   [[nodiscard]] std::vector<SeenTag> read(const GrayImage& image) const;
 
-  /// Cells along the side of a tag, border to border.
+  /// Number of cells along a tag's side, including the border.
   [[nodiscard]] double cells() const;
 
  private:

@@ -1,14 +1,14 @@
-// Which way round a board is that looks the same when it is turned, decided over a whole session.
+// Resolves the orientation of boards that look the same when rotated, over a whole session.
 //
-// Let M be the pose of the camera's link in the link that holds the board, by the joints, and B the
-// board's pose in the camera.  Wherever camera and board are mounted, for two samples i and j
+// Let M be the pose of the camera's link in the link that holds the board, from the joints, and B
+// the board's pose in the camera.  Wherever camera and board are mounted, for two samples i and j
 //
-//   M_j^-1 M_i  and  B_j B_i^-1   turn by the same angle:
+//   M_j^-1 M_i  and  B_j B_i^-1   rotate by the same angle:
 //
-// they are one motion in two frames.  If board i is turned about its normal against board j, the angle
-// differs nearly always.  So each pair of samples says how they are turned to each other, and the turns
-// are those with which most pairs agree.  It needs no calibration: a nominal robot will do, and neither
-// mount must be known.
+// they are one motion in two frames.  If board i is rotated about its normal against board j, the
+// angles almost always differ.  So each pair of samples votes on its relative rotation, and the
+// rotations with the most votes win.  This needs no calibration: a nominal robot is enough, and
+// neither mount must be known.
 // Source: Shiu and Ahmad, Calibration of Wrist-Mounted Robotic Sensors, 1989 (A X = X B).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,24 +23,26 @@
 
 namespace kinecal {
 
-/// How boards were turned.
+/// Rotations of boards.
 struct Flips {
-  std::vector<int> quarter_turns;      ///< of each sample's board: 0 if it stayed, or is not there
-  std::vector<std::size_t> undecided;  ///< samples whose board fits two ways about as well
+  std::vector<int> quarter_turns;      ///< of each sample's board: 0 if unchanged or absent
+  std::vector<std::size_t> undecided;  ///< samples whose board fits two orientations equally well
 };
 
-/// Turns boards that look alike so that all samples show them the same way round.  What most samples
-/// have stays.  Samples without both sensors, or with a part of the board only, are left alone.
+/// Rotates boards of ambiguous orientation so that all samples agree.  The orientation of most
+/// samples stays.  Ignores samples without both sensors, or with only a part of the board.
 /// @param samples             the camera's features are renumbered
 /// @param board               its size and its sensors, as its finder has them
-/// @param board_T_camera_link per sample: pose of the camera's link in the link that holds the board,
+/// @param board_T_camera_link per sample: pose of the camera's link in the link that holds the
+/// board,
 ///                            from the joints
-/// @throws std::invalid_argument  if there are not as many poses as samples
+/// @throws std::invalid_argument  if the numbers of poses and samples differ
 Flips resolve_flips(std::span<Sample> samples, const CheckerboardSettings& board,
                     std::span<const Pose<double>> board_T_camera_link);
 
-/// Poses of one link in another, from the joints of each sample and a robot as its URDF says.
-/// @throws RobotError  if no chain joins them;  std::invalid_argument  if a joint was not measured
+/// Poses of one link in another, from the joints of each sample and a nominal robot.
+/// @throws RobotError  if no chain connects them;  std::invalid_argument  if a joint was not
+///                     measured
 [[nodiscard]] std::vector<Pose<double>> link_poses(const Robot& robot, const std::string& in,
                                                    const std::string& link,
                                                    std::span<const Sample> samples);

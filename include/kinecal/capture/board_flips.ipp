@@ -26,7 +26,7 @@ namespace detail {
   return rays;
 }
 
-/// camera_T_board of a whole board whose corners are in order; nullopt if it is not to be had.
+/// camera_T_board of a whole board with ordered corners; nullopt if it cannot be computed.
 [[nodiscard]] KINECAL_INLINE std::optional<Pose<double>> board_pose(
     const Sample& sample, const CheckerboardSettings& board) {
   const Observation* camera = sample.observation(board.target.camera_sensor);
@@ -53,7 +53,7 @@ namespace detail {
   }
 }
 
-/// Renumbers a camera's corners as those of the board turned back.
+/// Renumbers a camera's corners as if the board were rotated back.
 KINECAL_INLINE void turn_board(Observation& camera, const CheckerboardSettings& board, int turns) {
   const std::vector<Feature> seen = camera.features;
   const auto order = turned_order(board.points_x, board.points_y, turns);

@@ -57,7 +57,7 @@ KINECAL_INLINE void order_corners(const GrayImage& image, int columns, int rows,
   const std::size_t across = static_cast<std::size_t>(columns) - 1;
   const std::size_t down = (static_cast<std::size_t>(rows) - 1) * static_cast<std::size_t>(columns);
   const Eigen::Vector2d x = corners[across] - corners[0], y = corners[down] - corners[0];
-  if (x.x() * y.y() - x.y() * y.x() < 0.0) {  // seen in a mirror: read each row backwards
+  if (x.x() * y.y() - x.y() * y.x() < 0.0) {  // mirrored: read each row backwards
     for (auto row = corners.begin(); row != corners.end(); row += columns) {
       std::reverse(row, row + columns);
     }

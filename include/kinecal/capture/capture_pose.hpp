@@ -7,15 +7,14 @@
 
 namespace kinecal {
 
-/// One pose, and the finders that look for features there.
+/// One pose, and the finders to run in it.
 struct CapturePose {
-  std::vector<std::string>
-      joint_names;                    ///< the joints that move there; none: wherever the robot is
-  std::vector<double> positions;      ///< radians or metres, in the order of the names
-  std::vector<std::string> features;  ///< names of the finders; none: all
-  std::string source = {};            ///< "poses.yaml:3", for messages; empty if it has no file
+  std::vector<std::string> joint_names;  ///< the joints to move; empty: the robot stays where it is
+  std::vector<double> positions;         ///< radians or metres, in the order of the names
+  std::vector<std::string> features;     ///< names of the finders; empty: all
+  std::string source = {};               ///< "poses.yaml:3", for messages; empty if not from a file
 
-  /// Equal names, positions and features, from wherever.
+  /// Equal names, positions and features; ignores the source.
   friend bool operator==(const CapturePose& a, const CapturePose& b) {
     return a.joint_names == b.joint_names && a.positions == b.positions && a.features == b.features;
   }

@@ -33,7 +33,7 @@ using SquarePlace = std::pair<int, int>;
   return places;
 }
 
-/// Markers of a board by their places; the id of one that is there twice in `twice`.
+/// Markers of a board by their places; `twice` gets the id of one that occurs twice.
 [[nodiscard]] KINECAL_INLINE std::map<SquarePlace, Marker> markers_by_place(
     const std::vector<Marker>& markers, const CharucoSettings& s, int& twice) {
   const std::vector<SquarePlace> places = marker_places(s);
@@ -46,7 +46,8 @@ using SquarePlace = std::pair<int, int>;
   return found;
 }
 
-/// Where a corner between two markers is, by the map of their corners; nullopt if one is missing.
+/// The position of a corner between two markers, by the map of their corners; nullopt if one is
+/// missing.
 [[nodiscard]] KINECAL_INLINE std::optional<Eigen::Vector2d> between_markers(
     const std::map<SquarePlace, Marker>& markers, const CharucoSettings& s, int column, int row) {
   std::vector<Eigen::Vector2d> from, to;
@@ -90,7 +91,7 @@ void for_each_pair(const CornerMap& corners, const F& f) {
   return least;
 }
 
-/// Corners between markers, refined; those that move further than the gap to a marker are left out.
+/// Refined corners between markers; drops those that move further than the gap to a marker.
 [[nodiscard]] KINECAL_INLINE CornerMap charuco_corners(const GrayImage& image,
                                                        const std::map<SquarePlace, Marker>& markers,
                                                        const CharucoSettings& s) {
@@ -115,7 +116,7 @@ void for_each_pair(const CornerMap& corners, const F& f) {
   return corners;
 }
 
-/// Why corners are not enough or not good enough; empty if they are.
+/// Why the corners are too few or too poor; empty if they are not.
 [[nodiscard]] KINECAL_INLINE std::string charuco_fault(const GrayImage& image,
                                                        const CornerMap& corners,
                                                        const CharucoSettings& s) {

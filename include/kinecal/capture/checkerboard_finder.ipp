@@ -14,14 +14,14 @@ namespace kinecal {
 
 namespace detail {
 
-/// What a search for a board came to.
+/// The result of a search for boards.
 struct BoardsSeen {
   std::vector<CornerGrid> boards;  ///< of the right size
   bool larger = false;             ///< found as part of a larger board
 };
 
-/// Boards of one size, two at most.  What was found is painted over and the search is repeated: a
-/// larger board is not the one, a second one must not be mistaken for it.
+/// Boards of one size, two at most.  Paints over each board found and searches again: a larger
+/// board is not the one, and a second one must not be mistaken for it.
 [[nodiscard]] KINECAL_INLINE BoardsSeen search_boards(const GrayImage& image, int columns,
                                                       int rows) {
   BoardsSeen seen;
@@ -52,7 +52,7 @@ struct BoardsSeen {
          " corners";
 }
 
-/// True if a board cannot be in an image, however it is turned: its squares need 4 pixels.
+/// True if a board cannot be in an image in any orientation: its squares need 4 pixels.
 [[nodiscard]] KINECAL_INLINE bool too_small_for(const GrayImage& image,
                                                 const CheckerboardSettings& s) {
   constexpr int kLeastSquare = 4;

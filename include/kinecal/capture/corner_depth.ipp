@@ -21,7 +21,7 @@ struct PointNearCorner {
   Vector3<double> value;
 };
 
-/// Those that are there.
+/// The valid points near a corner.
 [[nodiscard]] KINECAL_INLINE std::vector<PointNearCorner> points_near_corner(
     const PointCloud& points, const Eigen::Vector2d& pixel, double reach, int& places) {
   std::vector<PointNearCorner> near;
@@ -50,13 +50,13 @@ struct PointNearCorner {
   }
   const Eigen::LDLT<Matrix3<double>> factors(normal);
   if (near.size() < 4 || !(factors.vectorD().minCoeff() > 1e-6)) return std::nullopt;
-  // Variance at the corner, of that of one point.  Among n points on all sides of it, it is 1/n.
+  // Variance at the corner, relative to that of one point.  With n points all around it, it is 1/n.
   const double variance = factors.solve(Vector3<double>::UnitX()).x();
   if (variance > 4.0 / static_cast<double>(near.size())) return std::nullopt;
   return Matrix3<double>(factors.solve(right));
 }
 
-/// Distance of points from a plane of 1/z, its median.
+/// Median distance of points from a plane of 1/z.
 [[nodiscard]] KINECAL_INLINE double median_error(const std::vector<PointNearCorner>& near,
                                                  const Vector3<double>& depth) {
   std::vector<double> errors;
@@ -71,7 +71,7 @@ struct PointNearCorner {
 /// Source: Rousseeuw, Least Median of Squares Regression, 1984.
 [[nodiscard]] KINECAL_INLINE Vector3<double> median_plane(
     const std::vector<PointNearCorner>& near) {
-  constexpr int kTrials = 24;  // one in 10^5 fails with a quarter of the points elsewhere
+  constexpr int kTrials = 24;  // one in 10^5 fails with a quarter of the points off the plane
   std::mt19937 random(1);
   Vector3<double> best = Vector3<double>::Zero();
   double least = std::numeric_limits<double>::infinity();

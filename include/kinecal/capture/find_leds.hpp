@@ -1,7 +1,7 @@
-// LEDs of a robot as features: each is switched on and off, and found by what lights and goes out.
+// LEDs of a robot as features: switches each on and off, and finds what lights up and goes out.
 //
-// Observations: the camera's, points in its optical frame; the chain's, the LEDs where its link has
-// them.  Both have the same features in the same order, ids are places in the list of LEDs.
+// Observations: the camera's points in its optical frame, and the LEDs' positions in the chain's
+// link.  Both list the same features in the same order; ids are places in the list of LEDs.
 // Source: Fetch paper, III-A; settings as in upstream's capture.yaml.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -18,12 +18,12 @@ namespace kinecal {
 
 /// Switches LEDs and finds those that the camera sees.
 ///
-/// A view after a switch is one that was taken a while after it: `settle`, or the time between two
-/// views if that is longer, so that its exposure does not include the switch.
-/// @param after   the robot has been still since then
-/// @param joints  of the robot since then, for views that come without
-/// @return        what was found; its refusal names each LED that was not, and why
-/// @throws        PoseError, ConnectionError: as the camera and the lamp do
+/// A view counts after a switch only if it was taken at least `settle` later, or the time between
+/// two views if that is longer, so that its exposure does not include the switch.
+/// @param after   the robot has been still since this time
+/// @param joints  positions since then, for views without joints
+/// @return        the LEDs found; its refusal names each missing LED, with the reason
+/// @throws        PoseError, ConnectionError: like the camera and the lamp
 template <Camera C, Lamp L>
 [[nodiscard]] Found find_leds(const LedFinder& finder, C& camera, L& lamp, Stamp after,
                               const MeasuredJoints& joints = {}) {

@@ -1,5 +1,4 @@
-// Corners of a grid of squares in an image: how large its squares are, whether it goes on beyond them,
-// how sharp and how bright it is.
+// Corners of a grid of squares in an image: size of the squares, extent, sharpness and brightness.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,7 +15,7 @@ struct CornerGrid {
   int rows = 0;
   std::vector<Eigen::Vector2d> corners = {};  ///< (columns * rows) pixels
 
-  /// A corner; one beyond the grid by the distance of the two before it.
+  /// A corner; beyond the grid, extrapolated from the two before it.
   [[nodiscard]] Eigen::Vector2d at(int column, int row) const;
 };
 
@@ -26,11 +25,11 @@ struct CornerGrid {
 /// The longest side of a square, pixels.
 [[nodiscard]] double longest_side(const CornerGrid& grid);
 
-/// True if corners are where a flat grid has them, to within a third of a square, and its squares are
-/// dark and bright in turn, each of them everywhere: nine of ten pairs of neighbours.
+/// True if corners are within a third of a square of a flat grid, and squares are uniformly dark
+/// and bright in turn: nine of ten pairs of neighbours.
 [[nodiscard]] bool is_checkerboard(const GrayImage& image, const CornerGrid& grid);
 
-/// True if squares go on beyond a side: the grid is part of a larger board.
+/// True if squares continue beyond a side: the grid is part of a larger board.
 [[nodiscard]] bool goes_on(const GrayImage& image, const CornerGrid& grid);
 
 /// The edges between neighbouring corners, those along rows and those along columns.
@@ -39,7 +38,7 @@ struct GridEdges {
 };
 [[nodiscard]] GridEdges edges_of(const GrayImage& image, const CornerGrid& grid);
 
-/// Share of the pixels of dark squares that are saturated.
+/// Fraction of the pixels of dark squares that are saturated.
 [[nodiscard]] double glare_share(const GrayImage& image, const CornerGrid& grid);
 
 /// Paints a grid and one square around it in one grey, so that it is not found again.

@@ -50,8 +50,8 @@ KINECAL_INLINE double longest_side(const CornerGrid& grid) {
   return most;
 }
 
-/// True if four squares meet at (column, row), which may be beyond the grid: both pairs of opposite
-/// squares are alike, and one pair is darker by half of the board's contrast.
+/// True if four squares meet at (column, row), which may be beyond the grid: opposite squares are
+/// alike, and one pair is darker by half of the board's contrast.
 [[nodiscard]] KINECAL_INLINE bool squares_meet(const GrayImage& image, const CornerGrid& grid,
                                                int column, int row, double contrast) {
   const Eigen::Vector2d at = grid.at(column, row);
@@ -65,7 +65,7 @@ KINECAL_INLINE double longest_side(const CornerGrid& grid) {
          std::min(near[0], near[1]) - second > contrast / 2.0;
 }
 
-/// True if corners are where a flat grid has them, to within a third of a square.
+/// True if corners are within a third of a square of a flat grid.
 [[nodiscard]] KINECAL_INLINE bool is_flat(const CornerGrid& grid) {
   std::vector<Eigen::Vector2d> places;
   for (int r = 0; r < grid.rows; ++r) {

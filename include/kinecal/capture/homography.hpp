@@ -1,4 +1,4 @@
-// The map between a plane and its image, and the pose of a plane that a camera sees.
+// The homography between a plane and its image, and the pose of a plane that a camera sees.
 //
 //   s (u, v, 1) = H (x, y, 1)
 // Source: Hartley and Zisserman, Multiple View Geometry, 4.1 (normalized direct linear transform);
@@ -16,14 +16,14 @@ namespace kinecal {
 
 /// H that maps points of a plane to points of another, by least squares.
 /// @param from, to  (2) each, at least four, in the same order
-/// @returns         (3 x 3); nullopt if they do not determine it: too few, or on one line
+/// @returns         (3 x 3); nullopt if they are too few, or on one line
 [[nodiscard]] std::optional<Matrix3<double>> homography(const std::vector<Eigen::Vector2d>& from,
                                                         const std::vector<Eigen::Vector2d>& to);
 
-/// Where H maps a point (2).
+/// The image of a point under H (2).
 [[nodiscard]] Eigen::Vector2d mapped(const Matrix3<double>& h, const Eigen::Vector2d& point);
 
-/// camera_T_plane from where points of the plane z = 0 are seen.
+/// camera_T_plane from the images of points of the plane z = 0.
 /// @param plane  (2) each, metres
 /// @param rays   (2) each: x / z and y / z in the camera's optical frame
 /// @returns      nullopt if the points do not determine it

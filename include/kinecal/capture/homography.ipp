@@ -61,7 +61,7 @@ KINECAL_INLINE std::optional<Pose<double>> plane_pose(const std::vector<Eigen::V
                                                       const std::vector<Eigen::Vector2d>& rays) {
   const auto h = homography(plane, rays);
   if (!h) return std::nullopt;
-  // H = s (r1 r2 t), and the plane's origin is before the camera.
+  // H = s (r1 r2 t), and the plane's origin is in front of the camera.
   const double scale = std::sqrt(h->col(0).norm() * h->col(1).norm());
   const Matrix3<double> m = *h / ((*h)(2, 2) < 0.0 ? -scale : scale);
   Matrix3<double> axes;

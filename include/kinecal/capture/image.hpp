@@ -1,4 +1,4 @@
-// Images and organised point clouds, as cameras give them and finders read them.
+// Images and organised point clouds: what cameras deliver and finders read.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,13 +20,13 @@ struct Image {
   std::vector<P> pixels;  ///< width * height, row-major
 
   Image() = default;
-  /// All pixels alike.
+  /// An image of equal pixels.
   Image(int columns, int rows, P fill = {})
       : width(columns),
         height(rows),
         pixels(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), fill) {}
 
-  /// True if it has no pixel.
+  /// True if it has no pixels.
   [[nodiscard]] bool empty() const { return pixels.empty(); }
 
   /// True if a pixel (column, row) is in the image.
@@ -49,11 +49,11 @@ struct Image {
 using GrayImage = Image<std::uint8_t>;
 /// Distance along the optical axis, metres; NaN where nothing was measured.
 using DepthImage = Image<float>;
-/// Points (3), metres, in the optical frame; NaN where nothing was measured.  That of a pixel of the
-/// image if both have the same size ("organised"); a cloud without order has one row.
+/// Points (3), metres, in the optical frame; NaN where nothing was measured.  "Organised": same
+/// size as the image, one point per pixel.  An unordered cloud has one row.
 using PointCloud = Image<Vector3<float>>;
 
-/// No point.
+/// The value of a missing point.
 [[nodiscard]] inline Vector3<float> no_point() {
   return Vector3<float>::Constant(std::numeric_limits<float>::quiet_NaN());
 }

@@ -1,4 +1,4 @@
-// Where images change although nothing was switched: what moves.
+// Finds motion: where images change although nothing was switched.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace kinecal {
 
-/// A rectangle of pixels, its last ones included.
+/// A rectangle of pixels, including its last ones.
 struct PixelBox {
   int left = 0, top = 0, right = -1, bottom = -1;  ///< columns and rows
 
@@ -15,21 +15,21 @@ struct PixelBox {
   [[nodiscard]] bool contains(int u, int v) const {
     return u >= left && u <= right && v >= top && v <= bottom;
   }
-  /// The same, larger by some pixels on each side.
+  /// The box enlarged by some pixels on each side.
   [[nodiscard]] PixelBox grown(int by) const {
     return {left - by, top - by, right + by, bottom + by};
   }
 };
 
-/// Pixels that changed between images of the same scene: by more than the sensor's noise, which is
-/// estimated from the images, and than the light of the whole image.
+/// Pixels that changed between images of the same scene by more than the sensor's noise, estimated
+/// from the images, and more than the light of the whole image.
 class ImageMotion {
  public:
   /// Compares two images.
   /// @throws std::invalid_argument  if their sizes differ, or differ from those before
   void add(const GrayImage& earlier, const GrayImage& later);
 
-  /// Share of pixels that ever changed in a box, but for those in a part of it; 0 of no pixel.
+  /// Fraction of pixels in a box, outside an inner part, that ever changed; 0 if there are none.
   [[nodiscard]] double share(const PixelBox& box, const PixelBox& except = {}) const;
 
  private:

@@ -42,7 +42,7 @@ inline UsualChange usual_change(const GrayImage& earlier, const GrayImage& later
   for (const std::size_t i : some) {
     ++deviations[static_cast<std::size_t>(std::min(510, std::abs(change(i) - middle)))];
   }
-  // Five standard deviations of the noise; more than 40 levels are not noise but motion.
+  // Five standard deviations of the noise; more than 40 levels is motion, not noise.
   const double sigma = 1.4826 * median_index(deviations, total);
   return {middle, std::clamp(static_cast<int>(5.0 * sigma), 20, 40)};
 }

@@ -9,12 +9,12 @@
 
 namespace kinecal::detail {
 
-/// From 0 to 1, the same everywhere for the same seed.
+/// From 0 to 1; equal for equal seeds on every platform.
 [[nodiscard]] inline double random_share(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-/// A position within limits, or half a turn or half a metre to both sides.
+/// A position within limits; without limits, up to half a turn or half a metre to either side.
 /// @param share  [0, 1]
 [[nodiscard]] inline double position_in_range(const Joint& joint, double share) {
   const double most = turns(joint.type) ? std::numbers::pi : 0.5;

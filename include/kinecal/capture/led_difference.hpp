@@ -1,13 +1,13 @@
-// Where an LED is in an image: what lights when it is switched on, and goes out when it is off.
+// Finds an LED in an image: the light that appears when it is switched on, and vanishes when off.
 //
-// A pulse is three images: dark, lit, dark again.  A pixel gains the lesser of both changes, twice,
+// A pulse is three images: dark, lit, dark again.  A pixel gains twice the smaller of both changes,
 // for two switches:
 //
 //   d = 2 * 3 * min(lit - before, lit - after)      3: as a sum of red, green and blue
 //
-// A change of light, or something that moves by, changes the image once, not up and down, and gains
-// nothing.  Even and odd pulses are added separately; what counts is the lesser of their means, times
-// the number of pulses.  So it takes two pulses, and something that flashed once is not an LED.
+// A change of ambient light, or a passing object, changes the image once, not up and down, and
+// gains nothing.  Even and odd pulses are summed separately; the smaller of their means counts,
+// times the number of pulses.  So it takes two pulses, and a single flash is not an LED.
 // Source: Fetch paper, III-A; the rest above.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -29,7 +29,7 @@ struct PixelCircle {
   double radius = 0.0;      ///< pixels
 };
 
-/// The brightest light of the pulses, and what speaks against it.
+/// The brightest light of the pulses, and doubts about it.
 struct LedSpot {
   double u = 0.0, v = 0.0;  ///< weighted centroid, pixels
   double peak = 0.0;        ///< accumulated difference of its brightest pixel
@@ -49,7 +49,7 @@ class LedDifference {
 
   /// The brightest light.
   /// @param threshold  accumulated difference that its brightest pixel must have
-  /// @param within     look there only
+  /// @param within     search only there
   [[nodiscard]] LedSpot spot(double threshold, const std::optional<PixelCircle>& within = {}) const;
 
  private:

@@ -22,7 +22,7 @@ struct LedLight {
   }
 };
 
-/// The pixels around a circle, in the image; none if its center is not a number.
+/// The pixels around a circle, in the image; none if its center is NaN.
 inline PixelBox led_box(const PixelCircle& circle, int width, int height) {
   const auto pixel = [](double x, int last) {
     return std::isnan(x) ? last + 1 : static_cast<int>(std::clamp(std::floor(x), -1.0, last + 1.0));
@@ -33,8 +33,8 @@ inline PixelBox led_box(const PixelCircle& circle, int width, int height) {
           std::min(height - 1, pixel(circle.v + circle.radius + 1.0, height - 1))};
 }
 
-/// The lesser of the means of both halves, times the number of pulses, in a circle and a
-/// little around it: a light at its edge is not to be cut.
+/// The smaller of the means of both halves, times the number of pulses, in a circle and slightly
+/// beyond:  a light at its edge must not be cut.
 inline LedLight led_light(const std::array<Image<std::int32_t>, 2>& halves, int pulses,
                           const std::optional<PixelCircle>& within) {
   const int width = halves[0].width, height = halves[0].height;
@@ -74,7 +74,7 @@ inline LightPixel brightest_pixel(const LedLight& part, const PixelBox& except =
   return best;
 }
 
-/// What speaks against a light that is bright enough; empty if nothing does.
+/// Doubts about a light that is bright enough; empty if there are none.
 /// @param whole  the accumulated differences of the whole image
 inline std::string led_doubt(const LightBlob& blob, const LedSpot& spot, const LedLight& part,
                              const Image<std::int32_t>& whole) {

@@ -1,4 +1,4 @@
-// The search for LEDs, apart from who switches them and who takes the views.
+// The search for LEDs, independent of who switches them and takes the views.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,27 +13,27 @@
 
 namespace kinecal {
 
-/// Finds LEDs in views that were taken dark and lit.  LEDs that are clear are not switched again;
-/// the others are, in turns, until the iterations are used up.
+/// Finds LEDs in dark and lit views.  LEDs that are clear are not switched again; the others take
+/// turns until the iterations are used up.
 class LedSearch {
  public:
-  /// @param finder          is kept by reference
-  /// @param first,second    two views with all LEDs off: what differs between them moves
+  /// @param finder          kept by reference
+  /// @param first,second    two views with all LEDs off; differences between them are motion
   LedSearch(const LedFinder& finder, View first, const View& second);
 
-  /// The LED that is to be lit and darkened next; nullopt if the search is over.
+  /// The next LED to switch; nullopt if the search is over.
   [[nodiscard]] std::optional<std::size_t> next() const;
 
-  /// A view with this LED alone lit, and one with all off after it.
+  /// Adds a view with only this LED lit, and one with all off after it.
   void pulse(std::size_t led, const View& lit, View dark);
 
-  /// What was found.  Its refusal names each LED that was not, and why.
+  /// The LEDs found.  Its refusal names each missing LED, with the reason.
   [[nodiscard]] Found found() const;
 
  private:
   struct Tracked {
     LedDifference difference;
-    std::optional<PixelCircle> where;  // in the image, by the robot's model
+    std::optional<PixelCircle> where;  // in the image, from the robot model
     LedSpot spot;
     std::string hopeless;  // why it cannot be seen
   };

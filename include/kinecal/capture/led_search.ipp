@@ -12,7 +12,7 @@
 namespace kinecal {
 namespace detail {
 
-/// The pixel at which P of a camera sees a point in front of it.
+/// The pixel of a point in front of a camera, using P.
 inline PixelCircle led_circle(const CameraInfo& camera, const Vector3<double>& p, double radius) {
   const double z = p.z();
   return {camera.p[0] * p.x() / z + camera.p[2], camera.p[5] * p.y() / z + camera.p[6],
@@ -44,7 +44,7 @@ KINECAL_INLINE LedSearch::LedSearch(const LedFinder& finder, View first, const V
   for (std::size_t i = 0; frame_T_camera_ && i < leds_.size(); ++i) expect(i);
 }
 
-/// Where the robot's model has an LED.
+/// The expected position of an LED from the robot model.
 KINECAL_INLINE void LedSearch::expect(std::size_t led) {
   const Vector3<double> p = frame_T_camera_->inverse() * finder_.leds[led].position;
   Tracked& tracked = leds_[led];
@@ -96,7 +96,7 @@ KINECAL_INLINE void LedSearch::pulse(std::size_t led, const View& lit, View dark
   switches_ += 2;
 }
 
-/// Whether the image changes around a light while nothing is switched.
+/// Why a light is doubtful: the image changes around it while nothing is switched.
 KINECAL_INLINE std::string LedSearch::motion_at(const LedSpot& spot) const {
   constexpr int kAround = 20, kOwnLight = 2;  // pixels
   constexpr double kMostMoved = 0.05;

@@ -1,4 +1,4 @@
-// A connected light in an image of brightness: centroid, size and shape.
+// A connected light in an image: centroid, size and shape.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,18 +13,18 @@ struct LightPixel {
   int u = 0, v = 0;  ///< column and row
 };
 
-/// A connected light.  Each pixel counts by how much brighter it is than the edge.
+/// A connected light.  Each pixel is weighted by its brightness above that of the edge.
 struct LightBlob {
   double u = 0.0, v = 0.0;              ///< centroid, pixels
   double uu = 0.0, uv = 0.0, vv = 0.0;  ///< covariance of its pixels, pixels^2
-  int pixels = 0;                       ///< how many
+  int pixels = 0;                       ///< their number
   PixelBox box;                         ///< around them
 
-  /// Longest over shortest extent, 1 of a disc.
+  /// Ratio of the longest to the shortest extent; 1 for a disc.
   [[nodiscard]] double elongation() const;
 };
 
-/// The connected pixels around the brightest one that are brighter than 0.3 of it.
+/// The pixels connected to the brightest one with more than 0.3 of its brightness.
 /// @param peak  in the image, brighter than 0
 [[nodiscard]] LightBlob light_blob(const Image<float>& light, const LightPixel& peak);
 

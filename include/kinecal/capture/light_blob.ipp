@@ -31,7 +31,7 @@ inline std::vector<LightPixel> connected_pixels(const Image<float>& light, const
 }  // namespace detail
 
 KINECAL_INLINE double LightBlob::elongation() const {
-  constexpr double kPixel = 0.25;  // a few pixels in a row are not a line yet
+  constexpr double kPixel = 0.25;  // a few pixels in a row are not yet a line
   const double mean = 0.5 * (uu + vv), half = std::hypot(0.5 * (uu - vv), uv);
   return std::sqrt((mean + half + kPixel) / (std::max(0.0, mean - half) + kPixel));
 }

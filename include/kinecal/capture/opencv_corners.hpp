@@ -1,9 +1,9 @@
-// What kinecal takes from OpenCV: corners of checkerboards and ArUco markers.
+// Wraps OpenCV: corners of checkerboards, and ArUco markers.
 //
-// OpenCV's core, imgproc, calib3d and aruco are linked directly: with these and what they need, 24
-// shared libraries, the program starts 4 to 5 ms later (4 ms without).  Nothing of OpenCV is in a
-// header, so a program that includes kinecal compiles without it.  Where there is no aruco, ChArUco
-// boards alone are left out.  `-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON` builds kinecal, and its Debian
+// OpenCV's core, imgproc, calib3d and aruco are linked directly: with these and their dependencies,
+// 24 shared libraries, the program starts 4 to 5 ms later (4 ms without).  No header includes
+// OpenCV, so a program that includes kinecal compiles without it.  Without aruco, only ChArUco
+// boards are missing.  `-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON` builds kinecal, and its Debian
 // package, without OpenCV.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,20 +23,20 @@ namespace kinecal::detail {
 /// Why this build cannot find ArUco markers; empty if it can.
 [[nodiscard]] std::string aruco_fault();
 
-/// How boards are searched.  Of 240 boards of 5 x 4 to 9 x 6 corners in 640 x 480 pixels, some blurred,
-/// squares found 185 and sectors 237; of 80 with 3 x 3, squares 80 and sectors 72.
+/// How to search for boards.  Of 240 boards of 5 x 4 to 9 x 6 corners in 640 x 480 pixels, some
+/// blurred, `squares` found 185 and `sectors` 237; of 80 with 3 x 3, `squares` 80 and `sectors` 72.
 enum class BoardSearch {
-  sectors,  ///< by their corners: 60 ms whatever is in the image
+  sectors,  ///< by their corners: 60 ms for any image
   squares   ///< by their squares: 1 ms if the board is there, 1.5 s if only another one is
 };
 
 /// The inner corners of a board, row by row, in one of its orders; empty if there is no such board.
-/// Images of more than 1600 pixels are searched at a fraction of their size.
+/// Larger images than 1600 pixels are searched at reduced size.
 /// @param columns, rows  inner corners, at least 3
 [[nodiscard]] std::vector<Eigen::Vector2d> find_chessboard(const GrayImage& image, int columns,
                                                            int rows, BoardSearch search);
 
-/// Corners between four squares, moved to where the gradients around them meet.
+/// Refines corners between four squares to where the surrounding gradients meet.
 /// @param reach  half the side of the window around a corner, pixels
 void refine_corners(const GrayImage& image, int reach, std::vector<Eigen::Vector2d>& corners);
 

@@ -40,7 +40,7 @@ KINECAL_INLINE std::string chessboard_fault() {
   return "";
 }
 
-/// The pixels of an image, which OpenCV does not write to.
+/// The pixels of an image; OpenCV does not write to them.
 [[nodiscard]] KINECAL_INLINE cv::Mat opencv_image(const GrayImage& image) {
   return {image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data())};
 }

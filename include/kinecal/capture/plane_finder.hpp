@@ -1,6 +1,6 @@
 // A plane as features: points on the ground or on a wall, evenly spread.
 //
-// Observes the camera alone; names and defaults are upstream's.
+// Only the camera observes it; names and defaults are upstream's.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,21 +14,21 @@
 
 namespace kinecal {
 
-/// A plane in a cloud and the region it was looked for in.
+/// A plane in a cloud, and the region it was searched in.
 struct PlaneInView {
   FoundPlane found;  ///< in the region's frame; inliers are indices of `region_points`
   RegionPoints region_points;
   std::string problem;  ///< why there is no plane
 };
 
-/// Finds the plane that dominates a region.
+/// Finds the dominant plane of a region.
 struct PlaneFinder {
   std::string camera_sensor = "camera";  ///< sensor that observes points in the optical frame
   Region region;                         ///< transform_frame, min_x to max_z; upstream: base_link
   PlaneSearch search;                    ///< tolerance, ransac_iterations, normal_a to normal_angle
-  std::size_t points_max = 60;           ///< features of a plane
+  std::size_t points_max = 60;           ///< number of features of a plane
 
-  /// Points of the plane in the optical frame.  They have no ids: no two views have the same.
+  /// Points of the plane in the optical frame.  Without ids: no two views share points.
   [[nodiscard]] Found find(const View& view) const;
 
   /// The plane itself.
@@ -36,7 +36,8 @@ struct PlaneFinder {
 };
 static_assert(Finder<PlaneFinder>);
 
-/// Observation of at most `count` of some points of a view's cloud, even in space, and their marks.
+/// Observation of at most `count` of some points of a view's cloud, evenly spread in space, with
+/// marks.
 /// @param chosen  places in `points`
 [[nodiscard]] Observation observed_evenly(const View& view, const std::string& sensor,
                                           const RegionPoints& points,

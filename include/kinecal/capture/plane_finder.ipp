@@ -43,7 +43,7 @@ KINECAL_INLINE Observation observed_evenly(const View& view, const std::string& 
                                            const RegionPoints& points,
                                            const std::vector<std::size_t>& chosen,
                                            std::size_t count, std::vector<Mark>& marks) {
-  constexpr std::size_t kPool = 4096;  // as even as all of them
+  constexpr std::size_t kPool = 4096;  // spread as evenly as all of them
   std::vector<std::size_t> some;
   std::vector<Vector3<double>> places;
   for (const std::size_t i : thinned(chosen.size(), std::max(kPool, count))) {

@@ -12,7 +12,8 @@ namespace detail {
 
 using PlanePoints = std::vector<Vector3<double>>;
 
-/// Another plane of comparable size among the points that are not on a plane; empty if there is none.
+/// Another plane of comparable size among the points that are not on a plane; empty if there is
+/// none.
 inline std::string rival_plane(const PlanePoints& points, const ScoredPlane& first,
                                const PlaneSearch& search, bool by_prior) {
   constexpr double kRival = 0.7, kSameAngle = 0.1, kSameDistance = 3.0;  // tolerances
@@ -22,7 +23,8 @@ inline std::string rival_plane(const PlanePoints& points, const ScoredPlane& fir
   const double tilt =
       std::acos(std::min(1.0, std::abs(first.plane.normal.dot(second.plane.normal))));
   const double gap = std::abs(plane_distance(first.plane, second.plane.centroid));
-  if (tilt < kSameAngle && gap < kSameDistance * search.tolerance) return "";  // the same, bent
+  if (tilt < kSameAngle && gap < kSameDistance * search.tolerance)
+    return "";  // the same plane, bent
   return "two planes have about as many points, " + reading(gap, "m") + " and " +
          reading(tilt, "rad") + " apart; make the box smaller, or expect a normal and an offset";
 }
@@ -48,7 +50,7 @@ inline PlanePoints some_points(std::span<const Vector3<double>> points, std::siz
   return some;
 }
 
-/// The dominating plane of some of the points, or why there is none.
+/// The dominant plane of some of the points, or why there is none.
 inline ScoredPlane dominating_plane(const PlanePoints& points, const PlaneSearch& search,
                                     bool by_prior, std::string& problem) {
   const auto share = [&](const ScoredPlane& plane) {
@@ -70,7 +72,7 @@ inline ScoredPlane dominating_plane(const PlanePoints& points, const PlaneSearch
   return best;
 }
 
-/// Least squares on what is near a plane, the tolerance being that of the noise in the end.
+/// Least squares on the points near a plane; in the end, the tolerance is that of the noise.
 inline void fit_plane(const PlanePoints& points, Plane<double>& plane, double& tolerance) {
   const double most = tolerance;
   for (int round = 0; round < 3; ++round) {

@@ -1,9 +1,9 @@
-// Poses in which a camera has a view of a target, for a robot that nobody has taught.
+// Generates poses in which a camera sees a target, without teaching the robot.
 //
-// A random pose within the limits is changed, one joint at a time, until the whole target is in the image,
-// large enough, near enough, and not seen from the side.  What touches the ground, the robot itself or the
-// line of sight is left out.  From many such poses those are chosen that are farthest from each other, each
-// joint's range being one: they spread.
+// Starting from a random pose within the limits, one joint at a time is changed until the whole
+// target is in the image, large enough, near enough, and not seen from the side.  Poses that touch
+// the ground, the robot itself or the line of sight are rejected.  From many such poses, those
+// farthest from each other are chosen, with each joint's range counting as one: they spread.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,34 +22,34 @@
 
 namespace kinecal {
 
-/// A camera, a target, and what a useful view of it is.
+/// A camera, a target, and the requirements on a view of it.
 struct ViewGoal {
-  std::string base;                            ///< link that stands still
+  std::string base;                            ///< fixed link
   std::string camera;                          ///< optical frame of the camera, a link
   CameraInfo info;                             ///< of the camera
-  ImageKind image = ImageKind::automatic;      ///< what its images are
+  ImageKind image = ImageKind::automatic;      ///< the kind of its images
   std::string target;                          ///< link that carries the target
   std::vector<Vector3<double>> points;         ///< of the target in that link, metres
-  std::optional<Vector3<double>> front = {};   ///< (3) from where it can be seen, in that link
-  double nearest = 0.25;                       ///< least depth of a point, metres
-  double farthest = 1.5;                       ///< most depth of a point, metres
-  double margin = 0.05;                        ///< share of the image that stays free at each edge
-  double least_size = 0.1;                     ///< of the target, share of the image's width
+  std::optional<Vector3<double>> front = {};   ///< (3) direction of its visible side, in that link
+  double nearest = 0.25;                       ///< smallest depth of a point, metres
+  double farthest = 1.5;                       ///< largest depth of a point, metres
+  double margin = 0.05;                        ///< free fraction of the image at each edge
+  double least_size = 0.1;                     ///< of the target, fraction of the image's width
   double most_angle = std::numbers::pi / 4.0;  ///< between its front and the view, radians
   double ground = -std::numeric_limits<double>::infinity();  ///< height in the base, metres
   double radius = 0.05;                  ///< of the robot's links, metres: see RobotBody
-  std::vector<std::string> joints = {};  ///< that move; empty: all that move camera or target
+  std::vector<std::string> joints = {};  ///< to move; empty: all that move camera or target
   std::map<std::string, double> rest =
-      {};  ///< of the others, radians or metres; zero if it is not here
+      {};  ///< of the others, radians or metres; zero if not listed
 };
 
 /// Poses in which the camera sees the whole target, spread over the ranges of the joints.
-/// @param count  of poses; fewer if no more are found
-/// @returns      targets for the same joints, in an order of short ways
+/// @param count  number of poses; fewer if no more are found
+/// @returns      targets for the same joints, in an order with short paths
 /// @throws RobotError             if a link or joint does not exist
-/// @throws std::invalid_argument  if there is no point, no joint that moves camera against target, or the
-///                                camera_info is impossible
-/// @throws std::runtime_error     if no pose is found: it says what is wrong in the best one
+/// @throws std::invalid_argument  if there is no point, no joint that moves camera against target,
+///                                or the camera_info is impossible
+/// @throws std::runtime_error     if no pose is found; says what is wrong with the best one
 [[nodiscard]] std::vector<JointTarget> poses_with_view_of(const Robot& robot, const ViewGoal& goal,
                                                           int count, std::uint64_t seed = 1);
 

@@ -24,7 +24,7 @@ using Places = std::vector<std::vector<double>>;
   return sum;
 }
 
-/// Indices of places that are far from each other: each next one is the farthest from all before.
+/// Indices of places far from each other: each next one is the farthest from all before.
 [[nodiscard]] inline std::vector<std::size_t> spread(const Places& places, std::size_t count) {
   std::vector<double> nearest(places.size(), std::numeric_limits<double>::infinity());
   std::vector<std::size_t> chosen;
@@ -39,7 +39,7 @@ using Places = std::vector<std::vector<double>>;
   return chosen;
 }
 
-/// The same indices, each the nearest to the one before.
+/// The same indices, reordered so that each is the nearest to the one before.
 [[nodiscard]] inline std::vector<std::size_t> short_ways(const Places& places,
                                                          std::vector<std::size_t> indices) {
   for (std::size_t i = 1; i < indices.size(); ++i) {
@@ -54,10 +54,11 @@ using Places = std::vector<std::vector<double>>;
   return indices;
 }
 
-/// Searches from one start: changes of a joint that do not make the view worse are kept.  Once the target
-/// is seen, it wanders among such poses, else they would all lie at the edge of what is good.
+/// Searches from one start: keeps changes of a joint that do not make the view worse.  Once the
+/// target is visible, it continues among good poses, or all would lie at the edge of the good
+/// region.
 /// @param q  in: where to start; out: the last pose that can be used, if there is one
-/// @returns  what is wrong with the best pose; empty if one can be used
+/// @returns  what is wrong with the best pose; empty if one is usable
 [[nodiscard]] inline ViewFault search(const ViewSearch& view, std::vector<double>& q,
                                       std::mt19937_64& random) {
   constexpr int kSteps = 400, kWander = 60;
@@ -86,7 +87,7 @@ using Places = std::vector<std::vector<double>>;
 
 KINECAL_INLINE std::vector<JointTarget> poses_with_view_of(const Robot& robot, const ViewGoal& goal,
                                                            int count, std::uint64_t seed) {
-  constexpr int kCandidates = 4, kTries = 40, kMore = 1000;  // for each pose; in all
+  constexpr int kCandidates = 4, kTries = 40, kMore = 1000;  // per pose; in all
   const detail::ViewSearch view(robot, goal);
   std::mt19937_64 random(seed);
   detail::Places found, shares;

@@ -1,4 +1,4 @@
-// The plane that most points are near, by random samples.
+// The plane with the most points near it, by random sampling.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,20 +15,20 @@
 
 namespace kinecal {
 
-/// How to search for a plane.
+/// Settings of the search for a plane.
 struct PlaneSearch {
-  double tolerance = 0.02;   ///< metres from the plane at first
-  int iterations = 1000;     ///< most random planes
+  double tolerance = 0.02;   ///< initial distance from the plane, metres
+  int iterations = 1000;     ///< largest number of random planes
   std::uint64_t seed = 1;    ///< of the random planes
-  double least_share = 0.2;  ///< of the points that must be on the plane
+  double least_share = 0.2;  ///< least fraction of the points on the plane
   /// (3) expected direction of the normal, of any length and sign; 0: any.
   Vector3<double> normal = Vector3<double>::Zero();
-  double normal_angle = 0.349065;  ///< radians, most between the normals: 20 degrees
+  double normal_angle = 0.349065;  ///< largest angle between the normals, radians: 20 degrees
   std::optional<double> offset;    ///< expected distance from the origin along `normal`, metres
   double offset_tolerance = 0.1;   ///< metres
 };
 
-/// A plane and how many points are on it.
+/// A plane and the number of points on it.
 struct ScoredPlane {
   Plane<double> plane;
   std::size_t count = 0;
@@ -40,12 +40,13 @@ struct ScoredPlane {
 [[nodiscard]] ScoredPlane best_plane(std::span<const Vector3<double>> points,
                                      const PlaneSearch& search, bool by_prior);
 
-/// Least squares on the points that are within the tolerance of a plane; nullopt if they have none.
+/// Least squares on the points within the tolerance of a plane; nullopt if they do not determine
+/// one.
 [[nodiscard]] std::optional<Plane<double>> refitted_plane(std::span<const Vector3<double>> points,
                                                           const Plane<double>& plane,
                                                           double tolerance);
 
-/// In what a plane differs from the expected one, as a sentence; empty if it is that.
+/// How a plane differs from the expected one, as a sentence; empty if it does not.
 /// @param slack  factor of the tolerances
 [[nodiscard]] std::string plane_off_prior(const Plane<double>& plane, const PlaneSearch& search,
                                           double slack = 1.0);

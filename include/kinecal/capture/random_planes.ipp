@@ -11,7 +11,7 @@
 namespace kinecal {
 namespace detail {
 
-/// How many points are within the tolerance of a plane.
+/// The number of points within the tolerance of a plane.
 inline std::size_t plane_support(std::span<const Vector3<double>> points,
                                  const Plane<double>& plane, double tolerance) {
   const double offset = plane.normal.dot(plane.centroid);

@@ -1,4 +1,4 @@
-// Where finders look: a box in a frame of the robot.
+// The region that finders search: a box in a frame of the robot.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,14 +14,14 @@
 
 namespace kinecal {
 
-/// The pose frame_T_camera of a view's camera in some frame of the robot, as the robot's model has it
-/// for the view's joints; nullopt if they do not determine it.
+/// The pose frame_T_camera of a view's camera in some frame of the robot, from the robot model and
+/// the view's joints; nullopt if they do not determine it.
 using PoseOfView = std::function<std::optional<Pose<double>>(const View&)>;
 
 /// A box in a frame.
 struct Region {
   std::string frame;  ///< for messages: transform_frame of upstream; empty: the camera's own
-  PoseOfView frame_T_camera;               ///< none: the camera's own frame
+  PoseOfView frame_T_camera;               ///< empty: the camera's own frame
   Vector3<double> least{-2.0, -2.0, 0.0};  ///< (3) min_x min_y min_z, metres, in the frame
   Vector3<double> most{2.0, 2.0, 2.0};     ///< (3) max_x max_y max_z, metres, in the frame
 
@@ -40,14 +40,14 @@ struct RegionPoints {
 };
 
 /// The pose of a view's camera in a region's frame.
-/// @param[out] problem  why there is none: joints that are missing
+/// @param[out] problem  why there is none: missing joints
 [[nodiscard]] std::optional<Pose<double>> pose_in(const Region& region, const View& view,
                                                   std::string& problem);
 
-/// Valid points in a region; a point at the camera's origin is how some drivers say "nothing".
+/// Valid points in a region; some drivers mark missing points by the camera's origin.
 [[nodiscard]] RegionPoints points_in(const Region& region, const View& view);
 
-/// Observation of some points of a view's cloud, in its frame, and their marks where the cloud is
+/// Observation of some points of a view's cloud, in its frame, with marks if the cloud is
 /// organised.
 /// @param sensor   its name
 /// @param indices  of points in the cloud

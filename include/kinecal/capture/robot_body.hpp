@@ -1,8 +1,8 @@
-// A robot's links in space, and its body as spheres: does a pose touch itself, the ground, or a line of
-// sight?
+// A robot's links in space, and its body as spheres: does a pose touch itself, the ground, or a
+// line of sight?
 //
-// Drawings of the links are not needed: a body is a sphere that slides along the lines between the origins
-// of joints.  Pairs of bodies that touch in almost every pose are neighbours, and are not compared.
+// It needs no meshes: a body is a sphere swept along the lines between joint origins.  Pairs of
+// bodies that touch in almost every pose count as neighbours, and are not checked.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -24,12 +24,12 @@ class RobotBody {
  public:
   /// @param base    link in which everything is given
   /// @param radius  of the spheres, metres
-  /// @param held    positions of joints that never move: what touches only by them is a neighbour
+  /// @param held    positions of joints that never move: bodies that always touch are neighbours
   /// @throws RobotError  if there is no such link
   RobotBody(const Robot& robot, const std::string& base, double radius,
             const std::map<std::string, double>& held = {});
 
-  /// The joints with a position of their own that move something connected to the base: the order of q
+  /// The joints with their own position that move anything connected to the base: the order of q
   /// below.
   [[nodiscard]] const std::vector<std::string>& joints() const { return joints_; }
 
@@ -41,13 +41,14 @@ class RobotBody {
   /// @param q  positions of joints(), radians or metres
   [[nodiscard]] std::vector<Pose<double>> poses(std::span<const double> q) const;
 
-  /// Whether parts that are no neighbours come closer than their spheres.
+  /// True if parts that are not neighbours come closer than their spheres.
   [[nodiscard]] bool touches_itself(const std::vector<Pose<double>>& poses) const;
 
-  /// Whether the origin of a moving link is below a height in the base, metres.
+  /// True if the origin of a moving link is below a height in the base, metres.
   [[nodiscard]] bool is_below(const std::vector<Pose<double>>& poses, double height) const;
 
-  /// Whether a part that is no neighbour of either end is in the line of sight between two links.
+  /// True if a part that is not a neighbour of either end blocks the line of sight between two
+  /// links.
   /// @param a, b          links at its ends
   /// @param p_a, p_b      (3) its ends in the base, metres
   [[nodiscard]] bool hides(const std::vector<Pose<double>>& poses, std::size_t a,

@@ -1,7 +1,7 @@
-// Points on the robot's own body, and on the ground that it stands on.
+// Points on the robot's own body, and on the ground it stands on.
 //
-// The cloud is split: a plane, and what is in the robot's box, on the camera's side of the plane and
-// not on it.  Two sensors observe them; names and defaults are upstream's.
+// The cloud is split: a plane, and the points in the robot's box that are on the camera's side of
+// the plane but not on it.  Two sensors observe them; names and defaults are upstream's.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,7 +20,7 @@ struct RobotFinder {
   Vector3<double> least{-2.0, -2.0, 0.0};
   Vector3<double> most{2.0, 2.0, 2.0};  ///< (3) max_robot_x to max_robot_z
 
-  /// Points of the plane, then of the robot, both in the optical frame; `plane.points_max` of each.
+  /// Points of the plane, then of the robot, in the optical frame; up to `plane.points_max` each.
   [[nodiscard]] Found find(const View& view) const;
 };
 static_assert(Finder<RobotFinder>);

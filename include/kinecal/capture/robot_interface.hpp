@@ -1,7 +1,7 @@
-// What a robot must offer to be captured: concepts of an arm, a camera, a lamp and a finder.
+// The interface of a robot for capture: concepts of an arm, a camera, a lamp and a finder.
 //
-// A robot is these few functions, over any middleware.  Each waits for what it returns, on the
-// robot's own clock, and throws where that does not come.
+// A robot is these few functions, over any middleware.  Each waits for its result, on the robot's
+// own clock, and throws if it does not arrive.
 //
 //   struct MyArm {
 //     void move(const JointTarget& target);      // starts to move, does not wait
@@ -22,27 +22,27 @@
 
 namespace kinecal {
 
-/// Something that a robot did not do in one pose, which is then skipped: "elbow did not arrive".
+/// The robot failed in one pose, which is then skipped: "elbow did not arrive".
 struct PoseError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// A stream of the robot, such as joint states or images, delivered nothing in time.  The pose is
-/// skipped; if a later pose waits in vain, too, and nothing came in between, the session ends.
+/// skipped; if it is still silent in a later pose, the session ends.
 struct SilenceError : PoseError {
   SilenceError(const std::string& what, std::string name, std::optional<Stamp> last)
       : PoseError(what), stream(std::move(name)), newest(last) {}
 
-  std::string stream;           ///< its name, such as that of a topic
-  std::optional<Stamp> newest;  ///< of what it delivered; nullopt if it never delivered anything
+  std::string stream;           ///< its name, such as a topic
+  std::optional<Stamp> newest;  ///< of its last message; nullopt if there was none
 };
 
-/// The robot cannot be reached any more; the session ends.
+/// The connection to the robot is lost; the session ends.
 struct ConnectionError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Where joints are to move.
+/// Positions to move joints to.
 struct JointTarget {
   std::vector<std::string> names;  ///< of joints; others stay
   std::vector<double> positions;   ///< radians or metres, in the order of the names
@@ -61,22 +61,22 @@ concept Arm = requires(A& arm, const JointTarget& target, Stamp after) {
 };
 
 /// A camera.
-///   camera.next_view(after)  waits for a view stamped after this time; throws as an Arm does.  Its
-///                            joints may be empty: whoever captures fills them in.
+///   camera.next_view(after)  waits for a view stamped after this time; throws like an Arm.  Its joints
+///                            may be empty: the session fills them in.
 template <class C>
 concept Camera = requires(C& camera, Stamp after) {
   { camera.next_view(after) } -> std::same_as<View>;
 };
 
 /// LEDs that can be switched.
-///   lamp.light(code)  lights the LEDs of this code and no others, 0: none; returns when that was done;
-///                     throws as an Arm does
+///   lamp.light(code)  lights only the LEDs of this code, 0: none; returns the time of the switch;
+///                     throws like an Arm
 template <class L>
 concept Lamp = requires(L& lamp, int code) {
   { lamp.light(code) } -> std::same_as<Stamp>;
 };
 
-/// Finds features of a target in a view.  It does not throw for what it does not find.
+/// Finds features of a target in a view.  Does not throw if it finds nothing.
 ///   finder.find(view)  observations of two or more sensors, or why there are none
 template <class F>
 concept Finder = requires(const F& finder, const View& view) {

@@ -1,7 +1,7 @@
 // The line of a laser scanner as features of a chain3d sensor.
 //
-// A scan is a cloud of one row.  A line does not determine a plane; repeated at heights it is a piece
-// of a wall that stands upright in the scanner's frame.  Names and defaults are upstream's.
+// A scan is a cloud of one row.  A line does not determine a plane; repeated at several heights, it
+// is a piece of a vertical wall in the scanner's frame.  Names and defaults are upstream's.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,7 +22,7 @@ struct ScanFinder {
   /// (3) min_x, min_y, metres, in the scanner's frame, and its height.
   Vector3<double> least{-2.0, -2.0, -std::numeric_limits<double>::infinity()};
   Vector3<double> most{2.0, 2.0, std::numeric_limits<double>::infinity()};  ///< (3) max_x, max_y
-  int z_repeats = 10;     ///< how often each point is repeated, at least 1
+  int z_repeats = 10;     ///< number of copies of each point, at least 1
   double z_offset = 0.1;  ///< metres along the scanner's z between repetitions
 
   /// The points of the scan.

@@ -1,12 +1,12 @@
 // A capture session: the robot moves from pose to pose, finders look, samples are recorded.
 //
-// For each pose: move, wait until joints and image stand still, run the finders that the pose asks
-// for, check that nothing moved meanwhile.  A pose that fails is skipped, with the reason.  Nothing
-// is kept here: the observer writes each sample as soon as it is there, so a crash loses at most the
-// one in progress.  A stream that is silent in two poses is dead, and ends the session.
+// For each pose: move, wait until joints and image are still, run the pose's finders, check that
+// nothing moved meanwhile.  A pose that fails is skipped, with the reason.  The session stores
+// nothing: the observer writes each sample at once, so a crash loses at most the one in progress.
+// A stream that is silent in two poses is dead, and ends the session.
 //
-// Where the next pose comes from is a function: a list, a list without what an earlier session has
-// recorded, or a person who puts the robot somewhere (a pose without joints).
+// A function supplies the next pose: from a list, from a list without the poses recorded earlier,
+// or from a person who moves the robot (a pose without joints).
 // Source: Fetch paper, III-A.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -24,48 +24,48 @@
 
 namespace kinecal {
 
-/// A finder of a session: what it looks at, and what it does with it.
+/// A finder of a session, with its camera.
 struct SessionFinder {
   std::string name;                              ///< as poses name it
   std::function<View(Stamp after)> next_view;    ///< of its camera: see Camera
   std::function<Found(const View& still)> find;  ///< receives a view in which nothing moves
 };
 
-/// How a session runs.
+/// Settings of a session.
 struct SessionOptions {
   double velocity_factor = 1.0;  ///< of the robot's usual speed, (0, 1]
   SettleOptions settling = {};   ///< when the robot counts as still
-  double moved = 0.003;          ///< joints may move by this while finders look, radians or metres
+  double moved = 0.003;          ///< allowed joint motion while finders look, radians or metres
 };
 
-/// What one finder did in one pose.
+/// The result of one finder in one pose.
 struct FinderOutcome {
   std::string finder;  ///< its name
-  View view;           ///< in which it looked; its image is empty if it was never still
-  Found found;         ///< what it found, or why nothing
+  View view;           ///< that it searched; without image if it was never still
+  Found found;         ///< its features, or why there are none
 };
 
-/// What became of one pose.
+/// The result of one pose.
 struct CapturedPose {
-  CapturePose pose;                     ///< as asked for
-  std::vector<Sample> samples;          ///< none if nothing was found; one, or more where finders
+  CapturePose pose;                     ///< as requested
+  std::vector<Sample> samples;          ///< empty if nothing was found; several if finders
                                         ///< observe with the same sensors
   std::vector<FinderOutcome> outcomes;  ///< of each finder that looked
   std::string failure;                  ///< why the pose was skipped; empty if it was not
-  Stamp duration{};                     ///< of the robot's clock, for move and finders
+  Stamp duration{};                     ///< of the move and the finders, on the robot's clock
 };
 
-/// Says which pose is next; nothing ends the session.
+/// Supplies the next pose; nullopt ends the session.
 using NextPose = std::function<std::optional<CapturePose>()>;
-/// Takes each pose when it is done; writes its samples.
+/// Receives each finished pose; writes its samples.
 using PoseObserver = std::function<void(const CapturedPose&)>;
 
 /// Runs a session until there is no next pose.
-/// @param finders  a pose without names of finders asks for all
-/// @param took     may throw; what it throws ends the session
+/// @param finders  a pose that names no finders uses all
+/// @param took     may throw, which ends the session
 /// @throws std::invalid_argument  if a pose names a finder that does not exist
-/// @throws ConnectionError        if the robot cannot be reached any more, or a stream of it delivers
-///                                nothing in two poses; what was taken is taken
+/// @throws ConnectionError        if the connection is lost, or a stream is silent in two poses;
+///                                finished poses are kept
 template <Arm A>
 void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> finders,
                  const PoseObserver& took, const SessionOptions& options = {});
@@ -73,9 +73,9 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
 /// The poses of a list, one after the other.
 [[nodiscard]] NextPose poses_of(std::vector<CapturePose> poses);
 
-/// The poses that were not captured yet, to resume a session: each sample is taken for the first pose
-/// that its joint positions match.
-/// @param arrival  by which a joint may differ from its pose, radians or metres
+/// The poses not captured yet, to resume a session: each sample counts for the first pose that its
+/// joint positions match.
+/// @param arrival  tolerance of a joint, radians or metres
 [[nodiscard]] std::vector<CapturePose> poses_left(std::span<const CapturePose> poses,
                                                   std::span<const Sample> samples,
                                                   double arrival = SettleOptions{}.arrival);
@@ -90,10 +90,10 @@ template <Finder F, Camera C>
 
 namespace detail {
 
-/// Streams that were waited for in vain.
+/// Streams that have been silent.
 class SilentStreams {
  public:
-  /// Why the session must end; empty if this is the stream's first silence, or it has delivered
+  /// Why the session must end; empty if this is the stream's first silence, or if it has delivered
   /// something since the last one.
   [[nodiscard]] std::string add(const SilenceError& error);
 
@@ -106,7 +106,7 @@ class SilentStreams {
 [[nodiscard]] std::vector<const SessionFinder*> finders_of(const CapturePose& pose,
                                                            std::span<const SessionFinder> finders);
 
-/// Samples of what finders found at these joint positions.
+/// Samples of the finders' observations at these joint positions.
 [[nodiscard]] std::vector<Sample> samples_of(const MeasuredJoints& joints,
                                              std::span<const FinderOutcome> outcomes);
 
@@ -114,7 +114,7 @@ class SilentStreams {
 [[nodiscard]] std::string moved_meanwhile(const MeasuredJoints& before, const MeasuredJoints& after,
                                           double limit);
 
-/// Runs the finders of a pose where the robot stands, and takes what they found.
+/// Runs the finders of a pose where the robot stands, and returns their results.
 template <Arm A>
 void look(A& arm, const MeasuredJoints& joints, std::span<const SessionFinder* const> finders,
           const SessionOptions& options, CapturedPose& captured) {
@@ -129,7 +129,7 @@ void look(A& arm, const MeasuredJoints& joints, std::span<const SessionFinder* c
   for (const FinderOutcome& outcome : captured.outcomes) {
     latest = std::max(latest, outcome.view.stamp);
   }
-  // The later positions are those of the sample: what was left of the motion is over by then.
+  // The sample gets the later positions: by then the last motion is over.
   const MeasuredJoints now = settle_joints(arm, {}, latest, options.settling);
   captured.failure = moved_meanwhile(joints, now, options.moved);
   if (captured.failure.empty()) captured.samples = samples_of(now, captured.outcomes);

@@ -1,8 +1,8 @@
-// Waiting until a robot stands still: measured from its joints and its images, not slept.
+// Waits until a robot is still, judged by its joints and images instead of a sleep.
 //
-// Joints are still when the means of both halves of a window of time agree, so that the noise of
-// encoders does not matter and slow creeping does.  An image is still when hardly a pixel differs from
-// the image before by more than its noise.
+// Joints are still when the means of both halves of a time window agree: this ignores encoder noise
+// but detects slow creeping.  An image is still when almost no pixel differs from the previous
+// image by more than its noise.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,27 +17,27 @@
 
 namespace kinecal {
 
-/// When a robot counts as still, and how long to wait for it, on its own clock.
+/// When a robot counts as still, and how long to wait, on its own clock.
 struct SettleOptions {
-  Stamp window = std::chrono::milliseconds(300);  ///< of time, in which joints must be still
+  Stamp window = std::chrono::milliseconds(300);  ///< in which joints must be still
   double still = 0.001;   ///< change of the mean between its halves, radians or metres
-  double arrival = 0.03;  ///< of a joint that has arrived: distance from its target, the same
+  double arrival = 0.03;  ///< distance from its target at which a joint has arrived, the same
   Stamp patience = std::chrono::seconds(3);          ///< for a joint that stands still elsewhere
   Stamp time_limit = std::chrono::seconds(30);       ///< for joints
   Stamp image_time_limit = std::chrono::seconds(5);  ///< for the image
-  int gray_levels = 25;                         ///< change of a pixel that noise does not cause
-  double still_pixels = 0.002;                  ///< share of the pixels that may change by more
-  Stamp clock_limit = std::chrono::seconds(5);  ///< by which stamps of camera and joints may differ
+  int gray_levels = 25;                              ///< largest change of a pixel by noise
+  double still_pixels = 0.002;                  ///< fraction of the pixels that may change by more
+  Stamp clock_limit = std::chrono::seconds(5);  ///< allowed difference of camera and joint stamps
 };
 
-/// Readings of joints, one after the other, and whether they have come to rest.
+/// Collects readings of joints and decides whether they are at rest.
 class JointRest {
  public:
   explicit JointRest(const SettleOptions& options) : options_(options) {}
 
   /// Takes the next reading.
-  /// @throws PoseError  if its stamp is not later than the last one, it has other joints than the
-  ///                    last one, or a position is not finite
+  /// @throws PoseError  if its stamp is not later than the last one, its joints differ from the
+  ///                    last ones, or a position is not finite
   void add(MeasuredJoints reading);
 
   /// True if all joints were still during the window.
@@ -46,7 +46,7 @@ class JointRest {
   /// Mean positions during the window, stamped with the last reading.
   [[nodiscard]] MeasuredJoints mean() const;
 
-  /// The joint that is farthest from a target, in words; empty if all have arrived.
+  /// The joint farthest from its target, as text; empty if all have arrived.
   /// @throws PoseError  if a joint of the target is not measured
   [[nodiscard]] std::string not_arrived(const JointTarget& target) const;
 
@@ -56,30 +56,30 @@ class JointRest {
   std::deque<MeasuredJoints> readings_;
 };
 
-/// Waits until joints stand still, at a target if there is one.
-/// @param target  joints that must arrive there; without names: wherever they are
-/// @param after   readings count from this time on
-/// @returns  mean positions while they stood still
+/// Waits until joints are still, at a target if there is one.
+/// @param target  joints that must arrive; without names: wherever they are
+/// @param after   ignores earlier readings
+/// @returns  mean positions while still
 /// @throws PoseError        naming the joint that does not arrive or does not stop
 /// @throws ConnectionError  from the arm
 template <Arm A>
 [[nodiscard]] MeasuredJoints settle_joints(A& arm, const JointTarget& target, Stamp after,
                                            const SettleOptions& options = {});
 
-/// Share of the pixels that differ by more than noise; 1 if the sizes differ.
+/// Fraction of the pixels that differ by more than noise; 1 if the sizes differ.
 [[nodiscard]] double changed_pixels(const GrayImage& a, const GrayImage& b, int gray_levels);
 
-/// Waits for a view in which the image stands still.  A view without image is returned as it comes.
+/// Waits for a view with a still image.  Returns a view without image at once.
 /// @param next_view  the first view stamped after a time: see Camera
-/// @throws PoseError        if the image does not come to rest, its size changes, or it has another
-///                          clock than the joints
+/// @throws PoseError        if the image does not come to rest, its size changes, or its clock
+///                          differs from that of the joints
 /// @throws ConnectionError  from the camera
 [[nodiscard]] View settle_image(const std::function<View(Stamp after)>& next_view, Stamp after,
                                 const SettleOptions& options = {});
 
 namespace detail {
 
-/// "12.345 s" of a duration.
+/// A duration as text: "12.345 s".
 [[nodiscard]] std::string seconds_text(Stamp duration);
 
 }  // namespace detail
@@ -90,7 +90,7 @@ MeasuredJoints settle_joints(A& arm, const JointTarget& target, Stamp after,
   JointRest rest(options);
   MeasuredJoints reading = arm.next_joints(after);
   const Stamp start = reading.stamp;
-  Stamp moved = start;  // when they last were not still
+  Stamp moved = start;  // when they last moved
   std::string missing = "joints do not stop";
   while (true) {
     const Stamp now = reading.stamp;

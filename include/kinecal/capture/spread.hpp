@@ -1,4 +1,4 @@
-// A few of many points, evenly.
+// Picks a few of many points, evenly.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,11 +11,11 @@
 
 namespace kinecal {
 
-/// At most `count` of the indices 0 to size - 1, ascending: one of each of `count` equal pieces, at
-/// places in them that follow the golden ratio, so that they do not line up with rows of an image.
+/// At most `count` of the indices 0 to size - 1, ascending: one from each of `count` equal pieces,
+/// at offsets that follow the golden ratio, so that they do not line up with rows of an image.
 [[nodiscard]] std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
 
-/// At most `count` of the points, even in space: each is the farthest from all before it.
+/// At most `count` of the points, evenly spread in space: each is the farthest from all before it.
 /// Source: Eldar et al., The farthest point strategy for progressive image sampling, 1997.
 /// @param points  (3) metres, finite
 /// @return        indices, ascending

@@ -25,7 +25,8 @@ KINECAL_INLINE std::vector<std::size_t> thinned(std::size_t size, std::size_t co
 
 KINECAL_INLINE std::vector<std::size_t> spread(std::span<const Vector3<double>> points,
                                                std::size_t count) {
-  // The farthest of all is the farthest of many; beyond a few thousand, pieces are even enough.
+  // The farthest of all is among the farthest of many; beyond a few thousand, pieces are even
+  // enough.
   constexpr std::size_t kLeastPool = 2048, kMostCount = 2048;
   if (count >= points.size() || count > kMostCount) return thinned(points.size(), count);
   std::vector<std::size_t> chosen;
@@ -41,7 +42,7 @@ KINECAL_INLINE std::vector<std::size_t> spread(std::span<const Vector3<double>> 
       distance[i] = std::min(distance[i], (points[pool[i]] - last).squaredNorm());
     }
     const auto most = std::max_element(distance.begin(), distance.end());
-    if (!(*most > 0.0)) break;  // all others are at the same places
+    if (!(*most > 0.0)) break;  // the remaining points coincide with chosen ones
     farthest = static_cast<std::size_t>(most - distance.begin());
   }
   std::sort(chosen.begin(), chosen.end());

@@ -1,10 +1,10 @@
-// The 3-D point that a camera sees at a place of its image, where its depth has holes.
+// The 3-D point at a place in a camera's image, even if its depth has holes.
 //
 // Valid points in a window around the pixel, which grows until there are enough, are split into
-// surfaces where their depths have a gap.  The surface with the most weight, 1 / (1 + distance^2),
-// counts; one in front of it wins if it has a good part of that, because what is attached to an edge
-// is on the near side.  On a plane 1/z is linear in u and v: that line's value at the place gives z,
-// within the depths that were seen, and P of the camera gives x and y.
+// surfaces at gaps in depth.  The surface with the largest weight, 1 / (1 + distance^2), counts;
+// one in front of it wins if it has a good part of that weight, because anything attached to an
+// edge is on the near side.  On a plane, 1/z is linear in u and v: that fit gives z at the place,
+// clamped to the depths seen, and P of the camera gives x and y.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -10,14 +10,14 @@
 namespace kinecal {
 namespace detail {
 
-/// A point near the place: where, how far, and how much it counts.
+/// A point near the place: its position, distance and weight.
 struct NearPoint {
   double u, v;  ///< pixels from the place
   double z;     ///< metres
   double weight;
 };
 
-/// Valid points of a window, the nearest to the camera first.
+/// Valid points of a window, nearest to the camera first.
 inline std::vector<NearPoint> points_around(const PointCloud& cloud, double u, double v,
                                             int radius) {
   std::vector<NearPoint> points;
@@ -36,8 +36,8 @@ inline std::vector<NearPoint> points_around(const PointCloud& cloud, double u, d
   return points;
 }
 
-/// The surface that is at the place.
-/// @param points  the nearest to the camera first
+/// The surface at the place.
+/// @param points  nearest to the camera first
 inline std::span<const NearPoint> surface_at(std::span<const NearPoint> points) {
   constexpr double kGap = 0.01, kLeastGap = 0.005;  // of the depth; metres
   constexpr double kNearSide = 0.4;                 // of the weight
@@ -66,7 +66,7 @@ inline std::span<const NearPoint> surface_at(std::span<const NearPoint> points) 
 }
 
 /// Depth of a surface at the place, metres.
-/// @param points  at least one, the nearest to the camera first
+/// @param points  at least one, nearest to the camera first
 inline double depth_at_place(std::span<const NearPoint> points) {
   double w = 0.0, u = 0.0, v = 0.0, d = 0.0;
   for (const NearPoint& p : points) {

@@ -1,4 +1,4 @@
-// Corners of a square tag between the pixels, from its four edges.
+// Sub-pixel corners of a square tag, from its four edges.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace kinecal::detail {
 
-/// Moves the corners of a tag to where lines through its four edges meet.  Each line is fitted to where
-/// the brightness is halfway between both sides.
+/// Moves the corners of a tag to the intersections of its four edges.  Each line is fitted to the
+/// places where the brightness is halfway between both sides.
 /// @param cell  width of the border, pixels
 void refine_tag(const GrayImage& image, double cell, std::array<Eigen::Vector2d, 4>& corners);
 

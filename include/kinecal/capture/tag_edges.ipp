@@ -12,7 +12,7 @@
 
 namespace kinecal::detail {
 
-/// Where the brightness across an edge is halfway, at t from a to b: pixels along the normal.
+/// The offset along the normal at which the brightness is halfway, at t from a to b, pixels.
 [[nodiscard]] KINECAL_INLINE std::optional<double> edge_offset(const GrayImage& image,
                                                                const Eigen::Vector2d& at,
                                                                const Eigen::Vector2d& normal,
@@ -22,7 +22,7 @@ namespace kinecal::detail {
   const auto value = [&](int k) { return brightness_at(image, at + k * kStep * normal); };
   const double low = value(-half), high = value(half), middle = (low + high) / 2.0;
   if (std::abs(high - low) < 15.0) return std::nullopt;
-  for (int k = 0; k < 2 * half; ++k) {  // from the middle outwards, to either side in turn
+  for (int k = 0; k < 2 * half; ++k) {  // from the middle outwards, alternating sides
     const int i = k % 2 == 0 ? k / 2 : -(k / 2) - 1;
     const double first = value(i), second = value(i + 1);
     if ((first - middle) * (second - middle) > 0.0 || first == second) continue;
@@ -37,7 +37,7 @@ struct EdgeLine {
   double distance = 0.0;
 };
 
-/// The line along an edge from a to b, without the places that are further from it than the rest.
+/// The line along an edge from a to b, without outlying places.
 [[nodiscard]] KINECAL_INLINE std::optional<EdgeLine> edge_line(const GrayImage& image,
                                                                const Eigen::Vector2d& a,
                                                                const Eigen::Vector2d& b,

@@ -1,5 +1,5 @@
-// What finders of printed targets share: which sensors see a target and hold it, and how the corners
-// that were found become observations.
+// Shared by finders of printed targets: the sensors that see and hold a target, and the conversion
+// of corners to observations.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,39 +12,39 @@
 
 namespace kinecal {
 
-/// What the camera's features are.
+/// The kind of the camera's features.
 enum class CornerKind {
   pixels,  ///< (u, v, 0) of the image, for a camera2d sensor
   points   ///< of the organised cloud, metres, for a camera3d sensor
 };
 
-/// A target's place on the robot, and what is demanded of its image.
+/// A target's place on the robot, and requirements on its image.
 struct TargetSettings {
   std::string camera_sensor = "camera";  ///< the sensor that sees it
   std::string chain_sensor = "arm";      ///< the sensor that holds it
   std::string frame = "checkerboard";    ///< of the target, in which its corners are given
   CornerKind corners = CornerKind::pixels;
-  double max_without_depth = 0.1;  ///< share of corners that may lack a point; these are left out
+  double max_without_depth = 0.1;  ///< fraction of corners that may lack a point; drops these
   TargetQuality quality = {};
 };
 
 /// A corner that was found.
 struct TargetCorner {
-  int id = 0;                          ///< which corner of the target it is
+  int id = 0;                          ///< identifies the corner of the target
   Eigen::Vector2d pixel = {0, 0};      ///< (2) u, v
   Vector3<double> target = {0, 0, 0};  ///< (3) metres, in the frame of the target
-  double reach = 3.0;                  ///< how far the target extends around it, pixels
+  double reach = 3.0;                  ///< extent of the target around it, pixels
 };
 
-/// Why a view cannot be used, before anything is searched: there is no image, camera_info is missing
-/// or of another size, the cloud is not organised.  Empty if it can.
+/// Why a view cannot be searched: no image, camera_info missing or of another size, cloud not
+/// organised.  Empty if it can.
 [[nodiscard]] std::string view_fault(const View& view, CornerKind corners);
 
 /// Marks of corners, with their ids.
 [[nodiscard]] std::vector<Mark> marks_of(const std::vector<TargetCorner>& corners);
 
-/// Observations of the camera and of the chain that holds the target, one feature a corner, in the
-/// order of the ids; or why there are none.
+/// Observations of the camera and of the chain that holds the target, one feature per corner, in
+/// the order of the ids; or why there are none.
 /// @throws std::invalid_argument  if two corners have the same id
 [[nodiscard]] Found observed(const View& view, const TargetSettings& settings,
                              std::vector<TargetCorner> corners);
@@ -57,8 +57,8 @@ namespace detail {
 }  // namespace detail
 
 /// Checks settings.
-/// @throws std::invalid_argument  if both sensors have one name, a name is empty, or a limit is not
-///                                positive
+/// @throws std::invalid_argument  if both sensors have the same name, a name is empty, or a limit
+///                                is not positive
 void check_target(const TargetSettings& settings);
 
 }  // namespace kinecal

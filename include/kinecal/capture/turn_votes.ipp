@@ -18,13 +18,14 @@ using Votes = std::array<double, 4>;
   return std::acos(std::clamp((rotation.trace() - 1.0) / 2.0, -1.0, 1.0));
 }
 
-/// 1 if two motions turn by the same angle, 1/2 if they differ by 5 degrees, less beyond.
+/// 1 if two motions rotate by the same angle, 1/2 if they differ by 5 degrees, less beyond.
 [[nodiscard]] KINECAL_INLINE double turn_agreement(double difference) {
   constexpr double kUsual = 5.0 * std::numbers::pi / 180.0;
   return 1.0 / (1.0 + difference * difference / (kUsual * kUsual));
 }
 
-/// The votes of all pairs, and those that each sample has from the others as they are turned.
+/// The votes of all pairs, and those that each sample gets from the others in their current
+/// rotation.
 class TurnVotes {
  public:
   TurnVotes(const std::vector<Matrix3<double>>& links, const std::vector<Matrix3<double>>& boards,
@@ -43,10 +44,10 @@ class TurnVotes {
     }
   }
 
-  /// Forgets what was counted.
+  /// Resets the counts.
   void clear() { sums_.assign(size_, Votes{}); }
 
-  /// Adds (sign 1) or takes back (sign -1) the votes of sample j, turned so far.
+  /// Adds (sign 1) or removes (sign -1) the votes of sample j in its current rotation.
   void count(std::size_t j, int turns, double sign) {
     for (std::size_t i = 0; i < size_; ++i) {
       for (int t = 0; t < 4; t += step_) {
@@ -56,7 +57,7 @@ class TurnVotes {
     }
   }
 
-  /// The best turn of a sample, and by how many votes it is better than the next.
+  /// The best rotation of a sample, and its lead in votes over the next.
   [[nodiscard]] std::pair<int, double> best(std::size_t i) const {
     int best = 0;
     for (int t = step_; t < 4; t += step_) {
@@ -90,7 +91,7 @@ class TurnVotes {
   std::vector<Votes> sums_;
 };
 
-/// Turns of all samples against the first, each added when those before it are surest of it.
+/// Rotations of all samples against the first, added in the order of confidence.
 [[nodiscard]] KINECAL_INLINE std::vector<int> turns_from(TurnVotes& votes, std::size_t n,
                                                          std::size_t first) {
   std::vector<int> turns(n, -1);
@@ -113,7 +114,7 @@ class TurnVotes {
   return turns;
 }
 
-/// Turns each sample again as all others say, until none changes; returns the votes for all.
+/// Lets each sample follow the others until none changes; returns the votes for all.
 KINECAL_INLINE double settle_turns(TurnVotes& votes, std::vector<int>& turns) {
   constexpr int kPasses = 20;
   bool changed = true;

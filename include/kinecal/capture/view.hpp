@@ -1,7 +1,7 @@
-// What a camera saw at one moment, and what a finder found in it.
+// A view: what a camera saw at one moment; and what a finder found in it.
 //
-// All stamps are of one clock, that of the robot.  Nothing here reads the clock of the computer, so
-// a simulated robot, a recording and a real robot are captured alike.
+// All stamps use one clock, the robot's.  Nothing here reads the computer's clock, so a simulated
+// robot, a recording and a real robot are captured in the same way.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace kinecal {
 
-/// A time of the robot's clock, since its epoch.
+/// A time on the robot's clock, since its epoch.
 using Stamp = std::chrono::nanoseconds;
 
 /// Joint positions at one moment.
@@ -33,7 +33,7 @@ struct MeasuredJoints {
   }
 };
 
-/// What a camera saw at one moment: an image, a cloud, or both of the same size.
+/// A camera's view at one moment: an image, a cloud, or both of the same size.
 struct View {
   Stamp stamp{};                     ///< of the exposure
   std::string frame;                 ///< the camera's optical frame: z forward, x right, y down
@@ -50,18 +50,18 @@ struct Mark {
   std::string label = {};  ///< such as the feature's id
 };
 
-/// What a finder found: observations of two or more sensors with the same features, such as a camera
-/// and the chain that holds the board; or why it found nothing.
+/// The result of a finder: observations of two or more sensors with the same features, such as a
+/// camera and the chain that holds the board; or why there are none.
 struct Found {
   std::vector<Observation> observations;  ///< empty if nothing was found
   std::string refusal;      ///< why not: "squares of 3.1 pixels; at least 8 are needed"
-  std::vector<Mark> marks;  ///< where its features are in the image; also of what was refused
+  std::vector<Mark> marks;  ///< where its features are in the image; also for refused ones
 
   /// True if features were found.
   [[nodiscard]] explicit operator bool() const { return !observations.empty(); }
 };
 
-/// Nothing was found, for this reason.
+/// The result if nothing was found, with the reason.
 [[nodiscard]] inline Found refused(std::string why, std::vector<Mark> marks = {}) {
   return {{}, std::move(why), std::move(marks)};
 }

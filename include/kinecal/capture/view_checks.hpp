@@ -1,4 +1,4 @@
-// What finders need of a view, and the sentence about what it lacks.
+// Checks that a view has what finders need; reports what is missing.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,12 +19,12 @@ namespace kinecal {
 /// can.
 [[nodiscard]] std::string camera_problem(const View& view);
 
-/// Why a pixel of the image does not have its point in the cloud; empty if it has.  The cloud must be
-/// of the image's size, and its points where camera_info sees them, within a few pixels.
+/// Why a pixel of the image does not match its point in the cloud; empty if it does.  The cloud
+/// must have the image's size, and its points must project to their pixels, within a few pixels.
 [[nodiscard]] std::string registration_problem(const View& view);
 
-/// The first of all these problems: why a view cannot be used by a finder that needs an image, the
-/// point of each pixel and camera_info; empty if it can.
+/// The first of all these problems: why a finder that needs image, points and camera_info cannot
+/// use a view; empty if it can.
 [[nodiscard]] std::string image_and_depth_problem(const View& view);
 
 }  // namespace kinecal

@@ -27,7 +27,8 @@ std::string pixels_problem(const Image<P>& image, const char* name) {
          " values, which are not " + checked_size_text(image.width, image.height);
 }
 
-/// How far points of a cloud are from their pixels where camera_info sees them; some points only.
+/// Distances between the points of a cloud, projected by camera_info, and their pixels; some points
+/// only.
 inline std::vector<double> projection_errors(const View& view) {
   constexpr std::size_t kPoints = 500;
   const auto& p = view.camera->p;

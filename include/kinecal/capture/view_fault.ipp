@@ -1,4 +1,4 @@
-// What is wrong with a view of a target, for view_search.ipp.
+// Faults of a view of a target, for view_search.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace kinecal::detail {
 
-/// What is wrong with a view, and how much.
+/// The fault of a view, and its size.
 struct ViewFault {
   double size = 0.0;
   std::string what;  ///< of the largest part

@@ -1,4 +1,4 @@
-// How far a pose is from a view of a target, for pose_generation.ipp.
+// Distance of a pose from a good view of a target, for pose_generation.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -41,14 +41,14 @@ class ViewSearch {
     }
   }
 
-  /// Positions of all joints of the body, those that move at random.
+  /// Positions of all joints of the body; those that move are random.
   [[nodiscard]] std::vector<double> anywhere(std::mt19937_64& random) const {
     std::vector<double> q = middle_;
     for (const std::size_t i : chosen_) q[i] = position_in_range(joints_[i], random_share(random));
     return q;
   }
 
-  /// Another position for one joint: near in most cases.
+  /// Moves one joint, in most cases slightly.
   void change(std::vector<double>& q, std::mt19937_64& random) const {
     constexpr double kFar = 0.3, kNear = 0.2;  // share of changes; of the way
     const std::size_t i = chosen_[random() % chosen_.size()];
@@ -78,7 +78,7 @@ class ViewSearch {
     return fault;
   }
 
-  /// Why a view that is good in itself cannot be had; empty if it can.
+  /// Why a view that is good in itself is not possible; empty if it is.
   [[nodiscard]] std::string obstacle(const std::vector<double>& q) const {
     const std::vector<Pose<double>> poses = body_.poses(q);
     if (body_.is_below(poses, goal_.ground)) return "a link is below the ground";
@@ -102,7 +102,7 @@ class ViewSearch {
     return target;
   }
 
-  /// Where the joints that move are in their ranges.
+  /// Positions of the moving joints, relative to their ranges.
   [[nodiscard]] std::vector<double> shares(const std::vector<double>& q) const {
     std::vector<double> shares;
     for (const std::size_t i : chosen_) {

@@ -1,4 +1,4 @@
-// The error blocks of a step, as terms of a problem.
+// Adds the error blocks of a step to a problem.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,8 +20,8 @@ namespace kinecal::detail {
   return name == "tukey" ? LossType::tukey : LossType::none;
 }
 
-/// Numbers of samples in which a block's first model observes something: alone, and beside another
-/// model of the step.
+/// Numbers of samples in which a block's first model observes something: alone, and together with
+/// another model of the step.
 struct Company {
   int alone = 0, beside = 0;
 };
@@ -43,9 +43,9 @@ struct Company {
   return count;
 }
 
-/// True if a block of a plane takes only the samples in which its model observes alone, although
-/// nothing says so: where there are such samples, what was observed beside another model, such as the
-/// LEDs of a gripper, is not the plane.
+/// True if a plane block uses only the samples in which its model observes alone, by default: if
+/// there are such samples, points seen together with another model, such as the LEDs of a gripper,
+/// are not on the plane.
 [[nodiscard]] inline bool is_exclusive_by_default(const BlockConfig& block, const StepConfig& step,
                                                   std::span<const Sample> samples) {
   if (block.type != "chain3d_to_plane" || block.exclusive || !block.ground.empty()) return false;
@@ -53,7 +53,7 @@ struct Company {
   return count.alone > 0 && count.beside > 0;
 }
 
-/// @throws std::exception  if the block's numbers are impossible or its sensors do not fit
+/// @throws std::exception  if the block's numbers are impossible or its sensors do not match
 inline void add_block(AnyProblem& problem, const BlockConfig& block, bool exclusive) {
   const BlockEntry* entry = registry().block(block.type);
   if (entry == nullptr) throw std::invalid_argument("no type '" + block.type + "'");

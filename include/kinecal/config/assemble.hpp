@@ -1,6 +1,6 @@
-// Builds the calibration: configuration + robot + samples -> problems that can be solved.
+// Assembles the calibration: configuration + robot + samples -> problems ready to solve.
 //
-// Every error is reported with its place.
+// Every error names its source location.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@
 namespace kinecal {
 
 /// Builds the problems of all steps.
-/// @param samples  may be empty: then only the configuration and the robot are checked
+/// @param samples  may be empty: then checks only the configuration and the robot
 [[nodiscard]] Calibration assemble(const Config& config, const Robot& robot,
                                    std::span<const Sample> samples, Diagnostics& diagnostics);
 

@@ -1,4 +1,4 @@
-// Builds problems from a configuration and reports every error at its line.
+// Assembles problems from a configuration and reports every error at its line.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -37,7 +37,7 @@ inline std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample>
   return added;
 }
 
-/// Says that no sample has an observation of a block's ground; empty if one has.
+/// The error if no sample has an observation of a block's ground; else empty.
 [[nodiscard]] inline std::string missing_ground(const BlockConfig& block,
                                                 std::span<const Sample> samples) {
   if (block.ground.empty()) return {};
@@ -50,7 +50,7 @@ inline std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample>
                      did_you_mean(block.ground, recorded));
 }
 
-/// Reports terms without samples, and plane blocks that also take the samples of another block.
+/// Reports terms without samples, and plane blocks that also use the samples of another block.
 inline void check_terms(const StepConfig& step, const AnyProblem& problem,
                         std::span<const Sample> samples, Diagnostics& diagnostics) {
   int total = 0;
@@ -91,7 +91,7 @@ inline void check_terms(const StepConfig& step, const AnyProblem& problem,
   }
 }
 
-/// The free parameters of a step that affect residuals, in the order of the file; warns of others.
+/// The free parameters of a step that affect residuals, in file order; warns of others.
 [[nodiscard]] inline FreeSet free_set(const StepConfig& step, const AnyProblem& problem,
                                       bool have_samples, Diagnostics& diagnostics) {
   const ParameterTable& table = problem.table();
@@ -161,7 +161,7 @@ inline void warn_of_held_priors(const Config& config, const ParameterTable& tabl
 }
 
 /// Adds the sensors and error blocks of a step.
-/// @return  false, with errors, if they do not fit the robot
+/// @return  false, with errors, if they do not match the robot
 inline bool add_models(AnyProblem& problem, const StepConfig& step, std::span<const Sample> samples,
                        Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
@@ -186,15 +186,15 @@ inline bool add_models(AnyProblem& problem, const StepConfig& step, std::span<co
   return diagnostics.errors.size() == before;
 }
 
-/// What a step needs to search for the poses that nobody gave: the frames, and a few samples, with
-/// lines of sight in place of pixels, because a search also looks where the camera does not.
+/// Prepares the search for unknown poses of a step: the frames, and a few samples, with lines of
+/// sight instead of pixels, because the search also looks behind the camera.
 inline void prepare_search(CalibrationStep& step, const Config& config, const StepConfig& of_config,
                            const Robot& robot, std::span<const Sample> samples) {
   const ParameterTable& table = step.problem->table();
   step.unknown_frames = unknown_frames(config, of_config, robot, table, step.free);
   if (step.unknown_frames.empty()) return;
   StepConfig of_step = of_config;
-  Diagnostics ignored;  // of the whole problem, they are known
+  Diagnostics ignored;  // already reported for the whole problem
   std::vector<BlockConfig> pixels;
   std::erase_if(of_step.error_blocks, [&](const BlockConfig& block) {
     const BlockEntry* entry = registry().block(block.type);

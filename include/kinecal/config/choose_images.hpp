@@ -1,14 +1,15 @@
-// Raw or rectified: what the pixels of each camera2d are of, where the configuration does not say it.
+// Decides whether the pixels of each camera2d are raw or rectified, if the configuration does not
+// say.
 //
-// camera_info describes both: K and D a raw image, P a rectified one, and ROS keeps D on topics of
-// rectified images.  So both are tried, and what fits the samples is taken.  With distances r of
+// camera_info describes both: K and D a raw image, P a rectified one, and ROS keeps D even on
+// topics of rectified images.  So both are tried, and the better fit wins.  With distances r of
 // features, s the median of the better fit and n components, each sample has
 //
 //   d = sum (n + 1) / 2 [log(1 + (r_raw / s)^2) - log(1 + (r_rectified / s)^2)]
 //
-// the logarithm of the ratio of likelihoods under noise with heavy tails, limited to [-5, 5], so that
-// bad captures count little.  One is taken if |sum d| > 10 and |sum d| > 2.5 sqrt(sum d^2); of fewer
-// than eight samples, nearly all must agree.
+// the log-likelihood ratio under heavy-tailed noise, limited to [-5, 5] so that bad captures count
+// little.  A winner needs |sum d| > 10 and |sum d| > 2.5 sqrt(sum d^2); with fewer than eight
+// samples, nearly all must agree.
 // Source: Vuong, Likelihood Ratio Tests for Model Selection and Non-Nested Hypotheses, 1989.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,11 +24,11 @@
 
 namespace kinecal {
 
-/// Sets ModelConfig::image of each camera2d without the key.  Where both fit alike it stays
-/// automatic.  A step without the key takes that of another step.
+/// Sets ModelConfig::image of each camera2d without the key.  If both fit alike, it stays
+/// automatic.  A step without the key uses that of another step.
 ///
-/// Notes what was taken, with both medians; also where a distortion model cannot be used, so that only
-/// rectified is possible.  Warns of a raw image whose R is not the identity.
+/// Notes the choice, with both medians; also if a distortion model is unsupported, so that only
+/// rectified is possible.  Warns of a raw image if R is not the identity.
 void choose_images(Config& config, const Robot& robot, std::span<const Sample> samples,
                    Diagnostics& diagnostics);
 

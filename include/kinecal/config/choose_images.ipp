@@ -21,10 +21,10 @@ namespace kinecal {
 
 namespace detail {
 
-/// What the observations of a camera allow.
+/// The choices that a camera's observations allow.
 struct ImageOptions {
   bool seen = false;      ///< there are observations
-  bool differ = false;    ///< the two are not the same
+  bool differ = false;    ///< the choices differ
   bool bends = false;     ///< a coefficient of the distortion is not zero
   double turn = 0.0;      ///< angle of R, radians
   std::string no_raw;     ///< why raw is impossible
@@ -88,8 +88,7 @@ inline void choose_image(Config& config, const Robot& robot, std::span<const Sam
                                text(rectified), image == ImageKind::raw ? "raw" : "rectified"));
 }
 
-/// A raw image is in the frame of the lens, but ROS takes the frame of a camera for that of its
-/// rectified image.
+/// A raw image is in the frame of the lens, but ROS uses a camera's frame for its rectified image.
 inline void warn_of_turned_image(const Config& config, const ModelConfig& camera,
                                  const ImageOptions& options, Diagnostics& diagnostics) {
   constexpr double kTurned = 1e-4;

@@ -1,6 +1,6 @@
-// A calibration as its configuration file describes it: models, free parameters, blocks, steps.
+// A calibration as described by a configuration file: models, free parameters, blocks, steps.
 //
-// Plain values with their places in the file.  read_config.hpp fills them from both dialects of
+// Plain values with source locations.  read_config.hpp fills them from both dialects of
 // robot_calibration; assemble.hpp checks the names against the robot and the samples.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -19,14 +19,14 @@
 
 namespace kinecal {
 
-/// `models:`  a sensor or arm that observes features, and the link that it is fixed to.
+/// `models:`  a sensor or arm that observes features, and the link it is fixed to.
 struct ModelConfig {
   std::string name;        ///< sensor_name in the samples
   std::string type;        ///< of the registry: "chain3d" ("chain" is read as chain3d)
   std::string frame;       ///< link of the URDF
   std::string param_name;  ///< prefix of the camera's parameters; the model's name by default
   SourceLocation place;    ///< where the file defines it
-  ImageKind image = ImageKind::automatic;  ///< (kinecal only) of a camera2d: what its pixels are of
+  ImageKind image = ImageKind::automatic;  ///< (kinecal only) of a camera2d: the kind of its image
 };
 
 /// `free_params:`  a joint offset or a camera parameter.
@@ -35,13 +35,13 @@ struct FreeParamConfig {
   SourceLocation place;  ///< where the file frees it
 };
 
-/// `free_frames:`  a joint's frame or a virtual frame, and its free axes; or `fixed_frames:` (kinecal
-/// only), a virtual frame whose pose is known.
+/// `free_frames:`  a joint's frame or a virtual frame, and its free axes; or `fixed_frames:`
+/// (kinecal only), a virtual frame with a known pose.
 struct FreeFrameConfig {
   std::string name;            ///< joint of the URDF or virtual frame
   std::array<bool, 6> axes{};  ///< x y z roll pitch yaw
   SourceLocation place;        ///< where the file frees it
-  bool is_fixed = false;       ///< of fixed_frames: no axis is free, initial_values hold its pose
+  bool is_fixed = false;       ///< of fixed_frames: no axis is free, initial_values give its pose
 };
 
 /// `free_frames_initial_values:`  where a free frame starts.
@@ -62,8 +62,8 @@ struct InitialValueConfig {
 /// `bounds:`  (kinecal only) lower and upper bound of a free parameter.
 struct BoundConfig {
   std::string name;      ///< of the parameter
-  double lower = 0.0;    ///< least value, in the unit of the parameter
-  double upper = 0.0;    ///< greatest value, in the unit of the parameter
+  double lower = 0.0;    ///< smallest value, in the unit of the parameter
+  double upper = 0.0;    ///< largest value, in the unit of the parameter
   SourceLocation place;  ///< where the file sets it
 };
 
@@ -73,15 +73,15 @@ struct LossConfig {
   double scale = 1.0;         ///< units of the block's residual after division by sigma
 };
 
-/// `error_blocks:`  what is compared, or a prior.
+/// `error_blocks:`  a comparison, or a prior.
 struct BlockConfig {
   std::string name;                 ///< for reports and messages
   std::string type;                 ///< of the registry: "chain3d_to_chain3d"
   std::vector<std::string> models;  ///< in the order of the registry's keys; empty for outrageous
   std::string param;                ///< outrageous: joint, frame or parameter
   std::map<std::string, double> numbers;  ///< by key; defaults filled in
-  /// `samples: exclusive` (or alone): only samples without observations of other models; empty: not
-  /// given.
+  /// `samples: exclusive` (or alone): only samples without observations of other models; nullopt:
+  /// not given.
   std::optional<bool> exclusive = {};
   std::string ground;  ///< camera3d_to_ground: only samples with an observation of this sensor
   std::optional<double> sigma =

@@ -1,4 +1,4 @@
-// Error blocks of a configuration; the registry has their types.
+// Reads the error blocks of a configuration; the registry has their types.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace kinecal::detail {
 
-/// Reports a model that does not deliver what the block takes of it.
+/// Reports a model that does not deliver the quantity the block takes.
 inline void check_model_kind(const ConfigMap& map, const BlockConfig& block, const std::string& key,
                              const ModelConfig& model, Quantity quantity) {
   const SensorEntry* entry = registry().sensor(model.type);
@@ -31,7 +31,7 @@ inline void check_model_kind(const ConfigMap& map, const BlockConfig& block, con
                              std::string(to_string(quantity)));
 }
 
-/// Reads one model of a block, under whichever of its keys the file has.
+/// Reads one model of a block, under any of its keys.
 inline void read_block_model(ConfigMap& map, const BlockSensorEntry& of_block,
                              const std::vector<ModelConfig>& models, BlockConfig& block) {
   const ConfigEntry* entry = nullptr;
@@ -61,7 +61,7 @@ inline void read_block_model(ConfigMap& map, const BlockSensorEntry& of_block,
 inline void read_block_numbers(ConfigMap& map, const BlockEntry& entry, BlockConfig& block) {
   for (const auto& [name, fallback] : entry.numbers) {
     block.numbers[name] = map.number(name, fallback);
-    // It weighs all residuals; what weighs a part of them (normal_scale) may be zero.
+    // It weights all residuals; the weight of a part of them (normal_scale) may be zero.
     if (name == "scale" && !(block.numbers[name] > 0.0)) {
       map.error(block.place,
                 fmt::format("scale is {}, not greater than zero", block.numbers[name]));

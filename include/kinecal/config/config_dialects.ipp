@@ -1,11 +1,11 @@
 // The two dialects of configurations.
 //
-// ROS 1: the top-level keys are the only step, or there are several steps under `cal_steps`.  These
-// run in alphabetical order of their names, as ROS stores them.  A step without one of the lists
-// takes it from the step before it, the first step from the top-level keys: robot_calibration reads
-// each step on top of the last one.  So each step also starts its free frames at the initial values.
+// ROS 1: the top-level keys are the only step, or `cal_steps` has several.  These run in
+// alphabetical order, as ROS stores them.  A step without one of the lists inherits it from the
+// previous step, the first step from the top-level keys: robot_calibration reads each step on top
+// of the last one.  So each step also starts its free frames at the initial values.
 //
-// ROS 2: `<node>: ros__parameters:` with the steps that `calibration_steps` names, in this order.
+// ROS 2: `<node>: ros__parameters:` with the steps listed in `calibration_steps`, in this order.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -81,7 +81,7 @@ inline void read_ros1(ConfigMap& file, ConfigProgress& progress) {
 inline void read_ros2_steps(ConfigMap& parameters, int max_num_iterations,
                             ConfigProgress& progress) {
   const std::vector<ConfigEntry> names = ros2_step_names(parameters);
-  std::set<std::string> others;  // maps that are not a step; a misspelt step may be among them
+  std::set<std::string> others;  // maps that are not listed as steps; one may be a misspelt step
   for (const ConfigEntry& entry : parameters.entries()) {
     if (entry.value.is_map()) others.insert(entry.key);
   }
@@ -110,7 +110,7 @@ inline void read_ros2(ConfigMap& parameters, ConfigProgress& progress) {
 }
 
 /// Reports a `ros__parameters` that is missing above calibration_steps, or misspelt.
-/// @return  whether it is
+/// @return  true if so
 inline bool misses_ros_parameters(const ConfigMap& file) {
   if (const ConfigEntry* steps = file.peek("calibration_steps")) {
     file.error(steps->place, "calibration_steps stands outside of '<node>: ros__parameters:'");
@@ -129,8 +129,8 @@ inline bool misses_ros_parameters(const ConfigMap& file) {
   return false;
 }
 
-/// Reports keys that stand one level too deep, below the name of a node or of a namespace.
-/// @return  whether they do
+/// Reports keys that are one level too deep, below the name of a node or of a namespace.
+/// @return  true if so
 inline bool is_too_deep(const ConfigMap& file) {
   const std::vector<std::string> known = {"cal_steps", "models", "free_params", "free_frames",
                                           "error_blocks"};

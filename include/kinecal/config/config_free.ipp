@@ -1,4 +1,4 @@
-// Free parameters and frames of a configuration, their initial values and bounds.
+// Reads free parameters and frames of a configuration, their initial values and bounds.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -84,8 +84,8 @@ inline void check_free_axes(const ConfigMap& map, const FreeFrameConfig& frame) 
   return pose;
 }
 
-/// `fixed_frames:`  a frame of features, beyond the link of their model, at a pose that is known.  It
-/// is a virtual frame without a free axis.
+/// `fixed_frames:`  a frame of features, beyond the link of their model, with a known pose: a
+/// virtual frame without free axes.
 /// @return  the values of its parameters
 [[nodiscard]] inline std::vector<InitialValueConfig> read_fixed_frame(ConfigItem& item,
                                                                       StepConfig& step) {
@@ -121,7 +121,7 @@ inline void check_initial_axes(const ConfigMap& map, const FrameInitialValueConf
   }
 }
 
-/// @param free  the axes that are free in this step or one before it
+/// @param free  the axes that are free in this step or a previous one
 [[nodiscard]] inline FrameInitialValueConfig read_frame_initial_value(ConfigItem& item,
                                                                       const FreeAxes& free) {
   FrameInitialValueConfig initial = read_frame_pose(item);
@@ -172,9 +172,10 @@ inline void check_initial_axes(const ConfigMap& map, const FrameInitialValueConf
   return bounds;
 }
 
-/// Reports bounds of parameters that are not free, and drops them: one mistake, one message.
+/// Reports bounds of parameters that are not free, and drops them, so that one mistake gives one
+/// message.
 /// @param free   names of the free parameters
-/// @param where  where they are free, for the message: "in this step"
+/// @param where  where they would be free, for the message: "in this step"
 inline void check_bounds(const ConfigMap& map, std::vector<BoundConfig>& bounds,
                          const std::vector<std::string>& free, const std::string& where) {
   std::erase_if(bounds, [&](const BoundConfig& bound) {

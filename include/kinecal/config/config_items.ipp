@@ -1,6 +1,6 @@
 // The items of a configuration's lists: models, free frames, initial values, error blocks.
 //
-// The two dialects of robot_calibration differ only in where an item stands:
+// The two dialects of robot_calibration differ only in the place of an item:
 //
 //   ROS 1   models:            ROS 2   models:
 //           - name: arm                - arm
@@ -20,7 +20,7 @@
 
 namespace kinecal::detail {
 
-/// One item; without a map if the map could not be read and this has been reported.
+/// One item; without a map if the map could not be read, which has been reported.
 struct ConfigItem {
   std::string name;
   std::optional<ConfigMap> map;
@@ -31,7 +31,7 @@ struct ConfigItem {
 struct ConfigItemKind {
   std::string list;    ///< key of the list
   std::string noun;    ///< "model", for messages
-  std::string suffix;  ///< ROS 2: the item's key is its name and this
+  std::string suffix;  ///< ROS 2: the item's key is its name plus this
 
   [[nodiscard]] std::string subject(const std::string& name) const {
     return noun + " '" + name + "'";
@@ -48,7 +48,7 @@ inline const ConfigItemKind kInitialValueItems{"free_frames_initial_values",
 using FindConfigItems =
     std::function<std::vector<ConfigItem>(ConfigMap& step, const ConfigItemKind& kind)>;
 
-/// Reports an item that has the name of an earlier one in the list.
+/// Reports an item with the name of an earlier one in the list.
 [[nodiscard]] inline bool occurs_twice(const std::vector<ConfigItem>& items,
                                        const std::string& name, const ConfigItemKind& kind,
                                        const SourceLocation& place, const ConfigMap& step) {
@@ -122,7 +122,7 @@ class FindRos2Items {
     return {name, step.map(*entry, kind.subject(name)), entry->place};
   }
 
-  /// Suggests a map that does not belong to another item, and marks it as known.
+  /// Suggests a map that belongs to no other item, and marks it as known.
   void report_missing(ConfigMap& step, const ConfigItemKind& kind, const std::string& name,
                       const SourceLocation& listed) {
     const std::string key = name + kind.suffix;
@@ -138,7 +138,7 @@ class FindRos2Items {
     listed_.insert(*nearest_name(key, maps));
   }
 
-  /// Reports the map of a listed name that this list lacks.
+  /// Reports the map of a name that this list lacks.
   void report_unlisted(ConfigMap& step, const ConfigItemKind& kind) const {
     for (const ConfigEntry& entry : step.entries()) {
       if (!entry.key.ends_with(kind.suffix) || listed_.contains(entry.key)) continue;

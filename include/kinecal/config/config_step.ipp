@@ -13,7 +13,7 @@
 
 namespace kinecal::detail {
 
-/// The configuration so far, and what later steps need to know about it.
+/// The configuration so far, and information for later steps.
 struct ConfigProgress {
   Config config;
   FreeAxes free_axes;  ///< free in one of the steps so far
@@ -81,7 +81,7 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   model.frame = map.required_text("frame").value_or("");
   model.param_name = map.text("param_name").value_or(item.name);
   model.image = read_image(map, model);
-  map.ignore({"topic", "camera_info_topic"});  // used while samples are recorded
+  map.ignore({"topic", "camera_info_topic"});  // used for recording samples
   map.report_unknown();
   return model;
 }
@@ -145,7 +145,7 @@ inline void read_step(ConfigMap& map, const FindConfigItems& find, const std::st
 }
 
 /// initial_values and bounds of a file with several steps.  Values are set before the first step.
-/// Bounds hold in every step in which the parameter is free and which does not bound it itself.
+/// Bounds apply in every step that frees the parameter and has no bounds of its own for it.
 inline void share_values(ConfigMap& map, ConfigProgress& progress) {
   std::vector<StepConfig>& steps = progress.config.steps;
   const std::vector<InitialValueConfig> values = read_initial_values(map);

@@ -1,4 +1,4 @@
-// Holding parameters that a configuration frees.
+// Holds parameters that a configuration frees.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@ namespace kinecal {
 
 /// Holds parameters at their initial values: no step frees them any more.
 /// @param names        of free parameters: "elbow_flex_joint", "gripper_led_frame_x"
-/// @param diagnostics  gets an error for a name that no step frees, with the nearest that one does
+/// @param diagnostics  receives an error for a name that no step frees, with the nearest free one
 void hold_parameters(Config& config, const std::vector<std::string>& names,
                      Diagnostics& diagnostics);
 

@@ -32,7 +32,7 @@ inline void warn_of_disjoint_ids(const Term& term, const BlockConfig& block,
                   term.name, disjoint, disjoint == 1 ? "" : "s", first));
 }
 
-/// Warns of samples in which some sensors of a term give ids, and others do not.
+/// Warns of samples in which some sensors of a term have ids, and others do not.
 inline void warn_of_one_sided_ids(const Term& term, const BlockConfig& block,
                                   std::span<const Sample> samples, Diagnostics& diagnostics) {
   if (!term.pairs_features()) return;

@@ -1,4 +1,4 @@
-// How well the samples fit with the image of a camera taken as raw, and as rectified.
+// How well the samples fit a camera's image as raw, and as rectified.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -45,7 +45,7 @@ inline void set_image(Config& config, const std::string& camera, ImageKind image
   }
 }
 
-/// Error blocks in pixels get a loss, so that bad captures do not decide.
+/// Adds a loss to pixel error blocks, so that bad captures do not decide.
 inline void add_losses(Config& config) {
   constexpr double kScale = 2.0;  // pixels
   for (StepConfig& step : config.steps) {
@@ -95,7 +95,7 @@ inline void add_losses(Config& config) {
   return fit;
 }
 
-/// Which of two fits the samples prefer: see choose_images.hpp.
+/// The kind of image that the samples prefer: see choose_images.hpp.
 [[nodiscard]] inline ImageKind preferred(const std::optional<ImageFit>& raw,
                                          const std::optional<ImageFit>& rectified) {
   if (!raw || !rectified) {

@@ -1,4 +1,4 @@
-// The parameter table of a configuration, with every name checked against the robot.
+// Builds the parameter table of a configuration, and checks every name against the robot.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,20 +18,20 @@
 
 namespace kinecal::detail {
 
-/// The type of a model.  A model of unknown type counts as a camera3d: this type has the most
-/// parameters, so a name among them is not reported as well.
+/// The type of a model.  An unknown type counts as camera3d: it has the most parameters, so their
+/// names are not reported as well.
 [[nodiscard]] const SensorEntry& sensor_entry(const ModelConfig& model);
 
-/// Where the sensor of a model is, and its names.
+/// Where the sensor of a model is mounted, and its names.
 [[nodiscard]] Mount mount_from(const ModelConfig& model);
 
-/// The own parameters of an error block; none if its numbers are impossible.
+/// The own parameters of an error block; empty if its numbers are impossible.
 [[nodiscard]] std::vector<ParameterInfo> own_parameters(const BlockConfig& block);
 
 /// Names of all frames that are free in some step.
 [[nodiscard]] std::set<std::string> frames_of(const Config& config);
 
-/// The table of all parameters that some step names: all six of each frame, all of each sensor and
+/// The table of all parameters named in some step: all six of each frame, all of each sensor and
 /// error block.
 /// @param samples      may be empty; then frames of features are unknown and not checked
 /// @param diagnostics  receives errors and warnings, each with "file:line: "
@@ -39,7 +39,7 @@ namespace kinecal::detail {
                                              std::span<const Sample> samples,
                                              Diagnostics& diagnostics);
 
-/// The values that a step sets before it starts: initial values of parameters and of the free axes
+/// The values set before a step starts: initial values of parameters and of the free axes of
 /// of frames.
 /// @return  indices in the table, and values
 [[nodiscard]] std::vector<std::pair<int, double>> initial_assignments(const StepConfig& step,

@@ -98,7 +98,7 @@ inline bool add_joint_model(ParameterTable& table, const Robot& robot, const std
   return false;
 }
 
-/// Reports a fixed frame that the robot has, and warns of one that no feature is in.
+/// Reports a fixed frame that is in the URDF, and warns of one without features.
 inline void check_fixed_frame(const FreeFrameConfig& frame, const Robot& robot,
                               const std::set<std::string>& recorded, bool have_samples,
                               Diagnostics& diagnostics) {
@@ -208,7 +208,8 @@ inline void add_valued_joints(ParameterTable& table, const Robot& robot, const S
   for (const auto& bound : step.bounds) check(bound.name, bound.place, "bound:");
 }
 
-/// Reports a parameter of a frame, sensor or block with the name of a joint: the name would be ambiguous.
+/// Reports a parameter of a frame, sensor or block with the name of a joint, which would be
+/// ambiguous.
 inline void check_collisions(const ParameterTable& table, const Robot& robot, const Config& config,
                              Diagnostics& diagnostics) {
   const auto check = [&](const std::string& name, const SourceLocation& place,

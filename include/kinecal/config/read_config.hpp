@@ -2,7 +2,8 @@
 //
 // A file with `ros__parameters` below a top-level key is in the ROS 2 dialect, any other file in
 // the ROS 1 dialect.  Only kinecal reads, in both: `initial_values` and `bounds` of a step or the
-// file, and `sigma`, `loss` and `samples` of an error block. SPDX-License-Identifier: Apache-2.0
+// file, and `sigma`, `loss` and `samples` of an error block.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -21,7 +22,7 @@ namespace kinecal {
 [[nodiscard]] Config read_config(const std::string& path, Diagnostics& diagnostics);
 
 /// Reads a configuration from its text.
-/// @param path  of the file that the text is from, for messages
+/// @param path  of the text's file, for messages
 /// @throws InputError  "path:line: ..." if it is not YAML
 [[nodiscard]] Config parse_config(const std::string& text, const std::string& path,
                                   Diagnostics& diagnostics);

@@ -1,7 +1,7 @@
-// Adds types of sensors and error blocks of your own to the registry.
+// Adds your own types of sensors and error blocks to the registry.
 //
-// They are compiled here, in packets for the flags of your program.  So link the static libraries
-// of kinecal, not those for several instruction sets.
+// They are compiled here, in packets for your program's flags.  So link kinecal's static libraries,
+// not those for several instruction sets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,7 +15,7 @@ using BlockNumbers = std::map<std::string, double>;
 
 namespace detail {
 
-/// @throws std::invalid_argument  if the problem is evaluated by a library of other flags
+/// @throws std::invalid_argument  if a library with other flags evaluates the problem
 [[nodiscard]] inline Problem& problem_of_program(AnyProblem& problem) {
   if (auto* own = dynamic_cast<Problem*>(&problem)) return *own;
   throw std::invalid_argument("the problem is evaluated for another instruction set");
@@ -34,10 +34,12 @@ void register_sensor(const M& model) {
 }
 
 /// Adds a type of error block: configurations name it B::kType.
-/// @param keys     of each sensor, in the order of the block's arguments: {{"model_a"}, {"model_b"}}
+/// @param keys     of each sensor, in the order of the block's arguments: {{"model_a"},
+///                 {"model_b"}}
 /// @param numbers  keys of its numbers and their defaults
-/// @param make     the block with given numbers; may throw std::invalid_argument
-/// @throws std::invalid_argument  if the name is taken, or the keys are not one for each sensor
+/// @param make     makes the block from its numbers; may throw std::invalid_argument
+/// @throws std::invalid_argument  if the name is taken, or there is not one entry of keys per
+///                                sensor
 template <ErrorBlock B>
 void register_block(
     const std::vector<std::vector<std::string>>& keys,

@@ -1,12 +1,12 @@
 // The types of sensors and error blocks that a configuration can name.
 //
-// Built-in types are entries of the registry.  A program adds its own, before it reads a
-// configuration (register.hpp), and then reads them like the others:
+// Built-in types are entries of the registry.  Your program may add its own before it reads a
+// configuration (register.hpp); they then work like the others:
 //
 //   kinecal::register_sensor(DrawWire{});
 //   kinecal::register_block<WireLength>({{"wire"}, {"model"}});
 //
-// Change the registry before other threads read configurations.
+// Do not change the registry while other threads read configurations.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -61,24 +61,24 @@ template <Sensor M, class Add>
 /// A sensor of an error block in configurations.
 struct BlockSensorEntry {
   std::vector<std::string> keys;        ///< the usual one first: "model_a"
-  Quantity quantity = Quantity::point;  ///< what the block takes of it
+  Quantity quantity = Quantity::point;  ///< the block's input from it
 };
 
 /// A type of error block in configurations.
 struct BlockEntry {
   std::string type;                                     ///< `type:` of an error block
-  std::string read_as;                                  ///< the type that it is another name of
+  std::string read_as;                                  ///< the type that this is an alias of
   std::string unit;                                     ///< of the residual
   std::vector<BlockSensorEntry> sensors;                ///< in the order of the block's arguments
   std::vector<std::pair<std::string, double>> numbers;  ///< keys and defaults; "scale" is a factor
                                                         ///< of the residual in every block
-  bool has_param = false;                               ///< it has a key `param`: a prior
-  bool is_upstream = false;  ///< of robot_calibration, whose files may have keys that we ignore
+  bool has_param = false;                               ///< true if it has a key `param`: a prior
+  bool is_upstream = false;  ///< from robot_calibration, whose files may have keys that we ignore
   /// The block's own parameters.
   /// @throws std::exception  if the numbers of the block are impossible
   std::function<std::vector<ParameterInfo>(const BlockConfig&)> parameters;
   /// Adds a block of this type to a problem.
-  /// @throws std::exception  if its numbers are impossible or its sensors do not fit
+  /// @throws std::exception  if its numbers are impossible or its sensors do not match
   std::function<void(AnyProblem&, const BlockConfig&, const TermOptions&)> add;
 };
 

@@ -23,7 +23,7 @@ template <Sensor... Ms>
   return {sensor_entry_of(Ms{}, add)...};
 }
 
-/// @param make  the block of the numbers of a configuration
+/// @param make  makes the block from the numbers of a configuration
 template <ErrorBlock B, class Make>
 [[nodiscard]] BlockEntry built_in_block(const Keys& keys, NumberKeys numbers, Make make,
                                         const std::string& type = B::kType) {

@@ -1,4 +1,4 @@
-// Warnings about samples that probably are not what the user wants.
+// Warnings about samples that are probably unintended.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,7 +22,7 @@
 namespace kinecal::detail {
 
 /// Names of the models whose sensors are of some kind.
-/// @param is_meant  takes an AnySensor
+/// @param is_meant  predicate on an AnySensor
 template <class IsMeant>
 [[nodiscard]] std::set<std::string> models_where(const Config& config, const IsMeant& is_meant) {
   std::set<std::string> names;
@@ -35,7 +35,7 @@ template <class IsMeant>
   return names;
 }
 
-/// Warns of features that are not numbers, once for all steps.
+/// Warns of NaN features, once for all steps.
 inline void warn_of_unusable(const Config& config, std::span<const Sample> samples,
                              Diagnostics& diagnostics) {
   const std::set<std::string> oriented =
@@ -57,8 +57,8 @@ inline void warn_of_unusable(const Config& config, std::span<const Sample> sampl
                   unusable == 1 ? "feature is not a number" : "features are not numbers", first));
 }
 
-/// Warns of points that are farther away than any calibration target: the unit or the capture is
-/// probably wrong.
+/// Warns of points farther away than any calibration target: the unit or the capture is probably
+/// wrong.
 inline void warn_of_far_points(const Config& config, std::span<const Sample> samples,
                                Diagnostics& diagnostics) {
   constexpr double kFar = 100.0;
@@ -84,9 +84,9 @@ inline void warn_of_far_points(const Config& config, std::span<const Sample> sam
                   count, count == 1 ? " is" : "s are", kFar, first));
 }
 
-/// Warns of cameras whose camera_info changes: the written files start from the first one.
+/// Warns of cameras whose camera_info changes: the output files start from the first one.
 inline void warn_of_changing_cameras(std::span<const Sample> samples, Diagnostics& diagnostics) {
-  std::map<std::string, std::pair<const CameraInfo*, bool>> first;  // and whether it was reported
+  std::map<std::string, std::pair<const CameraInfo*, bool>> first;  // true if already reported
   for (const Sample& sample : samples) {
     for (const Observation& seen : sample.observations) {
       if (!seen.camera) continue;
@@ -104,7 +104,7 @@ inline void warn_of_changing_cameras(std::span<const Sample> samples, Diagnostic
   }
 }
 
-/// Indices of names that occur before, each with the first one of the same name.
+/// Indices of repeated names, each with the first one of the same name.
 [[nodiscard]] inline std::vector<std::pair<std::size_t, std::size_t>> repeated(
     const std::vector<std::string>& names) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
@@ -116,14 +116,14 @@ inline void warn_of_changing_cameras(std::span<const Sample> samples, Diagnostic
   return pairs;
 }
 
-/// Warns of joints that a sample names twice with positions that differ.  robot_calibration records a
-/// joint once for each of its chains that moves it.
+/// Warns of joints that a sample names twice with different positions.  robot_calibration records a
+/// joint once per chain that moves it.
 inline void warn_of_joints_with_two_positions(std::span<const Sample> samples,
                                               Diagnostics& diagnostics) {
   constexpr double kSame = 1e-9;  // far below what an encoder resolves
   std::size_t count = 0;
   std::string first;
-  const std::vector<std::string>* names = nullptr;  // of the sample before: most have the same
+  const std::vector<std::string>* names = nullptr;  // of the previous sample: most have the same
   std::vector<std::pair<std::size_t, std::size_t>>
       twice;  // indices of a name and of its repetition
   for (const Sample& sample : samples) {
@@ -147,7 +147,7 @@ inline void warn_of_joints_with_two_positions(std::span<const Sample> samples,
       count, count == 1 ? "" : "s", count == 1 ? "has" : "have", first));
 }
 
-/// Warns of models whose sensor is not in any sample: probably one of the names is misspelt.
+/// Warns of models whose sensor is in no sample: probably a misspelt name.
 inline void warn_of_unknown_sensors(const StepConfig& step, std::span<const Sample> samples,
                                     Diagnostics& diagnostics) {
   std::set<std::string> recorded, models;

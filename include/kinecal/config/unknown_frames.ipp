@@ -1,4 +1,4 @@
-// Free frames whose pose the configuration does not give, and a few samples to search for it.
+// Free frames without a configured pose, and a few samples for the search.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace kinecal::detail {
 
-/// Names of frames that a step before this one has found.
+/// Names of frames that a previous step has found.
 [[nodiscard]] inline std::set<std::string> found_frames(const Config& config,
                                                         const StepConfig& until) {
   std::set<std::string> found;
@@ -25,7 +25,7 @@ namespace kinecal::detail {
   return found;
 }
 
-/// True if the configuration says, in this step or before it, where a frame is.
+/// True if the configuration gives a frame's pose, in this step or before it.
 [[nodiscard]] inline bool is_given(const Config& config, const StepConfig& until,
                                    const std::string& frame) {
   for (const StepConfig& step : config.steps) {
@@ -42,8 +42,8 @@ namespace kinecal::detail {
   return false;
 }
 
-/// True for a joint whose pose may be a placeholder: it is fixed, free in all axes, and no prior
-/// holds it.
+/// True for a joint whose pose may be a placeholder: it is fixed, free in all axes, and not held by
+/// a prior.
 [[nodiscard]] inline bool may_be_anywhere(const Joint& joint, const FreeFrameConfig& frame,
                                           const StepConfig& step) {
   return joint.type == JointType::fixed &&
@@ -52,8 +52,8 @@ namespace kinecal::detail {
                       [&](const BlockConfig& block) { return block.param == frame.name; });
 }
 
-/// The free frames of a step whose pose may have to be searched for: virtual frames, and fixed joints, of
-/// which the URDF may not know better.  A pose of zeros is no guess, whoever gives it.
+/// The free frames of a step whose pose may need a search: virtual frames, and fixed joints with
+/// placeholders in the URDF.  A zero pose never counts as a guess.
 [[nodiscard]] inline std::vector<UnknownFrame> unknown_frames(const Config& config,
                                                               const StepConfig& step,
                                                               const Robot& robot,
@@ -85,7 +85,7 @@ namespace kinecal::detail {
   return turns ? unknown : std::vector<UnknownFrame>();
 }
 
-/// `count` numbers from 0 to size - 1, spread evenly; all if there are fewer.
+/// `count` numbers from 0 to size - 1, evenly spread; all if there are fewer.
 [[nodiscard]] inline std::vector<std::size_t> spread(std::size_t size, std::size_t count) {
   std::vector<std::size_t> chosen;
   if (size <= count) count = size;
@@ -95,8 +95,8 @@ namespace kinecal::detail {
   return chosen;
 }
 
-/// How far apart two features are, added up over a sample's observations that have both; -1 if one
-/// of them is not observed twice, so that nothing compares it.
+/// Distance between two features, summed over a sample's observations that have both; -1 if one of
+/// them is not observed twice, so that nothing compares it.
 [[nodiscard]] inline double distance_of_features(const Sample& sample, std::size_t i,
                                                  std::size_t j) {
   double sum = 0.0;
@@ -111,7 +111,8 @@ namespace kinecal::detail {
   return std::min(of_i, of_j) >= enough ? sum : -1.0;
 }
 
-/// A few features of a sample, each as far as possible from those before: the corners of a board.
+/// A few features of a sample, each as far as possible from the previous ones: the corners of a
+/// board.
 [[nodiscard]] inline std::vector<std::size_t> far_apart(const Sample& sample, std::size_t size) {
   constexpr std::size_t kFeatures = 4;
   std::size_t first = 0;
@@ -129,8 +130,8 @@ namespace kinecal::detail {
   return chosen;
 }
 
-/// A sample with a few of its features.  Observations of one sample show the same features, so all
-/// of them keep the same ones.
+/// A sample with a few of its features.  Observations of a sample show the same features, so all of
+/// them keep the same ones.
 [[nodiscard]] inline Sample with_few_features(Sample sample) {
   constexpr std::size_t kMany = 6;
   if (sample.observations.empty()) return sample;
@@ -154,7 +155,7 @@ inline void rectify(Observation& seen, const AnySensor& camera) {
   std::vector<double> s;
   try {
     s = camera.settings(seen);
-  } catch (const SettingsError&) {  // the sample is refused
+  } catch (const SettingsError&) {  // adding the sample reports the reason
     return;
   }
   if (std::all_of(s.begin() + 4, s.end(), [](double d) { return d == 0.0; })) return;

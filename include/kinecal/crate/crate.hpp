@@ -6,11 +6,11 @@
 //                         JointOffset<"elbow_flex_joint">, DepthIntrinsics<"camera">,
 //                         Block<"hand_eye", PointToPoint, "camera", "arm">>;
 //
-// Parts may stand in any order; parameters keep theirs.  A crate is a part, too: Crate<HandEye,
-// Ground> has the parameters and blocks of both, each once.  So a list of parameters that several
-// crates share can be a crate of its own.  The compiler checks the names against the robot
-// (crate_checks.hpp).  A crate fills the same Problem as a configuration does, with walks that are
-// compiled for its chains.
+// Parts may come in any order; parameters keep theirs.  A crate is a part, too: Crate<HandEye,
+// Ground> has the parameters and blocks of both, each once.  So crates can share a list of
+// parameters by including a crate of them.  The compiler checks the names against the robot
+// (crate_checks.hpp).  A crate fills the same Problem as a configuration does, with walks compiled
+// for its chains.
 // Source: ARCHITECTURE.md, idea 7: one problem, two ways to fill it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -25,7 +25,7 @@ class Crate;
 
 namespace detail {
 
-/// A part as four lists, of which most are empty.
+/// Sorts a part into four lists, most of them empty.
 template <class P>
 struct ListsOf {
   using Sensors = OnlyIf<SensorPart<P>, P>;
@@ -59,8 +59,8 @@ class Crate {
   /// The parameters' slots.
   using Free = typename Parameters::template As<FreeParameters>;
 
-  /// The compiler checks the crate here and not earlier, because a crate that is only a part of
-  /// another may lack sensors or blocks.
+  /// Instantiates the checks.  Not earlier, because a crate that is only a part of another may lack
+  /// sensors or blocks.
   Crate() { [[maybe_unused]] constexpr Check kCheck = {}; }
 
   /// The error block with this name, and its options.
@@ -80,7 +80,7 @@ class Crate {
   [[nodiscard]] static std::string base() { return std::string(BaseChain::kBase); }
 
   /// All parameters: those of sensors and blocks, the joint offsets, all six of each free frame.
-  /// @param samples  a camera's parameters start from the settings its driver had while recording
+  /// @param samples  a camera's parameters start from its driver's settings during recording
   [[nodiscard]] ParameterTable table(std::span<const Sample> samples) const {
     ParameterTable table;
     IfRight<Sensors>::for_each([&]<class P>(std::type_identity<P>) {
@@ -126,7 +126,7 @@ class Crate {
 
  private:
   using Check = typename detail::CheckCrate<Sensors, Parameters, Blocks, Priors>::type;
-  /// A wrong crate fills nothing, so that its sentence is the only error where it is used.
+  /// A wrong crate fills nothing, so its sentence is the only error where it is used.
   template <class List>
   using IfRight =
       std::conditional_t<std::is_same_v<Check, detail::Holds>, List, detail::TypeList<>>;
@@ -135,7 +135,7 @@ class Crate {
   using BaseChain = typename Sensors::template As<detail::FirstChain>;
   using RobotOf = typename BaseChain::Robot;
 
-  /// What the robot has; sensors and blocks have added their own.
+  /// Adds the robot's own parameters; sensors and blocks have added theirs.
   template <class P>
   static void add_parameter(ParameterTable& table) {
     const auto add = [&](const std::string& name, std::string_view unit) {
@@ -186,7 +186,7 @@ class Crate {
       constexpr auto kPlace = std::find(List::kNames.begin(), List::kNames.end(), Name);
       return std::get<kPlace - List::kNames.begin()>(parts);
     } else if constexpr (sizeof...(Ts) > 0) {
-      return std::get<0>(parts);  // has options, too: no further error
+      return std::get<0>(parts);  // Also has options, so no further error follows
     } else {
       return parts;
     }

@@ -64,13 +64,13 @@ struct KindsOfSensors {
                 "deliver what its residual takes; a camera that predicts pixels stands second");
 };
 
-/// What an error block takes of each of its sensors; nothing if it is none.
+/// The quantities that an error block takes from its sensors; empty if it is not an error block.
 template <class B>
 inline constexpr std::array<Quantity, 0> kTaken = {};
 template <ErrorBlock B>
 inline constexpr auto kTaken<B> = kQuantities<B>;
 
-/// True if each sensor of a block delivers what the block takes of it.
+/// True if each sensor of a block delivers the quantity the block takes.
 template <class Block, class... Sensors>
 [[nodiscard]] constexpr bool kinds_fit(TypeList<Sensors...>) {
   const auto& names = Block::kSensorNames;
@@ -137,7 +137,7 @@ struct BaseOfCrate {
                 "robots; features are compared in one base, so give all chains the same one");
 };
 
-/// What a crate without sensors has in place of a chain.
+/// Stands for the chain in a crate without sensors.
 struct NoChain {
   struct Robot {
     static constexpr std::string_view kName = "";
@@ -145,7 +145,7 @@ struct NoChain {
   };
   static constexpr std::string_view kBase = "";
 };
-/// The chain of the first sensor; the crate has its robot and base.
+/// The chain of the first sensor; the crate uses its robot and base.
 template <class... Sensors>
 using FirstChain = std::tuple_element_t<0, std::tuple<typename Sensors::Chain..., NoChain>>;
 
@@ -159,7 +159,7 @@ struct CheckCrate<TypeList<Ss...>, TypeList<Ps...>, TypeList<Bs...>, TypeList<Qs
   using Free = FreeParameters<Ps...>;
   using BaseChain = FirstChain<Ss...>;
 
-  /// A wrong chain has a sentence of its own.
+  /// A wrong chain has its own sentence.
   template <class C>
   static constexpr bool kStartsThere =
       !C::kHasLinks || !BaseChain::kHasLinks ||

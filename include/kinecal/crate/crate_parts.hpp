@@ -1,5 +1,5 @@
-// The parts of a crate besides free parameters: sensors, error blocks and priors as types; lists of
-// types.
+// The parts of a crate besides free parameters: sensors, error blocks and priors as types; type
+// lists.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -24,7 +24,7 @@ struct SensorOn {
   using Model = M;                                 ///< the sensor
   static constexpr std::string_view kName = Name;  ///< as in the samples
 
-  /// Where it is, as a Problem takes it.
+  /// Where it is mounted, for a Problem.
   [[nodiscard]] static Mount mount() { return {std::string(kName), std::string(C::kTip)}; }
 };
 
@@ -50,7 +50,7 @@ struct Camera2d : SensorOn<Name, C, PinholeCamera> {};
 /// @tparam Sensors  names of the sensors that it compares
 template <FixedString Name, class B, FixedString... Sensors>
 struct Block {
-  using Plain = Block;  ///< the same type in a class that derives from this one to set options
+  using Plain = Block;  ///< the base type, in a class that derives from this one to set options
   using Error = B;      ///< the error block
   static constexpr std::string_view kName = Name;  ///< of the block, for reports
   /// Names of the sensors, in the order of the block's arguments.
@@ -68,7 +68,8 @@ struct Block {
   }
 };
 
-/// A prior on a joint's offset, a frame's correction or a single parameter ("camera_fx"): see Prior.
+/// A prior on a joint's offset, a frame's correction or a single parameter ("camera_fx"): see
+/// Prior.
 template <FixedString Name, FixedString Of>
 struct PriorOn {
   static constexpr std::string_view kName = Name;  ///< of the prior, for reports
@@ -101,7 +102,7 @@ concept PriorPart = requires {
 
 namespace detail {
 
-/// Parts of one sort, each once.
+/// Parts of one kind, without duplicates.
 template <class... Ts>
 struct TypeList {
   static constexpr std::size_t kSize = sizeof...(Ts);
@@ -120,7 +121,7 @@ struct TypeList {
     (f(std::type_identity<Ts>()), ...);
   }
 
-  /// Appends what the list does not have yet: a type, or the types of another list.
+  /// Appends new types only: a type, or the types of another list.
   template <class T>
   constexpr auto operator+(std::type_identity<T>) const {
     return std::conditional_t<(std::is_same_v<T, Ts> || ...), TypeList, TypeList<Ts..., T>>();
@@ -131,7 +132,7 @@ struct TypeList {
   }
 };
 
-/// The types of all lists, each once.
+/// The types of all lists, without duplicates.
 template <class... Lists>
 using Joined = decltype((TypeList<>() + ... + Lists()));
 

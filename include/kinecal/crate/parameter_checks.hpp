@@ -103,7 +103,7 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
     if constexpr (Found::kExists) return R::kJoints[joint_index(R::kJoints, P::kOwner)];
     return JointData();
   }();
-  /// True for an offset, and for a parameter of a model that fits the joint.
+  /// True for an offset, and for a parameter of a model that suits the joint.
   [[nodiscard]] static constexpr bool fits(const ParameterId& id) {
     if (P::kKind == ParameterKind::joint_offset) return true;
     for (std::size_t k = 0; k < kJointModelSize; ++k) {
@@ -141,7 +141,7 @@ struct UseOfParameter {
                 "sensor that it moves; leave it out or add such a block");
 };
 
-/// True if moving a parameter moves what a sensor observes.
+/// True if a parameter affects the observations of a sensor.
 template <class P, class Sensor>
 [[nodiscard]] constexpr bool moves_sensor() {
   using Robot = typename Sensor::Chain::Robot;
@@ -157,7 +157,7 @@ template <class P, class Sensor>
   return false;
 }
 
-/// True if a parameter is a block's own, or moves what one of its sensors observes.
+/// True if a parameter is a block's own, or affects the observations of one of its sensors.
 template <class P, class Block, class... Sensors>
 [[nodiscard]] constexpr bool moves_block(TypeList<Sensors...>) {
   if (P::kKind == ParameterKind::block) return Block::kName == P::kOwner;
@@ -175,7 +175,7 @@ struct ParameterOfPrior {
                 "correct its name or leave the prior out");
 };
 
-/// On what a prior may be, for LookedUp: the frames that are free, and each free number.
+/// Names that a prior may restrict, for LookedUp: the free frames and each free number.
 template <class... Ps>
 struct NamesForPriors {
   static constexpr auto kNames = [] {
@@ -188,7 +188,7 @@ struct NamesForPriors {
   }();
 };
 
-/// Checks that what a prior keeps is free.
+/// Checks that a prior restricts free parameters.
 template <class Prior, class Found>
 using CheckPrior = Unless<Found::kExists, ParameterOfPrior<Prior, Found>>;
 

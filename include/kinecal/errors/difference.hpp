@@ -1,8 +1,7 @@
 // Detects error blocks that only subtract their two points: r = p_a - p_b + c.
 //
 // Their derivatives are I and -I wherever the points are, so evaluation neither differentiates nor
-// multiplies.  A traced jet detects this when the block is added; the block's author does not
-// declare anything.
+// multiplies.  A traced jet detects this when the block is added; the author declares nothing.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

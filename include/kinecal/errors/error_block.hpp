@@ -1,4 +1,4 @@
-// The concept of an error block: a small function of what sensors observed, templated on the scalar.
+// The concept of an error block: a small residual function, templated on the scalar.
 //
 // A block takes a feature of each of its sensors, transformed to the base, and returns its
 // residual.  Jets differentiate the block; twists propagate the derivative to joints and frames.
@@ -21,26 +21,26 @@
 //                         point of the first one there
 //   Plane<S>, Plane<S>    the planes through all features of two sensors
 //
-// Other combinations, and readings, are declared: `using Inputs = Takes<Quantity::point,
+// Declare other combinations, and readings: `using Inputs = Takes<Quantity::point,
 // Quantity::reading>;`.  All sensors of a block observe the same features in the same order.
 //
-// A block may have parameters of its own.  Their values are its last argument:
+// A block may have its own parameters.  Their values are its last argument:
 //
 //   static constexpr std::array kParameters = {ParameterInfo{"radius", "m", 0.1}};
 //   template <class S> auto operator()(const Vector3<S>& p, const std::array<S, 1>& own) const;
 //
-// A member function initial() gives their values before the first step, if these are not constants.
+// Define initial() if their initial values are not constants.
 //
-// A block may also take numbers that come with a sample, such as a temperature.  They are its last
-// argument, in a plain scalar:
+// A block may also take numbers of a sample, such as a temperature.  They are its last argument, in
+// a plain scalar:
 //
 //   static constexpr std::array<std::string_view, 1> kConditions = {"temperature"};
 //   template <class S, class Q>
 //   auto operator()(const Vector3<S>& p, const std::array<Q, 1>& conditions) const;
 //
-// A scalar may be a packet with one sample per lane.  So a block does not branch on values: write
-// select(x < y, a, b) in place of x < y ? a : b.  (Planes are compared sample by sample and may
-// branch.)
+// A scalar may be a packet with one sample per lane, so a block must not branch on values: write
+// select(x < y, a, b) instead of x < y ? a : b.  (Planes are compared sample by sample; their
+// blocks may branch.)
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -56,7 +56,7 @@
 
 namespace kinecal {
 
-/// What a block takes of each of its sensors.
+/// The quantities that a block takes from its sensors, in order.
 template <Quantity... Qs>
 struct Takes {
   static constexpr std::array<Quantity, sizeof...(Qs)> kAll = {Qs...};  ///< by sensor
@@ -127,7 +127,7 @@ template <class B>
 inline constexpr bool kTakesFeaturesOnly = kParametersOfBlock<B> == 0 &&
                                            kConditionsOfBlock<B>.empty();
 
-/// What a block takes after its features, as a tuple: own parameters and conditions that it has.
+/// The trailing arguments of a block, as a tuple: its own parameters and conditions, if any.
 template <class B, class S>
 [[nodiscard]] constexpr auto further(const OwnOf<B, S>& own, const ConditionsOf<B, S>& conditions) {
   const auto if_any = [](const auto& all) {
@@ -140,7 +140,7 @@ template <class B, class S>
   return std::tuple_cat(if_any(own), if_any(conditions));
 }
 
-/// Calls a block with its arguments and what it takes after them.
+/// Calls a block with its arguments and trailing arguments.
 template <class B, class S, class... Arguments>
 [[nodiscard]] auto call_block(const B& block, const OwnOf<B, S>& own,
                               const ConditionsOf<B, S>& conditions, const Arguments&... arguments) {
@@ -148,8 +148,8 @@ template <class B, class S, class... Arguments>
                     further<B, S>(own, conditions));
 }
 
-/// What such a call returns: from the signature only, so that a block is not compiled for a scalar
-/// in which nobody calls it.
+/// The return type of such a call, from the signature only: a block is not compiled for a scalar
+/// that is never used.
 template <class B, class Further, class... Arguments>
 struct CallOf;
 template <class B, class... Further, class... Arguments>
@@ -170,7 +170,7 @@ template <class B, class Inputs>
 inline constexpr bool kTakes = false;
 template <class B, Quantity... Qs>
 inline constexpr bool kTakes<B, Takes<Qs...>> = Callable<B, Argument<Qs, Probe>...>;
-/// The point stays with the evaluation: a block receives only the pixel.
+/// Evaluation keeps the point: a block receives only the pixel.
 template <class B>
 inline constexpr bool kTakes<B, Takes<Quantity::point, Quantity::pixel>> =
     Callable<B, PixelObservation<Probe>>;
@@ -200,7 +200,7 @@ struct InputsOf<B> : FirstTaken<B, typename B::Inputs> {};
 
 }  // namespace detail
 
-/// A residual of what one to four sensors observed.
+/// A residual of the observations of one to four sensors.
 template <class B>
 concept ErrorBlock = !std::same_as<typename detail::InputsOf<B>::type, detail::NoInputs>;
 
@@ -215,7 +215,7 @@ template <class B>
   return infos;
 }
 
-/// What a block takes of each of its sensors.
+/// The quantities that a block takes from its sensors.
 template <ErrorBlock B>
 inline constexpr const auto& kQuantities = detail::InputsOf<B>::type::kAll;
 /// Number of sensors that a block compares; one for a point compared with a constant.
@@ -229,7 +229,7 @@ concept PointBlock = std::same_as<typename detail::InputsOf<B>::type, Takes<Quan
 template <class B>
 concept PointPairBlock =
     std::same_as<typename detail::InputsOf<B>::type, Takes<Quantity::point, Quantity::point>>;
-/// block(pixel): a feature of one sensor in front of another one, a camera.
+/// block(pixel): a camera's pixel of a feature of another sensor.
 template <class B>
 concept PixelBlock =
     std::same_as<typename detail::InputsOf<B>::type, Takes<Quantity::point, Quantity::pixel>>;

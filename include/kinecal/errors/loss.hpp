@@ -5,8 +5,8 @@
 //   cauchy  c^2 log(1 + s / c^2)
 //   tukey   c^2 / 3 (1 - (1 - s / c^2)^3) up to c^2, then c^2 / 3
 //
-// All are concave in s with rho(0) = 0, rho'(0) = 1; hence rho'(s) s <= rho(s), on which the
-// compressed cost relies (solve/compressed_cost.hpp).
+// All are concave in s with rho(0) = 0 and rho'(0) = 1; hence rho'(s) s <= rho(s), which the
+// compressed cost needs (solve/compressed_cost.hpp).
 // Source: Triggs et al., Bundle Adjustment - A Modern Synthesis, 3.2.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -36,7 +36,7 @@ struct Loss {
   LossType type = LossType::none;  ///< which function rho is
   double scale = 1.0;              ///< c, in units of the weighted residual
 
-  /// rho at some s.
+  /// The value of rho at s, and its derivative.
   template <class S>
   struct Value {
     S rho;         ///< rho(s)
@@ -66,7 +66,7 @@ struct Loss {
     return {s, one};
   }
 
-  /// The loss for a first solve: huber in place of cauchy and tukey, which ignore what is far away
+  /// The loss for a first solve: huber instead of cauchy and tukey, which ignore distant features
   /// and so have several minima.  Its solution is the start for the loss itself.
   [[nodiscard]] Loss convex() const {
     return {type == LossType::none ? LossType::none : LossType::huber, scale};

@@ -1,4 +1,4 @@
-// The plane through points with the least sum of squared distances, and its derivatives.
+// The least-squares plane through points, and its derivatives.
 //
 // The normal n is the eigenvector of M = sum q q^T (q = p - centroid) with the least eigenvalue l0;
 // u_k, l_k are the two others.  A change dp of one point changes M n by q (n . dp) + dp (q . n), so
@@ -6,7 +6,7 @@
 //   dn/dp = sum over k of  u_k ((q . n) u_k + (q . u_k) n)^T / (l0 - l_k)
 //
 // Jacobi rotations find the eigenvectors.  For 3 x 3 they are as fast as Eigen's general solver,
-// and they save a tenth of the time to include the library.
+// and the library includes 10 % faster.
 // Source: Magnus, On differentiating eigenvalues and eigenvectors, 1985; Golub and Van Loan, Matrix
 // Computations, 8.5.
 // SPDX-License-Identifier: Apache-2.0
@@ -21,7 +21,7 @@
 
 namespace kinecal {
 
-/// The least-squares plane through points.  (A template, so that only those who use it compile it.)
+/// The least-squares plane through points.  (A template, so that only its users compile it.)
 template <class S>
 class PlaneFit {
  public:
@@ -35,8 +35,8 @@ class PlaneFit {
     find_eigenvectors(scatter);
   }
 
-  /// True if the points determine the normal.  Fewer than three points, points on one line and a
-  /// cloud that is equally thick in its two thinnest directions do not.
+  /// True if the points determine the normal.  Not so for fewer than three points, points on one
+  /// line, or a cloud that is equally thick in its two thinnest directions.
   [[nodiscard]] bool determined() const {
     constexpr double kLeastRatio = 1e-9;  // of squared extents
     return count_ >= 3 && eigenvalues_(1) - eigenvalues_(0) > kLeastRatio * eigenvalues_(2);

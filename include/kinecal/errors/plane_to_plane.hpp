@@ -3,7 +3,7 @@
 //   r = ( (n_a - n_b) normal_scale,  n_b . (c_a - c_b) offset_scale )
 //
 // with normals n and centroids c of the two sets of points.  n_b is flipped to the side of n_a, so
-// no sign jumps where a plane passes through the origin.
+// the sign does not jump when a plane passes through the origin.
 // Source: Fetch paper, III-B.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

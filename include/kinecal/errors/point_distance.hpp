@@ -1,10 +1,10 @@
-// Two points at a distance that is the same in all samples (point_distance): the ends of a bar.
+// Two points at a constant distance (point_distance): the ends of a bar.
 //
 //   r = |p_a - p_b| - length
 //
-// The length is a parameter of the block, <block>_length; it is known unless it is free.
-// Source: Hollerbach and Wampler, The calibration index and taxonomy for robot kinematic calibration
-// methods, 1996 (ball bars).
+// The length is a parameter of the block, <block>_length: free it if it is unknown.
+// Source: Hollerbach and Wampler, The calibration index and taxonomy for robot kinematic
+// calibration methods, 1996 (ball bars).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

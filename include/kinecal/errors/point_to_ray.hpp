@@ -1,11 +1,12 @@
-// Distance of a point to the line of sight on which a camera sees it.
+// Distance of a point to the camera's line of sight.
 //
 //   r = d x (p - o) / |d|
 //
 // with origin o and direction d of the line of sight.  It has no meaning in the image, but it is
-// defined everywhere, behind the camera as well, and linear in the point: from a poor start it leads
-// to the pose that pixels refine.  solve/starts.hpp uses it.
-// Source: Lu, Hager, Mjolsness, Fast and Globally Convergent Pose Estimation from Video Images, 2000.
+// defined everywhere, even behind the camera, and linear in the point.  From a poor start it leads
+// to the pose that pixels then refine; solve/starts.hpp uses it for that.
+// Source: Lu, Hager, Mjolsness, Fast and Globally Convergent Pose Estimation from Video Images,
+// 2000.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -3,7 +3,7 @@
 //
 //   r = |p - center| - radius
 //
-// Center and radius are parameters of the block, <block>_x _y _z _radius: unknown, if they are free.
+// Center and radius are parameters of the block, <block>_x _y _z _radius: free them if unknown.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -11,7 +11,7 @@
 
 namespace kinecal {
 
-/// Difference of two poses: of a marker, of a body that motion capture follows.
+/// Difference of two poses: of a marker, or of a body tracked by motion capture.
 struct PoseToPose {
   static constexpr const char* kType = "pose_to_pose";  ///< name in configurations
   static constexpr const char* kUnit = "1";             ///< of the residual

@@ -2,10 +2,10 @@
 //
 //   r = ( joint_scale value,  position_scale (x, y, z),  rotation_scale (a, b, c) )
 //
-// of the differences from the mean.  `value` is a joint's offset or any single parameter: that of a
+// of the differences from the mean.  `value` is a joint's offset or any single parameter: of a
 // sensor (camera_fx), an error block (bar_radius) or a joint model (elbow_gear_ratio).
 //
-// Source: Fetch paper, III-B, restricting the camera frame.
+// Source: Fetch paper, III-B, the prior on the camera frame.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -26,13 +26,13 @@ struct Prior {
   double joint_scale = 1.0;     ///< of a joint or parameter: 1 / its unit
   double position_scale = 1.0;  ///< 1 / m
   double rotation_scale = 1.0;  ///< 1 / rad
-  /// Where the parameters should be: value x y z a b c; unit of the parameter, metres, radians.
+  /// Expected values: value x y z a b c; unit of the parameter, metres, radians.
   std::array<double, 7> mean = {};
 
   static constexpr int kRows = 7;  ///< residuals: value x y z a b c
 
-  /// Table index of the parameter of each residual; -1 if the table does not have it, and then the
-  /// residual is zero.
+  /// Table index of the parameter of each residual; -1 if the table does not have it: its residual
+  /// is zero.
   [[nodiscard]] std::array<int, kRows> parameters(const ParameterTable& table) const {
     std::array<int, kRows> rows{table.find(param)};
     for (std::size_t axis = 0; axis < 6; ++axis) {

@@ -1,11 +1,11 @@
-// Two cameras see the same point, and nobody knows where it is (camera2d_to_camera2d).
+// Two cameras see the same point at an unknown position (camera2d_to_camera2d).
 //
 //   r = e / |de/d(pixels)|      e = (o_b - o_a) . (d_a x d_b)
 //
-// with origins o and directions d of the lines of sight: how far, in pixels and to first order, the
-// observed pixels must move for the lines to meet (Sampson's distance).  One residual: a point
-// along the lines costs nothing, so samples determine the poses of the cameras relative to each other
-// but not how far away everything is.
+// with origins o and directions d of the lines of sight: the distance, in pixels and to first
+// order, that the observed pixels must move for the lines to meet (Sampson's distance).  One
+// residual: moving the point along the lines costs nothing.  So samples determine the relative
+// poses of the cameras, but not the scale.
 // Source: Hartley and Zisserman, Multiple View Geometry, 11.4.3.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -1,5 +1,4 @@
-// Evaluating a problem, independent of the scalar: residuals with their Jacobian, or the normal
-// equations; once, or many times.
+// Evaluates a problem, independent of the scalar: residuals and Jacobian, or the normal equations.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,12 +16,12 @@
 
 namespace kinecal {
 
-/// The normal equations, summed over the features of all error blocks, each with its weight w and loss rho:
+/// The normal equations, summed over the features of all error blocks with weight w and loss rho:
 ///
 ///   cost = 1/2 sum rho(|w r|^2)    gradient = sum rho' w^2 J^T r    hessian = sum rho' w^2 J^T J
 struct NormalEquations {
   double cost = 0.0;         ///< not finite if a residual is undefined
-  Eigen::VectorXd gradient;  ///< (parameters); empty if only the cost was asked for
+  Eigen::VectorXd gradient;  ///< (parameters); empty if only the cost was requested
   Eigen::MatrixXd hessian;   ///< (parameters x parameters), symmetric
 
   /// All zero.
@@ -30,7 +29,7 @@ struct NormalEquations {
       : gradient(Eigen::VectorXd::Zero(parameters)),
         hessian(Eigen::MatrixXd::Zero(parameters, parameters)) {}
 
-  /// Adds those of other samples.
+  /// Adds the sums of other samples.
   NormalEquations& operator+=(const NormalEquations& other);
   /// Adds the residuals of a prior, which count once for each sample.
   void add_prior(const PriorTerm& prior, const TermResiduals& residuals, int samples,
@@ -43,10 +42,11 @@ struct UndefinedResidual {
       source;        ///< source location of the sample
 };
 
-/// Takes the residuals of one term in one sample.
+/// Receives the residuals of one term in one sample.
 using RowVisitor = std::function<void(int term, int sample, const TermResiduals& rows)>;
 
-/// Evaluates a problem repeatedly.  It keeps its memory and what does not depend on the values.
+/// Evaluates a problem repeatedly.  Keeps its memory and everything that does not depend on the
+/// values.
 class AnyEvaluator {
  public:
   virtual ~AnyEvaluator() = default;
@@ -56,12 +56,12 @@ class AnyEvaluator {
   /// The Jacobian's columns.
   [[nodiscard]] virtual const FreeSet& free() const = 0;
 
-  /// Evaluates all residuals, sample by sample.  Samples of one shape follow each other.
+  /// Evaluates all residuals, sample by sample; samples of one layout are consecutive.
   /// @param values       of all parameters of the table
   /// @param derivatives  compute the Jacobian, too
   /// @param at           where derivatives are taken
   /// @returns  the first undefined residual, if any; undefined residuals are not visited
-  /// @throws std::invalid_argument  if values are not as many as the table has parameters
+  /// @throws std::invalid_argument  if the number of values is not that of the table's parameters
   virtual std::optional<UndefinedResidual> evaluate(std::span<const double> values,
                                                     bool derivatives, const RowVisitor& visit,
                                                     Linearization at = Linearization::measured) = 0;
@@ -69,7 +69,7 @@ class AnyEvaluator {
   /// The cost and, with derivatives, gradient and Gauss-Newton Hessian.
   /// @param values  of all parameters of the table
   /// @returns  sums; their cost is not finite if a residual is undefined
-  /// @throws std::invalid_argument  if values are not as many as the table has parameters
+  /// @throws std::invalid_argument  if the number of values is not that of the table's parameters
   [[nodiscard]] virtual NormalEquations normal_equations(std::span<const double> values,
                                                          bool derivatives = true,
                                                          Losses losses = Losses::as_given) = 0;
@@ -83,7 +83,7 @@ class AnyEvaluator {
                                                         const RowVisitor& visit,
                                                         Linearization at = Linearization::measured);
 
-/// The first residual that is undefined for these values, if any.
+/// The first residual that is undefined at these values, if any.
 [[nodiscard]] std::optional<UndefinedResidual> undefined_residual(const AnyProblem& problem,
                                                                   std::span<const double> values);
 
@@ -94,17 +94,17 @@ class AnyEvaluator {
                                                Losses losses = Losses::as_given, int threads = 1);
 
 /// A problem that the library evaluates in packets, as wide as its instruction set allows.
-/// Parameters as those of the constructor of AnyProblem.
+/// Takes the same arguments as the constructor of AnyProblem.
 [[nodiscard]] std::unique_ptr<AnyProblem> make_problem(Robot robot, std::string base,
                                                        ParameterTable table,
                                                        std::set<std::string> frames);
 
 /// How the library evaluates problems.
 struct Evaluation {
-  std::string_view instruction_set;  ///< what its packets are compiled for: "x86-64-v3"
-  int lanes = 1;                     ///< samples evaluated at a time
+  std::string_view instruction_set;  ///< of its packets: "x86-64-v3"
+  int lanes = 1;                     ///< samples evaluated at once
 };
-/// How the library that this program is linked with evaluates problems.
+/// How the library linked to this program evaluates problems.
 [[nodiscard]] Evaluation evaluation_of_library();
 
 }  // namespace kinecal

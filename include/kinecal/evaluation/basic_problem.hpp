@@ -20,7 +20,7 @@ class BasicProblem final : public AnyProblem {
       : AnyProblem(other, without), evaluations_(other.evaluations_), codes_(other.codes_) {}
 
   /// Adds a sensor.
-  /// @param walks  compiled walks along its chains, if there are any
+  /// @param walks  compiled walks along its chains, if any
   /// @throws  as AnyProblem::add_built_in()
   template <Sensor M>
   void add_sensor(const M& sensor, const Mount& mount,
@@ -32,7 +32,7 @@ class BasicProblem final : public AnyProblem {
     }
     set_walks(walks);
   }
-  /// The same, for a sensor of the built-in types, which the library has compiled.
+  /// The same for a built-in sensor, which the library has compiled.
   void add_built_in(const BuiltInSensor& sensor, const Mount& mount) override;
 
   /// Adds an error block between sensors that have been added.
@@ -46,15 +46,15 @@ class BasicProblem final : public AnyProblem {
       add_block_of_type(name, block, sensors, options);
     }
   }
-  /// The same, for a block of the built-in types, which the library has compiled.
+  /// The same for a built-in block, which the library has compiled.
   void add_built_in(const std::string& name, const BuiltInBlock& block,
                     const std::vector<std::string>& sensors, const TermOptions& options) override;
 
-  /// How the term of an error block is evaluated.
+  /// The code that evaluates the term of an error block.
   [[nodiscard]] const detail::TermCode<S>& code(int term) const {
     return *codes_[static_cast<std::size_t>(term)];
   }
-  /// How a sensor is evaluated.
+  /// The code that evaluates a sensor.
   [[nodiscard]] const detail::SensorEvaluation<S>& evaluation_of(std::size_t sensor) const {
     return evaluations_[sensor];
   }

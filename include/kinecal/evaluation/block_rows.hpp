@@ -14,8 +14,8 @@
 
 namespace kinecal::detail {
 
-/// The shortest step of V variables that makes r + D x zero, or the least r if V < M; lane by lane.  Zero
-/// for variables on which r does not depend.
+/// The shortest step of V variables that makes r + D x zero, or the smallest r if V < M; lane by
+/// lane.  Zero for variables that do not affect r.
 template <class S, int M, int V>
 [[nodiscard]] Eigen::Matrix<S, V, 1> shortest_step(const Eigen::Matrix<S, M, 1>& residual,
                                                    const Eigen::Matrix<S, M, V>& derivatives) {
@@ -87,7 +87,7 @@ class BlockRows {
     return all;
   }
   /// Adds the columns of the block's own parameters.
-  /// @param first  variable of the first of them
+  /// @param first  index of the first of these variables
   template <class R>
   static void add_own(const Views& views, const R& r, int first, Rows& rows) {
     for (const int k : views.own->free) {
@@ -98,7 +98,7 @@ class BlockRows {
 
   template <std::size_t I>
   using Vectors = VectorsOf<kInputs[I]>;
-  /// The first variable of each sensor, then of the block's own parameters; then their number.
+  /// The first variable of each sensor, then of the block's own parameters; last, the total number.
   static constexpr std::array<int, kBodies + 2> kFirst = [] {
     std::array<int, kBodies + 2> first{};
     for (std::size_t s = 0; s < kBodies; ++s) {
@@ -147,7 +147,7 @@ class BlockRows {
     }
   }
 
-  /// Adds what sensor I contributes: by its body and by its own parameters.
+  /// Adds the contribution of sensor I: by its body and by its own parameters.
   template <std::size_t I, class R>
   static void add_sensor(const SensorView<S>& view, std::size_t i, const Vector3<S>* values,
                          const R& r, Rows& rows) {
@@ -171,9 +171,8 @@ class BlockRows {
     }
   }
 
-  /// Changes what was measured so that the residual becomes zero: one Newton step, exact if the
-  /// block is linear.  It is the measurement of the first sensor that has parameters, else of the
-  /// last one.
+  /// Changes a measurement so that the residual becomes zero: one Newton step, exact if the block
+  /// is linear.  Changes the first sensor that has parameters, else the last one.
   static void take_residual_away(const B& block, const Views& views, Values& values,
                                  std::array<Vector3<S>, 4>& moved) {
     std::size_t measuring = 0;
@@ -188,7 +187,7 @@ class BlockRows {
   static void move(const R& r, const Vector3<S>* values, std::array<Vector3<S>, 4>& moved) {
     std::copy_n(values, Vectors<I>::kValues, moved.begin());
     constexpr Quantity kInput = kInputs[I];
-    // Of a ray the direction is measured, of a reading the number.
+    // A ray measures the direction, a reading the number.
     constexpr int kFrom =
         kFirst[I] + (kInput == Quantity::ray || kInput == Quantity::reading ? 3 : 0);
     constexpr int kCount = kInput == Quantity::pose ? 6 : kInput == Quantity::reading ? 1 : 3;
@@ -211,7 +210,7 @@ class BlockRows {
     }
   }
 
-  /// A point of the first sensor in front of the second one, a camera.
+  /// A point of the first sensor, seen by the second one, a camera.
   template <bool kDerivatives>
   static void pixel_rows(const B& block, const Views& views, std::size_t i, Rows& rows) {
     const SensorView<S>& camera = views[1];

@@ -11,7 +11,7 @@
 namespace kinecal::detail {
 
 /// The term of an error block, for any number of columns.  Functions that are expensive to compile
-/// are defined outside of the class: they are not inline, so the library can compile them once.
+/// are defined outside the class, not inline, so the library compiles them once.
 template <ErrorBlock B, class S>
 class BlockTerm final : public TermCode<S> {
  public:
@@ -31,7 +31,7 @@ class BlockTerm final : public TermCode<S> {
   static constexpr std::size_t kBodies = Block::kBodies;
   using Twists = std::array<const ChainTwists<S>*, kBodies>;  ///< of the columns of each sensor
 
-  /// Whether the residual may be the difference of two points, which is summed faster.
+  /// True if the residual may be the difference of two points, which sums faster.
   static constexpr bool kMayBeDifference = PointPairBlock<B> && kSize == 3 && kTakesFeaturesOnly<B>;
   using Rows = typename Block::Rows;
 
@@ -115,7 +115,7 @@ class BlockTerm final : public TermCode<S> {
     }
   }
 
-  /// The same for a block that is a difference.
+  /// The same for a block that only subtracts its points.
   KINECAL_FLATTEN void write_difference(const Views& views, const FeatureRun& run,
                                         const Twists& twists, BatchRows<S>& out,
                                         S* jacobian) const {

@@ -1,7 +1,7 @@
 // The walk of a chain to its tip, for a batch of samples.
 //
-// The compiler knows the chains of a crate and their free parameters.  A problem that a crate fills
-// uses walks that are compiled for them in place of those of a RuntimeChain; both give the same result.
+// The compiler knows the chains of a crate and their free parameters, so a problem that a crate
+// fills uses walks compiled for them.  Others walk a RuntimeChain; both give the same result.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -67,8 +67,8 @@ template <class S>
 template <class S>
 struct CompiledWalk {
   std::string tip;                    ///< of the chain
-  std::vector<JointIndices> columns;  ///< for which with_twists is compiled
-  bool models;                        ///< whether both know joint models
+  std::vector<JointIndices> columns;  ///< for which with_twists was compiled
+  bool models;                        ///< true if both handle joint models
   Walk<S> pose_only;                  ///< computes the pose
   Walk<S> with_twists;                ///< computes the pose and the twists of free parameters
 };

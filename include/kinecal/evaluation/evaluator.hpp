@@ -1,9 +1,8 @@
-// Evaluating a problem in S, a double or a packet: residuals with their Jacobian, or the normal
-// equations.
+// Evaluates a problem in S, a double or a packet: residuals and Jacobian, or the normal equations.
 //
-// Samples are evaluated batch by batch.  The normal equations are summed in pieces of a fixed size,
-// which several threads share, and the pieces are added in the order of the batches.  So the result
-// is the same, bit for bit, whatever the number of threads.
+// Samples are evaluated batch by batch.  The normal equations are summed in pieces of fixed size
+// that threads share; the pieces are added in the order of the batches.  So the result is the same,
+// bit for bit, for any number of threads.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,9 +21,7 @@ namespace detail {
 
 inline constexpr std::size_t kCacheLine = 64;  ///< bytes
 
-/// How many bytes of the next batch to load while a part of a batch is evaluated, as a processor waits
-/// for ten lines of memory or so, and stops where it is to wait for more; zero if all batches fit
-/// into a cache.
+/// Bytes to prefetch per step; 0 if everything fits in cache.
 /// @param bytes  of a batch
 /// @param parts  of a batch
 [[nodiscard]] inline std::size_t prefetched_at_once(std::size_t batches, std::size_t bytes,
@@ -32,8 +29,7 @@ inline constexpr std::size_t kCacheLine = 64;  ///< bytes
   constexpr std::size_t kCache = 1 << 20;
   return batches * bytes > kCache ? (bytes / kCacheLine / parts + 1) * kCacheLine : 0;
 }
-/// Loads some bytes, which are not left then.  Inline: g++ takes a function that only prefetches for one
-/// without effect.
+/// Prefetches some bytes.  Inline: g++ drops calls of a function that only prefetches.
 [[gnu::always_inline]] inline void prefetch(std::span<const std::byte>& left, std::size_t count) {
   const auto now = left.first(std::min(count, left.size()));
   for (std::size_t i = 0; i < now.size(); i += kCacheLine) __builtin_prefetch(&now[i]);
@@ -49,11 +45,11 @@ class Evaluator final : public AnyEvaluator {
   /// @param problem  must outlive the evaluator; do not add samples meanwhile
   /// @param free     the columns of the Jacobian
   /// @param threads  number of threads that share the work; zero: one per core
-  /// @throws std::invalid_argument  if a free parameter is not one of the problem
+  /// @throws std::invalid_argument  if a free parameter does not belong to the problem
   Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 1);
 
   Evaluator(const BasicProblem<S>&&, const FreeSet&,
-            int = 1) = delete;  ///< it would not outlive it
+            int = 1) = delete;  ///< the evaluator would outlive it
 
   /// The problem that it evaluates.
   [[nodiscard]] const BasicProblem<S>& problem() const override { return problem_; }
@@ -86,7 +82,7 @@ class Evaluator final : public AnyEvaluator {
     std::vector<detail::TermSums<S>> sums;  ///< of each term
   };
 
-  /// What all batches share for a term.
+  /// State of a term that all batches share.
   struct TermState {
     OwnParameters own;                                  ///< of the block
     std::vector<std::vector<detail::FeatureRun>> runs;  ///< of the features of each layout

@@ -1,8 +1,7 @@
-// The residual of one feature and its derivatives, before kinematics enters: the one format of rows.
+// The residual of one feature and its derivatives, before kinematics: the only format of rows.
 //
-// Whatever an error block compares, a residual changes only because rigid bodies move (one per
-// sensor: everything at the end of its chain) and because parameters of sensors or of the block
-// itself change:
+// For any error block, a residual changes only because rigid bodies move (one per sensor:
+// everything at the end of its chain), or because parameters of sensors or of the block change:
 //
 //   dr = sum over bodies of  by_body (v, w)  +  sum over own parameters of  by_own dk
 //
@@ -40,7 +39,7 @@ struct FeatureRows {
       by_body[body].row(row) << d.transpose(), cross(p, d).transpose();
     }
   }
-  /// Adds what a vector contributes that only rotates with the body.
+  /// Adds the contribution of a vector that only rotates with the body.
   /// @param x     (3) the vector, in the base
   /// @param by_x  (M x 3) derivative of the residual with respect to it
   void add_vector(std::size_t body, Change change, const Vector3<S>& x,
@@ -53,17 +52,17 @@ struct FeatureRows {
   }
 };
 
-/// The most sensors of an error block.
+/// The largest number of sensors of an error block.
 inline constexpr std::size_t kMostBodies = 4;
-/// The bodies of a feature: the chain at whose end it is, for each sensor of an error block.
+/// The bodies of a feature, one per sensor of the error block: the chain that ends there.
 using BodyChains = std::array<std::size_t, kMostBodies>;
 
-/// Consecutive features of a layout that are on the same chains.
+/// Consecutive features of a layout on the same chains.
 struct FeatureRun {
   std::size_t first = 0;  ///< index of the first feature
   std::size_t end = 0;    ///< index after the last one
   BodyChains chains{};    ///< of each sensor
-  /// Columns of the whole Jacobian on which they depend, in this order: parameters of the sensors and
+  /// Columns of the whole Jacobian that affect them, in this order: parameters of the sensors and
   /// of the block, rotational twists of each body, translational twists of each body.  A parameter
   /// that moves several bodies occurs several times.
   std::vector<int> columns;
@@ -83,13 +82,13 @@ struct TermViews {
   std::array<const SensorView<S>*, kMostBodies> sensors{};  ///< of the term, in its order
   const OwnParameters* own = nullptr;                       ///< of the block itself
   std::span<const FeatureRun> runs;                         ///< of the features, in their order
-  BatchTerm<S> numbers = {};                                ///< what else it takes of the batch
+  BatchTerm<S> numbers = {};                                ///< its further inputs in the batch
 
   [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
 
   /// Number of features that are compared.
   [[nodiscard]] std::size_t features() const { return runs.back().end; }
-  /// Number of free parameters of sensors and block on which a feature depends.
+  /// Number of free parameters of sensors and block that affect a feature.
   [[nodiscard]] std::size_t num_own() const {
     std::size_t n = own->free.size();
     for (std::size_t s = 0; s < term->sensors.size(); ++s) n += sensors[s]->own().free.size();

@@ -1,5 +1,4 @@
-// What an evaluation computes once for all scalars: the columns of sensors, and features on the same chains
-// with theirs.
+// Computed once for all scalars: the columns of sensors, and runs of features on the same chains.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,12 +1,12 @@
-// What resists motions, for any error block: one small matrix per sample.
+// Normal-equation sums of any error block: one small matrix per sample.
 //
-// The columns of a body's parameters are by_body xi_k, with the twists xi_k of its chain, which are
-// the same for all features.  So each sample sums a small matrix over its features,
+// The columns of a body's parameters are by_body xi_k.  The twists xi_k of its chain are the same
+// for all features, so each sample sums a small matrix over its features,
 //
 //   K = sum of  w L^T L      L = [ residual | by_own | by_body of each body ]
 //
-// whose size depends neither on the number of features nor on that of parameters.  Its part between
-// bodies b and s turns a twist xi of s into its wrench on b: K_bs xi.
+// whose size depends neither on the number of features nor on that of parameters.  Its block for
+// bodies b and s maps a twist xi of s to its wrench on b: K_bs xi.
 // Source: ARCHITECTURE.md, ideas 2 (twists) and 6 (the compressed cost).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -21,7 +21,7 @@
 
 namespace kinecal::detail {
 
-/// What resists motions of features of any kind.
+/// Normal-equation sums for features of any kind.
 template <class S>
 class FeatureWrenches {
  public:
@@ -39,7 +39,7 @@ class FeatureWrenches {
   /// Number of the sensors' own parameters.
   [[nodiscard]] std::size_t own() const { return own_; }
 
-  /// The twist of column i, and of those after it.
+  /// The twists of columns i, i + 1, ...
   [[nodiscard]] PacketRows<S> twists(std::size_t i) const {
     return {columns_.data() + i * size(), size(), 3};
   }
@@ -55,7 +55,7 @@ class FeatureWrenches {
   }
 
   /// Starts a sum over features.
-  /// @param twists  of each body; must stay until the sums are added
+  /// @param twists  of each body; must live until the sums are added
   /// @param own     number of the sensors' own parameters
   void start(std::span<const ChainTwists<S>* const> twists, std::size_t own);
   /// Adds w L^T L of a feature.
@@ -83,18 +83,18 @@ class FeatureWrenches {
     }
     empty_ = false;
   }
-  /// Computes the wrenches, when all features are added.
+  /// Computes the wrenches after all features have been added.
   void finish();
 
  private:
-  /// Row i of K: its lower triangle; all of it between bodies.
+  /// Row i of K: the lower triangle within a body, full rows between bodies.
   [[nodiscard]] const S* row(std::size_t i) const { return &k_[i * width_]; }
 
-  /// Numbers of a column: its twist, and a wrench on each body.
+  /// Numbers per column: its twist, and a wrench on each body.
   [[nodiscard]] std::size_t size() const { return 6 + 6 * bodies(); }
 
-  /// Some twists of a body and their wrenches: the forces on all bodies; with D = 6, the moments on
-  /// it and on the bodies after it, too.
+  /// Some twists of a body and their wrenches: the forces on all bodies and, with D = 6, the
+  /// moments on this body and those after it.
   /// @returns  the column after the last one
   template <std::size_t D>
   S* set_columns(std::size_t body, const S* xi, std::size_t count, S* column) const;

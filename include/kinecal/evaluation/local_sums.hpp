@@ -1,13 +1,13 @@
-// Normal equations of features, second step: the twists of the parameters, without a Jacobian.
+// Normal equations of features, second step: multiplies by twists, without forming a Jacobian.
 //
-// The first step has summed the features of a batch to what resists a motion: FeatureWrenches,
-// PointWrenches.  A parameter moves a body by its twist, and the features resist by a force and a
-// moment on each body, the wrench.  Then
+// The first step (FeatureWrenches, PointWrenches) has summed the features of a batch.  A parameter
+// moves a body by its twist; the features respond with a wrench on each body, a force and a moment.
+// Then
 //
 //   (J^T J)(i, j) = twist_i . wrench_j on the body of i
 //
-// All numbers are packets: one sample per lane.  A product of rows with columns is summed tile by tile in
-// registers: each number of a tile is loaded once for several products.
+// All numbers are packets: one sample per lane.  Products of rows and columns are summed tile by
+// tile in registers: each loaded number of a tile serves several products.
 // Source: ARCHITECTURE.md, idea 6: the compressed cost.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -26,12 +26,12 @@ struct NormalEquations;
 
 namespace kinecal::detail {
 
-/// Where vectors are, whose numbers are in groups of three.
+/// Addresses vectors whose numbers are stored in groups of three.
 template <class S>
 struct PacketRows {
   const S* data;     ///< the first three numbers of the first vector
-  std::size_t size;  ///< from one vector to the next
-  std::size_t next;  ///< from three numbers to the next three
+  std::size_t size;  ///< stride from one vector to the next
+  std::size_t next;  ///< stride from three numbers to the next three
 
   /// Number d of vector i.
   [[nodiscard]] const S& operator()(std::size_t i, std::size_t d) const {
@@ -42,7 +42,7 @@ struct PacketRows {
 template <std::size_t N>
 using Constant = std::integral_constant<std::size_t, N>;
 
-/// Calls f(0) ... f(N - 1) with constants: arrays that they index stay in registers.
+/// Calls f(0) ... f(N - 1) with constants: arrays indexed by them stay in registers.
 template <std::size_t N, class F>
 void unrolled(const F& f) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -75,11 +75,11 @@ void multiply_rows(const PacketRows<S>& rows, PacketRows<S> columns, std::size_t
   }
 }
 
-/// The products of some rows with columns; each row meets kMore columns more than the one before.
+/// The products of some rows with columns; each row has kMore columns more than the one before.
 /// @tparam kAdd        add them to the sums; else set the sums
-/// @tparam D           numbers of a row
+/// @tparam D           numbers per row
 /// @param count        number of rows
-/// @param num_columns  that the first row meets
+/// @param num_columns  of the first row
 /// @param sums         (rows x stride), row-major
 template <bool kAdd, std::size_t D, std::size_t kMore, class S>
 KINECAL_FLATTEN void multiply(PacketRows<S> rows, std::size_t count, const PacketRows<S>& columns,
@@ -91,7 +91,7 @@ KINECAL_FLATTEN void multiply(PacketRows<S> rows, std::size_t count, const Packe
     sums += R * stride;
     count -= R;
   };
-  if constexpr (kLanes<S> >= 8 && D <= 6) {  // 24 of 32 registers
+  if constexpr (kLanes<S> >= 8 && D <= 6) {  // uses 24 of 32 registers
     while (count == 4 || count > 6) next(Constant<4>{});
   }
   if constexpr (D <= 6) {
@@ -101,8 +101,8 @@ KINECAL_FLATTEN void multiply(PacketRows<S> rows, std::size_t count, const Packe
   if (count == 1) next(Constant<1>{});
 }
 
-/// Adds the products of some rows with all columns up to their own: the lower triangle of the sums;
-/// above it they are undefined.
+/// Adds the products of rows with all columns up to their own: the lower triangle of the sums;
+/// entries above it are undefined.
 /// @param first  index of the first row, and of its own column
 /// @param sums   (columns x stride), row-major
 template <std::size_t D, class S>
@@ -111,11 +111,11 @@ void add_products(const PacketRows<S>& rows, std::size_t count, const PacketRows
   multiply<true, D, 1>(rows, count, columns, first + 1, sums + first * stride, stride);
 }
 
-/// What resists motions: the twists of the columns, and a force and a moment of each on every body.
-/// FeatureWrenches and PointWrenches are models.
+/// Twists of the columns, and the force and moment of each on every body.  Models: FeatureWrenches,
+/// PointWrenches.
 template <class W, class S>
 concept Wrenches = requires(const W& w, std::size_t i, S* sums) {
-  { w.bodies() } -> std::same_as<std::size_t>;       // number of them
+  { w.bodies() } -> std::same_as<std::size_t>;       // number of bodies
   { w.turns(i) } -> std::same_as<std::size_t>;       // rotational twists of a body
   { w.shifts(i) } -> std::same_as<std::size_t>;      // translational twists of a body
   { w.own() } -> std::same_as<std::size_t>;          // own parameters of sensors and block
@@ -126,8 +126,8 @@ concept Wrenches = requires(const W& w, std::size_t i, S* sums) {
 
 /// Normal equations of features on the same chains, summed over samples lane by lane.
 ///
-/// The columns are those of a FeatureRun, after that of the residual.  Translational twists are the
-/// last, so that they meet all others as rows, with three numbers in place of six.
+/// The columns are those of a FeatureRun, after the residual's column.  Translational twists come
+/// last, so their products with all other columns need three numbers instead of six.
 template <class S>
 class LocalSums {
  public:
@@ -138,7 +138,7 @@ class LocalSums {
   void set_zero();
 
   /// Adds one batch.
-  /// @param wrenches  twists, and what resists them
+  /// @param wrenches  twists and their wrenches
   void add(const Wrenches<S> auto& wrenches) {
     S* sums = sums_.data();
     wrenches.add_own(sums, stride_);
@@ -153,7 +153,7 @@ class LocalSums {
     }
   }
 
-  /// Adds the sum of all lanes to normal equations over the columns of the whole Jacobian.
+  /// Adds the sum of all lanes to the normal equations of the whole Jacobian.
   void add_to(NormalEquations& total) const;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace kinecal::detail {
 
-/// The wanted number of threads; for zero, the number of cores.
+/// The requested number of threads; for zero, the number of cores.
 [[nodiscard]] inline int number_of_threads(int wanted) {
   return wanted > 0 ? wanted : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }

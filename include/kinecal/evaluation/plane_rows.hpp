@@ -1,7 +1,7 @@
 // Planes through the points of two sensors: residual and derivatives, one lane after the other.
 //
-// The normal of a plane is an eigenvector.  Its iteration stops at a different step for each
-// sample, so it does not run in packets.
+// The normal of a plane is an eigenvector.  The iteration takes a different number of steps for
+// each sample, so it does not run in packets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

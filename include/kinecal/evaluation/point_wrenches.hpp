@@ -1,14 +1,14 @@
-// What resists motions, for points that are only subtracted: r = p_a - p_b; and the Jacobian.
+// Normal-equation sums for p_a − p_b, and its Jacobian.
 //
-// With derivatives I and -I, the sums over the features are moments of the points.  Taken about the
+// With derivatives I and -I, the sums over the features are moments of the points.  About the
 // center of each side's points, translation and rotation decouple:
 //
 //   force   sum w v = W v,  the same on both sides
 //   moment  sum w q x (u x p) = (tr C - C) u      C = sum w p q^T
 //
 // for a twist (v, u) whose linear part v is the velocity of the center.  The second side moves the
-// other way: its twists are (-v, u), and the moments on it are negated.  Features are scaled by the
-// root of their weights and velocities by that of W, so that a velocity is its own force.
+// other way: its twists are (-v, u), and its moments are negated.  Features are scaled by the
+// square root of their weights and velocities by that of W, so a velocity equals its force.
 // Source: Euler's equations of a rigid body.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,7 +23,7 @@
 
 namespace kinecal::detail {
 
-/// One side of a difference r = p_a - p_b: points in the base, and how parameters move them.
+/// One side of a difference r = p_a - p_b: points in the base, and their motion by each parameter.
 template <class S>
 struct DifferenceSide {
   const Vector3<S>* points;  ///< of each feature, metres
@@ -33,14 +33,14 @@ struct DifferenceSide {
   const ChainTwists<S>* twists = nullptr;  ///< of the body of the points
 };
 
-/// Writes the derivatives of a difference, column after column: velocities of the points.  Each twist
-/// is loaded once for all features.
+/// Writes the derivatives of a difference, column by column: velocities of the points.  Loads each
+/// twist once for all features.
 /// @param first  index of the first feature
 /// @param out    (3 x columns) of each of kFeatures features, column-major
 template <std::size_t kFeatures, class S>
 void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_t first,
                        std::size_t columns, S* out) {
-  // Vectors are copied number by number, into registers: a copy of a whole one goes through memory.
+  // Copies vectors number by number, into registers: copying a whole one goes through memory.
   const auto write = [&out, stride = 3 * columns](std::size_t count, const auto& column) {
     for (std::size_t k = 0; k < count; ++k, out += 3) {
       const auto of_feature = column(k);
@@ -83,7 +83,7 @@ void write_differences(const std::array<DifferenceSide<S>, 2>& sides, std::size_
   });
 }
 
-/// What resists motions of features that are only subtracted; the interface is that of FeatureWrenches.
+/// Normal-equation sums for p_a − p_b; same interface as FeatureWrenches.
 template <class S>
 class PointWrenches {
  public:
@@ -98,7 +98,7 @@ class PointWrenches {
   /// Number of the sensors' own parameters.
   [[nodiscard]] std::size_t own() const { return own_; }
 
-  /// The twist of column i, and of those after it.
+  /// The twists of columns i, i + 1, ...
   [[nodiscard]] PacketRows<S> twists(std::size_t i) const {
     static_assert(sizeof(Column) == 12 * sizeof(S));
     return {columns_[i].velocity.data(), 12, 3};
@@ -129,7 +129,7 @@ class PointWrenches {
  private:
   /// A column: twist, force and moments.
   struct Column {
-    Vector3<S> velocity;  ///< of the center, scaled; it is the force, too
+    Vector3<S> velocity;  ///< of the center, scaled; equals the force
     Vector3<S> angular;
     std::array<Vector3<S>, 2> moment;  ///< about the centers; the second one negated
   };

@@ -1,4 +1,4 @@
-// A sensor's functions in the scalar S, behind one interface: what it delivers for each feature of a
+// A sensor's functions in the scalar S, behind one interface: its output for each feature of a
 // batch, in the base, with derivatives by its own parameters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace kinecal::detail {
 
-/// The pixel at which a camera should see a point, with derivatives.
+/// The pixel of a point in a camera, with derivatives.
 template <class S>
 struct PredictedPixel {
   Eigen::Matrix<S, 2, 1> value;                ///< (2) pixels
@@ -26,11 +26,10 @@ class SensorCode {
  public:
   virtual ~SensorCode() = default;
 
-  /// Number of vectors of a feature: its values, and its variables that change.
+  /// Number of vectors of a feature: its values, and those of its variables that change.
   [[nodiscard]] virtual std::size_t num_values() const = 0;
   [[nodiscard]] virtual std::size_t num_variables() const = 0;  ///< as above
-  /// True if its measurement is what errors are in, as that of a camera: see
-  /// Linearization::error_free.
+  /// True if its measurements carry the error, like a camera's: see Linearization::error_free.
   [[nodiscard]] virtual bool measures() const = 0;
 
   /// Places all features of a batch in the base.
@@ -42,7 +41,7 @@ class SensorCode {
                      std::span<const double> own, std::span<const int> chosen, Vector3<S>* values,
                      Vector3<S>* changes) const = 0;
 
-  /// Predicts where a camera sees a point of its frame; metres.
+  /// Predicts the pixel of a point in the camera's frame; metres.
   virtual void predict(BatchObservation<S> seen, const Vector3<S>& p, std::span<const double> own,
                        std::span<const int> chosen, bool derivatives,
                        PredictedPixel<S>& out) const = 0;

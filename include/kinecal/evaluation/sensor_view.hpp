@@ -1,4 +1,4 @@
-// A sensor as a batch of samples sees it: poses, twists, and what it delivers for each feature.
+// A sensor in a batch of samples: poses, twists, and its output for each feature.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,15 +13,15 @@
 
 namespace kinecal::detail {
 
-/// What all batches of an evaluation share: the corrections of the sensor's chains, its parameters
-/// and the columns of the Jacobian.
+/// State of a sensor that all batches share: the corrections of its chains, its parameters and the
+/// columns of the Jacobian.
 struct SensorState {
   std::vector<Corrections<double>> corrections;    ///< of each chain
   std::vector<std::vector<JointIndices>> columns;  ///< of the joints of each chain
   std::vector<TwistColumns> twist_columns;         ///< of each chain
   std::vector<bool> models;                        ///< of each chain: some joint has a model
   OwnParameters own;                               ///< of the sensor itself
-  bool placed;                                     ///< a block takes more of it than predictions
+  bool placed;                                     ///< a block uses more of it than predictions
 
   /// @param free  the columns of the Jacobian
   SensorState(const MountedSensor& sensor, const FreeSet& free, bool is_placed);
@@ -38,7 +38,7 @@ struct SensorEvaluation {
   std::vector<CompiledWalk<S>> walks;         ///< of its first chains, as far as there are any
 };
 
-/// A sensor as it sees the current batch of samples.
+/// A sensor in the current batch of samples.
 template <class S>
 class SensorView {
  public:
@@ -46,13 +46,13 @@ class SensorView {
   SensorView(SensorView&&) noexcept = default;  ///< moves only: starts_ point into twists_
   SensorView& operator=(SensorView&&) noexcept = default;  ///< moves only: see above
 
-  /// What the sensor observed in the current batch.
+  /// The sensor's observations in the current batch.
   [[nodiscard]] const BatchObservation<S>& observation() const { return observation_; }
   /// The sensor's own parameters.
   [[nodiscard]] const OwnParameters& own() const { return state_->own; }
   /// Its functions.
   [[nodiscard]] const SensorCode<S>& code() const { return *evaluation_->code; }
-  /// What it delivers for a feature, in the base: vectors as VectorsOf arranges them.
+  /// Its output for a feature, in the base: vectors in the order of VectorsOf.
   [[nodiscard]] const Vector3<S>* values(std::size_t feature) const {
     return values_.data() + feature * num_values_;
   }
@@ -60,14 +60,14 @@ class SensorView {
   [[nodiscard]] const Vector3<S>* changes(std::size_t feature) const {
     return changes_.data() + feature * changes_per_feature_;
   }
-  /// Each feature in the base, metres; of a sensor that delivers points.
+  /// Each feature in the base, metres; for sensors that deliver points.
   [[nodiscard]] const std::vector<Vector3<S>>& points() const { return values_; }
   /// The pose of the sensor's own frame in the base.
   [[nodiscard]] const Pose<S>& pose() const { return poses_[0]; }
   /// The twist in the base for each free parameter of a chain.
   [[nodiscard]] const ChainTwists<S>& twists(std::size_t chain) const { return twists_[chain]; }
 
-  /// Begins an evaluation: computes what does not depend on the samples.
+  /// Starts an evaluation: computes everything that does not depend on the samples.
   /// @param derivatives  compute twists and derivatives by the sensor's parameters, too
   void start(const MountedSensor& sensor, const SensorEvaluation<S>& evaluation,
              const SensorState& state, bool derivatives);

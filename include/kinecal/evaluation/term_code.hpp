@@ -1,5 +1,5 @@
 // A term's functions in the scalar S, behind one interface, so that one problem can hold terms of
-// different blocks.  One virtual call evaluates a whole batch of samples, so hiding the type costs nothing.
+// different blocks.  One virtual call evaluates a whole batch, so the interface costs nothing.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,7 +21,7 @@ struct BatchRows {
   std::vector<S> residual;  ///< of each feature, unweighted
   std::vector<S> jacobian;  ///< of each feature, column-major; values after the last one are stale
 
-  /// The rows of one lane, without the features that are missing in it.
+  /// The rows of one lane; skips features that are missing in it.
   /// @param columns  of the whole Jacobian; negative: residuals only
   void unpack(std::span<const FeatureRun> runs, int feature_size, int lane_index, int columns,
               TermResiduals& out) const {
@@ -56,10 +56,10 @@ struct BatchRows {
 template <class S>
 struct TermSums {
   S twice_cost{0.0};  ///< sum of rho
-  /// Sums over the columns of each combination of chains, sorted by chains.
+  /// Sums for each combination of chains, sorted by chains.
   std::vector<std::pair<BodyChains, LocalSums<S>>> by_chains;
   FeatureWrenches<S> wrenches;        ///< of the current run of features
-  PointWrenches<S> point_wrenches;    ///< the same for a block that is a difference
+  PointWrenches<S> point_wrenches;    ///< the same for a block that only subtracts points
   std::vector<S> weights;             ///< of the current run's features, for `point_wrenches`
   std::vector<Vector3<S>> residuals;  ///< of the current run's features, for `point_wrenches`
 
@@ -74,11 +74,11 @@ struct TermSums {
 template <class S>
 class TermCode {
  public:
-  using Views = TermViews<S>;  ///< the term, its sensors as they see a batch, and its parameters
+  using Views = TermViews<S>;  ///< the term, its sensors in a batch, and its parameters
 
   virtual ~TermCode() = default;
 
-  /// Adds the cost of a batch of samples.  It is not finite where a residual is undefined, such as
+  /// Adds the cost of a batch of samples.  It is not finite if a residual is undefined, such as
   /// that of a point behind a camera.
   virtual void add_cost(const Views& views, const Loss& loss, TermSums<S>& sums) const = 0;
   /// Adds the cost and the normal equations of a batch of samples.

@@ -1,4 +1,4 @@
-// Errors in the user's files, each with its place: all are collected and reported together.
+// Errors in the user's files, each with its source location; collected and reported together.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,13 +25,13 @@ struct SourceLocation {
   }
 };
 
-/// What readers found: "file:line: message".  With errors, what was read is incomplete.
+/// Findings of readers: "file:line: message".  With errors, the result is incomplete.
 struct Diagnostics {
-  std::vector<std::string> errors;    ///< what makes the input unusable
-  std::vector<std::string> warnings;  ///< what was left out or assumed; the result is not affected
-  std::vector<std::string> doubts;    ///< what looks wrong but could be right: reasons to check the
-                                      ///< result before it is used
-  std::vector<std::string> notes;     ///< what was found out, and taken so; nothing to do
+  std::vector<std::string> errors;    ///< make the input unusable
+  std::vector<std::string> warnings;  ///< skipped or assumed input; the result is not affected
+  std::vector<std::string> doubts;    ///< looks wrong but could be right: check the result before
+                                      ///< you use it
+  std::vector<std::string> notes;     ///< findings that need no action
 
   /// Adds an error.
   void error(const SourceLocation& place, const std::string& message) {
@@ -52,7 +52,7 @@ struct Diagnostics {
     notes.push_back(place.str() + ": " + message);
   }
 
-  /// @throws InputError  with all errors, one a line, if there are any
+  /// @throws InputError  with all errors, one per line, if there are any
   void throw_if_errors() const {
     if (errors.empty()) return;
     std::string all = errors.front();

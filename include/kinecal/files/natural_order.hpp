@@ -1,8 +1,8 @@
-// The order of names as people count: "view_2" before "view_10".
+// Natural order of names: "view_2" before "view_10".
 //
-// Digits in a row are one number, compared by its value: leading zeros do not count.  Everything else
-// is compared byte by byte.  Names that differ in leading zeros only are in the order of their bytes,
-// so no two names are equal.
+// Consecutive digits are one number, compared by value: leading zeros do not count.  Everything
+// else is compared byte by byte.  Names that differ only in leading zeros are ordered by their
+// bytes, so no two names are equal.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,7 +29,7 @@ namespace detail {
 
 }  // namespace detail
 
-/// Whether one name comes before another.
+/// True if one name comes before another.
 [[nodiscard]] constexpr bool naturally_before(std::string_view a, std::string_view b) {
   std::string_view left = a, right = b;
   while (!left.empty() && !right.empty()) {
@@ -47,7 +47,7 @@ namespace detail {
   return left.size() != right.size() ? left.size() < right.size() : a < b;
 }
 
-/// Whether one file name comes before another: their endings decide last, so "view.png" comes before
+/// True if one file name comes before another.  Extensions decide last, so "view.png" comes before
 /// "view-1.png".
 [[nodiscard]] constexpr bool file_naturally_before(std::string_view a, std::string_view b) {
   const std::string_view x = a.substr(0, a.rfind('.')), y = b.substr(0, b.rfind('.'));

@@ -1,7 +1,7 @@
-// How Eigen lays out its matrices in memory: alike in a source and in the library that it links.
+// Memory layout of Eigen's matrices: a source and the library it links must agree on it.
 //
-// Storage order and index are Eigen's defaults; the alignment may be another than Eigen's own choice, but
-// then the library is compiled with it, too: otherwise a source does not link (linkage.hpp).
+// Storage order and index type are Eigen's defaults.  You may change the alignment if the library
+// is compiled with the same one; otherwise the source does not link (linkage.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,11 +22,11 @@ static_assert(sizeof(Eigen::Index) == sizeof(std::ptrdiff_t),
 
 #ifndef KINECAL_HEADER_ONLY
 inline namespace KINECAL_INSTRUCTION_SET {
-/// Alignment of Eigen's matrices, bytes: EIGEN_MAX_ALIGN_BYTES, and EIGEN_MAX_STATIC_ALIGN_BYTES of those
-/// of fixed size.
+/// Alignment of Eigen's matrices, bytes: EIGEN_MAX_ALIGN_BYTES, and EIGEN_MAX_STATIC_ALIGN_BYTES
+/// for matrices of fixed size.
 template <int kMost, int kMostOfFixedSize>
 struct EigenAlignedTo {
-  static const bool KINECAL_LIBRARY_CHECK;  ///< defined by the library for its own alignment
+  static const bool KINECAL_LIBRARY_CHECK;  ///< the library defines the one for its own alignment
 };
 using EigenAligned = EigenAlignedTo<EIGEN_MAX_ALIGN_BYTES, EIGEN_MAX_STATIC_ALIGN_BYTES>;
 template <>

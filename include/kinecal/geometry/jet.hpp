@@ -61,7 +61,7 @@ struct Jet {
   friend Jet operator/(const Jet& x, const S& s) { return x * (S(1.0) / s); }
   /// @}
 
-  /// True for jets of packets, which need operators of their own with double.
+  /// True for jets of packets, which need separate operators with double.
   static constexpr bool kOfPackets = !std::same_as<S, double>;
   // clang-format off
   /// Arithmetic of a jet of packets with a number.

@@ -1,7 +1,7 @@
 // Packets: several doubles in one processor register, as a scalar.
 //
-// With a packet in place of a double, the templates of geometry/, kinematics/ and crate/ evaluate
-// one sample per lane at once.  The width follows the instruction set that is compiled for.  The
+// Templates of geometry/, kinematics/ and crate/ take a packet instead of a double and then
+// evaluate one sample per lane.  The width follows the instruction set you compile for.  The
 // functions below treat a double as a packet of one lane.
 //
 // std::experimental::simd does the same and more, but takes longer to include than all of Eigen.
@@ -24,7 +24,8 @@
 #include <emmintrin.h>
 #endif
 
-/// Inlines everything that a function calls: many small ones, once per batch.  Off with g++'s sanitizers.
+/// Inlines everything a function calls: many small calls, once per batch.  Off with g++'s
+/// sanitizers.
 #if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)
 #define KINECAL_FLATTEN [[gnu::flatten]]
 #else
@@ -50,7 +51,7 @@ class PacketOf {
   using Mask = decltype(Register{} < Register{});                 ///< per lane: all bits or none
 
   PacketOf() = default;  ///< lanes are not initialized
-  /// Copies the register: g++ copies a class without this as memory, past the registers.
+  /// Copies the register; otherwise g++ copies through memory.
   PacketOf(const PacketOf& other) : x_(other.x_) {}  // NOLINT(modernize-use-equals-default)
   PacketOf& operator=(const PacketOf& other) {       // NOLINT(modernize-use-equals-default)
     x_ = other.x_;
@@ -58,7 +59,7 @@ class PacketOf {
   }
   /// The same number in all lanes.
   PacketOf(double x) : x_(x - Register{}) {}  // NOLINT: a number is a packet of it
-  explicit PacketOf(Register x) : x_(x) {}    ///< takes over all lanes
+  explicit PacketOf(Register x) : x_(x) {}    ///< takes the value of all lanes
 
   [[nodiscard]] static constexpr std::size_t size() { return N; }         ///< number of lanes
   [[nodiscard]] Register lanes() const { return x_; }                     ///< all lanes
@@ -158,7 +159,7 @@ class PacketOf {
   Register x_;
 };
 
-/// A packet as wide as the widest register of the instruction set that is compiled for.
+/// A packet as wide as the widest register of the instruction set you compile for.
 #if defined(__AVX512F__)
 using Packet = PacketOf<8>;
 #elif defined(__AVX__)
@@ -169,8 +170,8 @@ using Packet = PacketOf<2>;
 
 }  // namespace KINECAL_INSTRUCTION_SET
 
-/// The x86-64 level for which the including source, and so its packets, are compiled: "x86-64",
-/// "x86-64-v3" or "x86-64-v4"; with a part of a level, the level below; "other" on other processors.
+/// The x86-64 level of the source that includes this, and so of its packets: "x86-64", "x86-64-v3"
+/// or "x86-64-v4"; an incomplete level counts as the one below; "other" on other processors.
 /// Source: x86-64 psABI, micro-architecture levels.
 [[nodiscard]] constexpr std::string_view instruction_set() {
   return KINECAL_X86_64_LEVEL;
@@ -201,7 +202,7 @@ template <class S>
   }
 }
 
-/// The type of a lane: double, as a name that depends on S.
+/// The type of a lane: double, written so that it depends on S.
 template <class S>
 using LaneOf = decltype(lane(std::declval<const S&>(), 0));
 
@@ -215,7 +216,7 @@ void set_lane(S& x, [[maybe_unused]] int i, double value) {
   }
 }
 
-/// Sum of all lanes: of the sums of both halves' lanes.
+/// Sum of all lanes, computed pairwise: the sums of both halves are added.
 template <class S>
 [[nodiscard]] double sum_of_lanes(const S& x) {
   if constexpr (kLanes<S> == 1) {
@@ -235,8 +236,8 @@ template <class S>
   }
 }
 
-/// Keeps x in a register, as one number.  With SSE2 only, g++ otherwise reloads a packet for each
-/// multiplication, and pairs doubles up by shuffling them: loops over twists take a tenth longer.
+/// Keeps x in a register as one number.  With SSE2 only, g++ otherwise reloads a packet for each
+/// multiplication and shuffles doubles into pairs; loops over twists then take 10 % longer.
 template <class S>
 [[nodiscard]] S in_register(const S& x) {
   [[maybe_unused]] const auto held = [](auto number) {
@@ -253,14 +254,14 @@ template <class S>
   return x;
 }
 
-/// a where the condition holds, else b; lane by lane.  Error blocks write it in place of `?:`.
+/// a where the condition holds, else b; lane by lane.  Error blocks use it instead of `?:`.
 template <class Mask, class S>
 [[nodiscard]] S select(const Mask& condition, const S& a, const S& b) {
   if constexpr (std::is_same_v<Mask, bool>) {
     return condition ? a : b;
   } else if constexpr (requires {
                          condition(a, b);
-                       }) {  // a mask that chooses by itself, as that of Traced
+                       }) {  // a mask that selects by itself, like that of Traced
     return condition(a, b);
   } else {
     return S(condition ? a.lanes() : b.lanes());

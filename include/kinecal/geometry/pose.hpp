@@ -22,8 +22,8 @@ template <class S, class U>
 /// A rotation followed by a translation: p -> rotation p + translation.
 template <class S>
 struct Pose {
-  // Constructors: g++ 12 crashes at a call of Identity() or Zero() here where a Joint in a list has {} or
-  // nothing for its origin.
+  // Explicit values: g++ 12 crashes on a call of Identity() or Zero() here when a Joint in a list
+  // has {} or nothing for its origin.
   Matrix3<S> rotation = typename Matrix3<S>::IdentityReturnType(3, 3);  ///< (3 x 3)
   Vector3<S> translation = Vector3<S>(S(0), S(0), S(0));                ///< (3) metres
 
@@ -61,8 +61,8 @@ struct Pose {
   }
 };
 
-/// to = from.  Packets are copied number by number: compilers keep them in registers, where a copy of
-/// the whole goes through memory.
+/// to = from.  Copies packets number by number: compilers keep the numbers in registers but copy a
+/// whole packet through memory.
 template <class S>
 void copy_numbers(const Pose<S>& from, Pose<S>& to) {
   if constexpr (kLanes<S> == 1) {

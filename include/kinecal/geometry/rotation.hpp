@@ -25,7 +25,7 @@ using Vector3 = Eigen::Matrix<S, 3, 1>;
 template <class S>
 using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
-/// a x b.  Eigen's own needs a module that takes longer to include than all of geometry/.
+/// a x b.  Eigen's own version needs a module that takes longer to include than all of geometry/.
 template <class S>
 [[nodiscard]] Vector3<S> cross(const Vector3<S>& a, const Vector3<S>& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
@@ -98,8 +98,8 @@ template <class S>
 
 namespace detail {
 
-/// Quaternion (x y z w) of a rotation matrix, not normalized.  The largest of the four components
-/// is found first, so that no angle divides by a small number.
+/// Quaternion (x y z w) of a rotation matrix, not normalized.  Starts from the largest of the four
+/// components, so it never divides by a small number.
 template <class S>
 [[nodiscard]] Eigen::Matrix<S, 4, 1> quaternion(const Matrix3<S>& r) {
   const S trace = r(0, 0) + r(1, 1) + r(2, 2);

@@ -1,6 +1,6 @@
-// Roll, pitch, yaw: how a URDF writes a rotation.  R = Rz(yaw) Ry(pitch) Rx(roll).
+// Roll, pitch, yaw, as in a URDF: R = Rz(yaw) Ry(pitch) Rx(roll).
 //
-// Only files and reports use it; everything else works on matrices and rotation vectors.
+// Only files and reports use them; everything else uses matrices and rotation vectors.
 // Source: URDF specification, <origin rpy>: fixed-axis rotations about x, then y, then z.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -28,11 +28,10 @@ namespace kinecal {
 [[nodiscard]] inline Vector3<double> rpy_from_rotation(const Matrix3<double>& r) {
   const double cos_pitch = std::hypot(r(0, 0), r(1, 0));
   const double pitch = std::atan2(-r(2, 0), cos_pitch);
-  // Below this cosine, yaw and roll drown in rounding errors.
+  // Below this cosine, rounding errors swamp yaw and roll.
   constexpr double kGimbalLock = 1e-12;
   if (cos_pitch < kGimbalLock) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
-  // Roll is computed after yaw has been taken out, from entries of size one: accurate near gimbal
-  // lock.
+  // Take yaw out first, then compute roll from entries of size one: accurate near gimbal lock.
   const double yaw = std::atan2(r(1, 0), r(0, 0));
   const double cy = std::cos(yaw), sy = std::sin(yaw);
   const double roll = std::atan2(sy * r(0, 2) - cy * r(1, 2), cy * r(1, 1) - sy * r(0, 1));

@@ -1,14 +1,13 @@
 // A traced number: a double that knows whether it depends on a variable.
 //
-// A jet of traced numbers finds which derivatives of a function are constants, whatever the
-// function's arguments are:
+// A jet of traced numbers finds which derivatives of a function are constant for all arguments:
+//
 //
 //   Jet<Traced, 1> x{Traced{3.0, true}, 0};
 //   (2.0 * x + 1.0).v(0)   2, constant            (x * x).v(0)   6, varies
 //
-// The result of comparing variables is variable, too, and so is what select() chooses by it: a
-// piecewise function is not mistaken for the piece at hand.  A product with the constant zero is
-// the constant zero.
+// Comparing variables gives a variable mask, and so does select() with it: a piecewise function is
+// not mistaken for its current piece.  Anything times the constant zero is the constant zero.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

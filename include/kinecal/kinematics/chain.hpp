@@ -7,11 +7,11 @@
 //                                     fixed * (motion^-1 * correction^-1)   passed child to parent
 //                * tail
 //
-// `fixed` gathers everything constant before the joint: its own origin and the fixed joints without
-// a correction.  So the walk visits only joints that move or are corrected.
+// `fixed` holds everything constant before the joint: its own origin and the uncorrected fixed
+// joints before it.  So the walk visits only joints that move or are corrected.
 //
-// This chain is built at run time; static_chain.hpp has one that the compiler knows.  Both are
-// folded (chain_fold.hpp) and walked (walk.hpp) by the same code.
+// This chain is built at run time; static_chain.hpp has the compile-time one.  Both use the same
+// code to fold (chain_fold.hpp) and to walk (walk.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -24,8 +24,8 @@
 
 namespace kinecal {
 
-/// A constant pose that knows whether it rotates.  Most origins of a URDF only translate, which is
-/// a quarter of the work.
+/// A constant pose that knows whether it rotates.  Most origins of a URDF only translate, which
+/// costs a quarter as much.
 struct ConstantPose : Pose<double> {
   bool rotates = false;  ///< false if the rotation is the identity
 
@@ -39,7 +39,7 @@ struct ConstantPose : Pose<double> {
   }
 };
 
-/// The axis of its frame to which a unit vector is parallel: 0, 1, 2 for x, y, z; -1 if to none.
+/// The axis of its frame that a unit vector is parallel to: 0, 1, 2 for x, y, z; -1 for none.
 [[nodiscard]] inline int principal_axis(const Vector3<double>& axis) {
   for (int i = 0; i < 3; ++i) {
     const bool others_are_zero = axis((i + 1) % 3) == 0.0 && axis((i + 2) % 3) == 0.0;
@@ -57,7 +57,7 @@ struct ChainJoint {
   bool corrected = false;               ///< has a frame correction
   bool reversed = false;                ///< passed from child to parent
   Mimic drive;  ///< the joint whose measured position moves this one: itself, unless it mimics
-  int principal = principal_axis(axis);  ///< a principal axis rotates only two columns
+  int principal = principal_axis(axis);  ///< about a principal axis, only two columns rotate
 };
 
 /// A chain that is built at run time: see make_chain().
@@ -81,7 +81,7 @@ struct RuntimeChain {
                                       const std::set<std::string>& corrected = {});
 
 /// The same chain with a virtual frame beyond its tip: a fixed joint of that name with a correction
-/// and an identity origin.  It stands for a frame that no URDF has: a checkerboard, a marker, a
+/// and an identity origin.  Use it for a frame that is not in the URDF: a checkerboard, a marker, a
 /// tracker.
 [[nodiscard]] RuntimeChain with_virtual_frame(RuntimeChain chain, const std::string& frame);
 

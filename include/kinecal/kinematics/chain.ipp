@@ -1,4 +1,4 @@
-// Definitions of chain.hpp: the way from one link to another.
+// Definitions of chain.hpp: the path from one link to another.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

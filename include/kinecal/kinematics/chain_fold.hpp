@@ -1,7 +1,7 @@
-// From joints to a chain: the way between two links, and the constant transforms on it.
+// Builds a chain from joints: finds the path between two links and folds its constant transforms.
 //
-// These functions take the joints of a Robot as well as those of a RobotData, so a chain that is
-// built at run time and one that the compiler knows are found, checked and folded by the same code.
+// These functions take the joints of a Robot or of a RobotData.  So run-time and compile-time
+// chains share the same search, checks and folding.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace kinecal::detail {
 
-/// The index of nothing.
+/// Index that means "not found".
 inline constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
 /// Index of the joint with this name, or kNowhere.
@@ -58,7 +58,7 @@ struct Way {
   Indices joints{};           ///< from base to tip
   std::size_t up = 0;         ///< the first ones are passed from child to parent
   std::size_t size = 0;       ///< number of them
-  bool is_connected = false;  ///< false: there is no way
+  bool is_connected = false;  ///< false: there is no path
   bool ends = true;           ///< false: a link is below itself
 };
 
@@ -98,7 +98,7 @@ template <class Joints, class Indices>
   return type == JointType::fixed || moves(type);
 }
 
-/// Visits the joints of a way that move or are corrected; what is constant between them is folded.
+/// Visits the joints of a path that move or are corrected; folds everything constant between them.
 /// @param is_corrected  callable: name of a joint -> whether it has a frame correction
 /// @param visit         callable (joint, constant transform before it, is_corrected, reversed)
 /// @returns             the constant transform after the last of them

@@ -1,8 +1,8 @@
 // Corrections: what calibration adds to the joints of a chain, as plain values.
 //
 // A chain has one correction per joint, in its order.  Corrections do not know which parameters are
-// free: for forward kinematics you fill them by hand; a calibration fills them from its parameters,
-// once per evaluation and not once per sample.
+// free.  For forward kinematics, fill them by hand; a calibration fills them from its parameters
+// once per evaluation, not once per sample.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -6,9 +6,9 @@
 //   geometric_jacobian(arm, q, jacobian);
 //
 // q(i) is the position of joint i of the chain, radians or metres, in any scalar: double, packet,
-// Jet, ceres::Jet.  joint_names() has their order.  Each moving joint has a position of its own,
-// also one that mimics another; a fixed joint that is corrected is in the chain, and its q(i) is
-// not read.  Nothing is allocated.
+// Jet, ceres::Jet.  joint_names() gives the order.  Each moving joint has its own position, even
+// one that mimics another.  A corrected fixed joint is in the chain, but its q(i) is ignored.
+// Nothing is allocated.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,7 +28,7 @@ concept PositionByName = requires(F& position_of, const std::string& joint) {
   { position_of(joint) } -> std::convertible_to<double>;
 };
 
-/// The corrections of a robot that is as its URDF says.
+/// The corrections of a robot that matches its URDF: none.
 struct NoCorrections {
   [[nodiscard]] const JointCorrection<double>& operator[](std::size_t) const {
     static const JointCorrection<double> none;
@@ -36,7 +36,7 @@ struct NoCorrections {
   }
 };
 
-/// Joint positions as motions: sine and cosine are computed where the walk needs them.
+/// Joint positions as motions; the walk computes sine and cosine where it needs them.
 template <class Q>
 struct JointStatesAt {
   const Q& q;

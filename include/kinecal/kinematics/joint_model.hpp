@@ -1,10 +1,10 @@
-// Joint models: what a joint's position is, given what its encoder measured.
+// Joint models: the true position of a joint from the one that its encoder measured.
 //
 //   q = q_measured + offset + sum over models of  change(q_measured, parameters)
 //
 // A model is a struct with the names of its parameters and one templated call operator.  With all
-// parameters at zero it changes nothing.  Its column of the Jacobian is its derivative, by jets,
-// times the joint's twist.  A new model is one more struct in the list JointModels.
+// parameters zero it changes nothing.  Its column of the Jacobian is its derivative (by jets) times
+// the joint's twist.  To add a model, write a struct and list it in JointModels.
 // Source: Hollerbach, Khalil, Gautier, Model Identification, Springer Handbook of Robotics, 6.2.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -21,11 +21,11 @@
 
 namespace kinecal {
 
-/// A gear ratio that is not what the driver believes: q = (1 + gear_ratio) q_measured.
+/// A gear ratio that differs from the driver's: q = (1 + gear_ratio) q_measured.
 struct GearRatio {
   static constexpr std::array<std::string_view, 1> kParameters = {"gear_ratio"};  ///< relative
   static constexpr std::array<std::string_view, 1> kUnits = {"1"};                ///< of them
-  static constexpr bool kRotatesOnly = false;  ///< joints that slide may have it
+  static constexpr bool kRotatesOnly = false;  ///< sliding joints may have it
 
   /// The change of the position.
   template <class S>
@@ -34,13 +34,12 @@ struct GearRatio {
   }
 };
 
-/// An encoder whose disc is mounted off its center: its error is the first harmonic of the angle, zero
-/// at zero.
+/// An encoder disc mounted off center: its error is the first harmonic of the angle, zero at zero.
 struct EccentricEncoder {
   static constexpr std::array<std::string_view, 2> kParameters = {"eccentric_sin",
                                                                   "eccentric_cos"};  ///< amplitudes
   static constexpr std::array<std::string_view, 2> kUnits = {"rad", "rad"};          ///< of them
-  static constexpr bool kRotatesOnly = true;  ///< joints that slide do not have it
+  static constexpr bool kRotatesOnly = true;  ///< sliding joints do not have it
 
   /// The change of the position.
   template <class S>
@@ -84,7 +83,7 @@ inline constexpr auto kJointModelNames =
 /// Their units for a joint that rotates.
 inline constexpr auto kJointModelUnits =
     detail::ModelParameters<JointModels>::list<std::string_view>([](auto m) { return m.kUnits; });
-/// True for parameters that only joints that rotate have.
+/// True for parameters that only rotating joints have.
 inline constexpr auto kJointModelRotatesOnly =
     detail::ModelParameters<JointModels>::list<bool>([](auto m) {
       std::array<bool, m.kParameters.size()> all{};

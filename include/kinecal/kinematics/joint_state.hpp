@@ -1,7 +1,7 @@
-// How far a joint has moved, with its sine and cosine, so that the walk needs no trigonometry.
+// The position of a joint with its sine and cosine, so that the walk needs no trigonometry.
 //
-// The sine and cosine of a measured position are computed once per sample, those of an offset once
-// per evaluation.  The walk combines the two by angle addition:
+// Sine and cosine are computed once per sample for a measured position and once per evaluation for
+// an offset.  The walk combines the two by angle addition:
 //
 //   cos(q + d) = cos q cos d - sin q sin d      sin(q + d) = sin q cos d + cos q sin d
 // SPDX-License-Identifier: Apache-2.0
@@ -20,7 +20,7 @@ struct JointState {
   S cos{1.0};       ///< of the position; unused by prismatic joints
   S sin{0.0};       ///< of the position; unused by prismatic joints
 
-  /// The same way back.
+  /// The opposite motion.
   [[nodiscard]] JointState inverse() const { return {-position, cos, -sin}; }
 };
 
@@ -31,7 +31,7 @@ template <class S>
   return {position, cos(position), sin(position)};
 }
 
-/// One motion after the other: positions add up.
+/// Two motions in sequence: positions add up.
 template <class S, class U>
 [[nodiscard]] auto operator+(const JointState<S>& a, const JointState<U>& b) {
   using R = decltype(a.cos * b.cos);

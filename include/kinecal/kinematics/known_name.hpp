@@ -1,7 +1,7 @@
 // Names that the compiler looks up.
 //
 // The result is a type.  As an argument of a sentence (sentence.hpp) it appears next to it in the
-// compiler's output.  It lists letters because clang 14 prints strings as numbers:
+// compiler's output.  It spells out letters because clang 14 prints strings as numbers:
 //
 //   JointOfOffset<JointOffset<"elbow_flx_joint">, DidYouMean<'e', 'l', 'b', 'o', 'w', '_', 'f', …>>
 // SPDX-License-Identifier: Apache-2.0

@@ -1,5 +1,4 @@
-// The walker (visitor of the forward pass) that composes the pose of the tip, in any scalar: double,
-// Jet, packet.
+// The walker (visitor of the forward pass) that composes the pose of the tip, in any scalar.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -13,8 +13,8 @@ namespace kinecal {
 
 namespace detail {
 
-/// A vector divided by its length is this close to length 1.  It is not divided a second time, so
-/// that a joint copied to another robot stays the same, bit for bit.
+/// A normalized vector has length 1 within this.  It is not normalized again, so a joint copied to
+/// another robot stays the same, bit for bit.
 inline constexpr double kUnitLength = 4.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace detail

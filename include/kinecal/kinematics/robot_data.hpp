@@ -1,7 +1,7 @@
-// A robot as constant data: kinecal_add_robot() generates it from a URDF when a project is built.
+// A robot as constant data: kinecal_add_robot() generates it from a URDF at build time.
 //
-// The numbers are those that read_urdf() reads at run time, bit for bit.  Because the compiler
-// knows them, it builds chains and checks names before anything runs.
+// The numbers equal those that read_urdf() reads at run time, bit for bit.  The compiler knows
+// them, so it builds chains and checks names before anything runs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -84,7 +84,7 @@ struct JointData {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const std::string_view root = joints.front().parent, parent = joints[i].parent;
     bool is_placed = parent == root;
-    for (std::size_t above = i; above-- > 0 && !is_placed;) {  // mostly the next one
+    for (std::size_t above = i; above-- > 0 && !is_placed;) {  // mostly the previous one
       is_placed = joints[above].child == parent;
     }
     if (!is_placed || joints[i].child == root) return false;

@@ -1,11 +1,11 @@
-// A chain that the compiler knows: its joints and constants are found while compiling.
+// A compile-time chain: the compiler finds its joints and constants.
 //
 //   using Arm = Chain<fetch::Robot, "torso_lift_link", "wrist_roll_link">;
 //   const Pose<double> tip = forward_kinematics(Arm{}, position_of);
 //
-// The robot is a RobotData, usually generated from a URDF by kinecal_add_robot().  Base and tip are any
-// two links.  The walk is that of a RuntimeChain, unrolled: each joint has its own code, fixed joints
-// are folded, identity rotations and principal axes cost nothing extra, and no table is read.
+// The robot is a RobotData, usually generated from a URDF by kinecal_add_robot().  Base and tip are
+// any two links.  It walks like a RuntimeChain, but unrolled: each joint has its own code, fixed
+// joints are folded, identity rotations and principal axes are free, and no table is read.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,7 +1,7 @@
-// Poses that the compiler knows: zeros and ones in them cost nothing.
+// Compile-time poses: zeros and ones in them cost nothing.
 //
-// A type P with P::kPose (a PoseData) stands for the pose.  Most origins of a URDF only translate,
-// and along one axis; a rotation by 90 degrees only swaps columns.
+// A type P with P::kPose (a PoseData) stands for the pose.  Most origins of a URDF only translate
+// along one axis; a rotation by 90 degrees only swaps columns.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

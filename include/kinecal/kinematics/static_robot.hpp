@@ -1,4 +1,4 @@
-// The names of a robot that the compiler knows.
+// The joint and link names of a compile-time robot.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

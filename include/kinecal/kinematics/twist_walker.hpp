@@ -1,7 +1,7 @@
-// The walker (visitor of the forward pass) that also computes a twist for each free parameter: how the
-// parameter moves all that comes after its joint.
+// The walker (visitor of the forward pass) that also computes a twist for each free parameter: how
+// the parameter moves everything after its joint.
 //
-// A change of one joint offset or frame component moves the rest of the chain as a rigid body:
+// Changing a joint offset or frame component moves the rest of the chain as a rigid body:
 //
 //   dp/dparameter = linear + angular x p          for every point p after the joint, in the base
 //
@@ -15,8 +15,8 @@
 //   sliding joint    linear = R a                      angular = 0
 //   joint model      the twist of its joint times the derivative of the model (joint_model.hpp)
 //
-// A joint passed from child to parent moves what comes after it the other way: the same formulas at
-// the frame after the joint, negated.
+// A joint passed from child to parent moves what follows the other way: the same formulas at the
+// frame after the joint, negated.
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, 3.4 (spatial
 // Jacobian); ARCHITECTURE.md, idea 2: twists instead of Jacobian columns.
 // SPDX-License-Identifier: Apache-2.0
@@ -32,8 +32,8 @@
 
 namespace kinecal {
 
-/// Indices of a joint's parameters, in a table of parameters or among the columns of a Jacobian; -1
-/// for a parameter that is not there.
+/// Indices of a joint's parameters, in a parameter table or among the columns of a Jacobian; -1 for
+/// a parameter that is absent.
 struct JointIndices {
   int offset = -1;    ///< of the offset
   double gain = 1.0;  ///< of the offset: the multiplier of a mimic joint
@@ -84,7 +84,7 @@ struct Twist {
   }
 };
 
-/// The twists of a chain.  Translational ones move all points alike and are kept apart.
+/// The twists of a chain.  Translational ones move all points alike, so they are stored separately.
 template <class S>
 struct ChainTwists {
   std::vector<Twist<S>> rotational;       ///< rotational twists

@@ -1,4 +1,4 @@
-// The walk, a forward pass over the joints of a chain: forward kinematics, written once.
+// The walk: a forward pass over the joints of a chain.  All forward kinematics uses it.
 //
 // The walk visits the joints from base to tip and calls a visitor, the walker, for each
 // constant transform, frame correction and joint motion.  A PoseWalker composes base_T_tip; a
@@ -61,7 +61,7 @@ template <StaticChain C>
   return {};
 }
 
-/// The state of a joint that has models.  Not inline: few joints have.
+/// The state of a joint that has models.  Not inline: few joints have them.
 template <class Drive, class S, class U>
 [[nodiscard, gnu::noinline]] auto modelled(const Drive& drive, const JointState<S>& measured,
                                            const JointCorrection<U>& correction) {

@@ -1,4 +1,4 @@
-// Which parameters act on the joints of a chain, and the corrections from their values.
+// Finds the parameters of a chain's joints, and computes the joints' corrections from them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace kinecal {
 
-/// The indices of the parameters of a joint of a chain.  A mimic joint has the offset of the joint that
-/// drives it.
+/// The indices of the parameters of a joint in a chain.  A mimic joint uses the offset of the joint
+/// that drives it.
 /// @param find  callable (owner, part): index of a parameter, or -1; an offset has an empty part
 template <class Joint, class Find>
 [[nodiscard]] constexpr JointIndices joint_indices(const Joint& joint, const Find& find) {
@@ -41,7 +41,7 @@ template <class Joint, class Find>
   return indices;
 }
 
-/// The columns of the Jacobian in place of the table indices.
+/// Columns of the Jacobian for table indices.
 [[nodiscard]] inline std::vector<JointIndices> columns_of(const std::vector<JointIndices>& indices,
                                                           const FreeSet& free) {
   std::vector<JointIndices> columns = indices;
@@ -55,7 +55,7 @@ template <class Joint, class Find>
 
 /// Computes the corrections of a chain's joints.
 /// @param values       of all parameters of the table; any scalar
-/// @param corrections  out, one per joint; keeps its memory from one call to the next
+/// @param corrections  out, one per joint; reuses its memory between calls
 template <class S>
 void set_corrections(const std::vector<JointIndices>& indices, std::span<const S> values,
                      Corrections<S>& corrections) {

@@ -1,9 +1,9 @@
-// Free parameters as types, with slots (indices) that the compiler knows.
+// Free parameters as types; the compiler knows their slots (indices).
 //
 //   JointOffset<"elbow_flex_joint">           one number, added to the measured position
 //   FrameOffset<"head_pan_joint">             six: x y z a b c
 //   FrameOffset<"head_pan_joint", Axes::xyz>  three of them
-//   VirtualFrame<"checkerboard">              six, of a frame that no URDF has
+//   VirtualFrame<"checkerboard">              six, of a frame that is not in the URDF
 //   CameraIntrinsics<"camera">                four: fx fy cx cy
 //   DepthCorrection<"camera">                 two: z_offset z_scaling
 //   DepthIntrinsics<"camera">                 all six of a depth camera
@@ -11,7 +11,7 @@
 //   SensorParameters<"wire", "scale">         what a sensor declares
 //   BlockParameters<"sphere", "radius">       what an error block declares
 //
-// parameter.hpp defines the names of the single numbers.
+// parameter.hpp defines the names of the numbers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -53,7 +53,7 @@ struct ParameterId {
   std::string_view full_name;  ///< as in parameter.hpp: "head_pan_joint_x"
 
   ParameterId() = default;
-  /// All three: an id without its full name does not compile.
+  /// Takes all three: an id without its full name does not compile.
   constexpr ParameterId(std::string_view of, std::string_view number,
                         std::string_view name_in_tables)
       : owner(of), part(number), full_name(name_in_tables) {}
@@ -62,14 +62,14 @@ struct ParameterId {
   [[nodiscard]] std::string name() const { return std::string(full_name); }
 };
 
-/// What a free parameter corrects.
+/// The kinds of free parameters.
 enum class ParameterKind {
   joint_offset,   ///< the position of a joint
-  joint_model,    ///< what a joint model declares: a gear ratio
+  joint_model,    ///< declared by a joint model: a gear ratio
   frame_offset,   ///< the origin of a joint
-  virtual_frame,  ///< a frame that no URDF has
-  sensor,         ///< what a sensor declares: intrinsics, a scale factor
-  block           ///< what an error block declares: the unknown length of a bar
+  virtual_frame,  ///< a frame that is not in the URDF
+  sensor,         ///< declared by a sensor: intrinsics, a scale factor
+  block           ///< declared by an error block: the unknown length of a bar
 };
 /// True for the parameters of a frame, which has six.
 [[nodiscard]] constexpr bool is_frame(ParameterKind kind) {
@@ -89,7 +89,7 @@ namespace detail {
 template <FixedString Owner, FixedString Part>
 inline constexpr ParameterId kId = {Owner, Part, kView<Owner + FixedString("_") + Part>};
 
-/// The chosen ones of a frame's six numbers.
+/// Some of a frame's six numbers.
 template <FixedString F, Axes Chosen>
 inline constexpr auto kFrameIds = [] {
   constexpr std::array<bool, 6> kFlags = Chosen.flags();
@@ -113,8 +113,8 @@ struct FrameOffset {
   static constexpr auto kIds = detail::kFrameIds<Joint, Chosen>;       ///< its numbers
 };
 
-/// A frame that no URDF has (a checkerboard, a tracker): up to six numbers, metres and radians, in
-/// the sensor's frame.
+/// A frame that is not in the URDF (a checkerboard, a tracker): up to six numbers, metres and
+/// radians, in the sensor's frame.
 template <FixedString Frame, Axes Chosen = Axes::all>
 struct VirtualFrame {
   static constexpr FixedString kName = Frame;                           ///< name of the frame
@@ -134,7 +134,7 @@ struct OwnedParameters {
       detail::kId<Owner, Parts>...};  ///< its numbers
 };
 
-// Types of their own and no aliases: compilers print these names.
+// Distinct types, not aliases: compilers print these names.
 
 /// Parameters of joint models (kinematics/joint_model.hpp): "gear_ratio", "eccentric_sin",
 /// "eccentric_cos".
@@ -192,7 +192,7 @@ struct FreeParameters {
     return -1;
   }
 
-  /// True if no two numbers have the same name, even if owner and part are split differently.
+  /// True if all names differ, even where owner and part are split differently.
   [[nodiscard]] static constexpr bool are_distinct() {
     for (std::size_t i = 0; i < kSize; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
@@ -211,7 +211,7 @@ struct FreeParameters {
 
   /// The owners, for LookedUp.
   static constexpr std::array<std::string_view, sizeof...(Ps)> kNames = {Ps::kOwner...};
-  /// True if one of these has this owner.  So a Chain takes frames in place of their Names.
+  /// True if one of these has this owner.  So a Chain takes free parameters as its list of frames.
   [[nodiscard]] static constexpr bool contains(std::string_view owner) {
     return std::find(kNames.begin(), kNames.end(), owner) != kNames.end();
   }

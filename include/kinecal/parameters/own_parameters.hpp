@@ -1,4 +1,4 @@
-// The parameters that a sensor or an error block declares, in an evaluation.
+// The parameters of a sensor or an error block during an evaluation.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal {
 
-/// A sensor's or an error block's own parameters: values, and which of them are free.
+/// A sensor's or an error block's own parameters: their values, and which are free.
 struct OwnParameters {
   std::vector<double> values;  ///< of all of them
   std::vector<int> free;       ///< which are free

@@ -1,6 +1,6 @@
-// A parameter: one number that may be wrong, identified by its name.
+// A parameter: one number that calibration may correct, identified by its name.
 //
-// Names are those of robot_calibration, the same in types, configurations, results and reports:
+// Names follow robot_calibration, the same in types, configurations, results and reports:
 //
 //   <joint>                  offset added to the measured position            rad or m
 //   <frame>_x _y _z          translation of a frame correction                m

@@ -21,7 +21,7 @@ class ParameterTable {
  public:
   /// Adds a parameter.
   /// @returns  its index
-  /// @throws std::invalid_argument  if the table has the name already
+  /// @throws std::invalid_argument  if the table already has the name
   int add(const Parameter& parameter);
 
   /// Number of parameters.
@@ -48,9 +48,10 @@ class ParameterTable {
   /// @}
 
   [[nodiscard]] auto begin() const { return parameters_.begin(); }  ///< first parameter
-  [[nodiscard]] auto end() const { return parameters_.end(); }      ///< behind the last one
+  [[nodiscard]] auto end() const { return parameters_.end(); }      ///< past the last one
 
-  /// (size) current values.  Inline, as Eigen allocates differently with other instruction sets.
+  /// (size) current values.  Inline, because Eigen allocates differently for other instruction
+  /// sets.
   [[nodiscard]] Eigen::VectorXd values() const {
     Eigen::VectorXd all(size());
     for (int i = 0; i < size(); ++i) all(i) = (*this)[i].value;
@@ -62,7 +63,7 @@ class ParameterTable {
   std::map<std::string, int> indices_;
 };
 
-/// Adds the parameters that a sensor or error block declares, as far as a table does not have them.
+/// Adds the parameters that a sensor or error block declares, unless the table already has them.
 void add_parameters(ParameterTable& table, std::string_view owner,
                     std::span<const ParameterInfo> infos);
 
@@ -71,7 +72,7 @@ class FreeSet {
  public:
   /// @param parameters  indices in the table, in the order of the columns
   /// @param table_size  number of parameters in the table
-  /// @throws std::invalid_argument  if the table has no parameter with an index, or it occurs twice
+  /// @throws std::invalid_argument  if an index is not in the table, or occurs twice
   FreeSet(std::vector<int> parameters, int table_size);
 
   /// Number of columns.

@@ -1,8 +1,8 @@
-// A calibration problem, independent of the scalar that evaluates it: a robot's sensors, its samples
-// and the terms of the cost.
+// A calibration problem, independent of the scalar that evaluates it: a robot's sensors, its
+// samples and the terms of the cost.
 //
-// Names are resolved when sensors, blocks and samples are added; evaluation works on numbers only.
-// BasicProblem (evaluation/problem.hpp) adds the samples, in batches.  solve/, trust/ and report/
+// Names are resolved when you add sensors, blocks and samples; evaluation works on numbers only.
+// BasicProblem (evaluation/problem.hpp) stores the samples in batches.  solve/, trust/ and report/
 // use only this interface, so they are compiled once for all instruction sets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -41,16 +41,17 @@ class AnyProblem {
   virtual void add_built_in(const BuiltInSensor& sensor, const Mount& mount) = 0;
 
   /// Adds an error block of a built-in type between sensors that have been added.
-  /// @throws std::invalid_argument  if a sensor does not exist, their number or kind is wrong, or the
-  ///                                table does not have a parameter of the block
+  /// @throws std::invalid_argument  if a sensor does not exist, their number or kind is wrong, or
+  ///                                the table does not have a parameter of the block
   /// @throws std::logic_error       if samples have been added already
   virtual void add_built_in(const std::string& name, const BuiltInBlock& block,
                             const std::vector<std::string>& sensors,
                             const TermOptions& options) = 0;
 
   /// Adds a prior.  It counts once for each sample.
-  /// @throws std::invalid_argument  if the table has no parameter of its joint or frame, nor one of
-  ///                                its name, with the nearest name; or none for one of its means
+  /// @throws std::invalid_argument  if the table has neither parameters of its joint or frame nor
+  ///                                one of its name, with the nearest name; or if a mean has no
+  ///                                parameter
   void add_prior(const std::string& name, const Prior& prior, const TermOptions& options = {});
 
   /// Adds a sample.  Sensors and blocks must have been added before.
@@ -67,7 +68,7 @@ class AnyProblem {
   /// The sample as blocks pair its features by their ids: see pair_features().
   [[nodiscard]] std::optional<Sample> paired(const Sample& sample) const;
 
-  /// The robot as its URDF says.
+  /// The robot as in its URDF.
   [[nodiscard]] const Robot& robot() const { return robot_; }
   /// The link in which the sensors are compared.
   [[nodiscard]] const std::string& base() const { return base_; }
@@ -91,7 +92,7 @@ class AnyProblem {
   [[nodiscard]] const std::string& source(int sample) const {
     return samples_[static_cast<std::size_t>(sample)].source;
   }
-  /// The feature to which residuals of a term in a sample belong: the i-th that it compares there.
+  /// The feature of a residual: the i-th that a term compares in a sample.
   [[nodiscard]] FeatureLabel feature(int term, int sample, std::ptrdiff_t i) const;
   /// Number of residuals: those of all features, and those of each prior once.
   [[nodiscard]] int num_residuals() const {
@@ -101,15 +102,15 @@ class AnyProblem {
   [[nodiscard]] int samples_of(int term) const;
   /// Number of samples of a term to which another term applies as well.
   [[nodiscard]] int shared_samples(int term) const;
-  /// The joint, free frame, sensor (its prefix) or error block to which each parameter of the table belongs;
-  /// empty for a parameter that belongs to none.
+  /// The joint, free frame, sensor (its prefix) or error block that owns each parameter of the
+  /// table; empty for a parameter without owner.
   [[nodiscard]] const std::vector<std::string>& owners() const { return owners_; }
   /// Checks that each free parameter belongs to a joint that moves, a free frame, a
   /// sensor or an error block.
-  /// @throws std::invalid_argument  if one does not, with the nearest name, or if the set is that of
-  ///                                another table
+  /// @throws std::invalid_argument  if one does not, with the nearest name, or if the set belongs
+  ///                                to another table
   void check(const FreeSet& free) const;
-  /// Table indices of the parameters on which some residual of the samples depends; ascending.
+  /// Table indices of the parameters that affect some residual of the samples; ascending.
   [[nodiscard]] std::vector<int> touched_parameters() const;
 
   /// An evaluator of the problem.  The problem must outlive it; do not add samples meanwhile.
@@ -120,9 +121,9 @@ class AnyProblem {
                                                                 int threads = 1) const = 0;
 
  protected:
-  /// Derived classes can be moved.
+  /// Movable by derived classes.
   AnyProblem(AnyProblem&&) = default;
-  /// Derived classes can be moved.
+  /// Movable by derived classes.
   AnyProblem& operator=(AnyProblem&&) = default;
 
   /// Marks a constructor that leaves the samples behind.
@@ -132,7 +133,7 @@ class AnyProblem {
 
   /// Adds a sensor, apart from what evaluates it.
   void mount(std::shared_ptr<const AnySensor> sensor, const Mount& mount);
-  /// Adds a term, apart from what evaluates it.
+  /// Adds a term, without the code that evaluates it.
   /// @param term     with neither sensors nor parameters
   /// @param sensors  their names
   /// @param own      the block's own parameters
@@ -141,8 +142,8 @@ class AnyProblem {
                 std::span<const ParameterInfo> own);
 
  private:
-  /// Takes the sample num_samples() into batches.
-  /// @param index  of its layout; layouts are numbered as they occur
+  /// Stores sample num_samples() in a batch.
+  /// @param index  of its layout; layouts are numbered in order of first use
   virtual void add_to_batch(std::size_t index, const detail::SampleLayout& layout,
                             std::span<const double> numbers) = 0;
   /// Gives the samples in the batches other numbers, and removes some.
@@ -183,7 +184,7 @@ class AnyProblem {
 
   /// Samples of one layout.
   struct OfLayout {
-    std::size_t index = 0;  ///< in the order in which layouts occurred
+    std::size_t index = 0;  ///< in order of first use
     int samples = 0;        ///< number of them
   };
   std::map<detail::SampleLayout, OfLayout> layouts_;

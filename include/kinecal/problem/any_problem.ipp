@@ -68,7 +68,7 @@ inline void check_positions(const Sample& sample) {
 /// Features that terms compare in a sample, by index of the term.
 using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
 
-/// A sample as a row of what the terms take that compare some features.
+/// Packs the inputs of the applicable terms.
 [[nodiscard]] inline SampleRow row_of(const std::vector<Term>& terms,
                                       const ComparedFeatures& compared, const Sample& sample,
                                       const Observed& observed) {

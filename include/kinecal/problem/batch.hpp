@@ -1,10 +1,10 @@
-// Samples as they are evaluated: as many at once as a packet has lanes.
+// Samples packed for evaluation: one sample per lane of a packet.
 //
-// A sample is prepared once, as a row of numbers: sine and cosine of its joints, measurements as
-// the sensors need them.  Samples of one layout (the same sensors observed the same number of
-// features in the same frames, and the same terms apply) share batches, one lane each: a structure
-// of arrays.  All batches of a layout lie one after the other in memory.  A lane without a sample
-// repeats the first one with weight zero; a feature that is NaN repeats another one with weight
+// A sample is prepared once, as a row of numbers: sine and cosine of its joints, measurements in
+// the form the sensors need.  Samples of one layout share batches, one lane each: a structure of
+// arrays. (Same layout: the same sensors observed the same number of features in the same frames,
+// and the same terms apply.)  All batches of a layout are contiguous in memory.  A lane without a
+// sample repeats the first one with weight zero; a NaN feature repeats another one with weight
 // zero.  So one code path evaluates everything, without a remainder loop.
 // Source: ARCHITECTURE.md, ideas 4 (no trigonometry in the loop) and 5 (packets over samples).
 // SPDX-License-Identifier: Apache-2.0
@@ -21,21 +21,21 @@
 
 namespace kinecal::detail {
 
-/// In place of the first number of what is not there.
+/// Marks an absent offset.
 inline constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
 
-/// Where the numbers of an observation are in a row.
+/// Offsets of an observation's numbers in a row.
 struct ObservationLayout {
   std::vector<std::size_t> chain;   ///< of each feature: the sensor's chain to it
-  std::vector<std::size_t> joints;  ///< of each chain: first number of its JointStates, or kAbsent
-  std::size_t measured = 0, settings = 0, usable = 0;  ///< first number of each
-  std::size_t usable_step = 0;  ///< one, or zero if no feature is missing: one number for all
+  std::vector<std::size_t> joints;  ///< of each chain: offset of its JointStates, or kAbsent
+  std::size_t measured = 0, settings = 0, usable = 0;  ///< offset of each
+  std::size_t usable_step = 0;  ///< one, or zero if no feature is missing: one flag for all
   std::size_t width = 3;        ///< numbers of each feature in `measured`
 
   auto operator<=>(const ObservationLayout&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-/// Where the numbers are that a term takes besides the observations of its sensors.
+/// Offsets of a term's inputs in a row, besides the observations of its sensors.
 struct TermLayout {
   int term = 0;                   ///< its index in the problem
   std::size_t precisions = kAbsent;  ///< first number, or kAbsent if no feature has its own sigma
@@ -44,22 +44,22 @@ struct TermLayout {
   auto operator<=>(const TermLayout&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-/// What the numbers of a row are.  Samples with the same layout share batches.
+/// Meaning of the numbers in a row.  Samples with the same layout share batches.
 struct SampleLayout {
-  std::vector<std::optional<ObservationLayout>> sensors;  ///< of those that observed something
+  std::vector<std::optional<ObservationLayout>> sensors;  ///< nullopt: observed nothing
   std::vector<TermLayout> terms;                          ///< of the terms that apply
   std::size_t size = 0;                                   ///< number of numbers
 
-  /// Any strict order, for a map.
+  /// An arbitrary strict order, for use in a map.
   auto operator<=>(const SampleLayout&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// A sample as a row of numbers.
 struct SampleRow {
-  SampleLayout layout;          ///< what they are
+  SampleLayout layout;          ///< their meaning
   std::vector<double> numbers;  ///< (layout.size)
 
-  /// Appends what the next sensor observed; nullptr: nothing.
+  /// Appends the next sensor's observation; nullptr: none.
   void add_sensor(const ObservationNumbers* seen);
   /// Appends what a term takes.
   /// @param precisions  of each feature: 1 / sigma, or 0 if it has none; empty: none has one
@@ -75,11 +75,11 @@ struct SampleRow {
 /// @tparam kModels  some joint of the chain has parameters of joint models
 template <class S, bool kModels>
 struct JointStates {
-  /// Of each joint: position, cosine, sine; without models what it moves by: cosine and sine if it
-  /// turns, else position and nothing.
+  /// Of each joint: position, cosine, sine; without models only cosine and sine if it rotates, else
+  /// position and an unused number.
   const S* numbers;
 
-  /// The state of a joint; without models its position is that of a joint that slides.
+  /// The state of a joint; without models, position is valid only for a sliding joint.
   [[nodiscard]] JointState<S> operator[](std::size_t joint) const {
     const S* of_joint = numbers + (kModels ? 3 : 2) * joint;
     return {of_joint[0], of_joint[kModels ? 1 : 0], of_joint[kModels ? 2 : 1]};
@@ -90,7 +90,7 @@ struct JointStates {
 template <class S>
 struct BatchObservation {
   const S* numbers = nullptr;                 ///< of the batch
-  const ObservationLayout* layout = nullptr;  ///< where the sensor's are
+  const ObservationLayout* layout = nullptr;  ///< offsets of this sensor's numbers
 
   /// Number of features.
   [[nodiscard]] std::size_t size() const { return layout->chain.size(); }
@@ -114,7 +114,7 @@ struct BatchObservation {
   [[nodiscard]] const S* joints(std::size_t chain) const { return numbers + layout->joints[chain]; }
 };
 
-/// What a term takes of the samples of a batch besides the observations of its sensors.
+/// The inputs of a term in a batch, besides the observations of its sensors.
 template <class S>
 struct BatchTerm {
   /// Of each feature, lane by lane: 1 / sigma, or 0 if it has none of its own; nullptr: none has one.
@@ -171,7 +171,7 @@ class Batches {
   [[nodiscard]] int num_samples() const { return static_cast<int>(samples_.size()); }
   /// What the numbers of a batch are.
   [[nodiscard]] const SampleLayout& layout() const { return layout_; }
-  /// Number of batches; none of samples that no term takes.
+  /// Number of batches; zero if no term uses the samples.
   [[nodiscard]] std::size_t size() const {
     return layout_.size == 0 ? 0 : numbers_.size() / layout_.size;
   }
@@ -186,11 +186,11 @@ class Batches {
     return batch < size() ? std::span(numbers_).subspan(batch * layout_.size, layout_.size)
                           : std::span<const S>();
   }
-  /// What a sensor observed in the samples of a batch.
+  /// The observations of one sensor in a batch.
   [[nodiscard]] BatchObservation<S> observation(std::size_t batch, std::size_t sensor) const {
     return {numbers_.data() + batch * layout_.size, &*layout_.sensors[sensor]};
   }
-  /// What a term takes of the samples of a batch.
+  /// The inputs of a term in a batch.
   [[nodiscard]] BatchTerm<S> of_term(std::size_t batch, const TermLayout& term) const {
     const S* numbers = numbers_.data() + batch * layout_.size;
     return {term.precisions == kAbsent ? nullptr : numbers + term.precisions,

@@ -37,14 +37,14 @@ struct ObservationNumbers {
 /// A sensor with its chains and the table indices of its parameters.
 class MountedSensor {
  public:
-  /// @param frames  names of all free frames: names of joints correct these joints, the others are
-  ///                virtual frames
+  /// @param frames  names of all free frames: a joint's name corrects that joint, any other name is
+  ///                a virtual frame
   /// @throws RobotError  if no chain leads from the base to the sensor's frame
   MountedSensor(const Robot& robot, const std::string& base, Mount mount,
                 std::shared_ptr<const AnySensor> sensor, const ParameterTable& table,
                 const std::set<std::string>& frames);
 
-  /// Where it is and how it is named.
+  /// Where it is mounted, and its name.
   [[nodiscard]] const Mount& mount() const { return mount_; }
   /// The sensor itself.
   [[nodiscard]] const AnySensor& sensor() const { return *sensor_; }

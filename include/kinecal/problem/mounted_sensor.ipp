@@ -12,10 +12,10 @@ namespace kinecal {
 
 namespace detail {
 
-/// Replaces NaN features, whose weight is zero, by another one: zero times NaN is NaN.
+/// Replaces NaN features, whose weight is zero, by valid ones: zero times NaN is NaN.
 inline void replace_unusable(ObservationNumbers& all) {
   const auto first = std::find(all.usable.begin(), all.usable.end(), 1.0);
-  if (first == all.usable.end()) return;  // no error block uses the observation then
+  if (first == all.usable.end()) return;  // then no error block uses the observation
   const auto width = std::ssize(all.measured) / std::ssize(all.usable);
   const auto stand_in = all.measured.begin() + (first - all.usable.begin()) * width;
   for (std::ptrdiff_t i = 0; i < std::ssize(all.usable); ++i) {

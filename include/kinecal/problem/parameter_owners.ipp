@@ -1,5 +1,5 @@
-// What each parameter of a problem's table belongs to, which of them priors are on, and which the samples
-// touch.
+// Finds the owner of each parameter in a problem's table, the parameters that priors restrict, and
+// those that the samples affect.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace kinecal {
 
-/// Of joints and frames; sensors and blocks set those of their own.
+/// Sets the owners for joints and frames; sensors and blocks set their own.
 KINECAL_INLINE void AnyProblem::set_owners() {
   owners_.resize(static_cast<std::size_t>(table_.size()));
   for (const Joint& joint : robot_.joints()) {
@@ -62,7 +62,7 @@ KINECAL_INLINE void PriorTerm::evaluate(const ParameterTable& table, std::span<c
   }
 }
 
-/// The own parameters of an error block, which belong to it from now on.
+/// The own parameters of an error block; makes the block their owner.
 KINECAL_INLINE std::vector<int> AnyProblem::parameters_of_block(
     const std::string& name, std::span<const ParameterInfo> infos) {
   std::vector<int> indices;

@@ -1,5 +1,5 @@
-// The terms of the cost, independent of the scalar: error blocks with their sensors, weights and losses;
-// and priors, which depend on parameters only.
+// The terms of the cost, independent of the scalar: error blocks with their sensors, weights and
+// losses; and priors, which depend on parameters only.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace kinecal {
 
-/// How a term enters the cost and reports.
+/// How a term enters the cost and the reports.
 struct TermOptions {
   double scale = 1.0;  ///< factor of the residual: its weight is scale / sigma
   /// Standard deviation of a residual, in its unit; residuals are compared with it.  Empty: it counts as one
@@ -41,8 +41,8 @@ struct TermOptions {
 /// Residuals of one term in one sample, feature after feature, and their derivatives.
 struct TermResiduals {
   Eigen::VectorXd residual;  ///< unweighted
-  Eigen::VectorXd factor;    ///< of each residual, beside the term's weight: the block's sigma over
-                             ///< the feature's own; one where a feature has none
+  Eigen::VectorXd factor;    ///< of each residual, times the weight: the block's sigma over the
+                             ///< feature's own; one for a feature without its own
   Eigen::MatrixXd jacobian;  ///< (residuals x free parameters); empty if not asked for
 
   /// Sets the residual (rows) to zero, and the Jacobian (rows x columns); columns < 0: no Jacobian.
@@ -54,15 +54,15 @@ struct TermResiduals {
   }
 };
 
-/// At which points derivatives are taken.
+/// The points at which derivatives are taken.
 enum class Linearization {
   measured,   ///< the points that the sensors measured
-  error_free  ///< measurements replaced by the model's prediction.  A residual that is not zero
-              ///< turns with the robot, so a parameter combination that no measurement determines
-              ///< would still look observable.  Planes are taken as they are.
+  error_free  ///< measurements replaced by the model's prediction.  A nonzero residual rotates
+              ///< with the robot and would make an undetermined parameter combination look
+              ///< observable.  Planes are not replaced.
 };
 
-/// The most parameters of its own and of its sensors on which an error block may depend.
+/// The largest number of parameters, its own and its sensors', that an error block may depend on.
 inline constexpr std::size_t kMostOwn = 32;
 
 /// A term of the cost: an error block with the sensors that it compares.
@@ -73,12 +73,13 @@ struct Term {
   double weight = 1.0;  ///< scale / sigma; that of a feature with a sigma: scale / Feature::sigma
   std::vector<int> sensors = {};              ///< indices in the problem of those that are compared
   std::vector<int> parameters = {};           ///< table indices of the block's own parameters
-  std::span<const Quantity> quantities = {};  ///< what the block takes of each of its sensors
-  /// Names of the conditions of a sample that the block takes.
+  std::span<const Quantity> quantities = {};  ///< the block's input from each of its sensors
+  /// Names of the sample's conditions that the block takes.
   std::span<const std::string_view> conditions = {};
   int feature_size = 1;  ///< number of residuals of one feature
 
-  /// True if feature i of each sensor is the same one; false if all features of a sensor are one plane.
+  /// True if feature i is the same one for all sensors; false if all features of a sensor form one
+  /// plane.
   [[nodiscard]] bool pairs_features() const { return quantities.front() != Quantity::plane; }
 };
 

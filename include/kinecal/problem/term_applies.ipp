@@ -1,4 +1,4 @@
-// Which terms a sample takes part in.
+// Decides which terms apply to a sample.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,10 +13,10 @@ namespace kinecal {
 
 namespace detail {
 
-/// What each sensor of a problem observed in a sample.
+/// The observation of each sensor of a problem in a sample.
 using Observed = std::vector<std::optional<ObservationNumbers>>;
 
-/// What the sensors of a term observed in a sample, in their order.
+/// The observations of a term's sensors in a sample, in their order.
 [[nodiscard]] inline std::vector<const ObservationNumbers*> observations_of(
     const Term& term, const Observed& observed) {
   std::vector<const ObservationNumbers*> seen;
@@ -44,17 +44,18 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
   return variances;
 }
 
-/// Labels of the features that a term compares in a sample; empty if they are 0, 1, 2 ... and have no ids.
-/// @param features  that it compares
-/// @param recorded  what its first sensor observed
-/// @param paired    the same as it was paired
+/// Labels of the features that a term compares in a sample; empty if they are 0, 1, 2 ... without
+/// ids.
+/// @param features  the compared ones
+/// @param recorded  the observation of its first sensor
+/// @param paired    the same, after pairing
 [[nodiscard]] inline std::vector<FeatureLabel> labels_of(const Term& term,
                                                          const std::vector<std::size_t>& features,
                                                          const Observation& recorded,
                                                          const Observation& paired) {
   std::vector<FeatureLabel> labels;
-  if (!term.pairs_features()) return labels;  // they are one plane
-  std::map<int, int> places;                  // where they were recorded, by id
+  if (!term.pairs_features()) return labels;  // they form one plane
+  std::map<int, int> places;                  // place where each was recorded, by id
   for (std::size_t i = 0; &recorded != &paired && i < recorded.features.size(); ++i) {
     const std::optional<int>& id = recorded.features[i].id;
     if (id) places.emplace(*id, static_cast<int>(i));
@@ -70,7 +71,7 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
   return labels;
 }
 
-/// The conditions that a term takes of a sample.
+/// The values of the sample's conditions that a term takes.
 [[nodiscard]] inline std::vector<double> conditions_of(const Term& term, const Sample& sample) {
   std::vector<double> values;
   for (const std::string_view wanted : term.conditions) {
@@ -105,9 +106,9 @@ using Observed = std::vector<std::optional<ObservationNumbers>>;
   return PlaneFit<double>(points).determined() ? "" : "its points span no plane";
 }
 
-/// The features that a term compares in a sample: those that all of its sensors observed.  None if it takes
-/// no part; one for planes.
-/// @throws SampleError  if it should take part, but cannot
+/// The features that a term compares in a sample: those that all of its sensors observed.  Empty if
+/// the term does not apply; one entry for planes.
+/// @throws SampleError  if it should apply, but cannot
 [[nodiscard]] inline std::vector<std::size_t> compared_features(
     const Term& term, const std::vector<MountedSensor>& sensors, const Sample& sample,
     const Observed& observed) {

@@ -1,7 +1,7 @@
-// Definitions of the messages of actions: in ROS 1 the client publishes them, in ROS 2 older bridges
-// leave them out.
-// Source: packages actionlib_msgs, control_msgs, trajectory_msgs, robot_calibration_msgs; ROS 2 design,
-// Actions.
+// Definitions of action messages: in ROS 1 the client publishes them, in ROS 2 older bridges omit
+// them.
+// Source: packages actionlib_msgs, control_msgs, trajectory_msgs, robot_calibration_msgs; ROS 2
+// design, Actions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,7 +23,7 @@ inline constexpr std::string_view kJointTrajectory =
     "float64 velocity\n"
     "float64 acceleration\n";
 
-/// The goal of an action of ROS 1 as it is published.
+/// The published goal of a ROS 1 action.
 /// @param type  of the goal: "control_msgs/FollowJointTrajectoryGoal"
 /// @param goal  text of that definition
 [[nodiscard]] inline std::string ros1_goal(const std::string& type, std::string_view goal) {
@@ -68,13 +68,13 @@ inline constexpr std::string_view kJointTrajectory =
          "===\nMSG: trajectory_msgs/MultiDOFJointTrajectory\n"
          "std_msgs/Header header\n"
          "string[] joint_names\n"
-         "uint8[] points\n"  // none are sent, and an empty list is the same of all types
+         "uint8[] points\n"  // always empty, and an empty list has the same bytes for all types
          "===\nMSG: control_msgs/JointComponentTolerance\n"
          "std_msgs/Header joint_name\n";
 }
 
-/// Of the services of ROS 2 actions that kinecal calls; empty for other types.  Goals and results are
-/// written without a message around them, which is the same in bytes.
+/// Definitions of the services of ROS 2 actions that kinecal calls; empty for other types.  Goals
+/// and results are written without an enclosing message, which has the same bytes.
 /// @param type  "control_msgs/FollowJointTrajectory_SendGoal_Request"
 [[nodiscard]] inline std::string action_definition(const std::string& type) {
   const std::string uuid = "unique_identifier_msgs/UUID goal_id\n";

@@ -1,7 +1,7 @@
-// What a Foxglove bridge offers, as topics and services with names.
+// A client of a Foxglove bridge: topics and services by name.
 //
 // A bridge serves the topics and services of ROS 1 and ROS 2 over a WebSocket.  A thread keeps the
-// newest messages of each subscribed topic, so whoever asks after a minute does not get old ones.
+// newest messages of each subscribed topic, so a caller after a minute does not get old ones.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace kinecal::detail {
 
-/// By which something must have happened.
+/// Latest time for an event.
 using Deadline = std::chrono::steady_clock::time_point;
 
 /// A message or a service's response, as bytes.
@@ -30,65 +30,65 @@ struct BridgeMessage {
   std::shared_ptr<const MessageDefinition> definition;  ///< of the type
   Encoding encoding = Encoding::ros1;
   std::string bytes;
-  Deadline arrival;  ///< when it came
+  Deadline arrival;  ///< time of arrival
 
   /// Its fields: views of this message.
   /// @throws PoseError  naming the topic, if the bytes are not such a message
   [[nodiscard]] MessageFields fields() const;
 };
 
-/// What a client publishes: a type, with the text of its definition.
+/// A type that a client publishes, with its definition.
 struct PublishedType {
   std::string name;        ///< "control_msgs/FollowJointTrajectoryActionGoal"
   std::string definition;  ///< .msg text of ROS 1
 };
 
-/// A connection to a bridge.  Its functions may be called from one thread at a time.
-/// All throw ConnectionError once the connection has ended, with the reason.
+/// A connection to a bridge.  Not thread-safe.  All functions throw ConnectionError with the reason
+/// once the connection has ended.
 class BridgeClient {
  public:
-  /// @throws ConnectionError        as WebSocket, or if the bridge does not introduce itself
-  /// @throws std::invalid_argument  as parse_address()
+  /// @throws ConnectionError        like WebSocket, or if the bridge does not introduce itself
+  /// @throws std::invalid_argument  like parse_address()
   explicit BridgeClient(const BridgeOptions& options);
   BridgeClient(const BridgeClient&) = delete;
   BridgeClient& operator=(const BridgeClient&) = delete;
   ~BridgeClient();
 
-  /// Time from now until something must have happened.
+  /// The deadline for an event, from now.
   [[nodiscard]] Deadline deadline() const;
 
-  /// Keeps the newest messages of a topic from now on, also if it appears later or again.
-  /// @param types  those that are read, such as sensor_msgs/JointState; empty: any
-  /// @param keep   messages
+  /// Keeps the newest messages of a topic from now on, even if it appears later or again.
+  /// @param types  accepted types, such as sensor_msgs/JointState; empty: any
+  /// @param keep   number of messages
   void subscribe(const std::string& topic, std::vector<std::string> types, std::size_t keep);
 
-  /// The messages of a subscribed topic since the last call, oldest first; waits for one.
+  /// The messages of a subscribed topic since the last call, oldest first; waits for at least one.
   /// @return  empty if none comes in time
-  /// @throws ConnectionError  if the topic has another type than those that are read, or its
-  ///                          messages are written in a way that kinecal does not read
+  /// @throws ConnectionError  if the topic's type is not accepted, or kinecal cannot read the
+  ///                          encoding of its messages
   [[nodiscard]] std::vector<BridgeMessage> take(const std::string& topic, Deadline deadline);
 
-  /// The type of a topic, waiting for it to appear; nullopt if it does not in time.
+  /// The type of a topic, once it appears; nullopt if it does not in time.
   [[nodiscard]] std::optional<std::string> topic_type(const std::string& topic, Deadline deadline);
-  /// Whether one of a topic and a service appears in time.
+  /// True if a topic or a service appears in time.
   [[nodiscard]] bool wait_for(const std::string& topic, const std::string& service,
                               Deadline deadline);
   [[nodiscard]] bool has_service(const std::string& service) const;
 
-  /// Why there is nothing on a topic: "the bridge offers no topic '/jonit_states'; did you mean
+  /// Why a topic is silent: "the bridge offers no topic '/jonit_states'; did you mean
   /// '/joint_states'?"
   [[nodiscard]] std::string why_silent(const std::string& topic) const;
 
-  /// Publishes a message, in ROS 1.
-  /// @throws ConnectionError  if the bridge does not let clients publish
+  /// Publishes a ROS 1 message.
+  /// @throws ConnectionError  if the bridge does not accept messages from clients
   void publish(const std::string& topic, const PublishedType& type, const MessageFields& message);
 
-  /// Calls a service, without waiting.  Fields that its request does not have are left out.
+  /// Calls a service, without waiting.  Skips fields that its request does not have.
   /// @return  number of the call
   /// @throws PoseError  if the bridge does not offer it, or its definition cannot be read
   [[nodiscard]] std::uint32_t call(const std::string& service, const MessageFields& request);
 
-  /// The response to a call; nullopt if it does not come in time.
+  /// The response to a call; nullopt if none comes in time.
   /// @throws PoseError  if the service failed
   [[nodiscard]] std::optional<BridgeMessage> response(std::uint32_t call, Deadline deadline);
 

@@ -1,4 +1,4 @@
-// The frames of the Foxglove WebSocket protocol, those that a client needs.
+// The frames of the Foxglove WebSocket protocol that a client needs.
 //
 // Text frames are JSON objects with a field "op"; binary frames begin with one byte of that name.
 // Numbers in binary frames are little endian.
@@ -16,12 +16,12 @@
 
 namespace kinecal::detail {
 
-/// A frame that is not of the protocol: what is wrong with it.
+/// An invalid frame, with the reason.
 struct FrameError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How messages are written: the encoding of their bytes, their type, and its definition.
+/// Encoding, type and definition of messages.
 struct BridgeSchema {
   std::string encoding;         ///< of messages: "ros1", "cdr", ...
   std::string type;             ///< "sensor_msgs/JointState", also for the spelling of ROS 2
@@ -45,7 +45,7 @@ struct BridgeService {
   BridgeSchema response;
 };
 
-/// A text frame.  Which fields it fills depends on `op`; frames of other kinds have only `op`.
+/// A text frame.  `op` decides which fields are filled; frames of other kinds have only `op`.
 struct TextFrame {
   std::string op;
   std::vector<std::string> capabilities;  ///< serverInfo
@@ -67,14 +67,14 @@ struct BinaryFrame {
   Bytes payload;         ///< a view of the frame
 };
 
-/// @throws FrameError  if it is not JSON, or fields are missing or of another type; also if kinecal
-///                     was built without a JSON library
+/// @throws FrameError  if it is not JSON, or a field is missing or has the wrong type; also if this
+///                     build lacks a JSON library
 [[nodiscard]] TextFrame parse_text_frame(std::string_view text);
 
 /// @throws FrameError  if it is too short
 [[nodiscard]] BinaryFrame parse_binary_frame(Bytes bytes);
 
-/// Asks for the messages of a channel.
+/// Subscribes to a channel.
 [[nodiscard]] std::string subscribe_frame(std::uint32_t subscription, std::uint32_t channel);
 
 /// Announces a topic on which the client publishes.

@@ -18,7 +18,7 @@
 
 namespace kinecal::detail {
 
-/// "control_msgs/action/X" of ROS 2 is "control_msgs/X".
+/// "control_msgs/action/X" of ROS 2 becomes "control_msgs/X".
 [[nodiscard]] inline std::string without_kind(const std::string& type) {
   const std::size_t first = type.find('/');
   const std::size_t last = type.rfind('/');
@@ -95,12 +95,12 @@ KINECAL_INLINE BinaryFrame parse_binary_frame(Bytes bytes) {
     if (op == kMessage) {
       frame.kind = BinaryFrame::Kind::message;
       frame.id = reader.number<std::uint32_t>();
-      reader.skip(sizeof(std::uint64_t));  // when the bridge received it, by its own clock
+      reader.skip(sizeof(std::uint64_t));  // reception time on the bridge's clock
     } else if (op == kResponse) {
       frame.kind = BinaryFrame::Kind::response;
       reader.skip(sizeof(std::uint32_t));  // which service
       frame.id = reader.number<std::uint32_t>();
-      reader.skip(reader.number<std::uint32_t>());  // the encoding, that of the request
+      reader.skip(reader.number<std::uint32_t>());  // the encoding, the same as the request's
     }
     frame.payload = reader.take(reader.left());
     return frame;

@@ -1,4 +1,4 @@
-// What a bridge has announced and sent so far; shared by two threads (bridge_client.hpp).
+// What a bridge has announced and sent; shared by two threads (bridge_client.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,11 +21,11 @@
 
 namespace kinecal::detail {
 
-/// A topic that is wanted, and what came on it.
+/// A wanted topic and its messages.
 struct Subscription {
   std::vector<std::string> types;
   std::size_t keep = 1;
-  std::optional<std::uint32_t> channel;  ///< that it is subscribed to
+  std::optional<std::uint32_t> channel;  ///< subscribed channel
   std::string obstacle;                  ///< why its messages cannot be read; empty if they can
   BridgeMessage form;                    ///< of each message, without bytes
   std::deque<BridgeMessage> messages;    ///< the newest
@@ -35,7 +35,7 @@ struct Subscription {
 struct PendingCall {
   BridgeMessage response;
   bool is_done = false;
-  std::string failure;  ///< empty if it was answered
+  std::string failure;  ///< empty if it succeeded
 };
 
 class BridgeClient::State {
@@ -47,7 +47,7 @@ class BridgeClient::State {
   std::condition_variable changed;
   bool introduced = false;
   std::string end;        ///< why the connection ended; empty while it is open
-  std::string complaint;  ///< the bridge's last status that was an error
+  std::string complaint;  ///< the bridge's last error status
   std::vector<std::string> capabilities, encodings;
   std::map<std::uint32_t, BridgeChannel> channels;
   std::map<std::uint32_t, BridgeService> services;
@@ -173,7 +173,7 @@ class BridgeClient::State {
     }
   }
 
-  /// Why messages of a channel cannot be read, or their form in `wanted`.
+  /// Why messages of a channel cannot be read; if they can, sets their form in `wanted`.
   [[nodiscard]] std::string obstacle(Subscription& wanted, const BridgeChannel& channel) const {
     const std::string topic = "topic '" + printable(channel.topic) + "'";
     const std::string& type = channel.schema.type;

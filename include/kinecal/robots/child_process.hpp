@@ -1,4 +1,4 @@
-// A command of the user as a child process, spoken to in lines.
+// A user's command as a child process; exchanges lines with it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,30 +11,30 @@
 
 namespace kinecal::detail {
 
-/// A running command.  Its standard input and output are this object's; its errors go where ours go.
+/// A running command.  Connected to its standard input and output; its errors go where ours go.
 class ChildProcess {
  public:
-  /// Bytes of a line, at most.
+  /// Largest size of a line, bytes.
   static constexpr std::size_t kMostOfALine = std::size_t{256} << 20;
 
   /// @param command      for /bin/sh
-  /// @param interrupted  true ends waiting for the command; may be empty
+  /// @param interrupted  returns true to stop waiting for the command; may be empty
   /// @throws ConnectionError  if it cannot be started
   explicit ChildProcess(std::string command, std::function<bool()> interrupted = {});
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
-  /// Closes its input; ends it with all its children if it does not end by itself in half a second.
+  /// Closes its input; kills it and its children if it does not end within half a second.
   ~ChildProcess();
 
   /// Sends a line.
   /// @param line  without the line end
-  /// @throws ConnectionError  if the command has ended, does not read for the time limit, or waiting is
-  ///                          interrupted
+  /// @throws ConnectionError  if the command has ended, does not read within the time limit, or
+  ///                          waiting is interrupted
   void write_line(const std::string& line, std::chrono::milliseconds time_limit);
 
   /// Its next line, without the line end; nullopt if none comes in time.
-  /// @throws ConnectionError  if the command has ended: how; the line is too long, or waiting is
-  ///                          interrupted
+  /// @throws ConnectionError  if the command has ended (with the reason), the line is too long, or
+  ///                          waiting is interrupted
   [[nodiscard]] std::optional<std::string> read_line(std::chrono::milliseconds time_limit);
 
   /// The command, as given.
@@ -51,7 +51,7 @@ class ChildProcess {
   pid_t child_ = -1;  ///< -1 after its end
   int status_ = 0;    ///< of its end
   int input_ = -1, output_ = -1;
-  std::string received_;  ///< what is not yet a line
+  std::string received_;  ///< an unfinished line
   std::size_t searched_ = 0;
 };
 

@@ -26,8 +26,8 @@
 
 namespace kinecal::detail {
 
-/// A pair of connected sockets, which unlike pipes can be written to without a signal when the other
-/// end is closed.
+/// A pair of connected sockets; unlike a pipe, writing to one after the other end has closed raises
+/// no signal.
 [[nodiscard]] inline std::array<int, 2> socket_pair() {
   std::array<int, 2> ends{-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
@@ -54,7 +54,7 @@ KINECAL_INLINE ChildProcess::ChildProcess(std::string command, std::function<boo
   posix_spawn_file_actions_adddup2(&files, its_output, STDOUT_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // its children end with it
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // kills its children with it
   std::array<std::string, 3> words{"sh", "-c", command_};
   std::array<char*, 4> arguments{words[0].data(), words[1].data(), words[2].data(), nullptr};
   const int error = posix_spawn(&child_, "/bin/sh", &files, &attributes, arguments.data(), environ);
@@ -104,7 +104,7 @@ KINECAL_INLINE void ChildProcess::fail_ended() {
   throw ConnectionError("'" + command_ + "' " + how);
 }
 
-/// Waits in short steps: a signal that another thread receives does not end a wait.
+/// Waits in short steps, because a signal in another thread does not end a wait.
 /// @returns  false if the deadline has passed
 KINECAL_INLINE bool ChildProcess::wait_until_ready(
     int socket, short event, std::chrono::steady_clock::time_point deadline) const {

@@ -16,15 +16,15 @@
 
 namespace kinecal::detail {
 
-/// By how much the clock of this computer is ahead of a stream's stamps.
+/// Offset of this computer's clock ahead of a stream's stamps.
 using ClockOffset = std::chrono::nanoseconds;
 
 [[nodiscard]] inline ClockOffset clock_offset(const BridgeMessage& message, Stamp stamp) {
   return std::chrono::duration_cast<ClockOffset>(message.arrival.time_since_epoch()) - stamp;
 }
 
-/// A connection and what is known of the joints.  Several nodes may publish positions of different
-/// joints on one topic, so the newest of each joint is kept.
+/// A connection and the state of the joints.  Several nodes may publish different joints on one
+/// topic, so the newest position of each joint is kept.
 class RosRobot {
  public:
   RosRobot(const BridgeOptions& options, std::string topic)
@@ -36,8 +36,8 @@ class RosRobot {
   BridgeClient bridge;
 
   /// Positions of all joints.
-  /// @param needed  whose stamps must all be after this one; empty: of any
-  /// @throws SilenceError     if they are not in time
+  /// @param needed  joints whose stamps must be later; empty: any
+  /// @throws SilenceError     if they do not arrive in time
   /// @throws ConnectionError  if the bridge has withdrawn their topic
   [[nodiscard]] MeasuredJoints next(Stamp after, const std::vector<std::string>& needed) {
     const Deadline deadline = bridge.deadline();
@@ -52,20 +52,20 @@ class RosRobot {
   /// The newest stamp; nullopt before the first message.
   [[nodiscard]] std::optional<Stamp> newest() const { return newest_; }
 
-  /// By how much the clock of this computer is ahead of the robot's; nullopt before the first message.
+  /// Offset of this computer's clock ahead of the robot's; nullopt before the first message.
   [[nodiscard]] std::optional<ClockOffset> offset() {
     take(std::chrono::steady_clock::now());
     return offset_;
   }
 
-  /// Stamp of the first joint states that come from now on.
+  /// Stamp of the next joint states.
   [[nodiscard]] Stamp now() {
     take(std::chrono::steady_clock::now());
     if (!take(bridge.deadline())) fail_late(newest_.value_or(Stamp{}), {});
     return newest_.value();
   }
 
-  /// Says that a topic delivers nothing.
+  /// Reports a silent topic.
   /// @param newest  stamp of its last message
   [[noreturn]] void fail_silent(const std::string& topic, const std::string& why,
                                 std::optional<Stamp> newest) {
@@ -89,7 +89,7 @@ class RosRobot {
     for (const BridgeMessage& message : messages) {
       const MessageFields state = message.fields();
       const Stamp stamp = header_stamp(state);
-      // A simulation or recording that starts again has earlier stamps.
+      // A restarted simulation or recording has earlier stamps.
       constexpr std::chrono::seconds kRestart{1};
       if (newest_ && stamp < *newest_ - kRestart) positions_.clear();
       if (!newest_ || stamp > *newest_ || positions_.empty()) newest_ = stamp;
@@ -105,7 +105,7 @@ class RosRobot {
     return !messages.empty();
   }
 
-  /// The oldest stamp of these joints; nullopt if one was not measured.
+  /// The oldest stamp of these joints; nullopt if one is unknown.
   [[nodiscard]] std::optional<Stamp> stamp_of(const std::vector<std::string>& needed) const {
     std::optional<Stamp> oldest = newest_;
     for (const std::string& joint : needed) {

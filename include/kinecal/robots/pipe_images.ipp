@@ -1,4 +1,4 @@
-// Images and camera settings that a program sends over a pipe (pipe_robot.hpp).
+// Images and camera settings sent by a program over a pipe (pipe_robot.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,7 +20,7 @@ namespace kinecal::detail {
 /// The image of a file name or of {"base64": "..."}.
 /// @param decode  decode_image or decode_depth
 /// @throws JsonError   if a file cannot be read
-/// @throws InputError  if it is not such an image
+/// @throws InputError  if it is not a valid image
 template <class Decode>
 [[nodiscard]] auto pipe_image(const JsonValue& image, Decode&& decode) {
   if (!image.is_text()) {
@@ -45,7 +45,7 @@ void copy_numbers(const JsonValue& json, const std::string& field, std::array<do
   std::copy(numbers.begin(), numbers.end(), to.begin());
 }
 
-/// P is K if it is left out.
+/// P defaults to K.
 [[nodiscard]] inline CameraInfo pipe_camera(const JsonValue& json) {
   CameraInfo camera;
   camera.width = static_cast<int>(json.id("width"));
@@ -59,7 +59,7 @@ void copy_numbers(const JsonValue& json, const std::string& field, std::array<do
     copy_numbers(json, "p", camera.p);
     return camera;
   }
-  copy_numbers(json, "k", camera.k);  // one of both must be there
+  copy_numbers(json, "k", camera.k);  // one of the two is required
   const auto& k = camera.k;
   camera.p = {k[0], k[1], k[2], 0, k[3], k[4], k[5], 0, k[6], k[7], k[8], 0};
   return camera;

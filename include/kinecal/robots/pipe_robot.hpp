@@ -1,8 +1,8 @@
-// A robot that a program of yours moves, in any language: it speaks JSON over its standard input and
+// A robot moved by your own program, in any language: it exchanges JSON over standard input and
 // output.
 //
-// One line is one object.  Stamps are whole numbers of nanoseconds, of any clock as long as it is the
-// same for all.  Joint positions are radians or metres, files are relative to the working directory.
+// Each line is one object.  Stamps are whole nanoseconds of any clock, as long as all use the same
+// one.  Joint positions are radians or metres; file names are relative to the working directory.
 //
 //   {"move": {"names": ["elbow"], "positions": [0.5], "velocity_factor": 1.0}}   starts to move
 //       {}
@@ -15,9 +15,9 @@
 //   {"light": 3}                                                     lights the LEDs of this code
 //       {"stamp": 18}
 //
-// Images are PNG or JPEG; depth is a gray PNG of 16 bits in millimetres, 0 where nothing was measured.  Instead of a file
-// name they may be {"base64": "..."} of such a file.  A view has an image, depth or both; depth needs
-// the camera.  {"error": "the gripper is hot"} skips the pose.
+// Images are PNG or JPEG; depth is a 16-bit gray PNG in millimetres, 0 where nothing was measured.
+// Instead of a file name they may be {"base64": "..."} of such a file.  A view has an image, depth
+// or both; depth needs the camera.  {"error": "the gripper is hot"} skips the pose.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,22 +30,22 @@
 
 namespace kinecal {
 
-/// How a program is run.
+/// Options for running the program.
 struct PipeOptions {
   std::string command;                          ///< for /bin/sh, such as "python3 robot.py"
   std::chrono::milliseconds time_limit{30000};  ///< for each answer
-  std::function<bool()> interrupted = {};       ///< true ends waiting for an answer
+  std::function<bool()> interrupted = {};       ///< returns true to stop waiting for an answer
 };
 
 /// An arm, a camera and a lamp: see above.  The functions throw
-///   PoseError        for an error that the program reports, and for an answer that cannot be read:
-///                    what is wrong with it
-///   SilenceError     for an answer that it does not give in time
-///   ConnectionError  once the program has ended: how; for the third answer in a row that cannot be
-///                    read, and where waiting is interrupted
+///   PoseError        for an error that the program reports, and for an unreadable answer, with the
+///                    reason
+///   SilenceError     if an answer does not come in time
+///   ConnectionError  once the program has ended, with the reason; for the third unreadable answer
+///                    in a row, and if waiting is interrupted
 class PipeRobot {
  public:
-  /// Starts the program; it is ended with this object.
+  /// Starts the program; the destructor ends it.
   explicit PipeRobot(const PipeOptions& options);
   PipeRobot(PipeRobot&&) noexcept;
   PipeRobot& operator=(PipeRobot&&) noexcept;

@@ -28,15 +28,14 @@ class PipeRobot::Pipe {
   explicit Pipe(const PipeOptions& options)
       : process_(options.command, options.interrupted), time_limit_(options.time_limit) {}
 
-  /// Sends a request and gives the answer to what reads it.
-  /// @param what  the request in messages: "view"
+  /// Sends a request and parses the answer.
+  /// @param what  name of the request in messages: "view"
   template <class Read>
   auto ask(const std::string& what, const detail::Json& request, Read&& read) {
     const std::string who = "'" + process_.command() + "': " + what + ": ";
-    // What comes before the request does not answer it: a greeting, a line of a log, or what is late for
-    // the last one.
-    constexpr int kMost =
-        1000;  // lines; a program that sends without end is heard as one that is late
+    // Lines before the request are not its answer: a greeting, a log line, or a late answer to the
+    // last request.
+    constexpr int kMost = 1000;  // lines; more counts as a late answer
     for (int i = 0; i < kMost && process_.read_line(std::chrono::milliseconds(0)); ++i) {
       late_ = std::max(0, late_ - 1);
     }
@@ -73,7 +72,7 @@ class PipeRobot::Pipe {
   }
 
  private:
-  /// Skips a pose for an answer that cannot be read; a program that sends nothing else is not a robot.
+  /// Skips a pose after an unreadable answer; a program that sends nothing else is not a robot.
   [[noreturn]] void fail_unreadable(const std::string& who, const std::string& why) {
     constexpr int kMost = 3;
     if (++unreadable_ < kMost) throw PoseError(who + "the answer cannot be read: " + why);
@@ -87,11 +86,11 @@ class PipeRobot::Pipe {
 
   detail::ChildProcess process_;
   std::chrono::milliseconds time_limit_;
-  int late_ = 0;                                          ///< answers that were given up
+  int late_ = 0;                                          ///< answers given up
   int unreadable_ = 0;                                    ///< answers in a row
-  std::string unanswered_;                                ///< the request for the last of them
+  std::string unanswered_;                                ///< the request of the last of them
   Stamp newest_{};                                        ///< of all answers
-  std::map<std::string, std::optional<Stamp>> answered_;  ///< newest stamp then, by request
+  std::map<std::string, std::optional<Stamp>> answered_;  ///< newest stamp at that time, by request
 };
 
 namespace detail {
@@ -100,7 +99,7 @@ namespace detail {
   return Stamp(answer.integer("stamp"));
 }
 
-/// @throws JsonError  if it is not after a time
+/// @throws JsonError  if it is not later than a given time
 [[nodiscard]] inline Stamp stamp_after(const JsonValue& answer, Stamp after) {
   const Stamp stamp = stamp_of(answer);
   if (stamp > after) return stamp;

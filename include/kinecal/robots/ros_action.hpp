@@ -1,8 +1,8 @@
-// Actions of ROS 1 and ROS 2 behind a bridge: a goal is sent, accepted, and ends.
+// ROS 1 and ROS 2 actions over a bridge: sends a goal, waits for acceptance and for the end.
 //
 // ROS 1: topics <action>/goal, /status, /result, /cancel.
-// ROS 2: services <action>/_action/send_goal, /get_result.  They are hidden: the bridge offers them
-// with include_hidden:=true.
+// ROS 2: services <action>/_action/send_goal, /get_result.  They are hidden; start the bridge with
+// include_hidden:=true.
 // Source: ROS 1 wiki, actionlib/DetailedDescription; ROS 2 design, Actions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -17,7 +17,7 @@
 
 namespace kinecal::detail {
 
-/// What an action is given.
+/// The type of an action.
 struct ActionKind {
   std::string type;             ///< "control_msgs/FollowJointTrajectory"
   std::string goal_definition;  ///< text of its goal in ROS 1
@@ -29,18 +29,18 @@ class RosAction {
   /// Waits until the bridge offers it.
   /// @param bridge  must outlive this
   /// @param name    "/arm_controller/follow_joint_trajectory"
-  /// @throws ConnectionError  if the bridge does not offer it, or it is of another type
+  /// @throws ConnectionError  if the bridge does not offer it, or it has another type
   RosAction(BridgeClient& bridge, std::string name, ActionKind kind);
 
   /// Sends a goal and waits until the robot accepts it.
   /// @param goal  fields of the goal
   /// @param now   of the robot's clock
-  /// @throws PoseError  if the robot refuses it or does not answer
+  /// @throws PoseError  if the robot rejects it or does not answer
   void start(const MessageFields& goal, Stamp now);
 
-  /// Whether the last goal has succeeded; waits for that.
+  /// Waits for the last goal to succeed.
   /// @return  false if it has not ended in time
-  /// @throws PoseError  if it ended in another way: why
+  /// @throws PoseError  if it ended in another way, with the reason
   [[nodiscard]] bool succeeded(Deadline deadline);
 
   /// True between start() and the end that succeeded() reports.

@@ -19,9 +19,9 @@
 
 namespace kinecal::detail {
 
-/// Of actionlib_msgs/GoalStatus.
+/// From actionlib_msgs/GoalStatus.
 inline constexpr int kRos1Succeeded = 3, kRos1Rejected = 5;
-/// Of action_msgs/GoalStatus.
+/// From action_msgs/GoalStatus.
 inline constexpr int kRos2Succeeded = 4;
 
 KINECAL_INLINE RosAction::RosAction(BridgeClient& bridge, std::string name, ActionKind kind)
@@ -62,8 +62,8 @@ KINECAL_INLINE void RosAction::start_by_topics(const MessageFields& goal, Stamp 
   const MessageFields message =
       fields("header", fields("stamp", time_fields(now)), "goal_id",
              fields("stamp", time_fields(now), "id", std::string_view(goal_)), "goal", goal);
-  // ROS loses what is published before the robot has heard of the publisher; it takes a goal that it
-  // knows only once.
+  // ROS drops messages published before the robot knows the publisher; the robot accepts a known
+  // goal only once.
   constexpr std::chrono::milliseconds kAgain{400};
   const Deadline deadline = bridge_->deadline();
   while (std::chrono::steady_clock::now() < deadline) {
@@ -77,7 +77,7 @@ KINECAL_INLINE void RosAction::start_by_topics(const MessageFields& goal, Stamp 
                   bridge_->why_silent(name_ + "/status"));
 }
 
-/// Whether the robot has answered to the goal.
+/// True if the robot has answered the goal.
 KINECAL_INLINE bool RosAction::is_acknowledged(Deadline deadline) {
   while (true) {
     const auto all = bridge_->take(name_ + "/status", deadline);
@@ -100,7 +100,7 @@ KINECAL_INLINE void RosAction::start_by_services(const MessageFields& goal) {
   static thread_local std::mt19937_64 random{std::random_device{}()};
   for (std::uint8_t& byte : goal_id_) byte = static_cast<std::uint8_t>(random());
   const Bytes id = std::as_bytes(std::span(goal_id_));
-  // Bridges put the fields of the goal beside its id; in bytes that is the same.
+  // Bridges put the fields of the goal beside its id; the bytes are the same.
   MessageFields request = fields("goal_id", fields("uuid", id), "goal", goal);
   for (const auto& field : goal.fields) request.fields.push_back(field);
   const std::uint32_t call = bridge_->call(name_ + "/_action/send_goal", request);
@@ -130,7 +130,7 @@ KINECAL_INLINE bool RosAction::succeeded(Deadline deadline) {
   return true;
 }
 
-/// Whether the goal's result is among those that come in time (ROS 1).
+/// True if the goal's result arrives in time (ROS 1).
 KINECAL_INLINE bool RosAction::take_results(Deadline deadline) {
   while (true) {
     const auto all = bridge_->take(name_ + "/result", deadline);

@@ -23,13 +23,13 @@ class RosAction;
 class ViewStreams;
 }  // namespace detail
 
-/// A connection to a bridge, and the robot's joint states that come through it.
+/// A connection to a bridge, and the joint states received over it.
 class RosBridge {
  public:
   /// @param joint_states  topic of sensor_msgs/JointState; several nodes may publish on it
-  /// @throws ConnectionError        naming the address, if no bridge answers there, or the topic is of
-  ///                                another type
-  /// @throws std::invalid_argument  if the address is not of the form ws://host:port
+  /// @throws ConnectionError        naming the address, if no bridge answers there, or the topic
+  ///                                has another type
+  /// @throws std::invalid_argument  if the address does not have the form ws://host:port
   explicit RosBridge(const BridgeOptions& options,
                      const std::string& joint_states = "/joint_states");
   RosBridge(RosBridge&&) noexcept;
@@ -49,33 +49,33 @@ struct JointController {
   std::vector<std::string> joints;  ///< that it moves
 };
 
-/// How an arm moves.
+/// Options for moving an arm.
 struct RosArmOptions {
   std::vector<JointController> controllers = {};
-  std::vector<std::string> measured = {};  ///< joints that no controller moves, but are needed
-  double duration = 2.0;                   ///< of a motion at least, seconds; that of capture.yaml
-  double speed = 0.7;  ///< of a joint at most, rad/s or m/s, at velocity factor 1
-  std::map<std::string, double> speeds = {};  ///< the same, of joints that differ
+  std::vector<std::string> measured = {};  ///< needed joints that no controller moves
+  double duration = 2.0;                   ///< of a motion at least, seconds; as in capture.yaml
+  double speed = 0.7;  ///< largest of a joint, rad/s or m/s, at velocity factor 1
+  std::map<std::string, double> speeds = {};  ///< the same, for joints that differ
 };
 
-/// Joints that controllers move.
+/// Joints moved by controllers.
 class RosArm {
  public:
   /// @param bridge  must outlive this
-  /// @throws ConnectionError  if the bridge does not offer the actions of the controllers
+  /// @throws ConnectionError  if the bridge does not offer the controllers' actions
   RosArm(RosBridge& bridge, const RosArmOptions& options);
   RosArm(RosArm&&) noexcept;
   RosArm& operator=(RosArm&&) noexcept;
   ~RosArm();
 
-  /// Starts to move; joints without a controller stay.  A controller's other joints are held where
-  /// they are.
-  /// @throws PoseError  if no controller moves any of these joints, or one refuses
+  /// Starts a move; joints without a controller stay.  A controller's other joints are held in
+  /// place.
+  /// @throws PoseError  if no controller moves any of these joints, or one rejects the goal
   void move(const JointTarget& target);
 
   /// All joint positions.  The stamp is the oldest of the controllers' joints.
-  /// @throws SilenceError     if they do not come in time: topic, newest stamp and why
-  /// @throws PoseError        if a controller gave up since the last motion started
+  /// @throws SilenceError     if they do not arrive in time, with topic, newest stamp and reason
+  /// @throws PoseError        if a controller has given up since the last motion started
   /// @throws ConnectionError  if the bridge has withdrawn their topic
   [[nodiscard]] MeasuredJoints next_joints(Stamp after);
 
@@ -94,19 +94,19 @@ struct RosCameraOptions {
   std::string camera_info = {};  ///< sensor_msgs/CameraInfo
 };
 
-/// A camera whose streams are put together by their stamps.
+/// A camera; joins its streams by their stamps.
 class RosCamera {
  public:
   /// @param bridge  must outlive this
-  /// @throws std::invalid_argument  if there is neither an image, depth nor a cloud
+  /// @throws std::invalid_argument  if there is no image, no depth and no cloud
   RosCamera(RosBridge& bridge, const RosCameraOptions& options);
   RosCamera(RosCamera&&) noexcept;
   RosCamera& operator=(RosCamera&&) noexcept;
   ~RosCamera();
 
-  /// @throws SilenceError     if none comes in time: topic, newest stamp and why
-  /// @throws PoseError        if its stamps are of another clock than those of the joint states, or
-  ///                          those of its topics have nothing in common
+  /// @throws SilenceError     if none arrives in time, with topic, newest stamp and reason
+  /// @throws PoseError        if its stamps use another clock than the joint states, or those of
+  ///                          its topics never match
   /// @throws ConnectionError  if the bridge has withdrawn a topic
   [[nodiscard]] View next_view(Stamp after);
 
@@ -115,7 +115,7 @@ class RosCamera {
 };
 static_assert(Camera<RosCamera>);
 
-/// LEDs that an action switches: robot_calibration_msgs/GripperLedCommand.
+/// LEDs switched by an action: robot_calibration_msgs/GripperLedCommand.
 class RosLamp {
  public:
   /// @param bridge  must outlive this
@@ -126,8 +126,8 @@ class RosLamp {
   RosLamp& operator=(RosLamp&&) noexcept;
   ~RosLamp();
 
-  /// @return  stamp of the first joint state after the robot reported that it was done
-  /// @throws PoseError  if the robot refuses or does not report it in time
+  /// @return  stamp of the first joint state after the robot reported success
+  /// @throws PoseError  if the robot rejects it or does not report success in time
   [[nodiscard]] Stamp light(int code);
 
  private:

@@ -29,7 +29,7 @@ KINECAL_INLINE RosBridge::~RosBridge() = default;
 
 namespace detail {
 
-/// Seconds that the joint with the longest way takes.
+/// Duration for the joint with the longest path, seconds.
 [[nodiscard]] inline double motion_time(const JointTarget& target, const MeasuredJoints& now,
                                         const RosArmOptions& options) {
   double time = options.duration;
@@ -43,7 +43,7 @@ namespace detail {
   return time;
 }
 
-/// The goal of FollowJointTrajectory: one point, joints without a target stay.
+/// The goal of FollowJointTrajectory: one point; joints without a target stay.
 [[nodiscard]] inline MessageFields trajectory_goal(const JointController& controller,
                                                    const MeasuredJoints& target, double time) {
   std::vector<double> positions;

@@ -15,10 +15,10 @@
 
 namespace kinecal::detail {
 
-/// How messages of a topic or service are written.
+/// The form of messages of a topic or service.
 /// @param name       of the topic or service
-/// @param encodings  that the bridge names for services
-/// @throws std::runtime_error  if that is not a form that kinecal reads, or the definition is not one
+/// @param encodings  of services, as announced by the bridge
+/// @throws std::runtime_error  if kinecal cannot read the form, or the definition is invalid
 [[nodiscard]] inline BridgeMessage message_form(const std::string& name, const BridgeSchema& schema,
                                                 const std::vector<std::string>& encodings) {
   std::string encoding = schema.encoding;

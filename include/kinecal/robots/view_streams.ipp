@@ -1,4 +1,4 @@
-// The streams of a camera behind a bridge, put together by their stamps.
+// Joins the streams of a camera behind a bridge by their stamps.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -63,7 +63,7 @@ class ViewStreams {
 
   static constexpr std::size_t kKept = 4;
   static constexpr std::chrono::milliseconds kTogether{40};  ///< stamps of one exposure
-  static constexpr std::chrono::seconds kSameClock{1};       ///< by which clocks may differ
+  static constexpr std::chrono::seconds kSameClock{1};       ///< allowed difference of clocks
 
   void subscribe(const std::string& topic, std::vector<std::string> types) {
     if (topic.empty()) return;
@@ -94,7 +94,7 @@ class ViewStreams {
     return std::nullopt;
   }
 
-  /// The message after a time that is nearest to a moment; null if none is of that moment.
+  /// The message after a time that is nearest to a moment; null if none is near enough.
   [[nodiscard]] static const Stamped* nearest(const Stream& stream, Stamp moment, Stamp after) {
     const auto apart = [&](const Stamped& one) {
       return one.stamp > after ? std::chrono::abs(one.stamp - moment) : Stamp::max();
@@ -103,7 +103,7 @@ class ViewStreams {
     return best != stream.newest.end() && apart(*best) <= kTogether ? &*best : nullptr;
   }
 
-  /// The stream that is to be waited for: the one that is furthest behind.
+  /// The stream to wait for: the one furthest behind.
   [[nodiscard]] Stream& missing(Stamp after) {
     const auto newest = [&](const Stream& stream) {
       return stream.newest.empty() ? Stamp::min() : std::max(stream.newest.back().stamp, after);
@@ -140,7 +140,7 @@ class ViewStreams {
     }
   }
 
-  /// The newest camera_info; waits only for the first.
+  /// The newest camera_info; waits only for the first one.
   [[nodiscard]] std::optional<CameraInfo> camera(Deadline deadline) {
     if (options_.camera_info.empty()) return std::nullopt;
     const auto messages = robot_->bridge.take(
@@ -150,7 +150,7 @@ class ViewStreams {
     return camera_;
   }
 
-  /// How far the stamps of a stream are ahead of those of the joints, if that is known.
+  /// Offset of a stream's stamps ahead of those of the joints, if known.
   [[nodiscard]] std::optional<ClockOffset> lead(const Stamped& message) const {
     const auto joints = robot_->offset();
     if (!joints) return std::nullopt;
@@ -192,7 +192,7 @@ class ViewStreams {
   RosCameraOptions options_;
   std::vector<Stream> streams_;  ///< of those that make a view
   std::optional<CameraInfo> camera_;
-  bool no_camera_ = false;  ///< whether it was waited for in vain
+  bool no_camera_ = false;  ///< true after a vain wait
 };
 
 }  // namespace kinecal::detail

@@ -1,4 +1,4 @@
-// The ids of an observation, and its features in another order.
+// The ids of an observation, and reordering of its features.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace kinecal::detail {
 
-/// The ids of an observation in the order of its features; empty if it has none.
-/// @throws SampleError  if some features have none, or two the same
+/// The ids of an observation in the order of its features; empty if there are none.
+/// @throws SampleError  if some features lack an id, or two have the same
 [[nodiscard]] inline std::vector<int> ids_of(const Observation& seen) {
   std::vector<int> ids;
   for (const Feature& feature : seen.features) {
@@ -37,8 +37,8 @@ namespace kinecal::detail {
   return ids;
 }
 
-/// What stands in for a feature that a sensor did not see.
-/// @param near  one that it saw, in whose frame it may be
+/// The stand-in for a feature that a sensor did not see.
+/// @param near  a feature that it saw, for the frame
 [[nodiscard]] inline Feature unseen_feature(const Feature& near, int id) {
   Feature feature{near.frame};
   feature.point.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -47,7 +47,7 @@ namespace kinecal::detail {
   return feature;
 }
 
-/// The features of an observation in an order of ids.
+/// The features of an observation in the order of some ids.
 [[nodiscard]] inline std::vector<Feature> in_order(const std::vector<Feature>& features,
                                                    const std::vector<int>& order) {
   std::map<int, const Feature*> by_id;

@@ -65,7 +65,7 @@ class ObservationPairs {
     blocks_.push_back(std::move(block));
   }
 
-  /// The ids of a group in the order in which its features are to be; nullopt: as they are.
+  /// The ids of a group in the wanted order of its features; nullopt: keep their order.
   [[nodiscard]] std::optional<std::vector<int>> order_of(
       const std::vector<std::size_t>& members) const {
     std::map<std::size_t, std::vector<int>> ids;  // of the observations that have them
@@ -90,8 +90,8 @@ class ObservationPairs {
     return compared(ids);
   }
 
-  /// The ids that some block can compare, ascending; all of them if there is none, so that places
-  /// do not pair what is not the same.
+  /// The ids that some block can compare, ascending; if there are none, all ids, so that features
+  /// are not paired by place.
   [[nodiscard]] std::vector<int> compared(
       const std::map<std::size_t, std::vector<int>>& ids) const {
     std::vector<int> all, kept;
@@ -116,8 +116,8 @@ class ObservationPairs {
   }
 
   const Sample& sample_;
-  std::vector<std::size_t> group_;  ///< of each observation
-  std::vector<Block> blocks_;       ///< whose sensors all observed
+  std::vector<std::size_t> group_;  ///< by observation
+  std::vector<Block> blocks_;       ///< those whose sensors all observed something
 };
 
 }  // namespace detail
@@ -139,7 +139,7 @@ KINECAL_INLINE std::optional<Sample> pair_features(const Sample& sample,
 
 KINECAL_INLINE bool ids_are_disjoint(const Sample& sample,
                                      const std::vector<std::string>& sensors) {
-  std::map<int, std::size_t> times;  // in how many observations an id occurs
+  std::map<int, std::size_t> times;  // number of observations with an id
   for (const std::string& sensor : sensors) {
     const Observation* seen = sample.observation(sensor);
     if (seen == nullptr || seen->features.empty()) return false;

@@ -1,4 +1,4 @@
-// How far a long task is, for whoever shows it: reading a file, trying starts, folds.
+// Progress of a long task, for display: reading a file, trying starts, folds.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,9 +7,8 @@
 
 namespace kinecal {
 
-/// Receives the fraction that is done, from 0 to 1, and what is being done: "reading samples.yaml".
-/// It is called now and then, by one thread at a time, not always the same one.  Empty: nobody wants
-/// to know.
+/// Receives the finished fraction, from 0 to 1, and the current activity: "reading samples.yaml".
+/// Called occasionally, by one thread at a time, but not always the same one.  Empty: no reports.
 using ProgressMeter = std::function<void(double fraction, const std::string& what)>;
 
 }  // namespace kinecal

@@ -1,6 +1,6 @@
-// A sample: one pose of the robot and what its sensors observed there.
+// A sample: one pose of the robot and what its sensors observed in it.
 //
-// The content is that of robot_calibration_msgs/CalibrationData, in metres, radians and pixels.
+// Same content as robot_calibration_msgs/CalibrationData, in metres, radians and pixels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,19 +19,19 @@ namespace kinecal {
 
 /// One observed point, pixel, pose or reading.
 struct Feature {
-  std::string frame;                                ///< in which the point is given
+  std::string frame;                                ///< frame of the point
   Vector3<double> point = Vector3<double>::Zero();  ///< (3) metres; a pixel is (u, v, 0), a reading
                                                     ///< (value, 0, 0)
   std::optional<Matrix3<double>> rotation = {};     ///< (3 x 3) of a pose: frame_R_feature
-  /// Standard deviation of this measurement, metres or pixels: the unit of the residual.  It takes
-  /// the place of the error block's sigma.
+  /// Standard deviation of this measurement, in the unit of the residual: metres or pixels.  It
+  /// replaces the error block's sigma.
   std::optional<double> sigma = {};
-  /// Which feature of the target this is, from 0: the corner of a board, the tag.  Error blocks pair
-  /// features of several sensors by their ids; without ids, by their places in the lists.
+  /// Identifies the feature on its target, from 0: the corner of a board, the tag.  Error blocks
+  /// pair features of several sensors by id, or by place in the list if there are no ids.
   std::optional<int> id = {};
 };
 
-/// The settings of a camera while it recorded: sensor_msgs/CameraInfo and the depth driver's.
+/// The settings of a camera during recording: sensor_msgs/CameraInfo and the depth driver's.
 struct CameraInfo {
   int width = 0;                 ///< pixels
   int height = 0;                ///< pixels
@@ -44,7 +44,7 @@ struct CameraInfo {
   double z_scaling = 1.0;        ///< of the depth driver: z = (z0 + z_offset) * z_scaling
 };
 
-/// What a feature of a sample is called in messages and tables: its place and its id.
+/// The name of a feature in messages and tables: its place and its id.
 struct FeatureLabel {
   int place = 0;               ///< from 0, in the list of the observation
   std::optional<int> id = {};  ///< Feature::id, if it has one
@@ -68,16 +68,17 @@ struct SampleError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// One pose of the robot and what its sensors observed there.
+/// One pose of the robot and what its sensors observed in it.
 struct Sample {
   std::vector<std::string> joint_names;   ///< of the joints whose positions were measured
   std::vector<double> joint_positions;    ///< radians or metres, in the order of the names
   std::vector<Observation> observations;  ///< at most one of each sensor
   std::string source;                     ///< source location, for messages: "samples.yaml:37"
-  /// Numbers that come with the sample, by name: temperature, load.  Error blocks name those that
-  /// they take and their units: see errors/error_block.hpp.
+  /// Further numbers of the sample, by name: temperature, load.  Error blocks name those they take
+  /// and their units: see errors/error_block.hpp.
   std::map<std::string, double> conditions = {};
-  /// When the joints were measured, since the epoch of the robot's clock; nullopt if nobody recorded it.
+  /// Time at which the joints were measured, since the epoch of the robot's clock; nullopt if
+  /// unknown.
   std::optional<std::chrono::nanoseconds> stamp = {};
 
   /// Measured position of a joint, radians or metres; nullopt if it was not measured.
@@ -89,7 +90,7 @@ struct Sample {
     return std::nullopt;
   }
 
-  /// What a sensor observed; nullptr if it did not observe anything.
+  /// The observation of a sensor; nullptr if there is none.
   [[nodiscard]] const Observation* observation(const std::string& sensor) const {
     for (const Observation& o : observations) {
       if (o.sensor == sensor) return &o;

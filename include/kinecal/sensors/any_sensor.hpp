@@ -1,4 +1,4 @@
-// A sensor of any type behind one interface, for those who do not know its type: problems, readers
+// The common interface of all sensors, for code that does not know their types: problems, readers
 // of configurations, reports.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace kinecal {
 
-/// What is known of a sensor without its type.
+/// A sensor of unknown type.
 class AnySensor {
  public:
   virtual ~AnySensor() = default;
@@ -24,19 +24,19 @@ class AnySensor {
   [[nodiscard]] virtual std::string_view type() const = 0;
   /// Its own parameters.
   [[nodiscard]] virtual std::span<const ParameterInfo> parameters() const = 0;
-  /// True if it can deliver what a block takes.
+  /// True if it can deliver this quantity, as a block asks for it.
   [[nodiscard]] virtual bool delivers(Quantity quantity) const = 0;
   /// True if its features are in its own frame, never in a virtual one.
   [[nodiscard]] virtual bool in_own_frame() const = 0;
   /// True if its features have an orientation.
   [[nodiscard]] virtual bool is_oriented() const = 0;
-  /// The settings that come with an observation.
+  /// The settings of an observation.
   /// @throws SettingsError
   [[nodiscard]] virtual std::vector<double> settings(const Observation& seen) const = 0;
   /// Values of its parameters before the first step.
-  /// @param settings  of the first observation; empty if there is none
+  /// @param settings  of the first observation; empty if there are none
   [[nodiscard]] virtual std::vector<double> initial(std::span<const double> settings) const = 0;
-  /// What of a recorded point to keep.
+  /// The part of a recorded point to keep.
   /// @throws SettingsError
   [[nodiscard]] virtual Vector3<double> measurement(const Vector3<double>& point,
                                                     std::span<const double> settings) const = 0;

@@ -15,7 +15,7 @@ KINECAL_INLINE void add_sensor_parameters(ParameterTable& table, const AnySensor
     try {
       settings = sensor.settings(*seen);
       break;
-    } catch (const SettingsError&) {  // the sample will be refused with its reason
+    } catch (const SettingsError&) {  // adding the sample reports the reason
     }
   }
   const std::vector<double> initial = sensor.initial(settings);

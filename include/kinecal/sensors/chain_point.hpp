@@ -1,4 +1,4 @@
-// Points and poses at known places of a link (chain3d, chain6d): an arm that holds a target.
+// Points and poses at known places in a link (chain3d, chain6d): an arm that holds a target.
 //
 // A feature may also be given in a virtual frame beyond the link: a checkerboard, a tracker.
 // SPDX-License-Identifier: Apache-2.0
@@ -21,7 +21,7 @@ struct ChainPoint {
   }
 };
 
-/// Poses in a link: of a marker, of a body that motion capture or tf follows.
+/// Poses in a link: of a marker, or of a body tracked by motion capture or tf.
 struct ChainPose {
   static constexpr std::string_view kType = "chain6d";  ///< name in configurations
   static constexpr bool kOriented = true;               ///< features have an orientation

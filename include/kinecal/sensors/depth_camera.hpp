@@ -1,7 +1,7 @@
-// A depth camera (camera3d): points re-projected with corrected intrinsics and depth.
+// A depth camera (camera3d): re-projects points with corrected intrinsics and depth.
 //
-// The driver computed a recorded point (x, y, z) from a pixel and a raw depth, with the settings of
-// that moment.  We recover pixel and raw depth, and compute the point with the corrected settings:
+// The driver computed a recorded point (x, y, z) from a pixel and a raw depth, with its settings at
+// that time.  We recover pixel and raw depth, and compute the point with the corrected settings:
 //
 //   u = fx0 x / z + cx0      v = fy0 y / z + cy0      z0 = z / s0 - o0
 //   z' = (z0 + z_offset) (1 + z_scaling)
@@ -9,7 +9,7 @@
 //
 // Parameters, in this order: fx fy cx cy (relative), z_offset (metres), z_scaling (relative).
 // Defined for z > 0.
-// Source: Fetch paper, III-B; the depth correction is that of the camera driver.
+// Source: Fetch paper, III-B; the camera driver defines the depth correction.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -38,11 +38,11 @@ struct DepthCamera {
                                              ParameterInfo{"z_scaling"}};
   static constexpr std::size_t kSettings = 6;  ///< fx fy cx cy z_offset z_scaling, as recorded
   static constexpr bool kOwnFrame = true;      ///< features are in the optical frame
-  /// Computes points and derivatives with what all points of a sample share.
+  /// Computes points and derivatives; shares work between the points of a sample.
   template <class Q>
   using Corrected = CorrectedDepthCamera<Q>;
 
-  /// The recorded settings: the camera of a rectified image, from P; from K where P is zero.
+  /// The recorded settings: of the rectified image, from P; from K if P is zero.
   /// @throws SettingsError  if there are none or they are impossible
   [[nodiscard]] static std::array<double, 6> settings(const Observation& seen) {
     const CameraInfo& info = camera_info_of(seen);
@@ -91,9 +91,9 @@ struct DepthCamera {
   }
 };
 
-/// A depth camera with corrected settings at a pose; what all points of a sample share is computed
-/// once.  Focal lengths and principal point move x or y only; offset and scaling move a point along
-/// its ray.
+/// A depth camera with corrected settings at a pose; computes once what all points of a sample
+/// share.  Focal lengths and principal point move a point in x or y only; offset and scaling move it
+/// along its ray.
 template <class Q>
 class CorrectedDepthCamera {
  public:
@@ -130,7 +130,7 @@ class CorrectedDepthCamera {
     };
     Vector3<Q> p;
     for (int i = 0; i < 3; ++i) p(i) = pose_.translation(i) + ray(i) * depth;
-    if (chosen.size() == 6) {  // most often: all of them, in their order
+    if (chosen.size() == 6) {  // the usual case: all of them, in order
       changes[0] = times(r.col(0), s * depth * by_fx_);
       changes[1] = times(r.col(1), t * depth * by_fy_);
       changes[2] = times(r.col(0), s_by_cx_ * depth);

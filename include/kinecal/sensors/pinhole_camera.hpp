@@ -1,4 +1,4 @@
-// A pinhole camera (camera2d): where a point appears in the image, and the ray to it.
+// A pinhole camera (camera2d): projects a point to a pixel, and a pixel to its ray.
 //
 //   x = X / Z,  y = Y / Z,  r2 = x^2 + y^2
 //   x' = x (1 + k1 r2 + k2 r2^2 + k3 r2^3) + 2 p1 x y + p2 (r2 + 2 x^2)
@@ -8,8 +8,8 @@
 // Parameters, in this order: fx fy cx cy (relative).  The distortion (plumb_bob: k1 k2 p1 p2 k3) is
 // not calibrated.  Defined for Z > 0.
 //
-// K and D describe pixels of a raw image, P alone those of a rectified one.  The point is in the frame
-// of that image: for P that of the rectified camera, which R turns against the raw one.
+// K and D describe a raw image, P alone a rectified one.  The point is in the frame of that image:
+// P belongs to the rectified camera, which R rotates against the raw one.
 // Source: sensor_msgs/CameraInfo; Brown, Decentering Distortion of Lenses, 1966.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,7 +23,7 @@ namespace kinecal {
 
 /// A pinhole camera.
 struct PinholeCamera {
-  ImageKind image = ImageKind::automatic;  ///< what its pixels are of
+  ImageKind image = ImageKind::automatic;  ///< the image its pixels come from
 
   static constexpr std::string_view kType = "camera2d";  ///< name in configurations
   static constexpr std::array kParameters = {ParameterInfo{"fx"}, ParameterInfo{"fy"},
@@ -32,7 +32,7 @@ struct PinholeCamera {
   static constexpr bool kOwnFrame = true;      ///< features are in the optical frame
 
   /// The recorded settings: of a raw image from K and D, of a rectified one from P.
-  /// @throws SettingsError  if there are none, they are impossible, or a raw image has a distortion
+  /// @throws SettingsError  if they are missing or impossible, or if a raw image has a distortion
   ///                        other than plumb_bob
   [[nodiscard]] std::array<double, 9> settings(const Observation& seen) const {
     const CameraInfo& info = camera_info_of(seen);
@@ -69,7 +69,7 @@ struct PinholeCamera {
             s[1] * (1.0 + v[1]) * seen.y() + s[3] * (1.0 + v[3])};
   }
 
-  /// The ray to the point of a pixel: direction (x, y, 1).
+  /// The ray of a pixel: direction (x, y, 1).
   /// @param v  (4) as above
   template <class S, class Q>
   [[nodiscard]] Ray<S> place(const Measurement<PinholeCamera, Q>& m,
@@ -91,7 +91,7 @@ struct PinholeCamera {
   }
 
  private:
-  static constexpr int kUndistortions = 30;  ///< of a fixed-point iteration
+  static constexpr int kUndistortions = 30;  ///< fixed-point iterations
 
   /// Fills in k1 k2 p1 p2 k3.
   static void add_distortion(const CameraInfo& info, std::array<double, 9>& s) {

@@ -1,7 +1,7 @@
-// What a sensor delivers for each feature, and an error block takes: a point, a ray, a pose, a
-// reading or a pixel.
+// What a sensor delivers to an error block for each feature: a point, a ray, a pose, a reading or a
+// pixel.
 //
-// A sensor gives it in its own frame; an error block receives it in the base.
+// The sensor computes it in its own frame; the error block receives it in the base.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace kinecal {
 
-/// Kinds of what a block takes of a sensor.
+/// Kinds of input that a block takes from a sensor.
 enum class Quantity {
   point,    ///< Vector3<S>: a point
   ray,      ///< Ray<S>: the line of sight to a point
   pose,     ///< Pose<S>: the pose of a marker or a tracked body
   reading,  ///< Reading<S>: one number, such as a length
-  pixel,    ///< PixelObservation<S>: where a camera should see the point of the sensor before it
+  pixel,    ///< PixelObservation<S>: where a camera should see the point of the previous sensor
   plane     ///< Plane<S>: the plane through all points
 };
 

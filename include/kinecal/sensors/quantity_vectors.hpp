@@ -1,5 +1,5 @@
-// What sensors deliver as vectors of three numbers: carried to the base, differentiated by jets, moved
-// by twists.
+// What sensors deliver, as vectors of three numbers: transformed to the base, differentiated by
+// jets, moved by twists.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,15 +12,15 @@ namespace kinecal {
 
 namespace detail {
 
-/// How a vector of three numbers changes where its body moves by a twist (v, w).
+/// How a vector of three numbers changes when its body moves by a twist (v, w).
 enum class Change {
   point,      ///< as a point p: v + w x p
   direction,  ///< as a direction d: w x d
-  rotation,   ///< it is a rotation: w
-  number      ///< it is not in space
+  rotation,   ///< a rotation: w
+  number      ///< not a spatial quantity
 };
 
-/// A vector in S: of jets over S, their values.
+/// The vector in S; takes the values of jets over S.
 template <class S, class J>
 [[nodiscard]] Vector3<S> in_scalar(const Vector3<J>& v) {
   if constexpr (std::same_as<S, J>) {
@@ -41,7 +41,7 @@ struct VectorsOf<Quantity::point> {
   static constexpr std::array kVariables = {Change::point};
   static constexpr std::size_t kValues = 1;
 
-  /// In the base what is in a frame.
+  /// Transforms to the base.
   template <class S, class J>
   static void to_base(const Pose<S>& frame, const Vector3<J>& p, Vector3<S>* out) {
     out[0] = frame * in_scalar<S>(p);

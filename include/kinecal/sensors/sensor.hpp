@@ -1,8 +1,8 @@
-// The concept of a sensor: what it measured, turned into a point, a ray, a pose or a reading in its
-// own frame, for given parameters.
+// The concept of a sensor: turns a measurement into a point, a ray, a pose or a reading in its own
+// frame, for given parameters.
 //
-// A sensor is a small value type.  Jets differentiate it by its parameters, twists carry the
-// derivative to joints and frames.  So a new sensor is a struct with a function or two:
+// A sensor is a small value type.  Jets differentiate it by its parameters; twists propagate the
+// derivative to joints and frames.  So a new sensor is a struct with one or two functions:
 //
 //   struct DrawWire {  // a wire that is pulled out of a drum at the sensor's frame
 //     static constexpr std::string_view kType = "draw_wire";
@@ -13,11 +13,11 @@
 //     }
 //   };
 //
-// A camera may also, or instead, predict where it sees a point.  What else a sensor may define:
+// A camera may also, or instead, predict the pixel of a point.  A sensor may also define:
 //
 //   kSettings, settings(observation)     numbers that come with each observation: intrinsics
 //   initial(settings)                    values of its parameters before the first step
-//   measurement(point, settings)         what of a recorded point to keep, computed once
+//   measurement(point, settings)         the part of a recorded point to keep, computed once
 //   kOwnFrame                            features are in the sensor's frame, never in a virtual one
 //   kOriented                            features have an orientation
 //   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels
@@ -49,7 +49,7 @@ struct SettingsError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// Where a sensor is on the robot, and its names.
+/// Where a sensor is mounted on the robot, and its names.
 struct Mount {
   std::string name;             ///< of the sensor, as in the samples
   std::string frame;            ///< the link to which it is fixed
@@ -124,7 +124,7 @@ concept PlacesOne = requires {
 
 }  // namespace detail
 
-/// A sensor that delivers something in its frame: place(measurement, parameters).
+/// A sensor that delivers a quantity in its frame: place(measurement, parameters).
 template <class M>
 concept PlacingSensor =
     detail::PlacesOne<M, Quantity::point> || detail::PlacesOne<M, Quantity::ray> ||
@@ -145,7 +145,7 @@ concept Sensor = requires {
 }
 &&(PlacingSensor<M> || PredictingSensor<M>);
 
-/// What place() delivers; nullopt if a sensor only predicts.
+/// The quantity that place() delivers; nullopt if a sensor only predicts.
 template <Sensor M>
 [[nodiscard]] constexpr std::optional<Quantity> placed_quantity() {
   if constexpr (detail::PlacesOne<M, Quantity::point>) return Quantity::point;
@@ -155,7 +155,7 @@ template <Sensor M>
   return std::nullopt;
 }
 
-/// True if a sensor can deliver what a block takes.
+/// True if a sensor can deliver the quantity a block takes.
 template <Sensor M>
 [[nodiscard]] constexpr bool delivers(Quantity quantity) {
   if (quantity == Quantity::pixel) return PredictingSensor<M>;

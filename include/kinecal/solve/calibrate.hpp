@@ -22,9 +22,9 @@ struct CalibrationStep {
   int max_num_iterations = 1000;        ///< the step does not converge if it needs more
   std::unique_ptr<AnyProblem> problem;  ///< with its samples
   FreeSet free;                         ///< the parameters that the step calibrates
-  /// Table index and value of parameters that are set before the step starts.
+  /// Table index and value of the parameters to set before the step starts.
   std::vector<std::pair<int, double>> assignments;
-  std::vector<UnknownFrame> unknown_frames = {};  ///< whose pose is searched for
+  std::vector<UnknownFrame> unknown_frames = {};  ///< frames whose pose to search for
   std::unique_ptr<AnyProblem> excerpt = nullptr;  ///< a few samples for that search; null: all
   std::vector<int> of_excerpt = {};  ///< of each sample of the excerpt: its number in the problem
 
@@ -42,20 +42,20 @@ struct Calibration {
   std::vector<CalibrationStep> steps;  ///< in the order in which they are solved
 };
 
-/// What a calibration found.
+/// The result of a calibration.
 struct CalibrationResult {
   bool converged = false;               ///< every step converged
   std::string termination;              ///< of the last step that ran
-  std::vector<StepResult> steps;        ///< those that ran
+  std::vector<StepResult> steps;        ///< the steps that ran
   std::vector<BlockStatistics> blocks;  ///< of error blocks and priors, before and after
   ParameterTable table;                 ///< at the final values
-  std::vector<int> calibrated;          ///< table indices of the parameters that some step freed
+  std::vector<int> calibrated;          ///< table indices of all parameters that some step freed
 };
 
 /// Called while a step runs: name of the step, iteration, cost.
 using Progress = std::function<void(const std::string& step, int iteration, double cost)>;
 
-/// Solves all steps of a calibration, until one does not converge.
+/// Solves the steps of a calibration in order; stops at the first that does not converge.
 /// @param solving  options of all steps; each step has its own number of iterations
 [[nodiscard]] CalibrationResult calibrate(const Calibration& calibration,
                                           const Progress& progress = {},
@@ -72,8 +72,8 @@ void merge_statistics(std::vector<BlockStatistics>& all, std::vector<BlockStatis
 /// the residuals keep their initial values.
 /// @param problem  without samples
 /// @throws SampleError  naming the sample and what is missing or wrong in it
-/// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor, or if no
-///                                error block can use any of the samples
+/// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor, or if
+///                                no error block can use any of the samples
 [[nodiscard]] Calibration make_calibration(std::unique_ptr<AnyProblem> problem, const FreeSet& free,
                                            std::span<const Sample> samples,
                                            const std::string& step = "calibration");

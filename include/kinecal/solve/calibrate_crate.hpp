@@ -1,4 +1,4 @@
-// Calibrating with a crate: samples in, values with the names of its types out.
+// Calibrates with a crate: samples in, values by the names of its types out.
 //
 //   const CrateResult<HandEye> result = calibrate(HandEye(), samples);
 //   const double elbow = result.value<JointOffset<"elbow_flex_joint">>();
@@ -49,8 +49,8 @@ struct CrateResult : CalibrationResult {
   }
 };
 
-/// The calibration that a crate describes.  Reports and result files can be made from it, as the
-/// program makes them.
+/// The calibration that a crate describes.  You can make reports and result files from it, as the
+/// program does.
 /// @param table  Crate().table(samples), perhaps with other initial values or bounds
 /// @throws SampleError, std::invalid_argument  as make_calibration() of a problem
 template <class... Parts>

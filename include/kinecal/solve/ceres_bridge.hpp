@@ -1,4 +1,4 @@
-// Calibration problems as residuals of your own Ceres problem.
+// Adds calibration problems to your own Ceres problem.
 //
 //   ceres::Problem ceres_problem;
 //   CeresBridge bridge(ceres_problem);
@@ -6,9 +6,9 @@
 //   bridge.add(arm_and_tracker, also_free, values);             // shares the arm's joints
 //   ceres_problem.AddResidualBlock(own_cost, nullptr, bridge.block("elbow_flex_joint"));
 //
-// Each joint, frame and sensor is a parameter block of Ceres, found by its name; problems with
-// parameters of one name share them.  A problem is one residual block, whatever the number of its
-// samples: see compressed_cost.hpp.
+// Each joint, frame and sensor is a parameter block of Ceres, found by name; problems share
+// parameters of the same name.  A problem is one residual block, for any number of samples: see
+// compressed_cost.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,22 +23,23 @@
 
 namespace kinecal {
 
-/// Adds calibration problems to a Ceres problem, and holds their parameters.  Not to be used from
-/// several threads at once; Ceres may evaluate with as many as it likes.
+/// Adds calibration problems to a Ceres problem, and holds their parameters.  Not thread-safe;
+/// Ceres itself may evaluate with any number of threads.
 class CeresBridge {
  public:
-  /// @param problem  must outlive the bridge or not be used after it: its parameters are here
+  /// @param problem  must outlive the bridge, or not be used after it: the bridge holds its
+  ///                 parameters
   explicit CeresBridge(ceres::Problem& problem) : problem_(problem) {}
   CeresBridge(const CeresBridge&) = delete;             ///< Ceres points into it
   CeresBridge& operator=(const CeresBridge&) = delete;  ///< Ceres points into it
 
   /// Adds the samples and priors of a problem, with the bounds of its table.
   /// @param problem  must outlive the bridge; do not add samples meanwhile
-  /// @param free     which parameters are Ceres' to change
-  /// @param values   of all parameters of the table: where those that the bridge does not have yet
-  ///                 start, and what the others are held at
-  /// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor, or if a
-  ///                                block of that name has other parameters
+  /// @param free     the parameters that Ceres may change
+  /// @param values   of all parameters of the table: starting values of those that are new to the
+  ///                 bridge; held values of the others
+  /// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor, or if
+  ///                                an existing block of that name has other parameters
   void add(const AnyProblem& problem, const FreeSet& free, const Eigen::VectorXd& values,
            Losses losses = Losses::as_given);
 
@@ -60,7 +61,7 @@ class CeresBridge {
   [[nodiscard]] const Block& find(const std::string& name) const;
 
   ceres::Problem& problem_;
-  std::map<std::string, Block> blocks_;  ///< a node stays where it is: Ceres points to its values
+  std::map<std::string, Block> blocks_;  ///< a node never moves: Ceres points to its values
   std::vector<std::unique_ptr<AnyEvaluator>> evaluators_;
 };
 

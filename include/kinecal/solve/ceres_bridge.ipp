@@ -39,7 +39,7 @@ KINECAL_INLINE void CeresBridge::add(const AnyProblem& problem, const FreeSet& f
     }
     added.emplace(owner, std::move(block));
   }
-  blocks_.merge(added);  // nothing can fail from here on
+  blocks_.merge(added);  // nothing below can fail
   detail::CompressedCost::Blocks partition;
   std::vector<double*> of_ceres;
   for (const auto& [owner, of_owner] : columns) {

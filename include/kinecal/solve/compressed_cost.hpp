@@ -1,17 +1,17 @@
-// The compressed cost: all samples as one Ceres residual of parameters + 1 rows.
+// The compressed cost: all samples as one Ceres residual of (parameters + 1) rows.
 //
-// Least squares depends on the samples only through H = J^T J, g = J^T r and the cost c.  With
+// Least squares sees the samples only through H = J^T J, g = J^T r and the cost c.  With
 // H = A^T A,
 //
 //   r' = ( A^-T g, sqrt(2 c - |A^-T g|^2) )      J' = ( A, 0 )
 //
-// has the same cost, gradient and Gauss-Newton Hessian as the stacked residuals of all samples, so
-// Ceres takes the same steps on a problem whose size does not grow with their number.  The number
-// under the root is never negative: |A^-T g|^2 is the part of the weighted residual within the
-// range of J, and robust losses satisfy rho' s <= rho (errors/loss.hpp).
+// has the same cost, gradient and Gauss-Newton Hessian as the stacked residuals of all samples.  So
+// Ceres takes the same steps, on a problem whose size does not grow with their number.  The number
+// under the root is never negative: |A^-T g|^2 is the part of the weighted residual in the range of
+// J, and robust losses satisfy rho' s <= rho (errors/loss.hpp).
 //
-// A comes from a pivoted LDL^T of H, scaled to a unit diagonal.  H is singular if the samples cannot
-// separate some parameters; a direction without curvature gets a row of zeros.
+// A comes from a pivoted LDL^T of H, scaled to a unit diagonal.  H is singular if the samples
+// cannot separate some parameters; a direction without curvature gets a row of zeros.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -33,15 +33,15 @@ struct EquivalentResidual {
   Eigen::VectorXd residual;  ///< (parameters + 1)
   Eigen::MatrixXd jacobian;  ///< (parameters + 1 x parameters)
 
-  /// Computes them from normal equations; derivatives are required.
+  /// Computes both from normal equations; needs derivatives.
   explicit EquivalentResidual(const NormalEquations& normal);
 };
 
 /// The whole problem as one Ceres cost function over the free parameters.
 ///
-/// Ceres asks for the cost of a step first, and for the Jacobian there if the step is accepted, which
-/// most are.  Both are computed at once and kept; so another run that starts where one ended is
-/// spared its first evaluation.
+/// Ceres asks for the cost of a step first, and for the Jacobian if it accepts the step, as it
+/// mostly does.  Both are computed at once and kept; so a run that starts where another ended skips
+/// its first evaluation.
 class CompressedCost final : public ceres::CostFunction {
  public:
   /// Columns of the free set by Ceres' parameter block.
@@ -49,7 +49,7 @@ class CompressedCost final : public ceres::CostFunction {
 
   /// @param evaluator  of the problem and its free parameters; must outlive the cost
   /// @param values     of all parameters of the problem's table; the free ones are replaced
-  /// @param blocks     every column once; empty: one block of all
+  /// @param blocks     each column once; empty: one block of all
   CompressedCost(AnyEvaluator& evaluator, Eigen::VectorXd values, Losses losses = Losses::as_given,
                  Blocks blocks = {});
 
@@ -57,8 +57,8 @@ class CompressedCost final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
-  /// The decrease of the cost that a Gauss-Newton step promises from where the Jacobian was last
-  /// evaluated: half the squared Newton decrement.
+  /// The decrease of the cost that a Gauss-Newton step predicts where the Jacobian was last
+  /// evaluated:  half the squared Newton decrement.
   [[nodiscard]] double promised_decrease() const { return promised_decrease_; }
   /// How often all samples were evaluated.
   [[nodiscard]] int evaluations() const { return evaluations_; }
@@ -71,7 +71,7 @@ class CompressedCost final : public ceres::CostFunction {
   mutable double promised_decrease_ = std::numeric_limits<double>::infinity();
   mutable int evaluations_ = 0;
   mutable std::optional<EquivalentResidual> last_;
-  mutable Eigen::VectorXd last_values_;  ///< to which `last_` belongs
+  mutable Eigen::VectorXd last_values_;  ///< the values of `last_`
   Losses losses_;
   Blocks blocks_;
 };

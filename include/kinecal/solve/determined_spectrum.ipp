@@ -1,8 +1,9 @@
-// The spectrum of what samples determine, which error-free and measured points must both show.
+// The spectrum of what samples determine, at both error-free and measured points.
 //
-// The error-free problem moves a measured point to where the model predicts it.  Where what it moves
-// is known, not measured, this shows too much: sockets on one line, moved off it by the residuals, look
-// like points that determine the turn about it.  So a direction that has no effect on the measured
+// The error-free problem moves a measured point to where the model predicts it.  If the point is
+// known, not measured, this overstates the information: sockets on one line, moved off it by the
+// residuals, seem to determine the rotation about it.  So a direction without effect on the
+// measured points counts as undetermined, too.
 // points is not determined either.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -20,8 +21,7 @@ namespace kinecal::detail {
   return {values.data(), static_cast<std::size_t>(values.size())};
 }
 
-/// What of an information matrix is left to other directions than some that are open: the least
-/// information, whatever the open ones do.
+/// The information that remains in other directions if some directions are open, in the worst case.
 /// @param open  (n x k) orthonormal
 [[nodiscard]] inline Eigen::MatrixXd beside(const Eigen::MatrixXd& information,
                                             const Eigen::MatrixXd& open) {
@@ -36,7 +36,7 @@ namespace kinecal::detail {
   return information - by * inverse.asDiagonal() * by.transpose();
 }
 
-/// Takes directions without effect on the measured points from those that a spectrum determines.
+/// Removes directions without effect on the measured points from those that a spectrum determines.
 /// @param error_free  (n x n) information that the spectrum is of
 /// @param measured    (n x n) information at the measured points
 inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::MatrixXd& measured,

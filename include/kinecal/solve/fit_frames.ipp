@@ -27,7 +27,7 @@ KINECAL_INLINE double turn_between(const UnknownFrame& frame, const Eigen::Vecto
   return log(turn).norm();
 }
 
-/// True if two fits ended at one minimum.
+/// True if two fits ended at the same minimum.
 [[nodiscard]] inline bool same_fit(const FittedFrames& a, const FittedFrames& b,
                                    std::span<const UnknownFrame> frames) {
   constexpr double kEqual = 1e-5, kClose = 1e-2;  // relative
@@ -40,7 +40,7 @@ KINECAL_INLINE double turn_between(const UnknownFrame& frame, const Eigen::Vecto
          });
 }
 
-/// Distinct fits, lowest cost first; of equal ones, the one of the first start.
+/// Distinct fits, lowest cost first; of equal ones, that of the earliest start.
 [[nodiscard]] inline std::vector<FittedFrames> distinct(std::vector<FittedFrames> fits,
                                                         std::span<const UnknownFrame> frames) {
   std::stable_sort(fits.begin(), fits.end(),
@@ -66,9 +66,9 @@ KINECAL_INLINE int grid_size(std::span<const UnknownFrame> frames) {
   return turns ? kGrid : 0;
 }
 
-/// The values of a start.  A round takes every fifth rotation of a finer grid, which is as even.  Each
-/// frame goes through the grid in strides of its own, so that the combinations of several frames are
-/// spread, too.
+/// The values of a start.  A round takes every fifth rotation of a finer grid, which is still even.
+/// Each frame walks the grid with its own stride, so combinations of several frames are spread,
+/// too.
 [[nodiscard]] inline Eigen::VectorXd start_values(std::span<const UnknownFrame> frames, int start,
                                                   int round, Eigen::VectorXd values) {
   constexpr std::array<int, 4> kStrides = {1, 89, 47, 161};  // share no factor with the count
@@ -84,7 +84,7 @@ KINECAL_INLINE int grid_size(std::span<const UnknownFrame> frames) {
 
 using Evaluators = std::vector<std::unique_ptr<AnyEvaluator>>;
 
-/// Goes on with fits, one on each evaluator at a time.
+/// Continues fits, one per evaluator at a time.
 inline void go_on(std::vector<FittedFrames>& fits, int iterations, Evaluators& evaluators,
                   std::span<const UnknownFrame> frames) {
   const int threads = static_cast<int>(evaluators.size());
@@ -95,7 +95,8 @@ inline void go_on(std::vector<FittedFrames>& fits, int iterations, Evaluators& e
   });
 }
 
-/// One round of starts.  After a few iterations, only the best go on: most time would go to the others.
+/// One round of starts.  After a few iterations, only the best continue: the others would take most
+/// of the time.
 [[nodiscard]] inline std::vector<FittedFrames> fit_round(Evaluators& evaluators,
                                                          std::span<const UnknownFrame> frames,
                                                          const Eigen::VectorXd& values, int round) {

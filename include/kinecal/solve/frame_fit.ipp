@@ -22,7 +22,7 @@ inline void set_rotation(const UnknownFrame& frame, const Vector3<double>& vecto
   }
 }
 
-/// The component k of a grid's rotation belongs to the free axis k.
+/// Component k of a grid rotation sets the k-th free axis.
 inline void set_grid_rotation(const UnknownFrame& frame, int index, int count,
                               Eigen::VectorXd& values) {
   std::vector<int> free;
@@ -33,14 +33,14 @@ inline void set_grid_rotation(const UnknownFrame& frame, int index, int count,
   for (std::size_t k = 0; k < free.size(); ++k) values(free[k]) = vector(static_cast<int>(k));
 }
 
-/// Writes rotations as vectors of length pi at most: beyond that, derivatives fade.
+/// Limits rotation vectors to length pi: beyond that, derivatives fade.
 inline void shorten_rotations(std::span<const UnknownFrame> frames, Eigen::VectorXd& values) {
   for (const UnknownFrame& frame : frames) {
     if (frame.turns()) set_rotation(frame, shortest(rotation_of(frame, values)), values);
   }
 }
 
-/// Fits the evaluator's free parameters, from one start.
+/// Fits the evaluator's free parameters from one start.
 class FrameFit {
  public:
   FrameFit(AnyEvaluator& evaluator, std::span<const UnknownFrame> frames)
@@ -54,7 +54,7 @@ class FrameFit {
   }
 
   /// @param values      in: where to start; out: where it ended
-  /// @param iterations  at most
+  /// @param iterations  the largest number
   /// @returns  the cost; infinite if it is not defined there
   [[nodiscard]] double operator()(Eigen::VectorXd& values, int iterations) {
     NormalEquations at = placed(values);
@@ -88,8 +88,8 @@ class FrameFit {
                                        true, Losses::convex);
   }
 
-  /// Moves to the translations at which the cost is least, as far as it is quadratic in them: the
-  /// rotations then turn the frames about the points, and not about an origin that may be far away.
+  /// Moves to the translations of least cost, as far as the cost is quadratic in them: the
+  /// rotations then turn the frames about the points, not about an origin that may be far away.
   /// @returns  the normal equations there
   [[nodiscard]] NormalEquations placed(Eigen::VectorXd& values) {
     NormalEquations at = equations(values);

@@ -1,11 +1,11 @@
 // A problem linearized at its solution, in coordinates that samples and priors determine.
 //
-// What a result is worth is linear algebra on the rows near its minimum: the covariance, what a fold
-// would give, what one sample does.  Coordinates z leave out what nothing determines:
+// The quality of a result follows from linear algebra on the rows near its minimum: the covariance,
+// cross-validation, the effect of one sample.  Coordinates z leave out undetermined directions:
 //
 //   free parameters = those of the solution + basis z        (basis: free x coordinates)
 //
-// Coordinates have no unit: the basis holds those of the parameters.
+// Coordinates have no unit: the basis carries the units of the parameters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,11 +28,11 @@ struct RowBlock {
   Eigen::Index size = 0;   ///< number of rows: feature after feature
 };
 
-/// The directions in which samples or priors determine the free parameters.
+/// The directions of the free parameters that samples or priors determine.
 struct Coordinates {
   Eigen::MatrixXd basis;  ///< (free x coordinates) change of the free parameters
-  Eigen::MatrixXd null;   ///< (free x others) changes that nothing determines
-  /// (free) which part of each parameter nothing determines: 0 none of it, 1 all of it.
+  Eigen::MatrixXd null;   ///< (free x others) undetermined changes
+  /// (free) undetermined share of each parameter: 0 fully determined, 1 fully undetermined.
   Eigen::VectorXd lost;
   Eigen::VectorXd
       scale;  ///< (free) effect of each parameter on all weighted residuals, per its unit
@@ -45,9 +45,9 @@ struct LinearFit {
 
   std::vector<RowBlock> blocks;    ///< in the order of samples, then of error blocks
   Eigen::VectorXd residual;        ///< (rows) without losses
-  RowMajor jacobian;               ///< (rows x coordinates) derivatives; empty if not asked for
+  RowMajor jacobian;               ///< (rows x coordinates) derivatives; empty if not requested
   Eigen::VectorXd loss;            ///< (rows) rho' of the feature: 1 without a loss
-  Coordinates coordinates;         ///< by which derivatives are taken
+  Coordinates coordinates;         ///< the variables of the derivatives
   Eigen::VectorXd prior_gradient;  ///< (coordinates) of all priors
   Eigen::MatrixXd prior_hessian;   ///< (coordinates x coordinates) of all priors
 
@@ -98,12 +98,12 @@ struct Refit {
   Eigen::VectorXd residual;  ///< (rows) weighted, of all rows, in the order of LinearFit
 };
 
-/// Minimizes weighted squared rows from the solution of all: Gauss-Newton steps, halved until the cost
-/// falls.  One step is enough unless directions are hardly determined.
+/// Minimizes weighted squared rows, starting from the solution: Gauss-Newton steps, halved until
+/// the cost falls.  One step is enough unless some directions are poorly determined.
 /// @param values   where `fit` was linearized
 /// @param weights  (rows) of squared residuals
 /// @param priors   factor of the priors
-/// @param settled  a step that lowers the cost by less than this part of it is the last one
+/// @param settled  stops after a step that lowers the cost by less than this fraction
 [[nodiscard]] Refit refit(AnyEvaluator& evaluator, std::span<const double> values,
                           const LinearFit& fit, const Eigen::VectorXd& weights, double priors = 1.0,
                           double settled = 1e-4);

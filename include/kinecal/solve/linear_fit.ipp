@@ -14,7 +14,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Visits all rows as LinearFit has them, but by free parameters.
+/// Visits all rows in the order of LinearFit, by free parameters.
 inline void collect(AnyEvaluator& evaluator, std::span<const double> values, bool derivatives,
                     std::vector<RowBlock>& blocks, std::vector<TermResiduals>& all) {
   const auto visit = [&](int term, int sample, const TermResiduals& rows) {
@@ -120,7 +120,7 @@ KINECAL_INLINE Eigen::VectorXd stepped(const LinearFit& fit, const FreeSet& free
 
 namespace detail {
 
-/// Half the step until the weighted cost falls.
+/// Halves the step until the weighted cost falls.
 /// @returns  false if it does not fall
 inline bool descend(AnyEvaluator& evaluator, const LinearFit& fit, const Eigen::VectorXd& weights,
                     double priors, double settled, Eigen::VectorXd step, Refit& at) {
@@ -155,7 +155,7 @@ KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, std::span<const double> valu
   bool falls = detail::descend(evaluator, fit, weights, priors, settled, first, at);
   constexpr int kSteps = 10;
   for (int i = 1; falls && i < kSteps; ++i) {
-    // What the linearization promised is what came: no further step is needed.
+    // The linearization predicted this result well: no further step is needed.
     const Eigen::VectorXd promised = fit.residual + fit.jacobian * first;
     const double off = (promised - at.residual).squaredNorm();
     if (i == 1 && off < settled * at.residual.squaredNorm()) break;

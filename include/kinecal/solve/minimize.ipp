@@ -1,8 +1,8 @@
 // Minimizing the cost of a problem with Ceres, bounds included.
 //
-// Ceres keeps within bounds by projecting its steps, and converges slowly where a bound is active.
-// So an active set is used: parameters that end at a bound, with the cost still falling beyond it,
-// are held there, and the others are minimized again, until the set of held parameters is stable.
+// Ceres enforces bounds by projecting its steps, and converges slowly where a bound is active.  So
+// we use an active set: parameters that end at a bound, with the cost still falling beyond it, are
+// held there, and the others are minimized again, until the set is stable.
 // Source: Nocedal, Wright, Numerical Optimization, 16.5.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -36,7 +36,7 @@ inline void set_bounds(ceres::Problem& problem, const ParameterTable& table, con
 }
 
 /// Minimizes over the evaluator's free parameters.
-/// @param values  in: where to start; out: where it ended, if that is usable
+/// @param values  in: where to start; out: where it ended, if usable
 inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const SolveOptions& options,
                       Losses losses, Minimum& minimum) {
   const AnyProblem& problem = evaluator.problem();
@@ -92,11 +92,11 @@ inline void run_ceres(AnyEvaluator& evaluator, Eigen::VectorXd& values, const So
   return inside;
 }
 
-/// Makes evaluators of the same samples by other free parameters.
+/// Makes evaluators of the same samples for other free parameters.
 using EvaluatorOf = std::function<std::unique_ptr<AnyEvaluator>(const FreeSet&)>;
 
 /// Minimizes over the evaluator's free parameters, within their bounds.
-/// @param values  in: where to start; out: where it ended, if that is usable
+/// @param values  in: where to start; out: where it ended, if usable
 [[nodiscard]] inline Minimum minimize(AnyEvaluator& evaluator, const EvaluatorOf& evaluator_of,
                                       Eigen::VectorXd& values, const SolveOptions& options,
                                       Losses losses) {
@@ -112,7 +112,7 @@ using EvaluatorOf = std::function<std::unique_ptr<AnyEvaluator>(const FreeSet&)>
     std::vector<int> next = within_bounds(evaluator, values, losses);
     if (next == inside || next.empty()) return minimum;
     inside = std::move(next);
-    // From the start again: crawling along a bound also drifts along what cannot be observed.
+    // Restart: crawling along a bound also drifts along unobservable directions.
     for (const int p : inside) values(p) = start(p);
     const auto of_inside = evaluator_of(FreeSet(inside, problem.table().size()));
     run_ceres(*of_inside, values, options, losses, minimum);

@@ -1,4 +1,4 @@
-// Random starts: joints and frames moved, within bounds that are stated in starts.hpp.
+// Random starts: joints and frames moved within the ranges of starts.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace kinecal::detail {
 
-/// How far a parameter moves; zero for those of sensors and error blocks.
+/// The range of a parameter's random offset; zero for those of sensors and error blocks.
 /// @returns  radians or metres, to either side
 [[nodiscard]] inline double random_reach(const AnyProblem& problem, int parameter) {
   constexpr double kDegree = std::numbers::pi / 180.0;
@@ -29,14 +29,14 @@ namespace kinecal::detail {
 }
 
 /// Values with the free joints and frames moved.
-/// @param n  number of the start: its seed
+/// @param n  number of the start, used as its seed
 [[nodiscard]] inline Eigen::VectorXd random_start_near(const AnyProblem& problem,
                                                        const FreeSet& free, Eigen::VectorXd values,
                                                        int n) {
   std::mt19937_64 engine(static_cast<std::uint64_t>(n) + 1);
-  engine.discard(16);  // seeds that are close give similar first numbers
+  engine.discard(16);  // similar seeds give similar first numbers
   for (const int p : free.parameters()) {
-    const double unit = static_cast<double>(engine() >> 11) * 0x1p-53;  // the same everywhere
+    const double unit = static_cast<double>(engine() >> 11) * 0x1p-53;  // the same on all platforms
     values(p) += (2.0 * unit - 1.0) * random_reach(problem, p);
   }
   return values;

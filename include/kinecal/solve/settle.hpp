@@ -1,8 +1,8 @@
-// What a fit does not decide: angles a full turn away, and directions that no residual sees.
+// Fixes what a fit leaves open: full turns of angles, and directions that no residual sees.
 //
-// A minimum is a valley floor where samples and priors leave directions open, and a solver stops
-// anywhere in it.  The result is the point of it nearest to the start, each parameter measured by its
-// effect on the residuals, so it does not depend on units and an open direction never drifts.
+// If samples and priors leave directions open, the minimum is a valley floor and a solver stops
+// anywhere in it.  The result is its point nearest to the start, with each parameter measured by
+// its effect on the residuals.  So it does not depend on units, and an open direction never drifts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,13 +13,13 @@
 
 namespace kinecal {
 
-/// Brings offsets of rotating joints and rotation vectors of frames within half a turn; offsets of
-/// joints that others mimic keep their value unless that gives the same poses.
+/// Wraps offsets of rotating joints and rotation vectors of frames to half a turn.  An offset that
+/// drives mimic joints is wrapped only if all poses stay the same.
 /// @param values  of all parameters of the table, in and out
 void wrap_angles(const AnyProblem& problem, const FreeSet& free, Eigen::VectorXd& values);
 
-/// Moves a solution along what nothing determines to the point nearest to the start, and to the minimum
-/// there.  The cost stays the same (1e-9); otherwise the solution stays as it is.
+/// Moves a solution along undetermined directions to the point nearest to the start, then to the
+/// minimum there.  The cost must stay the same (1e-9); otherwise the solution is not changed.
 /// @param start   values before the fit
 /// @param values  of all parameters of the table: the solution, in and out
 /// @returns  the cost there

@@ -1,4 +1,4 @@
-// Settling what a fit does not decide.
+// Fixes what a fit leaves open.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,8 +14,8 @@ namespace kinecal {
 
 namespace detail {
 
-/// True if the position of a joint may change by full turns: it rotates, and none mimics it by another
-/// factor than a whole one.
+/// True if the position of a joint may change by full turns: it rotates, and joints that mimic it
+/// have whole multipliers.
 [[nodiscard]] inline bool may_turn(const Robot& robot, const std::string& name) {
   if (!robot.has_joint(name) || !turns(robot.joint(name).type)) return false;
   for (const Joint& joint : robot.joints()) {
@@ -27,7 +27,7 @@ namespace detail {
   return true;
 }
 
-/// The free parameters' part of all values.
+/// The free parameters among all values.
 [[nodiscard]] inline Eigen::VectorXd of_free(const FreeSet& free, const Eigen::VectorXd& values) {
   return values(free.parameters());
 }
@@ -40,8 +40,8 @@ namespace detail {
   return true;
 }
 
-/// The nearest point to the start in the plane of what nothing determines, then down to the minimum.
-/// @returns  how far it went along that plane, in units of effect
+/// Moves to the point nearest to the start in the undetermined subspace, then down to the minimum.
+/// @returns  the distance in that subspace, in units of effect
 inline double hold_once(AnyEvaluator& evaluator, const Eigen::VectorXd& start,
                         Eigen::VectorXd& values) {
   const FreeSet& free = evaluator.free();

@@ -1,4 +1,4 @@
-// Sums of shards as numbers, and the evaluator that adds them.
+// Packs the sums of shards as numbers, and the evaluator that adds them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,7 +30,7 @@ namespace kinecal::detail {
   return normal;
 }
 
-/// Evaluates shard after shard.
+/// Evaluates one shard after another.
 class ShardEvaluator final : public AnyEvaluator {
  public:
   ShardEvaluator(const Shards& shards, FreeSet free, int threads)
@@ -56,8 +56,8 @@ class ShardEvaluator final : public AnyEvaluator {
     return undefined;
   }
 
-  // Reading a shard costs more than its derivatives: they are always taken, and the last sums are kept,
-  // as Ceres asks for the cost first and for derivatives at the same point later.
+  // Reading a shard costs more than its derivatives, so they are always computed.  The last sums
+  // are kept, because Ceres asks for the cost first and for derivatives at the same point later.
   [[nodiscard]] NormalEquations normal_equations(std::span<const double> values, bool,
                                                  Losses losses) override {
     const std::string what =

@@ -1,9 +1,9 @@
-// Solving with more samples than fit into memory, or than one process reads.
+// Solves with more samples than fit into memory, or with several processes.
 //
-// Cost, gradient and Hessian are sums over samples, so samples can come in shards: one is read, summed
-// up and forgotten before the next is read.  A shard's sums are a few thousand numbers, whatever its
-// size; processes that share the work exchange these.  They are added in the order of the shards, so
-// the result is the same to the last bit however many processes there are.
+// Cost, gradient and Hessian are sums over samples, so samples can come in shards: each is read,
+// summed and released before the next.  A shard's sums are a few thousand numbers, whatever its
+// size; processes that share the work exchange these.  They are added in the order of the shards,
+// so the result is the same, bit for bit, for any number of processes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -24,9 +24,9 @@ namespace kinecal {
 /// Computes numbers of a shard.
 using NumbersOfShard = std::function<std::vector<double>(int shard)>;
 
-/// Gives the numbers of all shards, in their order: computes them, or gets them from processes that do.
-/// @param what  names the numbers and the values at which they are taken: bytes, the same in all
-///              processes
+/// Returns the numbers of all shards, in order: computes them or gets them from other processes.
+/// @param what  identifies the numbers and the values at which they are taken: bytes, the same in
+///              all processes
 using ShardExchange = std::function<std::vector<std::vector<double>>(
     const std::string& what, const NumbersOfShard& numbers_of)>;
 
@@ -36,7 +36,8 @@ struct Shards {
   int count = 0;                        ///< number of shards
   int samples = 0;                      ///< of all shards
   int num_residuals = 0;                ///< of all features; a prior counts once per sample
-  /// The problem with the samples of a shard; whether it is kept or read again is the reader's choice.
+  /// The problem with the samples of a shard; the reader decides whether to keep it or read it
+  /// again.
   std::function<std::shared_ptr<const AnyProblem>(int shard)> read = {};
   ShardExchange exchange = {};  ///< empty: all are computed here, one after another
 };
@@ -52,10 +53,10 @@ struct Shards {
 [[nodiscard]] std::unique_ptr<AnyEvaluator> shard_evaluator(const Shards& shards,
                                                             const FreeSet& free, int threads = 0);
 
-/// As solve(), hold_undetermined() and wrap_angles() of all samples.
+/// Like solve(), hold_undetermined() and wrap_angles() with all samples.
 /// @param values     of all parameters of the table: in: where to start; out: where it ended.
 ///                   Unchanged if the result is not usable
-/// @param reference  values to which a direction returns that nothing determines
+/// @param reference  values that undetermined directions return to
 [[nodiscard]] StepResult solve_shards(const Shards& shards, const FreeSet& free,
                                       std::vector<double>& values,
                                       std::span<const double> reference,
@@ -63,7 +64,7 @@ struct Shards {
 
 namespace detail {
 
-/// Names numbers at some values: the name, then the values' bytes.
+/// Identifies numbers at some values: the name, then the values' bytes.
 [[nodiscard]] std::string name_at(const std::string& what, const FreeSet& free,
                                   std::span<const double> values);
 

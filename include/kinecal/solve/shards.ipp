@@ -1,4 +1,4 @@
-// Sums over shards, and what is solved with them.
+// Sums over shards, and solving with them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Moves a solution along what nothing determines to the reference, and to the minimum there.
+/// Moves a solution along undetermined directions to the reference, then to the minimum there.
 /// @returns  the cost there
 inline double hold_shards(const Shards& shards, const FreeSet& free,
                           const Eigen::VectorXd& reference, int threads, Eigen::VectorXd& values) {

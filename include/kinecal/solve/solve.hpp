@@ -1,4 +1,4 @@
-// Solving one step of a calibration with Ceres.
+// Solves one step of a calibration with Ceres.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace kinecal {
 
-/// How Ceres gets the samples: summed (compressed_cost.hpp) or one by one (stacked_cost.hpp).
+/// How Ceres receives the samples: summed (compressed_cost.hpp) or one by one (stacked_cost.hpp).
 enum class CostForm { compressed, stacked };
 
 /// "compressed" or "stacked".
@@ -26,15 +26,15 @@ enum class CostForm { compressed, stacked };
 /// How to solve a step.
 struct SolveOptions {
   int max_num_iterations = 1000;  ///< the step does not converge if it needs more
-  /// Iterations end when one lowers the cost by less than this fraction of it, or a Gauss-Newton step
-  /// promises less.  The default is small: an iteration takes little time, and costs are compared to
-  /// many digits.
+  /// Stops when an iteration lowers the cost by less than this fraction, or a Gauss-Newton step
+  /// predicts less.  The default is small: iterations are cheap, and costs are compared to many
+  /// digits.
   double function_tolerance = 1e-14;
-  CostForm form = CostForm::compressed;  ///< how Ceres gets the samples
-  int threads = 0;                       ///< zero: one per core; the result does not depend on it
-  int random_starts = 0;                 ///< of calibrate(), beside the one given; solve() has one
-  /// Called after each iteration with its number and the cost where it ended; a refused step ends where it
-  /// began.
+  CostForm form = CostForm::compressed;  ///< how Ceres receives the samples
+  int threads = 0;                       ///< zero: one per core; does not affect the result
+  int random_starts = 0;                 ///< of calibrate(), besides the one given
+  /// Called after each iteration with its number and the current cost; a rejected step leaves the
+  /// cost as it was.
   std::function<void(int iteration, double cost)> progress = {};
   ProgressMeter meter = {};  ///< called after each of several starts
 };
@@ -43,8 +43,8 @@ struct SolveOptions {
 struct StepResult {
   std::string name;                      ///< of the step; solve() leaves it empty
   bool converged = false;                ///< the values are a minimum
-  std::string termination;               ///< why it stopped, in a sentence
-  int iterations = 0;                    ///< of Ceres, all runs together
+  std::string termination;               ///< why it stopped, as a sentence
+  int iterations = 0;                    ///< of Ceres, all runs
   double initial_cost = 0.0;             ///< 1/2 sum rho(|w r|^2) at the start
   double final_cost = 0.0;               ///< the same at the end
   double seconds = 0.0;                  ///< wall time
@@ -54,19 +54,19 @@ struct StepResult {
   int samples = 0;                       ///< of the problem
   int evaluations = 0;                   ///< how often all samples were evaluated
   StartSummary starts = {};              ///< of solve_from_starts(), if there were several
-  std::vector<double> costs = {};  ///< after each iteration, from the start on; where losses are
-                                   ///< not convex, that with convex ones comes first
+  std::vector<double> costs = {};  ///< after each iteration, from the start; if losses are not
+                                   ///< convex, the solve with convex losses comes first
 };
 
 /// Minimizes the cost of a problem over its free parameters.
 ///
-/// If a loss is not convex (cauchy, tukey), the problem is solved with a convex loss first: far from
-/// the minimum, the gradient of such a loss vanishes.
-/// @param free    which parameters may change
-/// @param values  of all parameters of the problem's table: in: where to start; out: where it ended.
-///                Unchanged if the result is not usable (see StepResult::termination)
+/// If a loss is not convex (cauchy, tukey), the problem is first solved with a convex loss, because
+/// the gradient of such a loss vanishes far from the minimum.
+/// @param free    the parameters that may change
+/// @param values  of all parameters of the problem's table: in: where to start; out: where it
+///                ended.  Unchanged if the result is not usable (see StepResult::termination)
 /// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor of the
-///                                problem, or if values are not as many as its table has parameters
+///                                problem, or if the number of values is not that of its table
 [[nodiscard]] StepResult solve(const AnyProblem& problem, const FreeSet& free,
                                Eigen::VectorXd& values, const SolveOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Solving one step.
+// Definition of solve().
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

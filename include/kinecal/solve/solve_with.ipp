@@ -1,4 +1,4 @@
-// Solving one step with an evaluator, whatever it sums.
+// Solves one step with any evaluator.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,7 +29,7 @@ namespace detail {
   return convex;
 }
 
-/// The name of a term whose loss leaves out half of its features or more; empty if there is none.
+/// The name of a term whose loss ignores half of its features or more; empty if there is none.
 /// Such a "minimum" is a plateau.
 [[nodiscard]] inline std::string mostly_left_out(AnyEvaluator& evaluator,
                                                  std::span<const double> values) {
@@ -57,7 +57,7 @@ namespace detail {
   return {};
 }
 
-/// A value from an earlier step may lie outside of this step's bounds: takes the nearest one inside.
+/// Clamps values to this step's bounds; an earlier step may have left them outside.
 inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
                             Eigen::VectorXd& values) {
   for (const int p : free.parameters()) {
@@ -65,9 +65,9 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
   }
 }
 
-/// By how much chi-square could still fall, to second order: g^T H^-1 g, over the variance of the
-/// residuals.  With it, 2 cost / (residuals - parameters) is one, whether a sigma was given or not.
-/// Exact samples leave rounding errors.  Parameters that are held at a bound do not move.
+/// How far chi-square could still fall, to second order: g^T H^-1 g over the variance of the
+/// residuals.  This scaling makes 2 cost / (residuals - parameters) one, with or without a given
+/// sigma.  Exact samples leave rounding errors.  Parameters held at a bound do not move.
 [[nodiscard]] inline double possible_decrease(AnyEvaluator& evaluator,
                                               const EvaluatorOf& evaluator_of,
                                               const Eigen::VectorXd& values,
@@ -86,9 +86,9 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
   return variance > 0.0 ? projected.squaredNorm() / variance : 0.0;
 }
 
-/// How a solve that did not fail ended.  One that ran out of iterations, or made no step, has converged
-/// if what is left is nothing beside the noise: Ceres also takes the smallest of refused steps for
-/// convergence.
+/// Decides whether a solve that did not fail has converged.  One that ran out of iterations, or
+/// made no step, has converged if the possible decrease is negligible against the noise: Ceres also
+/// stops at the smallest of rejected steps and calls it convergence.
 inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evaluator_of,
                               const Eigen::VectorXd& values, const Minimum& last,
                               StepResult& result) {
@@ -116,7 +116,8 @@ inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evalua
   result.termination = what.str();
 }
 
-/// Costs and counts at the start; false, with the reason, if there is nothing to solve.
+/// Sets costs and counts at the start; returns false, with the reason, if there is nothing to
+/// solve.
 inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepResult& result) {
   result.initial_cost = evaluator.normal_equations(values, false).cost;
   result.final_cost = result.initial_cost;
@@ -142,7 +143,7 @@ inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepR
 }
 
 /// Solves a step from a start within its bounds.
-/// @param result  has the numbers of samples, residuals and parameters
+/// @param result  with the numbers of samples, residuals and parameters
 [[nodiscard]] inline StepResult solve_with(const EvaluatorOf& evaluator_of, const FreeSet& free,
                                            Eigen::VectorXd& values, const SolveOptions& options,
                                            StepResult result) {

@@ -1,4 +1,4 @@
-// The iterations of Ceres: careful ones, then bold ones.
+// Runs Ceres with careful steps first, then bold ones.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,8 +14,8 @@
 
 namespace kinecal::detail {
 
-/// The cost where Ceres stands after each iteration.  A step that was not successful leaves the values
-/// where they were, and its summary has the cost of the trial: DBL_MAX where a residual is undefined.
+/// The current cost after each iteration.  A rejected step leaves the values as they were, but its
+/// summary has the cost of the trial: DBL_MAX where a residual is undefined.
 class StandingCost {
  public:
   /// True if the iteration is the start or moved the values.
@@ -30,10 +30,10 @@ class StandingCost {
   double cost_ = 0.0;
 };
 
-/// Reports the progress, and stops where even an undamped step promises nothing.
+/// Reports progress, and stops when even an undamped step predicts no decrease.
 class StepCallback final : public ceres::IterationCallback {
  public:
-  /// @param cost  of the problem, if it has just this one
+  /// @param cost  of the problem, if it is the only one
   StepCallback(const SolveOptions& options, const CompressedCost* cost)
       : options_(options), cost_(cost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
@@ -63,17 +63,17 @@ class StepCallback final : public ceres::IterationCallback {
   return ceres_options;
 }
 
-/// How far steps go.
+/// How long steps may be.
 enum class Steps {
   careful,  ///< only downhill, from a small trust region
   bold      ///< long ones, some of them uphill
 };
 
-/// Calibrations have directions that are barely observable, at the bottom of curved valleys.  Careful
-/// steps follow a valley in a tenth of the iterations that bold ones need, which jump from side to side;
-/// but where many directions are barely observable they creep, and may stop short of the minimum.  So
-/// careful steps come first, and bold ones have the last word: from where careful ones ended, or from
-/// the start if they did not.  Nothing is left to say where even an undamped step promises nothing.
+/// Calibrations have barely observable directions, at the bottom of curved valleys.  Careful steps
+/// follow a valley in a tenth of the iterations of bold ones, which jump from side to side.  But
+/// where many directions are barely observable they creep, and may stop short of the minimum.  So
+/// careful steps come first and bold ones last: from where the careful ones ended, or from the
+/// start if they failed.  Bold ones are skipped if even an undamped step predicts no decrease.
 inline void set_steps(Steps steps, ceres::Solver::Options& options) {
   constexpr double kCareful = 1e4, kBold = 1e6;
   options.use_nonmonotonic_steps = steps == Steps::bold;
@@ -84,7 +84,7 @@ inline void set_steps(Steps steps, ceres::Solver::Options& options) {
 struct Minimum {
   bool usable = false, converged = false;
   bool moved = false;              ///< a step was successful since the start
-  bool stuck = false;              ///< none was, though a Gauss-Newton step promises something
+  bool stuck = false;              ///< none was, though a Gauss-Newton step predicts a decrease
   std::string message;             ///< of the last run
   double cost = 0.0;               ///< at the end of the last run
   std::vector<double> costs = {};  ///< of each iteration of all runs
@@ -114,8 +114,8 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
 
 /// Runs Ceres from x to a minimum.
 /// @param x        in: the start; out: where it ended
-/// @param cost     of the problem, if it has just this one
-/// @param minimum  this run is added to it
+/// @param cost     of the problem, if it is the only one
+/// @param minimum  in and out: this run is added
 inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const SolveOptions& options,
                        const CompressedCost* cost, Minimum& minimum) {
   ceres::Solver::Options solver = ceres_options(options);

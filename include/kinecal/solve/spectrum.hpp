@@ -1,7 +1,7 @@
-// The singular values of a Jacobian whose columns have been scaled to length one, from J^T J: which
-// combinations of parameters have an effect.
+// Singular values of a Jacobian with columns scaled to length one, computed from J^T J: which
+// parameter combinations are observable.
 //
-// Whether a combination has an effect is asked of the error-free problem: see ARCHITECTURE.md.
+// Observability is judged on the error-free problem: see ARCHITECTURE.md.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,34 +14,34 @@
 
 namespace kinecal::detail {
 
-/// Singular values below this share of the largest one are zero: those of 1e-8 and below are rounding,
-/// as they are roots of eigenvalues of J^T J.
+/// Singular values below this fraction of the largest one count as zero; those of 1e-8 and below
+/// are rounding, because they are roots of eigenvalues of J^T J.
 inline constexpr double kUnobservable = 1e-6;
 
 /// J^T J of the error-free problem, weighted, without priors.
 [[nodiscard]] Eigen::MatrixXd error_free_information(const AnyProblem& problem, const FreeSet& free,
                                                      std::span<const double> values);
 
-/// What samples say of the free parameters: sums over them.
+/// The information of samples on the free parameters, as sums.
 struct SampleInformation {
   NormalEquations measured;    ///< at the measured points, priors included
   Eigen::MatrixXd error_free;  ///< J^T J of the error-free problem, weighted, without priors
   Eigen::MatrixXd priors;      ///< Hessian of the priors
 };
 
-/// Whether priors determine parameters, too.
+/// Whether priors also determine parameters.
 enum class Priors { count, ignored };
 
 /// Eigenvalues of an information matrix whose columns have been scaled to length one.
 struct Spectrum {
-  Eigen::VectorXd scale;     ///< lengths of the columns of J; one where they are zero
+  Eigen::VectorXd scale;     ///< lengths of the columns of J; one for zero columns
   Eigen::VectorXd singular;  ///< singular values of the scaled J, ascending
   Eigen::MatrixXd vectors;   ///< in the same order
-  Eigen::Index null = 0;     ///< the first ones, which are zero
+  Eigen::Index null = 0;     ///< how many of the first ones are zero
 
   /// Of a symmetric, positive semidefinite matrix.
   explicit Spectrum(const Eigen::MatrixXd& information);
-  /// The pseudo-inverse of the matrix, in its own units.
+  /// The pseudo-inverse of the matrix, in its original units.
   [[nodiscard]] Eigen::MatrixXd pseudo_inverse() const;
 };
 

@@ -3,8 +3,8 @@
 //   const Stack s = stack(problem, free, values);
 //   const Eigen::VectorXd step = -s.jacobian.colPivHouseholderQr().solve(s.residual);
 //
-// Use it for problems of a size that fits in memory; AnyEvaluator::normal_equations() sums the same
-// rows without storing them.
+// Use it if the problem fits in memory; AnyEvaluator::normal_equations() sums the same rows without
+// storing them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,14 +23,13 @@ struct Stack {
   /// Rows as the evaluation writes them.
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// (residuals) weight of the feature times residual: term by term, sample by sample, then the
-  /// priors.
+  /// (residuals) feature weight times residual: term by term, sample by sample, then the priors.
   Eigen::VectorXd residual;
   RowMajor jacobian;  ///< (residuals x free parameters) derivatives of these
 
-  /// (free x free) covariance of the free parameters: (J^T J)^-1.  It holds if weights are one over
-  /// standard deviations; multiply by residual.squaredNorm() / (residuals - free) if only their
-  /// ratios are known.
+  /// (free x free) covariance of the free parameters: (J^T J)^-1.  Valid if weights are one over
+  /// standard deviations; if you know only their ratios, multiply by residual.squaredNorm() /
+  /// (residuals - free).
   /// @returns  nullopt if the samples do not determine all of them
   [[nodiscard]] std::optional<Eigen::MatrixXd> covariance() const;
 };
@@ -38,12 +37,12 @@ struct Stack {
 /// Stacks all residuals of a problem.  Losses are not applied.
 /// @param free    the columns of the Jacobian
 /// @param values  of all parameters of the problem's table
-/// @returns  residuals whose squares add up to twice the cost without losses.  A prior counts once for
-///           each sample: its rows carry the square root of their number
-/// @throws std::domain_error      if a residual is undefined, such as that of a point behind a camera;
-///                                with the error block and the sample
-/// @throws std::invalid_argument  if a free parameter is not one of the problem, or if values are not
-///                                as many as the table has parameters
+/// @returns  residuals whose squares add up to twice the cost without losses.  A prior counts once
+///           per sample: its rows carry the square root of the number of samples
+/// @throws std::domain_error      if a residual is undefined, such as that of a point behind a
+///                                camera; with the error block and the sample
+/// @throws std::invalid_argument  if a free parameter does not belong to the problem, or if the
+///                                number of values is not that of the table's parameters
 [[nodiscard]] Stack stack(const AnyProblem& problem, const FreeSet& free,
                           std::span<const double> values);
 

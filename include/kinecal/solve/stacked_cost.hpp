@@ -1,7 +1,7 @@
-// The uncompressed path: one residual block of Ceres for each feature, as Ceres is usually used.
+// The uncompressed path: one Ceres residual block per feature, the usual way to use Ceres.
 //
 // Cost, gradient and steps are the same; the time grows with the number of samples.  Use it for
-// comparison, or to add other residual blocks to the same Ceres problem.  All features are
+// comparison, or to add your own residual blocks to the same Ceres problem.  All features are
 // evaluated at once before Ceres asks for the first of them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -21,20 +21,20 @@
 
 namespace kinecal {
 
-/// A loss of errors/loss.hpp as a loss function of Ceres.
+/// A loss of errors/loss.hpp as a Ceres loss function.
 class CeresLoss final : public ceres::LossFunction {
  public:
   /// Takes a copy of the loss.
   explicit CeresLoss(const Loss& loss) : loss_(loss) {}
-  /// Writes rho, its derivative, and zero: the second derivative is never positive, and Ceres uses it
-  /// only if it is.
+  /// Writes rho, its derivative, and zero: the second derivative is never positive, and Ceres
+  /// ignores negative ones.
   void Evaluate(double squared, double* rho) const override;
 
  private:
   Loss loss_;
 };
 
-/// Residuals and Jacobian of all features and priors at the point where Ceres is.
+/// Residuals and Jacobian of all features and priors at Ceres' current point.
 class StackedResiduals final : public ceres::EvaluationCallback {
  public:
   /// @param values  of all parameters of the problem's table; the free ones are replaced
@@ -42,7 +42,7 @@ class StackedResiduals final : public ceres::EvaluationCallback {
   StackedResiduals(const AnyProblem& problem, const FreeSet& free, Eigen::VectorXd values,
                    const double* x, Losses losses);
 
-  /// Evaluates all features at the point where Ceres is; Ceres calls this.
+  /// Evaluates all features at Ceres' current point; called by Ceres.
   void PrepareForEvaluation(bool jacobians, bool) override;
 
   /// Adds a residual block for each feature and prior.

@@ -1,4 +1,4 @@
-// What was done to find where a step starts, and what it found.
+// Summary of the search for a step's start: what was tried and found.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,20 +17,20 @@ inline constexpr double kFrameDegrees = 10.0;  ///< each component of a frame's 
 inline constexpr double kFrameMetres = 0.05;   ///< each component of a frame's translation
 }  // namespace random_start
 
-/// A minimum of the cost at which some solves ended.
+/// A minimum of the cost that some solves reached.
 struct FoundMinimum {
   double cost = 0.0;  ///< the lowest of these solves
-  int solves = 0;     ///< how many ended there
+  int solves = 0;     ///< how many reached it
 };
 
-/// The starts of a step.  Empty if it had only the one that the configuration gives.
+/// The starts of a step.  Empty if only the configured start was used.
 struct StartSummary {
-  std::vector<std::string> frames = {};   ///< whose pose was searched for
-  int starts = 0;                         ///< of that search, with frames alone
+  std::vector<std::string> frames = {};   ///< frames whose pose was searched for
+  int starts = 0;                         ///< of that search, fitting frames only
   int random_starts = 0;                  ///< with joints and frames moved at random
-  int failed = 0;                         ///< solves with everything free that ended in no minimum
-  std::vector<FoundMinimum> minima = {};  ///< of solves with everything free; lowest first
-  int taken = -1;                         ///< which of the minima is the result; -1: none
+  int failed = 0;                         ///< solves of everything that reached no minimum
+  std::vector<FoundMinimum> minima = {};  ///< of solves of everything; lowest first
+  int taken = -1;                         ///< index of the resulting minimum; -1: none
   double seconds = 0.0;                   ///< wall time of all starts
 
   /// True if there was more than one start.
@@ -38,14 +38,14 @@ struct StartSummary {
 };
 
 namespace detail {
-/// Adds a solve that ended at a minimum; costs that differ by rounding are one minimum.
-/// @param rounding  a difference that means nothing, in units of the cost
+/// Adds a solve that reached a minimum; costs that differ only by rounding are the same minimum.
+/// @param rounding  a negligible difference, in units of the cost
 void add_minimum(StartSummary& summary, double cost, double rounding = 0.0);
-/// Costs that differ by less are equal, relatively: a solve stops at its rounding.
+/// Costs with a smaller relative difference are equal: solves stop at their rounding.
 inline constexpr double kSameCost = 1e-6;
 }  // namespace detail
 
-/// The summary in words: "pose of 'tracker' was not known: found from 60 starts; 2 minima, costs
+/// The summary as text: "pose of 'tracker' was not known: found from 60 starts; 2 minima, costs
 /// 0.00012 (taken), 0.35".  Empty if nothing was searched.
 [[nodiscard]] std::string to_string(const StartSummary& summary);
 

@@ -1,4 +1,4 @@
-// The starts of a step in words.
+// Text of the starts of a step.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

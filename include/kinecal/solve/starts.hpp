@@ -1,10 +1,10 @@
-// Solving a step from several starts: where a pose is unknown, and at random on request.
+// Solves a step from several starts: if a pose is unknown, and at random on request.
 //
-// Frames whose pose nobody gave are fitted alone, from a grid of orientations, to a few samples
-// (fit_frames.hpp), and the best few fits are solved with everything free.  So is the start that the
-// configuration gives, and its minimum is taken unless another is lower by more than rounding.  A
-// frame with a pose in the URDF or in the configuration takes part only if the step ends badly without:
-// it does not converge, or it turns this frame by more than 30 degrees.
+// Frames of unknown pose are first fitted alone to a few samples, from a grid of orientations
+// (fit_frames.hpp).  The best few fits are then solved with everything free.  So is the configured
+// start, and its minimum is taken unless another is lower by more than rounding.  A frame with a
+// pose in the URDF or configuration takes part only if the step otherwise ends badly: it does not
+// converge, or it rotates this frame by more than 30 degrees.
 //
 // The result does not depend on the number of threads.
 // SPDX-License-Identifier: Apache-2.0
@@ -20,11 +20,11 @@
 
 namespace kinecal {
 
-/// Minimizes the cost of a problem from several starts.  StepResult::starts says what was done.
+/// Minimizes the cost of a problem from several starts; StepResult::starts describes them.
 /// @param values   of all parameters of the problem's table: in: where to start; out: where it
 ///                 ended.  Unchanged if no result is usable
-/// @param options  its random_starts are added
-/// @param unknown  frames whose pose is not known; those that only shift are fitted with the others
+/// @param options  also uses its random_starts
+/// @param unknown  frames of unknown pose; those that only translate are fitted with the others
 /// @param excerpt  the problem with a few of its samples; null: the problem itself
 /// @throws std::invalid_argument  as solve()
 [[nodiscard]] StepResult solve_from_starts(const AnyProblem& problem, const FreeSet& free,

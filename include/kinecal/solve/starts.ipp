@@ -1,4 +1,4 @@
-// Solving from several starts.
+// Solves from several starts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -33,7 +33,7 @@ class Starts {
     if (std::isfinite(cost)) floor_ = kRounding * cost;
   }
 
-  /// Solves from the values that the configuration gives; of equal results, takes this one.
+  /// Solves from the configured values; of equal results, prefers this one.
   void solve_plain(const Eigen::VectorXd& start) {
     Attempt plain{start, start, {}};
     if (!solve_plain(plain)) return;
@@ -61,7 +61,7 @@ class Starts {
     solve_all(starts);
   }
 
-  /// Solves from starts around that of the best solve so far.
+  /// Solves from random starts around that of the best solve so far.
   void solve_random() {
     summary_.random_starts = options_.random_starts;
     const Eigen::VectorXd from =
@@ -72,17 +72,17 @@ class Starts {
     solve_all(starts);
   }
 
-  /// True if the best solve so far gives reason to doubt the poses that were given.
+  /// True if the best solve so far casts doubt on the given poses.
   [[nodiscard]] bool ended_badly(std::span<const UnknownFrame> frames,
                                  const Eigen::VectorXd& from) const {
-    constexpr double kLikely = std::numbers::pi / 6.0;  // a bracket that is mounted as drawn
+    constexpr double kLikely = std::numbers::pi / 6.0;  // limit for a bracket mounted as drawn
     const auto doubtful = [&](const UnknownFrame& frame) {
       return frame.has_guess && turn_between(frame, from, best_.values) > kLikely;
     };
     return !best_.result.converged || std::any_of(frames.begin(), frames.end(), doubtful);
   }
 
-  /// The result, and its values if it has some.
+  /// The result and, if usable, its values.
   [[nodiscard]] StepResult finish(Eigen::VectorXd& values, double seconds) {
     StepResult result = std::move(best_.result);
     values = std::move(best_.values);
@@ -107,11 +107,11 @@ class Starts {
     return evaluator.normal_equations(all, false).cost;
   }
 
-  /// @returns  false if it gave up, because a search has found a minimum that it does not come near.
-  ///           Astray, a solve takes a hundred times as long
+  /// @returns  false if it gave up because it does not come near a minimum that a search found: a
+  ///           solve that goes astray takes a hundred times as long
   [[nodiscard]] bool solve_plain(Attempt& plain) const {
     constexpr int kTrial = 25;         // iterations
-    constexpr double kFarAbove = 2.0;  // times the cost that was found
+    constexpr double kFarAbove = 2.0;  // times the cost found by the search
     if (best_.result.converged && options_.max_num_iterations > kTrial) {
       SolveOptions trial = options_;
       trial.max_num_iterations = kTrial;
@@ -138,7 +138,7 @@ class Starts {
     }
   }
 
-  /// Solves side by side, and keeps the best; the order decides between equals.
+  /// Solves in parallel and keeps the best; of equals, the first.
   void solve_all(const std::vector<Eigen::VectorXd>& starts) {
     const int n = static_cast<int>(starts.size());
     std::vector<Attempt> attempts(starts.size());

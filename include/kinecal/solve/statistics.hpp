@@ -1,4 +1,4 @@
-// How large the residuals of an error block are, in its own unit, without weights and losses.
+// Size of an error block's residuals, in its own unit, without weights and losses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// Rays through the pixels of an image, for render.ipp.
+// Casts rays through the pixels of an image, for render.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace kinecal::detail {
 
-/// What is nearest along a ray.
+/// The nearest point along a ray.
 struct Hit {
   int flat = -1;
   Meeting at;
 };
 
-/// A part of the image, and the patches that can be in it.
+/// A part of the image, and the patches that may appear in it.
 struct Tile {
   int left, top, right, bottom;  ///< pixels; right and bottom are excluded
   std::vector<int> flats;
@@ -63,7 +63,7 @@ class Casting {
     return tile;
   }
 
-  /// A patch on another one, like an LED on its body, hides it.
+  /// The nearest patch; one mounted on another, like an LED on its body, hides it.
   [[nodiscard]] Hit nearest(const Tile& tile, const Vector3<double>& ray) const {
     constexpr double kOnTop = 1e-4;  // metres
     Hit hit;
@@ -95,7 +95,7 @@ class Casting {
     }
   }
 
-  /// Whether a pixel shows more than one brightness.
+  /// True if a pixel shows more than one brightness.
   [[nodiscard]] bool is_mixed(const Image<float>& centres, int u, int v) const {
     constexpr float kStep = 3.0F;  // of 255: more than light that fades
     for (int y = std::max(0, v - 1); y <= std::min(v + 1, seen_.height - 1); ++y) {
@@ -107,7 +107,7 @@ class Casting {
     return false;
   }
 
-  /// Whether a patch may be in a pixel that is so small that the rays through centres miss it.
+  /// True if a pixel may show a patch so small that rays through pixel centres miss it.
   [[nodiscard]] bool has_small(const std::vector<const Flat*>& small, int u, int v) const {
     Window pixel;
     pixel.include(corners_(u, v));
@@ -145,7 +145,7 @@ class Casting {
     return sum / static_cast<double>(lattice().size());
   }
 
-  /// Places in a pixel, no two in one column or row.
+  /// Places in a pixel, no two in the same column or row.
   /// Source: the lattice of the golden ratio, which spreads evenly for any number of points.
   static const std::array<std::array<double, 2>, 128>& lattice() {
     static const auto places = [] {

@@ -1,4 +1,4 @@
-// How the rows of samples change by each error of a measurement, for sample_design.ipp.
+// Derivatives of samples' rows by each measurement error, for sample_design.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace kinecal::detail {
 
-/// Collects what the rows of each sample change by each error.
+/// Collects the changes of each sample's rows by each error.
 class DesignRows {
  public:
   DesignRows(const MakeProblem& make, const FreeSet& free, std::span<const double> values,
@@ -48,7 +48,7 @@ class DesignRows {
   }
 
  private:
-  /// The rows of a sample, and how errors change them.
+  /// The rows of a sample, and their changes by errors.
   struct Stack {
     std::map<FeatureKey, Eigen::Index> first;  ///< of each feature's rows
     Eigen::MatrixXd jacobian;                  ///< weighted
@@ -66,7 +66,7 @@ class DesignRows {
     [[nodiscard]] Eigen::MatrixXd without_half(const Eigen::MatrixXd& of) const {
       if (motions.empty()) return of;
       Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix(motions));
-      qr.setThreshold(1e-8);  // points on a line do not turn about it
+      qr.setThreshold(1e-8);  // points on a line do not determine the rotation about it
       const Eigen::MatrixXd q =
           qr.householderQ() * Eigen::MatrixXd::Identity(jacobian.rows(), qr.rank());
       return of - 0.5 * q * (q.transpose() * of);
@@ -77,10 +77,10 @@ class DesignRows {
     return static_cast<std::size_t>(std::get<0>(key));
   }
 
-  /// Adds the difference of two evaluations to each sample, one error for each group of keys.
+  /// Adds the difference of two evaluations to each sample, one error per group of keys.
   /// @param half   of the change between them, in standard deviations
   /// @param apart  features err independently; else all rows of a sample together
-  /// @param list   to which they are added
+  /// @param list   destination
   void add(const StudyRows& after, const StudyRows& before, double half, bool apart,
            std::vector<Eigen::VectorXd> Stack::*list = &Stack::errors) {
     std::map<std::pair<std::size_t, int>, Eigen::VectorXd> changes;
@@ -101,7 +101,7 @@ class DesignRows {
     for (const MountedSensor& sensor : changing_.problem().sensors()) {
       const std::string& name = sensor.mount().name;
       if (!changing_.measuring().contains(name)) continue;
-      const bool together = !takes_planes(name);  // of different features other rows change
+      const bool together = !takes_planes(name);  // different features change different rows
       const std::size_t places = together ? 1 : most_features(name);
       for (std::size_t error = 0; error < most_errors(sensor); ++error) {
         for (std::size_t only = 0; only < places; ++only) {
@@ -140,7 +140,7 @@ class DesignRows {
     }
   }
 
-  /// Rigid motions of the features that are known on their link.
+  /// Rigid motions of the features whose position on their link is known.
   void add_targets() {
     constexpr double kHalf = 1e-4;  // metres, radians
     for (const MountedSensor& sensor : changing_.problem().sensors()) {

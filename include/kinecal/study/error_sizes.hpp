@@ -1,4 +1,4 @@
-// How large the errors of simulated robots are.
+// Sizes of the errors of simulated robots.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,8 @@
 
 namespace kinecal {
 
-/// Sizes of the errors of a robot: each is drawn between half of it and all of it, with either sign.
+/// Sizes of a robot's errors: each is drawn between half of its size and all of it, with either
+/// sign.
 struct ErrorSizes {
   double joint = 0.05;       ///< of joints that turn, radians
   double sliding = 0.01;     ///< of other joints, metres
@@ -20,7 +21,7 @@ struct ErrorSizes {
   double z_scaling = 0.01;   ///< of depth, relative
 };
 
-/// The size of the error of a parameter, by its name; zero if it is of no known kind.
+/// The size of a parameter's error, by its name; zero for an unknown kind.
 [[nodiscard]] double error_size(const Robot& robot, const std::string& parameter,
                                 const ErrorSizes& sizes);
 

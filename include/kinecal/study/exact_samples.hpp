@@ -1,13 +1,13 @@
-// Samples as a robot with given parameters would measure them if nothing erred.
+// Samples that a robot with given parameters would measure without errors.
 //
-// The joints stay where they are, and so do known targets.  What was measured is moved until every
-// residual is zero, by the least way:
+// Joints and known targets stay as they are.  Measurements are moved until every residual is zero,
+// by the smallest change:
 //
 //   x <- x - J^+ r        J = dr/dx by differences, once for each group of rows
 //
-// x are the features with one place in a sample; of blocks that compare planes, the motion of all
-// features of a sensor together.  So any sensor and any error block can be simulated: nothing has to
-// be known of a sensor but its residual.
+// x are the features with the same place in a sample; for blocks that compare planes, a common
+// motion of all features of a sensor.  So any sensor and error block can be simulated: only the
+// residual is needed.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,7 +22,7 @@
 
 namespace kinecal {
 
-/// A robot, a pose or a sensor that cannot be simulated.
+/// Thrown if a robot, a pose or a sensor cannot be simulated.
 struct StudyError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -30,12 +30,13 @@ struct StudyError : std::runtime_error {
 /// Makes a problem without samples.
 using MakeProblem = std::function<std::unique_ptr<AnyProblem>()>;
 
-/// The samples as they are measured without any error.
+/// The samples as measured without any error.
 /// @param values   of all parameters of the table: the true robot
-/// @param samples  poses and targets; what was measured need not fit, but each point must be in front
-///                 of its camera
-/// @throws StudyError   with the error block and the sample, if no measurement makes a residual zero
-/// @throws SampleError  if a sample does not suit the problem
+/// @param samples  poses and targets; measurements need not fit, but each point must be in front of
+///                 its camera
+/// @throws StudyError   with the error block and the sample, if no measurement makes a residual
+///                      zero
+/// @throws SampleError  if a sample does not match the problem
 [[nodiscard]] std::vector<Sample> exact_samples(const MakeProblem& make,
                                                 std::span<const double> values,
                                                 std::span<const Sample> samples);

@@ -47,7 +47,7 @@ class ExactSearch {
     std::string sensor;
     int axis;  ///< x y z, then of the rotation
   };
-  /// A sample and a place: what is moved together.
+  /// A sample and a place: features that move together.
   using Group = std::pair<int, int>;
 
   static constexpr double kZero = 1e-10;  ///< of a weighted residual, of its scale
@@ -57,7 +57,7 @@ class ExactSearch {
     return *std::find_if(all.begin(), all.end(),
                          [&](const MountedSensor& sensor) { return sensor.mount().name == name; });
   }
-  /// Whether some block takes all features of a sensor as one plane.
+  /// True if some block takes all features of a sensor as one plane.
   [[nodiscard]] bool is_rigid(const std::string& sensor) const {
     const AnyProblem& problem = changing_.problem();
     for (int t = 0; t < problem.num_terms(); ++t) {
@@ -69,7 +69,8 @@ class ExactSearch {
     return false;
   }
 
-  /// What a step along an axis does to a feature: alone, or turned with all others about the first.
+  /// The change of a feature by a step along an axis: alone, or rotated with all others about the
+  /// first.
   [[nodiscard]] FeatureChange change(const Move& move, const Observation& seen,
                                      std::size_t place) const {
     FeatureChange change;
@@ -114,7 +115,7 @@ class ExactSearch {
     }
   }
 
-  /// One step of each group: the least that its linearized rows need.
+  /// One step of each group: the smallest that its linearized rows need.
   void move() {
     std::map<Group, std::pair<Eigen::MatrixXd, Eigen::VectorXd>> systems;
     for (const auto& [key, residual] : rows_.residual) {

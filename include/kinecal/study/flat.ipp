@@ -1,4 +1,4 @@
-// Patches as a camera sees them, for render.ipp.
+// Patches in the camera's frame, for render.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,7 +28,7 @@ struct Window {
   }
 };
 
-/// Where a ray meets a patch.
+/// The intersection of a ray with a patch.
 struct Meeting {
   double z = 0.0;           ///< distance along the optical axis, metres
   double x = 0.0, y = 0.0;  ///< in the patch, metres
@@ -62,7 +62,7 @@ struct Flat {
     return inside ? std::optional(Meeting{z, x, y}) : std::nullopt;
   }
 
-  /// Brightness of a place on it; 255 is white in full light.
+  /// Brightness at a place on it; 255 is white in full light.
   [[nodiscard]] double brightness(const Vector3<double>& ray, const Meeting& at) const {
     constexpr double kWhite = 255.0, kShining = 1000.0;
     if (shines && is_front()) return kShining;
@@ -91,8 +91,8 @@ struct Flat {
   }
 };
 
-/// The directions in which a patch can be seen; everywhere if a part of it is beside or behind the
-/// camera, none if it is all behind.
+/// The directions in which a patch is visible; all if a part of it is beside or behind the camera,
+/// none if it is entirely behind.
 inline Window window_of(const Flat& flat) {
   Window window;
   constexpr double kNearest = 0.01, kInfinite = std::numeric_limits<double>::infinity();
@@ -115,7 +115,7 @@ inline Window window_of(const Flat& flat) {
 }
 
 /// The patches of a scene in the frame of a camera.
-/// @param code  of the LEDs that shine
+/// @param code  of the LEDs that are lit
 inline std::vector<Flat> flats_of(const Scene& scene, const PoseInCamera& pose_of, int code) {
   const Vector3<double> lamp = pose_of("") * scene.light.position;
   std::vector<Flat> flats;

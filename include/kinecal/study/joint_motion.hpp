@@ -1,4 +1,4 @@
-// How a simulated joint moves: with constant acceleration up to a speed, and back; then it swings.
+// The motion of a simulated joint: constant acceleration up to a speed, deceleration, then a swing.
 //
 //   after its arrival at time T:  q = target + swing exp(-(t - T) / decay) sin(2 pi f (t - T))
 // SPDX-License-Identifier: Apache-2.0
@@ -10,9 +10,9 @@
 
 namespace kinecal {
 
-/// The drive of a joint, and what hangs on it.
+/// The drive of a joint, and the swing of its load.
 struct JointDrive {
-  double speed = 1.0;         ///< most, radians or metres per second
+  double speed = 1.0;         ///< maximum, radians or metres per second
   double acceleration = 2.0;  ///< radians or metres per second squared
   double swing = 0.004;       ///< after the arrival at full speed, radians or metres
   double frequency = 8.0;     ///< of the swing, Hz
@@ -48,9 +48,9 @@ class JointMotion {
     return to_ > from_ ? from_ + way : from_ - way;
   }
 
-  /// When the joint is where it was to go, seconds since the start; it may still swing.
+  /// Time of arrival at the target, seconds since the start; it may still swing.
   [[nodiscard]] double arrival() const { return arrival_; }
-  /// When nothing moves any more, seconds since the start.
+  /// Time at which all motion has stopped, seconds since the start.
   [[nodiscard]] double rest() const {
     return swing_ > 0.0 ? arrival_ + kDecays * drive_.decay : arrival_;
   }
@@ -60,7 +60,7 @@ class JointMotion {
   [[nodiscard]] int direction() const { return to_ > from_ ? 1 : to_ < from_ ? -1 : 0; }
 
  private:
-  static constexpr double kDecays = 10.0;  ///< then a swing is 1 / 20 000 of what it was
+  static constexpr double kDecays = 10.0;  ///< then the swing is 1 / 20 000 of its start
 
   [[nodiscard]] double swung(double t) const {
     if (swing_ == 0.0 || t > kDecays * drive_.decay) return 0.0;

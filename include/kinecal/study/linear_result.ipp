@@ -1,4 +1,5 @@
-// How far the result of a calibration is from that of the linearized problem, for repeatability.ipp.
+// The difference between a calibration's result and that of the linearized problem, for
+// repeatability.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,8 +16,8 @@
 
 namespace kinecal::detail {
 
-/// Of the numbers that mean the same turn, those nearest to the truth: angles of joints, and rotation
-/// vectors of frames, whose length is a full turn more or less.
+/// Picks the equivalent values nearest to the truth: angles of joints, and rotation vectors of
+/// frames, modulo full turns.
 inline void turn_nearest(const AnyProblem& problem, const std::vector<double>& truth,
                          std::vector<double>& values) {
   const ParameterTable& table = problem.table();
@@ -49,8 +50,8 @@ inline void turn_nearest(const AnyProblem& problem, const std::vector<double>& t
   }
 }
 
-/// Weighted rows of a problem in the order in which they are evaluated, and priors' part of the normal
-/// equations is left to those.
+/// Weighted rows of a problem in evaluation order; the priors' part of the normal equations is
+/// computed separately.
 struct StackedRows {
   std::vector<double> residual;
   std::vector<double> moved;  ///< J step

@@ -28,7 +28,7 @@ namespace detail {
           {p * (noise.depth * z)}};
 }
 
-/// Whether a sensor observed other features in some sample than in another.
+/// True if a sensor observed different features in some samples.
 [[nodiscard]] inline bool features_differ(const std::string& sensor,
                                           std::span<const Sample> samples) {
   const Observation* first = nullptr;

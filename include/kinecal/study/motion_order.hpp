@@ -1,7 +1,7 @@
-// An order of poses that shortens the robot's way.
+// An order of poses that shortens the robot's path.
 //
-// A move takes as long as its slowest joint: max |dq| / speed.  From the start the nearest pose is
-// next, again and again; then parts of the way are turned round while that shortens it.
+// A move takes as long as its slowest joint: max |dq| / speed.  From the start, the nearest pose
+// always comes next; then parts of the path are reversed while that shortens it.
 // Source: Croes, A Method for Solving Traveling-Salesman Problems, 1958 (2-opt).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -20,9 +20,9 @@ using JointPlaces = std::vector<std::vector<double>>;
 [[nodiscard]] double motion_time(const JointPlaces& places, const std::vector<int>& order,
                                  const std::vector<double>& speeds);
 
-/// The same poses in a shorter order, never in a longer one; it begins with the same pose.
-/// @throws std::invalid_argument  if a pose has more or fewer joints than there are speeds, or a speed
-///                                is not positive
+/// The same poses in a shorter order, never a longer one; the first pose stays first.
+/// @throws std::invalid_argument  if a pose has more or fewer joints than there are speeds, or a
+///                                speed is not positive
 [[nodiscard]] std::vector<int> motion_order(const JointPlaces& places,
                                             const std::vector<int>& poses,
                                             const std::vector<double>& speeds);

@@ -15,7 +15,7 @@
 
 namespace kinecal::detail {
 
-/// What some poses add: H and V.
+/// The contribution of some poses: H and V.
 struct DesignSums {
   Eigen::MatrixXd information, scores;
 
@@ -27,8 +27,8 @@ struct DesignSums {
   }
 };
 
-/// Candidates in coordinates in which the information of all of them is the identity.  There a
-/// criterion needs one Cholesky decomposition, and what is not determined has no coordinate.
+/// Candidates in coordinates in which their total information is the identity.  There, a criterion
+/// needs one Cholesky decomposition, and undetermined directions have no coordinate.
 class PoseDesign {
  public:
   PoseDesign(const PoseCandidates& candidates, PoseCriterion criterion) : criterion_(criterion) {
@@ -53,7 +53,7 @@ class PoseDesign {
   }
 
   [[nodiscard]] int size() const { return static_cast<int>(poses_.size()); }
-  /// What is known of no pose.
+  /// The sums of no pose.
   [[nodiscard]] const DesignSums& nothing() const { return before_; }
   [[nodiscard]] const DesignSums& of(int pose) const {
     return poses_[static_cast<std::size_t>(pose)];
@@ -65,13 +65,14 @@ class PoseDesign {
   }
 
   /// The criterion of some sums.
-  /// @param little  of what all candidates tell, added while a set does not determine everything
+  /// @param little  share of all candidates' information, added while a set does not determine
+  ///                everything
   [[nodiscard]] double value(const DesignSums& sums, double little = 0.0) const {
     DesignSums total = sums;
     total.information.diagonal().array() += little;
     total.scores.diagonal().array() += little * mean_score_;
     const Eigen::LLT<Eigen::MatrixXd> llt(total.information);
-    constexpr double kLeast = 1e-13;  // of what all candidates tell: less is rounding
+    constexpr double kLeast = 1e-13;  // of all candidates' information: less is rounding
     const double infinite = std::numeric_limits<double>::infinity();
     if (llt.info() != Eigen::Success) return infinite;
     const auto pivots = llt.matrixLLT().diagonal();

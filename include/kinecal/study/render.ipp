@@ -35,7 +35,7 @@ inline void add_glow(const SimulatedLens& lens, const Flat& flat, Picture& pictu
   }
 }
 
-/// Whether nothing hides the middle of an LED that shines towards the camera.
+/// True if nothing hides the middle of an LED that faces the camera.
 inline bool is_visible(const std::vector<Flat>& flats, const Flat& led) {
   const Vector3<double>& centre = led.pose.translation;
   constexpr double kNearest = 0.01, kOnTop = 1e-4;  // metres

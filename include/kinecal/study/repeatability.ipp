@@ -15,8 +15,8 @@ namespace kinecal {
 
 namespace detail {
 
-/// A seed for each combination of numbers.  Source: Steele, Lea, Flood, Fast Splittable Pseudorandom
-/// Number Generators, 2014, for the mixing.
+/// A seed for each combination of numbers.  Source: Steele, Lea, Flood, Fast Splittable
+/// Pseudorandom Number Generators, 2014, for the mixing.
 [[nodiscard]] inline std::uint64_t mixed_seed(std::initializer_list<std::uint64_t> numbers) {
   std::uint64_t seed = 0;
   for (const std::uint64_t number : numbers) {
@@ -38,7 +38,7 @@ enum class StudySeed : std::uint64_t { truth = 1, poses, noise, judged };
        static_cast<std::uint64_t>(job.poses), static_cast<std::uint64_t>(job.repeat)}));
 }
 
-/// The joints that move something that is observed.
+/// The joints that affect observations.
 [[nodiscard]] inline std::set<std::string> observed_joints(const AnyProblem& problem) {
   std::set<std::string> joints;
   for (const MountedSensor& sensor : problem.sensors()) {
@@ -51,7 +51,7 @@ enum class StudySeed : std::uint64_t { truth = 1, poses, noise, judged };
   return joints;
 }
 
-/// Lets one joint be elsewhere than the sample says.
+/// Moves one joint away from the sample's position.
 inline void ruin(const StudySetup& setup, const std::set<std::string>& joints, Sample& sample,
                  SeededRandom& random) {
   std::vector<std::size_t> those;
@@ -64,7 +64,7 @@ inline void ruin(const StudySetup& setup, const std::set<std::string>& joints, S
   sample.joint_positions[i] += random.either_sign(setup.ruined_by, setup.ruined_by);
 }
 
-/// Mean distance of the features of the first error block that has some.
+/// Mean distance of the features of the first error block that has any.
 [[nodiscard]] inline double mean_reprojection(const StudySetup& setup,
                                               std::span<const Sample> samples,
                                               std::span<const double> values) {

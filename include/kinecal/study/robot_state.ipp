@@ -1,4 +1,4 @@
-// What a simulated robot knows at a time, for simulated_robot.ipp.
+// State of a simulated robot over time, for simulated_robot.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -31,7 +31,7 @@ namespace kinecal::detail {
   return setup;
 }
 
-/// Where the joints are, by what the last command was.
+/// Positions of the joints, after the last command.
 class Joints {
  public:
   explicit Joints(const SimulatedSetup& setup) : setup_(setup) {
@@ -86,14 +86,14 @@ class Joints {
     outlier_size_ = random.either_sign(setup_.faults.outlier_size, setup_.faults.outlier_size);
   }
 
-  /// What encoders say without noise.
+  /// Encoder readings without noise.
   [[nodiscard]] Positions encoders(double now) const {
     Positions positions;
     for (const auto& [name, motion] : motions_) positions[name] = motion.position(now - start_);
     return positions;
   }
 
-  /// Where the joints are.
+  /// True positions of the joints.
   [[nodiscard]] Positions truth(double now) const {
     Positions positions = encoders(now);
     for (auto& [name, position] : positions) position += unseen_.at(name);
@@ -101,7 +101,7 @@ class Joints {
     return positions;
   }
 
-  /// When nothing moves any more, seconds.
+  /// Time at which all motion has stopped, seconds.
   [[nodiscard]] double rest() const {
     double latest = 0.0;
     for (const auto& [name, motion] : motions_) latest = std::max(latest, motion.rest());
@@ -142,12 +142,12 @@ class Joints {
 
   const SimulatedSetup& setup_;
   std::map<std::string, JointMotion> motions_;
-  Positions unseen_;  ///< by encoders
+  Positions unseen_;  ///< offsets that encoders do not see
   std::string outlier_;
   double outlier_size_ = 0.0, start_ = 0.0;
 };
 
-/// Hides a part of a view by something near that is not of the scene.
+/// Hides a part of a view behind a near object that is not in the scene.
 inline void hide_a_part(View& view, SeededRandom& random) {
   constexpr double kDepth = 0.4;  // metres
   const int width = view.image.width, left = random.integer(-width / 4, width - width / 8);

@@ -15,7 +15,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// What the priors of a problem add for one sample.
+/// The contribution of a problem's priors for one sample.
 [[nodiscard]] inline PlainMatrix prior_of_one(const MakeProblem& make, const FreeSet& free,
                                               std::span<const double> values, const Sample& sample,
                                               const SampleDesign& design) {

@@ -1,4 +1,4 @@
-// Residuals of samples whose measurements change, for exact_samples.ipp and sample_designs.ipp.
+// Residuals of samples with changing measurements, for exact_samples.ipp and sample_designs.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace kinecal::detail {
 
-/// Place of the features whose rows cannot be told apart: those of planes.
+/// Place of features that share their rows: those of planes.
 inline constexpr int kAllPlaces = -1;
 
 /// Rows of one feature in one sample: sample, term, place.
@@ -29,7 +29,7 @@ struct StudyRows {
       jacobian;  ///< weighted, by the free parameters, if asked for
 };
 
-/// Samples whose measurements change, and their residuals.
+/// Samples with changing measurements, and their residuals.
 class ChangingSamples {
  public:
   ChangingSamples(const MakeProblem& make, std::span<const double> values,
@@ -41,7 +41,7 @@ class ChangingSamples {
     measuring_ = measuring_sensors(*empty_, samples_);
   }
 
-  /// The samples as they are now.
+  /// The samples in their current state.
   [[nodiscard]] std::vector<Sample>& samples() { return samples_; }
   /// The problem without samples.
   [[nodiscard]] const AnyProblem& problem() const { return *empty_; }

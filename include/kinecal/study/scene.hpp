@@ -1,8 +1,8 @@
-// What a simulated camera can see: flat patches on links of the robot, and the light on them.
+// The scene of a simulated camera: flat patches on links of the robot, and their light.
 //
-// One kind of thing makes everything: a rectangle or ellipse with a brightness or a picture on it.
-// Six make a box, an infinite one the ground, a small round one that shines an LED.  A patch has the
-// axes of an image: seen from its front, x points right, y down and z away from the viewer.
+// Everything is a patch: a rectangle or ellipse with a brightness or a picture.  Six make a box, an
+// infinite one the ground, a small round luminous one an LED.  A patch has the axes of an image:
+// seen from its front, x points right, y down and z away from the viewer.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,9 +23,9 @@ struct Patch {
   double width = 0.1;                             ///< along x, metres; may be infinite
   double height = 0.1;                            ///< along y, metres; may be infinite
   bool round = false;                             ///< an ellipse
-  double albedo = 0.6;                            ///< share of the light that comes back, [0, 1]
-  std::shared_ptr<const GrayImage> texture = {};  ///< stretched over it; 255: all light comes back
-  int led = 0;                                    ///< code at which it shines; 0: it never does
+  double albedo = 0.6;                            ///< reflected share of the light, [0, 1]
+  std::shared_ptr<const GrayImage> texture = {};  ///< stretched over it; 255: reflects all light
+  int led = 0;                                    ///< code that lights it; 0: none
 };
 
 /// Light from everywhere, and from one lamp.
@@ -33,7 +33,7 @@ struct Light {
   double ambient = 0.4;                     ///< on every surface
   double lamp = 1.2;                        ///< on a surface that faces the lamp, near to it
   Vector3<double> position{0.5, 0.8, 2.5};  ///< of the lamp in the base, metres
-  double reach = 2.0;                       ///< where its light has half of its strength, metres
+  double reach = 2.0;                       ///< distance of half its strength, metres
 };
 
 /// Everything there is to see.
@@ -43,10 +43,10 @@ struct Scene {
   double background = 0.3;  ///< brightness where there is no patch, [0, 1]
 };
 
-/// The pose of a patch whose front faces into a direction.
+/// The pose of a patch that faces in a direction.
 /// @param centre  (3) metres, in the link
-/// @param front   (3) where it can be seen from, in the link; any length but zero
-/// @param down    (3) where the lower edge of its picture points, in the link, about
+/// @param front   (3) direction of its front, in the link; any length but zero
+/// @param down    (3) direction of its picture's lower edge, in the link, approximate
 [[nodiscard]] Pose<double> facing(const Vector3<double>& centre, const Vector3<double>& front,
                                   const Vector3<double>& down = {0.0, 0.0, -1.0});
 
@@ -56,7 +56,7 @@ struct Scene {
 void add_box(Scene& scene, const std::string& link, const Pose<double>& link_T_box,
              const Vector3<double>& size, double albedo = 0.4);
 
-/// Adds a board with a picture, such as tags, whose outer edge is the picture's.
+/// Adds a board with a picture, such as tags; the board ends at the picture's edge.
 /// @param link_T_corner  frame in the upper left corner of the picture: x right, y down, z into it
 /// @param width          of the picture, metres
 void add_picture(Scene& scene, const std::string& link, const Pose<double>& link_T_corner,
@@ -72,7 +72,7 @@ void add_checkerboard(Scene& scene, const std::string& link, const Pose<double>&
 
 /// Adds LEDs of the codes 1, 2, ... in the order of the points.
 /// @param points  metres, in the link
-/// @param front   (3) where they shine to, in the link
+/// @param front   (3) direction of their light, in the link
 /// @param radius  metres
 void add_leds(Scene& scene, const std::string& link, const std::vector<Vector3<double>>& points,
               const Vector3<double>& front, double radius = 0.003);

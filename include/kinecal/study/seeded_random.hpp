@@ -1,4 +1,4 @@
-// Random numbers of simulations: the same for the same seed, everywhere.
+// Random numbers for simulations: the same seed gives the same numbers on every platform.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace kinecal {
 
-/// Random numbers that are the same everywhere for the same seed.  (The standard defines
-/// mt19937_64, but leaves distributions to each library.)
+/// Random numbers, equal for equal seeds on every platform.  (The standard defines mt19937_64, but
+/// not the algorithms of distributions.)
 class SeededRandom {
  public:
-  /// Another sequence for each seed.
+  /// Each seed gives another sequence.
   explicit SeededRandom(std::uint64_t seed) : engine_(seed) {}
 
-  /// From `lower` to `upper`, each number with the same chance.
+  /// From `lower` to `upper`, uniformly distributed.
   [[nodiscard]] double uniform(double lower, double upper) {
     const double unit = static_cast<double>(engine_() >> 11) * 0x1p-53;
     return lower + unit * (upper - lower);
@@ -29,7 +29,7 @@ class SeededRandom {
     return first + static_cast<int>(uniform(0.0, last - first + 1.0));
   }
 
-  /// A number of random sign whose size is between the two.
+  /// A number of random sign whose absolute value is between the two.
   [[nodiscard]] double either_sign(double least, double most) {
     const double size = uniform(least, most);
     return uniform(0.0, 1.0) < 0.5 ? -size : size;

@@ -1,18 +1,19 @@
-// Choosing poses: few of many candidates, so that a calibration with them is as good as possible.
+// Selects a few of many candidate poses so that a calibration with them is as good as possible.
 //
-//   gripper  trace(G C)   mean variance of the pose that is wanted; what users care for
+//   gripper  trace(G C)   mean variance of the wanted pose; usually what matters
 //   a        trace(C)     mean variance of the parameters
 //   d        log det C    volume of their uncertainty
 //   e        max eig C    variance of the worst combination
 //
-// C = H^+ V H^+ is the covariance of the calibration with the chosen samples: see sample_design.hpp; with
-// V = H if no scores are given.  Criteria a, d and e are in units in which all candidates together have
-// ones on the diagonal of H.  Directions that not even all candidates determine are left out.
+// C = H^+ V H^+ is the covariance of the calibration with the selected samples: see
+// sample_design.hpp; V = H if no scores are given.  Criteria a, d and e use units in which H of all
+// candidates together has a unit diagonal.  Directions that not even all candidates determine are
+// left out.
 //
-// First the pose that helps most is added, again and again; then each chosen pose is exchanged for the
-// best other one, until nothing improves.  Poses that differ by less than a given share of every
-// joint's range count as one.  Where poses may fail, a set is worth what it is without the ones that
-// it misses most.
+// First, the pose that helps most is added, again and again; then each chosen pose is exchanged for
+// the best other one, until nothing improves.  Poses whose joints all differ by less than a given
+// share of the range count as one.  If poses may fail, a set is valued without the ones it would
+// miss most.
 // Source: Fedorov, Theory of Optimal Experiments, 1972, 3 (exchange); Pukelsheim, Optimal Design of
 // Experiments, 6 (criteria).
 // SPDX-License-Identifier: Apache-2.0
@@ -27,18 +28,18 @@
 
 namespace kinecal {
 
-/// What a set of poses is judged by.
+/// The criterion for a set of poses.
 enum class PoseCriterion { gripper, a, d, e };
 
 /// Poses to choose from.
 struct PoseCandidates {
   std::vector<PlainMatrix> information;  ///< (n x n) H of each pose
   std::vector<PlainMatrix> scores = {};  ///< (n x n) V of each pose; empty: as the information
-  PlainMatrix before = {};               ///< (n x n) H of what is known before; empty: nothing
-  PlainMatrix before_scores = {};        ///< (n x n) V of it; empty: nothing
-  PlainMatrix prior = {};  ///< (n x n) H that priors add for each pose; empty: nothing
-  PlainMatrix goal = {};   ///< (n x n) G, square metres: see position_goal()
-  /// Where the joints of each pose are in their ranges, from 0 to 1; empty: no pose is near another.
+  PlainMatrix before = {};               ///< (n x n) H of prior knowledge; empty: none
+  PlainMatrix before_scores = {};        ///< (n x n) V of it; empty: none
+  PlainMatrix prior = {};                ///< (n x n) H that priors add per pose; empty: nothing
+  PlainMatrix goal = {};                 ///< (n x n) G, square metres: see position_goal()
+  /// Joint positions of each pose in their ranges, from 0 to 1; empty: no poses count as near.
   std::vector<std::vector<double>> shares = {};
 };
 
@@ -46,21 +47,22 @@ struct PoseCandidates {
 struct SelectOptions {
   int count = 25;
   PoseCriterion criterion = PoseCriterion::gripper;
-  double least_distance = 0.02;  ///< of the joint that differs most, share of its range
-  int failures = 0;              ///< poses that may fail
+  double least_distance = 0.02;  ///< of the joint that differs most, as a share of its range
+  int failures = 0;              ///< number of poses that may fail
 };
 
 /// Poses that were chosen.
 struct PoseSelection {
-  std::vector<int> chosen;  ///< candidates, the most useful first: each first few are a good set
+  std::vector<int> chosen;  ///< candidates, the most useful first: any first few are a good set
   std::vector<double>
       values;          ///< of the criterion with the first 1, 2, ... of them; infinite while
                        ///< they determine less than all candidates do
-  double value = 0.0;  ///< of all of them, without the ones that may fail
+  double value = 0.0;  ///< of all of them, without those that may fail
 };
 
 /// Chooses poses.
-/// @throws std::invalid_argument  if sizes do not fit, a number is not finite, or there are no candidates
+/// @throws std::invalid_argument  if sizes do not fit, a number is not finite, or there are no
+///                                candidates
 [[nodiscard]] PoseSelection select_poses(const PoseCandidates& candidates,
                                          const SelectOptions& options);
 
@@ -68,7 +70,7 @@ struct PoseSelection {
 [[nodiscard]] double design_value(const PoseCandidates& candidates, const std::vector<int>& chosen,
                                   PoseCriterion criterion);
 
-/// Values of random sets, the best first, and the best set: what the Fetch paper chose by.
+/// Values of random sets, the best first, and the best set: the selection of the Fetch paper.
 struct RandomSets {
   std::vector<double> values;
   std::vector<int> best;

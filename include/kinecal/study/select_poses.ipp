@@ -37,7 +37,7 @@ class PoseSearch {
   }
 
  private:
-  static constexpr double kLittle = 1e-6;  ///< of what all candidates tell
+  static constexpr double kLittle = 1e-6;  ///< of all candidates' information
 
   [[nodiscard]] std::vector<int> all() const {
     std::vector<int> every(static_cast<std::size_t>(design_.size()));
@@ -54,7 +54,7 @@ class PoseSearch {
     }
     return true;
   }
-  /// Whether a pose may join some others, of which one leaves.
+  /// True if a pose may join some others when one of them leaves.
   [[nodiscard]] bool may_join(int pose, const std::vector<int>& others, int leaves) const {
     return std::none_of(others.begin(), others.end(), [&](int other) {
       return other != leaves && (other == pose || are_alike(other, pose));
@@ -82,7 +82,7 @@ class PoseSearch {
     return chosen;
   }
 
-  /// The value without the poses that the set misses most.
+  /// The value without the poses that the set would miss most.
   [[nodiscard]] double value_after_failures(std::vector<int> chosen) const {
     DesignSums sum = design_.sum(chosen);
     double value = design_.value(sum, kLittle);

@@ -1,6 +1,7 @@
-// A simulated camera: its lens, which differs from its camera_info, and what it does to a picture.
+// A simulated camera: its true lens, which differs from its camera_info, and its imaging errors.
 //
-//   depth, as the driver reports it: z / (1 + z_scaling) - z_offset + noise z^2, in steps of disparity
+//   depth, as the driver reports it: z / (1 + z_scaling) - z_offset + noise z^2, in steps of
+//   disparity
 //
 // The parameters are those of camera2d and camera3d, which correct for them.
 // SPDX-License-Identifier: Apache-2.0
@@ -27,18 +28,18 @@ inline constexpr std::array<std::string_view, 6> kCameraErrors = {"fx", "fy",   
 struct SimulatedCamera {
   std::string frame = "camera_optical_frame";  ///< its optical frame, a link
   CameraInfo info = typical_camera_info();     ///< as its driver reports it
-  ImageKind image = ImageKind::automatic;      ///< what its images are
+  ImageKind image = ImageKind::automatic;      ///< the kind of its images
   std::array<double, 6> errors{};              ///< fx fy cx cy z_offset z_scaling of the lens
   double blur = 0.6;                           ///< standard deviation of the point spread, pixels
   double exposure = 1.0;                       ///< factor of all brightness
   double noise = 1.5;           ///< standard deviation of a pixel's brightness, of 255
-  bool has_depth = true;        ///< gives clouds
-  double nearest = 0.3;         ///< depth that is measured, metres
-  double farthest = 5.0;        ///< the same
+  bool has_depth = true;        ///< delivers clouds
+  double nearest = 0.3;         ///< smallest measured depth, metres
+  double farthest = 5.0;        ///< largest measured depth, metres
   double depth_noise = 0.001;   ///< standard deviation at 1 m, metres; grows with the square
   double disparity_step = 0.0;  ///< of structured light, pixels; 0: depth is not quantised
   double baseline = 0.075;      ///< of structured light, metres
-  double grazing = 0.17;        ///< least cosine to a surface at which it is measured
+  double grazing = 0.17;        ///< smallest cosine to a surface at which depth is measured
   bool has_holes = true;        ///< no depth at edges, at bright lights and at grazing angles
 };
 
@@ -48,7 +49,7 @@ class SimulatedLens : public Lens {
   /// @throws SettingsError  if the camera_info cannot be of a camera
   explicit SimulatedLens(const SimulatedCamera& camera);
 
-  /// What a pixel shows according to the driver, which does not know the errors.
+  /// The ray of a pixel according to the driver, which does not know the errors.
   /// @returns  (3) direction (x, y, 1)
   [[nodiscard]] Vector3<double> reported_ray(double u, double v) const {
     return reported_.ray(u, v);
@@ -58,14 +59,14 @@ class SimulatedLens : public Lens {
   Lens reported_;
 };
 
-/// A picture without noise: what a perfect sensor measures behind this lens.
+/// A picture without noise, as a perfect sensor behind this lens measures it.
 struct Picture {
   Image<float> brightness;     ///< 255 is the brightest that a camera reports
   DepthImage depth;            ///< true distance along the optical axis, metres; NaN: nothing there
   Image<std::uint8_t> answer;  ///< 0 where depth is not measurable: grazing, a bright light
 };
 
-/// What a camera makes of a picture: image and cloud of a view; without stamp and joints.
+/// Turns a picture into the image and cloud of a view; without stamp and joints.
 /// @param random  of the noise
 [[nodiscard]] View photograph(const SimulatedCamera& camera, const SimulatedLens& lens,
                               const Picture& picture, SeededRandom& random);

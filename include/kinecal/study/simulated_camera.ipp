@@ -28,8 +28,8 @@ KINECAL_INLINE SimulatedLens::SimulatedLens(const SimulatedCamera& camera)
 
 namespace detail {
 
-/// Normal numbers for the pixels of an image, faster than one by one: rows begin at random places of a
-/// table.
+/// Normal numbers for the pixels of an image, faster than drawing each: rows start at random places
+/// in a table.
 class NoiseRows {
  public:
   explicit NoiseRows(SeededRandom& random) : random_(random) {}
@@ -54,7 +54,7 @@ class NoiseRows {
   SeededRandom& random_;
 };
 
-/// A picture blurred along its rows, with rows and columns exchanged.
+/// A picture blurred along its rows and transposed.
 inline Image<float> blurred_and_turned(const Image<float>& picture,
                                        const std::vector<float>& weights) {
   const int reach = static_cast<int>(weights.size()) - 1, width = picture.width;
@@ -73,7 +73,7 @@ inline Image<float> blurred_and_turned(const Image<float>& picture,
   return turned;
 }
 
-/// A picture as a lens that is not sharp shows it.
+/// A picture blurred by the lens.
 /// @param sigma  standard deviation of a Gaussian, pixels
 inline Image<float> blurred(const Image<float>& picture, double sigma) {
   constexpr double kLeast = 0.05, kReach = 3.5;

@@ -30,12 +30,12 @@ struct SimulatedRobot::State {
   detail::Joints joints;
   double now = 0.0;                                         ///< seconds
   std::vector<std::pair<double, int>> lamp = {};            ///< when which code was lit
-  std::map<std::string, std::optional<Stamp>> newest = {};  ///< stamps, by what is awaited
+  std::map<std::string, std::optional<Stamp>> newest = {};  ///< stamps, by stream
   Positions pictured = {};                                  ///< where `pictures` are valid
   std::map<int, Picture> pictures = {};                     ///< by code: the robot mostly rests
-  Picture smeared = {};                                     ///< by what changed during an exposure
+  Picture smeared = {};                                     ///< with changes during an exposure
 
-  /// The first time at which something of a rate happens after another time, seconds.
+  /// The first tick of a rate after a time, seconds.
   static double tick(double after, double rate) {
     constexpr double kRounding = 1e-6;  // of a period; stamps are whole nanoseconds
     return (std::floor(after * rate + kRounding) + 1.0) / rate;
@@ -78,7 +78,7 @@ struct SimulatedRobot::State {
     return code;
   }
 
-  /// What an exposure that ends at a time gathers: the mean brightness, and the last depth.
+  /// The image of an exposure that ends at a time: the mean brightness, and the last depth.
   const Picture& exposed(double time) {
     const double begin = time - setup.timing.exposure;
     if (joints.truth(begin) == joints.truth(time) && lit_at(begin) == lit_at(time)) {

@@ -1,4 +1,4 @@
-// The tables of a study: what the trials of one robot with one number of poses have in common.
+// The tables of a study: summaries of the trials of one robot with one number of poses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,24 +16,24 @@ namespace kinecal {
 struct ParameterSpread {
   double truth = 0.0;     ///< of the robot, in the unit of the parameter
   double mean = 0.0;      ///< of the trials
-  double variance = 0.0;  ///< of the trials, by their number less one
-  /// By the covariance; infinite where the samples do not determine the parameter.
+  double variance = 0.0;  ///< of the trials, divided by their number less one
+  /// According to the covariance; infinite if the samples do not determine the parameter.
   double predicted = 0.0;
 };
 
 /// Several calibrations of one robot with one number of poses.
 struct StudyGroup {
-  int robot = 0;   ///< from 0
-  int poses = 0;   ///< samples of a calibration
-  int trials = 0;  ///< calibrations
-  int failed = 0;  ///< that did not converge, or whose mean re-projection error is beyond the limit
-  int ruined = 0;  ///< samples of all trials
-  int left_out = 0;                         ///< samples of all trials
+  int robot = 0;     ///< from 0
+  int poses = 0;     ///< samples of a calibration
+  int trials = 0;    ///< calibrations
+  int failed = 0;    ///< did not converge, or mean re-projection error beyond the limit
+  int ruined = 0;    ///< samples of all trials
+  int left_out = 0;  ///< samples of all trials
   std::vector<ParameterSpread> parameters;  ///< free ones
   double position = 0.0;                    ///< error of the pose, RMS of all trials, metres
-  double varied_position = 0.0;             ///< how much the position varies between trials, metres
-  double predicted_position = 0.0;          ///< the same by the covariance, metres
-  /// The same with Targets::free, metres; not a number: not asked for.
+  double varied_position = 0.0;             ///< scatter of the position between trials, metres
+  double predicted_position = 0.0;          ///< the same according to the covariance, metres
+  /// The same with Targets::free, metres; NaN: not requested.
   double free_targets = std::numeric_limits<double>::quiet_NaN();
   double worst_position = 0.0;  ///< of a trial, metres
   double rotation = 0.0;        ///< RMS, radians
@@ -50,13 +50,14 @@ struct StudyGroup {
                                                 std::span<const StudyRobot> robots,
                                                 std::span<const StudyTrial> trials, double limit);
 
-/// Fills in what the covariance predicts for a group, and how much the pose varied.
+/// Fills in the covariance's prediction for a group, and the scatter of the pose.
 /// @param trials  of the group
 void predict(const StudySetup& setup, const StudyRobot& robot, std::span<const StudyTrial> trials,
              StudyGroup& group);
 
-/// Mean variance of the pose by the covariance of some trials: trace(goal C), square metres.
-/// @param group  theirs
+/// Mean variance of the pose according to the covariance of some trials: trace(goal C), square
+/// metres.
+/// @param group  of these trials
 /// @param goal   see position_goal()
 [[nodiscard]] double varied_variance(const StudyGroup& group, std::span<const StudyTrial> trials,
                                      const PlainMatrix& goal);

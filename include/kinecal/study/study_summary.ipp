@@ -11,7 +11,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// The group of trials that differ by their repetition only.
+/// The group of trials that differ only by their repetition.
 [[nodiscard]] inline StudyGroup group_of(const StudySetup& setup, const StudyRobot& robot,
                                          std::span<const StudyTrial> trials, double limit) {
   StudyGroup group;

@@ -1,4 +1,4 @@
-// The true robot of a simulation: its joints and frames differ from its URDF by known errors.
+// The true robot of a simulation: joints and frames differ from the URDF by known errors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,7 +29,7 @@ class TrueRobot {
   [[nodiscard]] const ParameterTable& truth() const { return truth_; }  ///< errors of the URDF
 
   /// True pose of a link when the joints report these positions.
-  /// @param beyond  a virtual frame beyond the link: gives its pose instead
+  /// @param beyond  a virtual frame beyond the link: returns its pose instead
   /// @returns       base_T_tip, metres
   /// @throws RobotError  if there is no chain between the links
   /// @throws std::out_of_range  if the position of a joint of the chain is missing

@@ -1,4 +1,4 @@
-// Arguments, parameters and conditions of an error block as numbers: made at random, moved, in
+// The input of an error block as numbers: arguments, parameters and conditions; random, moved, in
 // packets, in jets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -13,15 +13,14 @@
 
 namespace kinecal::detail {
 
-/// The arguments with which a block is called: of a block of pixels only the pixel.
+/// The arguments of a block's call; for a pixel block only the pixel.
 template <class B>
 using CalledWith =
     std::conditional_t<PixelBlock<B>, Takes<Quantity::pixel>, typename InputsOf<B>::type>;
 
 template <ErrorBlock B, class S, class Arguments = CalledWith<B>>
 struct BlockInput;
-/// Input of a block: its arguments as vectors of three numbers, its parameters, and the conditions that
-/// it takes.
+/// Input of a block: its arguments as vectors of three numbers, its parameters and its conditions.
 template <ErrorBlock B, class S, Quantity... Qs>
 struct BlockInput<B, S, Takes<Qs...>> {
   static constexpr std::array kQuantities = {Qs...};
@@ -56,7 +55,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
     for (S& condition : input.conditions) condition = S(random(-1.0, 1.0));
     return input;
   }
-  /// One input in each lane: from `first` on, and again from the beginning.
+  /// One input per lane: from `first` on, wrapping around.
   [[nodiscard]] static BlockInput packed(std::span<const BlockInput<B, double>> inputs,
                                          std::size_t first) {
     BlockInput input;
@@ -80,7 +79,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
       next += InputOf<Q>::kValues;
       return InputOf<Q>::template plain<S>(next - InputOf<Q>::kValues);
     };
-    // In braces: arguments are taken from left to right.
+    // In braces: evaluates the arguments from left to right.
     const std::tuple<Argument<Qs, S>...> arguments{take(std::integral_constant<Quantity, Qs>{})...};
     return std::apply(
         [&](const auto&... a) { return call_block<B, S>(block, own, conditions, a...); },
@@ -123,7 +122,7 @@ struct BlockInput<B, S, Takes<Qs...>> {
     (move(std::integral_constant<Quantity, Qs>{}), ...);
     return input;
   }
-  /// The arguments, a vector of three numbers in each line, and the parameters.
+  /// The arguments, one vector of three numbers per line, then the parameters.
   [[nodiscard]] std::string text() const {
     Eigen::MatrixXd vectors(kValues, 3), parameters(1, kOwn);
     for (std::size_t i = 0; i < kValues; ++i) vectors.row(i) = values[i].transpose();

@@ -1,4 +1,4 @@
-// Holds an error block against the laws of CONCEPTS.md.
+// Checks an error block against the laws of CONCEPTS.md.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,14 +21,14 @@ class BlockCheck {
     if constexpr (requires { B::kType; }) whose_ = "error block '" + std::string(B::kType) + "': ";
   }
 
-  /// Checks that the residual is zero and has derivatives where the sensors agree.
+  /// Checks that the residual is zero and differentiable where the sensors agree.
   [[nodiscard]] Verdict agreement(const Input& input) const {
     const Eigen::MatrixXd r = input.residual(block_), zero = Eigen::MatrixXd::Zero(kM, 1);
     const Verdict v = compare(whose_ + "the residual is not zero where the sensors agree",
                               {"residual", r}, {"expected", zero}, 1e-9);
     return v ? derivatives(input) : Verdict{v.text + input.text()};
   }
-  /// The same where it is clear at which arguments they agree.
+  /// The same for blocks with obvious agreeing arguments.
   [[nodiscard]] Verdict obvious_agreement() {
     constexpr auto& kAll = Input::kQuantities;
     if constexpr (Input::kOwn > 0 || kHasConditions) {
@@ -108,17 +108,17 @@ class BlockCheck {
 ///
 /// - The residual is zero where the sensors agree (1e-9), and has derivatives there.
 /// - Derivatives by jets equal central differences (1e-6 of the largest derivative), at 32 random
-///   inputs.  A block that drops a derivative is found, as is one with a kink where sensors agree.
-/// - In packets it is, lane by lane, what it is in double (1e-10), with all derivatives.  A block
-///   that branches on values is found, or does not compile.  Blocks of planes may branch.
-/// - A second call gives the same.
+///   inputs.  This finds a block that drops a derivative, or has a kink where sensors agree.
+/// - Each lane of a packet equals the result in double (1e-10), with all derivatives.  A block that
+///   branches on values fails, or does not compile.  Blocks of planes may branch.
+/// - A second call gives the same result.
 ///
-/// Points are within 1 m of the base, pixels 0 to 500, parameters within 0.1 of their initial values;
-/// inputs at which the residual is not a number are skipped.
-/// @param agreeing  arguments of the block, in double, at which the residual is zero with the initial
-///                  values of its parameters.  Without them two equal points, poses, planes or
-///                  pixels agree, and two rays that meet; blocks of other arguments, with
-///                  parameters or with conditions are then not checked to be zero anywhere.
+/// Points are within 1 m of the base, pixels 0 to 500, parameters within 0.1 of their initial
+/// values; inputs with a NaN residual are skipped.
+/// @param agreeing  arguments of the block, in double, at which the residual is zero with the
+///                  initial values of its parameters.  By default two equal points, poses, planes
+///                  or pixels, or two rays that meet.  For other arguments, or with parameters or
+///                  conditions, there is no default, and zero is not checked.
 template <ErrorBlock B, class... Arguments>
 [[nodiscard]] Verdict check_block(const B& block, const Arguments&... agreeing) {
   detail::BlockCheck<B> check(block);

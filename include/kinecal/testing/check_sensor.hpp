@@ -1,4 +1,4 @@
-// Holds a sensor against the laws of CONCEPTS.md.
+// Checks a sensor against the laws of CONCEPTS.md.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -32,7 +32,7 @@ class SensorCheck {
     }
     return packets("place(): ", inputs, values, jets);
   }
-  /// Checks the pixels of predict(), and that rays lead back.
+  /// Checks the pixels of predict(), and that rays lead back to the point.
   [[nodiscard]] Verdict predicts(std::span<const Input> inputs) const {
     const auto values = [](const auto& input, const M& m) { return input.pixel(m); };
     const auto jets = [](const auto& input, const M& m) { return input.pixel_jets(m); };
@@ -50,7 +50,7 @@ class SensorCheck {
     return "sensor '" + std::string(M::kType) + "', " + function;
   }
 
-  /// place() with the initial parameters gives what was recorded.
+  /// Checks that place() with the initial parameters gives the recorded value.
   [[nodiscard]] Verdict is_recorded(const Input& input) const {
     if constexpr (PlacesOne<M, Quantity::point> || PlacesOne<M, Quantity::pose>) {
       const auto [recorded, again] = input.recorded_and_placed(sensor_);
@@ -91,7 +91,7 @@ class SensorCheck {
     }
     return kLawsHold;
   }
-  /// The derivatives that a sensor gives itself, against its values and against place().
+  /// Compares the derivatives that a sensor supplies with its values and with place().
   [[nodiscard]] Verdict corrected(const Input& input) const {
     const auto given = input.corrected(), placed = input.placed_in_base(sensor_);
     const Eigen::MatrixXd value = given.value, said = given.derivatives, of_place = placed.value,
@@ -118,7 +118,7 @@ class SensorCheck {
     if (v) v = corrected_in_packets(input, given);
     return v ? v : Verdict{v.text + input.text()};
   }
-  /// The same input in all lanes: in Corrected, samples share the parameters.
+  /// The same input in all lanes: Corrected uses one set of parameters for all samples.
   [[nodiscard]] Verdict corrected_in_packets(const Input& input,
                                              const typename Input::Given& given) const {
     const InPackets packed = InPackets::packed(std::span(&input, 1), 0);
@@ -129,7 +129,7 @@ class SensorCheck {
     }
     return kLawsHold;
   }
-  /// The ray to the pixel of a point goes through the point.
+  /// Checks that the ray to the pixel of a point passes through the point.
   [[nodiscard]] Verdict ray_leads_back(const Input& input) const {
     Input seen = input;
     const Eigen::Vector2d pixel = input.pixel(sensor_);
@@ -152,16 +152,16 @@ class SensorCheck {
 /// Checks a sensor:
 ///
 /// - Derivatives of place() by parameters, and of predict() by point and parameters, equal central
-///   differences (1e-6 of the largest derivative or value).  So do those of Corrected, if it has
-///   one, whose values are those of place().
-/// - In packets it is, lane by lane, what it is in double (1e-10), with all derivatives.
+///   differences (1e-6 of the largest derivative or value).  The same holds for Corrected, if it
+///   has one, and its values equal those of place().
+/// - Each lane of a packet equals the result in double (1e-10), with all derivatives.
 /// - place() with the initial parameters gives the recorded point or pose (1e-9).
-/// - The ray to the pixel that predict() gives goes through the point (1e-6 of its distance).
+/// - The ray to the pixel that predict() gives passes through the point (1e-6 of its distance).
 ///
 /// Parameters are within 0.05 of their initial values.
-/// @param seen  recorded observations.  By default 16 features in each of two: points 0.5 to 2 m in
-///              front of the sensor, pixels, readings of 0.5 to 2; with a camera of 640 x 480 pixels,
-///              once rectified and once distorted.
+/// @param seen  recorded observations.  Default: two with 16 features each: points 0.5 to 2 m in
+///              front of the sensor, pixels, readings of 0.5 to 2; with a camera of 640 x 480
+///              pixels, once rectified and once distorted.
 /// @throws SettingsError  if the sensor cannot use an observation
 template <Sensor M>
 [[nodiscard]] Verdict check_sensor(

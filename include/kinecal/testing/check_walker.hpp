@@ -1,4 +1,4 @@
-// Holds a walker that composes a pose against the laws of CONCEPTS.md.
+// Checks a walker that composes a pose against the laws of CONCEPTS.md.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +13,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// A robot with every kind of joint that a chain takes, corrected and moved at random.
+/// A robot with every kind of joint that a chain takes, randomly corrected and moved.
 template <class S>
 class WalkedRobot {
  public:
@@ -63,7 +63,7 @@ class WalkedRobot {
     kinecal::walk(chain, std::span<const JointState<S>>(states),
                   std::span<const JointCorrection<S>>(corrections), walker);
   }
-  /// base_T_tip by the definition of a joint: origin, correction, motion.
+  /// base_T_tip from the definition of a joint: origin, correction, motion.
   [[nodiscard]] Pose<S> pose(const std::string& base, const std::string& tip) const {
     return in_root(base).inverse() * in_root(tip);
   }
@@ -107,12 +107,12 @@ template <class S>
 /// Checks a walker that composes the pose of the tip, alone or among other things:
 ///
 /// - The pose is the product of origin, correction and motion of each joint (1e-10), on chains from
-///   parent to child, back, and from one branch to another.  So a joint with `reversed` set is
+///   parent to child, back, and from one branch to another.  So a joint with `reversed` set must be
 ///   undone: its motion first, then its correction.
 ///
 /// Joints are prismatic, revolute, continuous and fixed, about axes of the frame and about others.
-/// @param walker   at its start, or a function of a RuntimeChain that returns it so
-/// @param pose_of  callable: a walker that has walked -> its base_T_tip, a Pose<S>
+/// @param walker   in its initial state, or a function of a RuntimeChain that returns such a walker
+/// @param pose_of  callable: a walker after its walk -> its base_T_tip, a Pose<S>
 template <class W, class PoseOf>
 [[nodiscard]] Verdict check_walker(const W& walker, const PoseOf& pose_of) {
   const auto start = [&](const RuntimeChain& chain) {

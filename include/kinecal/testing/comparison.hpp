@@ -1,4 +1,5 @@
-// Two matrices that a law says are equal, lanes of packets as matrices, central differences.
+// Compares two matrices that a law says are equal; central differences; lanes of packets as
+// matrices.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,11 +14,11 @@
 
 namespace kinecal::detail {
 
-/// Of central differences; their error is 1e-10 for a function with derivatives of size one.
+/// Step of central differences; their error is 1e-10 for a function with derivatives of size one.
 inline constexpr double kStep = 1e-5;
-/// Between jets and central differences, relative to the largest derivative or value.
+/// Tolerance between jets and central differences, relative to the largest derivative or value.
 inline constexpr double kOfDifferences = 1e-6;
-/// Between two orders of the same arithmetic, such as fused multiply-adds, likewise.
+/// Tolerance between two orders of the same arithmetic, such as fused multiply-adds; relative.
 inline constexpr double kOfRounding = 1e-10;
 
 /// A matrix with its name, for messages.
@@ -46,7 +47,7 @@ struct Named {
   return most;
 }
 
-/// kLawsHold if two matrices are equal, else `law` and both.
+/// kLawsHold if two matrices are equal, else a verdict with `law` and both matrices.
 /// @param tolerance  of an entry; NaN equals NaN
 [[nodiscard]] inline Verdict compare(const std::string& law, const Named& a, const Named& b,
                                      double tolerance) {
@@ -67,11 +68,11 @@ struct Differentiated {
   Eigen::Matrix<S, M, N> derivatives;
 
   Differentiated() = default;
-  /// Of jets.
+  /// From jets.
   explicit Differentiated(const Eigen::Matrix<Jet<S, N>, M, 1>& jets)
       : value(values_of(jets)), derivatives(derivatives_by<N>(jets, 0)) {}
 
-  /// The same in other arithmetic: one lane of packets, without derivatives.
+  /// From another scalar: one lane of packets, without derivatives.
   template <class Q>
   [[nodiscard]] Verdict is_lane_of(int i, const std::string& whose,
                                    const Differentiated<Q, M, N>& packets,
@@ -101,7 +102,7 @@ template <int M, int N, class At>
   return derivatives;
 }
 
-/// Derivatives that are said to be those of a function, against its central differences.
+/// Compares claimed derivatives of a function with its central differences.
 /// @param size  the largest value of the function
 [[nodiscard]] inline Verdict compare_derivatives(const std::string& whose, const Named& said,
                                                  const Eigen::MatrixXd& differences, double size) {

@@ -1,4 +1,4 @@
-// Random input of checks: numbers with a fixed seed, and the arguments of error blocks as vectors.
+// Random input for checks, with a fixed seed; the arguments of error blocks as vectors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,13 +12,13 @@ namespace kinecal::detail {
 /// Random numbers, the same in each run and with each standard library.
 class RandomInput {
  public:
-  /// A number of a range.
+  /// A number between two bounds.
   double operator()(double lower, double upper) {
     return lower + (upper - lower) * (static_cast<double>(random_()) / 4294967295.0);
   }
-  /// (3) each of -1 to 1.
+  /// (3) each component from -1 to 1.
   Vector3<double> vector() { return {(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)}; }
-  /// Any rotation by at most 1.7 radians, and a translation of -1 to 1 m.
+  /// A rotation by at most 1.7 radians, and a translation with components from -1 to 1 m.
   Pose<double> pose() { return {exp(vector()), vector()}; }
 
  private:
@@ -98,7 +98,7 @@ void move_variable(Vector3<double>* values, int k, double step) {
   for (int c = 1; c <= 3; ++c) values[c] = Vector3<double>(turn * values[c]);
 }
 
-/// Arguments with which two sensors agree: the same one twice, two rays to one point.
+/// Arguments on which two sensors agree: the same one twice, or two rays to one point.
 template <Quantity Q>
 void make_agree(RandomInput& random, const Vector3<double>* a, Vector3<double>* b) {
   if constexpr (Q == Quantity::ray) {

@@ -1,4 +1,5 @@
-// What a sensor measured and its parameters as numbers: recorded, moved, in packets, in jets.
+// The input of a sensor as numbers: measurement and parameters; recorded, moved, in packets, in
+// jets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,7 +14,7 @@
 
 namespace kinecal::detail {
 
-/// Input of a sensor: a measurement and its parameters; a point that a camera should see; a pose.
+/// Input of a sensor: a measurement and its parameters; a point for a camera to see; a pose.
 template <Sensor M, class S>
 struct SensorInput {
   using Vectors = VectorsOf<placed_quantity<M>().value_or(Quantity::point)>;
@@ -56,7 +57,7 @@ struct SensorInput {
     }
     return all;
   }
-  /// One input in each lane: from `first` on, and again from the beginning.
+  /// One input per lane: from `first` on, wrapping around.
   [[nodiscard]] static SensorInput packed(std::span<const SensorInput<M, double>> inputs,
                                           std::size_t first) {
     SensorInput all;
@@ -91,7 +92,7 @@ struct SensorInput {
            (kOwn > 0 ? Named{"parameters", parameters}.text() : "");
   }
 
-  /// What place() delivers, all numbers of it, in the sensor's frame.
+  /// All numbers that place() delivers, in the sensor's frame.
   [[nodiscard]] Eigen::Matrix<S, kPlaced, 1> placed(const M& sensor) const {
     return numbers(sensor.place(measurement, own));
   }
@@ -106,7 +107,7 @@ struct SensorInput {
           numbers(sensor.place(measurement, jets<Jet<S, kOwn>>(0))));
     }
   }
-  /// The pixel at which a camera sees the point.
+  /// The camera's pixel of the point.
   [[nodiscard]] Eigen::Matrix<S, 2, 1> pixel(const M& sensor) const {
     return sensor.predict(point, measurement.settings, own);
   }
@@ -117,8 +118,8 @@ struct SensorInput {
         sensor.predict(point_jets<J>(point, 0), measurement.settings, jets<J>(3));
     return Differentiated<S, 2, 3 + kOwn>(seen);
   }
-  /// What Corrected gives: a point in the base and its derivatives by all parameters, or by all but
-  /// one, whose column is zero.
+  /// The result of Corrected: a point in the base and its derivatives by all parameters, or by all
+  /// but one, whose column is zero.
   [[nodiscard]] Given corrected(int left_out = -1) const {
     std::array<double, kParametersOf<M>> parameters;
     std::vector<int> chosen;
@@ -141,7 +142,7 @@ struct SensorInput {
     placed.derivatives = pose.rotation * placed.derivatives;
     return placed;
   }
-  /// The recorded point or pose, and what place() makes of it with the initial parameters.
+  /// The recorded point or pose, and the result of place() with the initial parameters.
   [[nodiscard]] std::pair<Eigen::MatrixXd, Eigen::MatrixXd> recorded_and_placed(
       const M& sensor) const {
     const auto again = sensor.place(measurement, array_of<kParametersOf<M>>(initial));

@@ -1,4 +1,4 @@
-// Observations that nobody recorded, for sensors that are checked without samples.
+// Synthetic observations, for checking sensors without samples.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal::detail {
 
-/// Two observations of a sensor that nobody recorded: see check_sensor().
+/// Two synthetic observations of a sensor: see check_sensor().
 template <Sensor M>
 [[nodiscard]] std::vector<Observation> typical_observations() {
   CameraInfo camera;

@@ -1,4 +1,4 @@
-// What a check found: all laws hold, or the first one that is broken.
+// The result of a check: all laws hold, or the first broken one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace kinecal {
 
-/// What a check found.
+/// The result of a check.
 struct Verdict {
   std::string text = {};  ///< the broken law, with numbers; empty if all laws hold
 
@@ -21,7 +21,7 @@ struct Verdict {
   }
 };
 
-/// The verdict on what obeys all laws: EXPECT_EQ(check_block(MyBlock{}), kLawsHold).
+/// The verdict if all laws hold: EXPECT_EQ(check_block(MyBlock{}), kLawsHold).
 inline const Verdict kLawsHold;
 
 }  // namespace kinecal

@@ -15,7 +15,7 @@ template <std::size_t N>
 struct FixedString {
   char text[N] = {};  ///< ends with a zero
 
-  /// Template arguments convert from a literal implicitly.
+  /// Implicit, so that a literal works as a template argument.
   consteval FixedString(const char (&literal)[N]) {  // NOLINT: a literal is a text
     std::copy_n(literal, N, text);
   }

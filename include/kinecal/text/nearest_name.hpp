@@ -13,8 +13,8 @@ namespace kinecal {
 
 namespace detail {
 
-/// Three rows of a table, one after another in the same place.  (A std::vector is no constant expression
-/// with g++ 11.)
+/// The last three rows of a table.  (Not a std::vector: with g++ 11 that is not a constant
+/// expression.)
 class ThreeRows {
  public:
   constexpr explicit ThreeRows(std::size_t columns)
@@ -23,7 +23,7 @@ class ThreeRows {
   ThreeRows(const ThreeRows&) = delete;
   ThreeRows& operator=(const ThreeRows&) = delete;
 
-  /// A row, from 0; it replaces the third before it.
+  /// Row i, from 0; it overwrites row i - 3.
   [[nodiscard]] constexpr std::size_t* operator[](std::size_t row) {
     return cells_ + row % 3 * columns_;
   }
@@ -35,8 +35,8 @@ class ThreeRows {
 
 }  // namespace detail
 
-/// Number of insertions, deletions, replacements and swaps of neighbours between two names; case
-/// does not count.  Source: Damerau-Levenshtein distance, restricted.
+/// Number of insertions, deletions, replacements and swaps of neighbours between two names; ignores
+/// case.  Source: Damerau-Levenshtein distance, restricted.
 [[nodiscard]] constexpr std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; };
   const auto same = [&](char x, char y) { return x == y || lower(x) == lower(y); };
@@ -59,9 +59,9 @@ class ThreeRows {
 /// The nearest of the candidates seen so far.
 struct NearestName {
   std::string_view name = {};  ///< empty if no candidate is near enough
-  std::size_t distance = 0;    ///< a nearer candidate has a smaller edit distance than this
+  std::size_t distance = 0;    ///< a nearer candidate must have a smaller edit distance
 
-  /// Before the first candidate.  A misspelling differs in at most a third of its letters.
+  /// The state before any candidate.  A misspelling differs in at most a third of its letters.
   [[nodiscard]] static constexpr NearestName none(std::string_view misspelt) {
     return {{}, misspelt.size() / 3 + 1};
   }

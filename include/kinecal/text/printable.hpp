@@ -1,4 +1,4 @@
-// Texts of files for a terminal: without control characters, which could move the cursor, change
+// Makes texts from files safe for a terminal: control characters could move the cursor, change
 // colours or hide a message.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -10,11 +10,11 @@
 
 namespace kinecal {
 
-/// Whether a text contains control characters other than line ends and tabs, or is not UTF-8.
+/// True if a text has control characters other than line ends and tabs, or is not UTF-8.
 [[nodiscard]] bool has_control_characters(std::string_view text);
 
-/// The text with control characters, and bytes that are not UTF-8, as "\x1b".  Line ends and tabs
-/// stay.
+/// The text with control characters, and bytes that are not UTF-8, as "\x1b".  Keeps line ends and
+/// tabs.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace kinecal

@@ -15,8 +15,8 @@ namespace kinecal {
 
 namespace detail {
 
-/// Number of bytes of the character that a text begins with, by its first byte; 0 if it cannot begin
-/// one.  Source: RFC 3629.
+/// Number of bytes of a character, from its first byte; 0 if that is invalid.
+/// Source: RFC 3629.
 [[nodiscard]] inline std::size_t utf8_length(unsigned char first) {
   if (first < 0x80) return 1;
   if (first < 0xc2) return 0;
@@ -25,8 +25,8 @@ namespace detail {
   return first < 0xf5 ? 4 : 0;
 }
 
-/// Number of bytes of the character that a text begins with; 0 if it is a control character (C0,
-/// DEL, C1) or not UTF-8.
+/// Number of bytes of a text's first character; 0 if it is a control character (C0, DEL, C1) or not
+/// UTF-8.
 [[nodiscard]] inline std::size_t printable_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const std::size_t length = utf8_length(byte(0));

@@ -1,4 +1,4 @@
-// Numbers in the units that people read.
+// Numbers in readable units.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal {
 
-/// A number in the unit that people read: "3.4 mm", "0.21 deg", "1.2 px", "0.004".
+/// A number in a readable unit: "3.4 mm", "0.21 deg", "1.2 px", "0.004".
 [[nodiscard]] std::string reading(double value, std::string_view unit);
 
 }  // namespace kinecal

@@ -1,4 +1,4 @@
-// Writing numbers for people.
+// Definition of reading().
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,9 +1,9 @@
 // Sentences: compile errors that say in one line what is wrong and what to do.
 //
-// A sentence is a template with a static_assert that fails.  Its arguments name what it is about,
+// A sentence is a template with a static_assert that fails.  Its arguments name the culprits,
 // because compilers print them next to the message.  A check is a type: Holds, or the sentence,
-// named but not yet instantiated.  The type that is checked keeps an object of the check as its
-// last member.  So the compiler prints exactly one sentence, the first, and no further errors.
+// named but not yet instantiated.  The checked type keeps an object of the check as its last
+// member.  So the compiler prints exactly one sentence, the first, and no further errors.
 //
 //   template <class Joint, bool kMoves = false>
 //   struct JointMoves {

@@ -1,5 +1,5 @@
-// All that is known about how good a step of a calibration is: noise, uncertainty, what cannot be
-// observed, held-out error, bad captures.
+// Assesses a step of a calibration: noise, uncertainty, observability, held-out error, bad
+// captures.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,15 +19,15 @@
 
 namespace kinecal {
 
-/// A joint, frame, sensor or error block whose parameters could as well be held.
+/// A joint, frame, sensor or error block whose parameters might as well be held.
 struct IdleGroup {
   std::string owner;            ///< "elbow_flex_joint"
   std::vector<int> parameters;  ///< table indices
-  double statistic = 0.0;       ///< d^T C^-1 d of their changes; without effect it is about `rank`
+  double statistic = 0.0;       ///< d^T C^-1 d of their changes; about `rank` by chance
   int rank = 0;                 ///< number of determined combinations among them
 };
 
-/// How good a step is.
+/// The quality of a step.
 struct Assessment {
   std::string step;                    ///< its name
   Observability observability;         ///< of all free parameters
@@ -35,13 +35,13 @@ struct Assessment {
   std::vector<int> parameters;         ///< table indices: columns of the uncertainty
   std::vector<int> at_bound;           ///< table indices of free parameters that ended at a bound
   Uncertainty uncertainty;             ///< of `parameters`
-  WeakParameters weak;                 ///< hardly determined ones of `parameters`
+  WeakParameters weak;                 ///< poorly determined ones of `parameters`
   std::vector<HeldOutError> held_out;  ///< of each error block; empty if there are too few samples
   std::vector<CaptureError> captures;  ///< of each sample
   std::optional<RecordingChange> change;  ///< during the recording
-  std::vector<IdleGroup> idle;            ///< whose parameters buy nothing
+  std::vector<IdleGroup> idle;            ///< whose parameters improve nothing
   std::vector<PriorPull> pulls;           ///< priors that the samples contradict
-  std::optional<PoseUncertainty> pose;    ///< of what the first error block compares
+  std::optional<PoseUncertainty> pose;    ///< of the frames that the first error block compares
   int rows = 0;                           ///< residuals, without priors
 
   /// Standard deviation of a parameter of the table; nullopt if the step does not free it.
@@ -54,7 +54,7 @@ struct AssessOptions {
   ProgressMeter meter = {};  ///< called after each fold
 };
 
-/// Assesses each step of a calibration that has run, at its result.
+/// Assesses each step of a finished calibration, at its result.
 /// @param samples  those of the problems, in their order
 [[nodiscard]] std::vector<Assessment> assess(const Calibration& calibration,
                                              const CalibrationResult& result,

@@ -16,8 +16,8 @@ namespace kinecal {
 
 namespace detail {
 
-/// Groups of parameters that buy nothing: a change d from the initial values that is no larger than
-/// chance makes it, d^T C^-1 d < 2 rank.  Their fit predicts no better than one without them.
+/// Groups of parameters that improve nothing: their change d from the initial values is no larger
+/// than chance, d^T C^-1 d < 2 rank.  A fit without them predicts just as well.
 /// Source: Akaike, A New Look at the Statistical Model Identification, 1974.
 [[nodiscard]] inline std::vector<IdleGroup> idle_groups(const AnyProblem& problem,
                                                         const FreeSet& free,
@@ -81,7 +81,7 @@ KINECAL_INLINE Assessment assess(const AnyProblem& problem, const FreeSet& free,
     try {
       found.held_out =
           held_out_errors(*evaluator, values, fit, folds_of(samples, folds), options.meter);
-    } catch (const std::domain_error&) {  // without a fold, a point ends behind a camera
+    } catch (const std::domain_error&) {  // without a fold, a point ends up behind a camera
       for (int t = 0; t < problem.num_terms(); ++t) {
         const Term& term = problem.term(t);
         found.held_out.push_back(

@@ -1,11 +1,11 @@
-// How good the result of samples in shards is.
+// Assesses the result of samples in shards.
 //
 //   C = A^-1 B A^-1      A = sum over features of the cost's Hessian + P      B = sum g_s g_s^T + P
 //
-// with g_s the gradient of all features of sample s, and P the priors.  This supposes nothing of the
-// noise but that samples err independently: so many samples say themselves how much they vary, and
-// features that err together, blocks of unlike noise and losses are all in it.  It takes many more
-// samples than parameters.
+// with g_s the gradient of all features of sample s, and P the priors.  The only assumption about
+// the noise is that samples err independently: so many samples show directly how much they vary.
+// This covers features that err together, error blocks with different noise, and losses.  It takes
+// many more samples than parameters.
 // Source: Huber, Robust Statistics, 1981, 6.3; Liang, Zeger, Biometrika 73, 1986, for g_s.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -19,9 +19,10 @@
 
 namespace kinecal {
 
-/// What is known of a result.
+/// The quality of a result.
 struct ShardAssessment {
-  /// Without captures, held-out error, and changes during the recording: these need all samples at once.
+  /// Lacks captures, held-out error and changes during the recording: these need all samples at
+  /// once.
   Assessment assessment;
   std::vector<BlockStatistics> blocks;  ///< of error blocks; medians to 0.3 %
   std::vector<double> misfits;  ///< of each shard: RMS of its weighted residuals, losses included
@@ -29,7 +30,7 @@ struct ShardAssessment {
 
 /// @param before   values of all parameters of the table at the start
 /// @param after    the same at the solution
-/// @param samples  of the first shard: the pose that is compared is asked for there
+/// @param samples  of the first shard: the compared pose is evaluated at them
 [[nodiscard]] ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
                                             std::span<const double> before,
                                             std::span<const double> after,

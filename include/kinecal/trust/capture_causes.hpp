@@ -1,14 +1,14 @@
-// Why a sample does not fit the others, where the cause can be recognised.
+// Why a sample does not fit the others, if the cause can be recognised.
 //
-// Each cause is undone in the sample, which is then evaluated at the values of the others.  A cause is
-// named if every feature then fits within the noise, and if what remains to be tested is enough: no
-// cause is named for a single feature that is off by chance.
+// Each possible cause is undone in the sample, which is then evaluated at the values of the others.
+// A cause is named if every feature then fits within the noise, and if enough residuals remain to
+// test it: a single feature that is off by chance gets no cause.
 //
-//   order of features     two exchanged; one that shows another; reversed or turned by a quarter: a
-//                         board.  Nothing is fitted, so two features are enough.
+//   order of features     two exchanged; one that is another; a board reversed or turned by a quarter.
+//                         Nothing is fitted, so two features are enough.
 //   one joint's reading   Gauss-Newton over its position: three features, or one with orientation
-//   motion                all joints a little, (q / 0.2 rad)^2 added: five residuals more than it fits.
-//                         That the target slipped looks the same, so both are named.
+//   motion                all joints slightly, penalty (q / 0.2 rad)^2: five residuals more than
+//                         unknowns.  A slipped target looks the same, so both are named.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

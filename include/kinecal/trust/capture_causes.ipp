@@ -13,13 +13,13 @@ namespace kinecal {
 
 namespace detail {
 
-/// A sample with its features in another order, and in words what that undoes.
+/// A sample with its features in another order, and a description of that order.
 struct FeatureOrder {
   std::string cause;
   Sample sample;
 };
 
-/// What was measured in another order: that of place i comes from place order[i].  Ids stay.
+/// Reorders the measurements: place i gets that of place order[i].  Ids stay.
 [[nodiscard]] inline Sample with_order(const Sample& sample, std::size_t observation,
                                        const std::vector<std::size_t>& order) {
   Sample changed = sample;
@@ -32,8 +32,8 @@ struct FeatureOrder {
   return changed;
 }
 
-/// The feature with the number `worst` exchanged with another one, or showing another one.
-/// @param of  " of 'camera'", where that is of interest
+/// Feature number `worst` exchanged with another one, or measured at another one.
+/// @param of  " of 'camera'", if needed
 inline void add_exchanges(const Sample& sample, std::size_t observation, std::size_t worst, int bad,
                           const std::string& of, std::vector<FeatureOrder>& all) {
   const std::vector<Feature>& features = sample.observations[observation].features;
@@ -61,7 +61,7 @@ inline void add_exchanges(const Sample& sample, std::size_t observation, std::si
   }
 }
 
-/// A board that was read from another corner.  Of a part of a board, nobody knows where the corner is.
+/// A board read from another corner.  Not for a partial board, whose corner is unknown.
 inline void add_turns(const Sample& sample, std::size_t observation,
                       std::vector<FeatureOrder>& all) {
   const std::vector<Feature>& features = sample.observations[observation].features;

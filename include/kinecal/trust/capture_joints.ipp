@@ -1,4 +1,4 @@
-// Bad captures that other joint positions explain: one joint's reading, or the robot's motion.
+// Bad captures explained by other joint positions: one joint's reading, or motion of the robot.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,8 +21,8 @@ inline constexpr double kJointStep = 1e-6;
 
 /// Joint positions that explain a sample.
 struct JointCause {
-  std::string text;   ///< empty: none does
-  double chi2 = 0.0;  ///< what remains
+  std::string text;   ///< empty: no explanation
+  double chi2 = 0.0;  ///< that remains
 };
 
 /// A sample with other positions of its joints.
@@ -35,7 +35,7 @@ struct JointCause {
   return changed;
 }
 
-/// Joints of a sample that move what it observed, by index.
+/// Joints of a sample that affect its observations, by index.
 [[nodiscard]] inline std::vector<Eigen::Index> moving_joints(const CaptureTrials& trials,
                                                              const Sample& sample,
                                                              const TrialRows& now) {
@@ -55,20 +55,20 @@ struct JointCause {
   return moving;
 }
 
-/// Of a joint's position.
+/// Unit of a joint's position.
 [[nodiscard]] inline std::string_view unit_of(const Robot& robot, const std::string& joint) {
   const bool slides = robot.has_joint(joint) && robot.joint(joint).type == JointType::prismatic;
   return slides ? "m" : "rad";
 }
 
-/// "'elbow' reads 4.9 deg less": the joint, and what its reading lacks.
+/// "'elbow' reads 4.9 deg less": the joint, and the error of its reading.
 [[nodiscard]] inline std::string reading_text(const Robot& robot, const std::string& joint,
                                               double lacks) {
   return "'" + joint + "' reads " + reading(std::abs(lacks), unit_of(robot, joint)) +
          (lacks > 0.0 ? " less" : " more");
 }
 
-/// Changes of single joints, each by itself, that bring a sample nearest to the fit.
+/// Changes of single joints, each alone, that bring a sample nearest to the fit.
 /// @returns  (joints) zero for one that is not among `moving`
 [[nodiscard]] inline Eigen::VectorXd single_changes(const CaptureTrials& trials,
                                                     const Sample& sample,
@@ -126,7 +126,8 @@ struct JointCause {
   return {text + " than the others say", explain.front().first};
 }
 
-/// A small change of all joints, nearest to a sample's features; nullopt if it could fit any.
+/// A small change of all joints that best fits a sample's features; nullopt if it could fit
+/// anything.
 [[nodiscard]] inline std::optional<Eigen::VectorXd> small_change(
     const CaptureTrials& trials, const Sample& sample, const TrialRows& now,
     const std::vector<Eigen::Index>& moving) {
@@ -152,7 +153,7 @@ struct JointCause {
     const Eigen::MatrixXd squares = slopes.transpose() * slopes;
     const Eigen::LDLT<Eigen::MatrixXd> solver(squares + prior);
     if (iteration + 1 ==
-        kIterations) {  // before, what is off turns with the joints: more is fitted
+        kIterations) {  // at first, the residual rotates with the joints, which fits more
       const double fitted = solver.solve(squares).trace();
       if (static_cast<double>(now.rows.size()) - fitted < kTested) return std::nullopt;
     }
@@ -162,7 +163,8 @@ struct JointCause {
   return change;
 }
 
-/// Whether a small change of all joints explains a sample: it was moving, or its target slipped.
+/// Tests whether a small change of all joints explains a sample: it was moving, or its target
+/// slipped.
 [[nodiscard]] inline JointCause motion(const CaptureTrials& trials, const Robot& robot,
                                        const Sample& sample, const TrialRows& now) {
   constexpr double kLargest = 0.35;

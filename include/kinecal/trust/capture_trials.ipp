@@ -25,7 +25,7 @@ struct TrialRows {
   std::vector<TrialFeature> features;  ///< of all error blocks
   bool defined = true;                 ///< all of them could be evaluated
 
-  /// Beyond this a feature is bad: the bound of captures.hpp for the features of one sample.
+  /// Beyond this a feature is bad: the limit of captures.hpp for the features of one sample.
   [[nodiscard]] double limit(const TrialFeature& feature) const {
     constexpr double kFalse = 1e-3;
     const double k = feature.size, t = std::log(static_cast<double>(features.size()) / kFalse);
@@ -36,7 +36,7 @@ struct TrialRows {
         std::count_if(features.begin(), features.end(),
                       [&](const TrialFeature& feature) { return feature.chi2 > limit(feature); }));
   }
-  /// All features are within the noise, and that of the values.
+  /// True if all features are within the noise and the uncertainty of the values.
   [[nodiscard]] bool fits() const {
     constexpr double kSlack = 1.5 * 1.5, kSlackOfAll = 1.5;
     const double n = static_cast<double>(rows.size());

@@ -1,16 +1,16 @@
 // Bad captures: samples that do not belong to the fit of the others.
 //
-// Features with a distance d are compared with the noise s of their error block:
+// The distance d of a feature is compared with the noise s of its error block:
 //
 //   d^2 / (s^2 (1 - h))  for samples in the fit,   d^2 / (s^2 (1 + h))  for others,   h the leverage
 //
-// which is chi-square of k components.  A sample is bad if one of its features is beyond
-// k + 2 sqrt(k t) + 2 t, t = log(features / 1e-3): one data set in 1000 without bad captures has such
-// a feature.  The fit is found robustly first (M-estimates: Cauchy, then Tukey, from the median), then
-// by least squares without the bad samples, until they are the same ones.  Nothing in this depends on
-// the order of samples.
-// Source: Laurent, Massart, Adaptive Estimation of a Quadratic Functional, 2000, lemma 1 (the bound);
-// Rousseeuw, Leroy, Robust Regression and Outlier Detection, 1987.
+// which is chi-square with k components.  A sample is bad if one of its features exceeds
+// k + 2 sqrt(k t) + 2 t, t = log(features / 1e-3): this happens by chance in 1 of 1000 data sets.
+// The fit is first found robustly (M-estimates: Cauchy, then Tukey, from the median), then by least
+// squares without the bad samples, until the set is stable.  The result does not depend on the
+// order of samples.
+// Source: Laurent, Massart, Adaptive Estimation of a Quadratic Functional, 2000, lemma 1 (the
+// bound); Rousseeuw, Leroy, Robust Regression and Outlier Detection, 1987.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -26,13 +26,12 @@ struct CaptureError {
   int term = 0;               ///< error block, by number in the problem
   FeatureLabel feature = {};  ///< which one it is
   double distance = 0.0;      ///< from the fit without bad samples, unit of the residual
-  double others = 0.0;        ///< the largest distance of the sample's other features of the block
+  double others = 0.0;        ///< largest distance of the sample's other features of the block
   double times = 0.0;         ///< distance in standard deviations of the noise
-  double limit = 0.0;         ///< of `times`: beyond it a feature is bad
+  double limit = 0.0;         ///< of `times`; beyond it a feature is bad
   bool bad = false;           ///< beyond the limit
-  double influence =
-      0.0;  ///< how far the parameters move without the sample: sqrt(dz^T H dz / size),
-            ///< 1: by their own uncertainty
+  double influence = 0.0;  ///< shift of the parameters without the sample: sqrt(dz^T H dz / size),
+                           ///< 1: as large as their own uncertainty
 };
 
 /// The worst feature of each sample, by number of the sample.

@@ -73,7 +73,7 @@ class CaptureSearch {
       sigma_.push_back(sigma / std::sqrt(freedom));
     }
   }
-  /// The share of rows that parameters do not take up.
+  /// The share of rows that parameters do not use up.
   [[nodiscard]] double freedom(double rows) const {
     const double n = static_cast<double>(fit_.size());
     return rows > 2.0 * n ? 1.0 - n / rows : 0.5;
@@ -115,11 +115,11 @@ class CaptureSearch {
       set_sigmas(freedom(static_cast<double>(fit_.residual.size())));
     }
   }
-  /// Noise of a weighted residual; not below rounding of exact data.
+  /// Noise of a weighted residual; at least the rounding of exact data.
   [[nodiscard]] double sigma_of(const FeatureRows& f) const {
     return std::max(sigma_[static_cast<std::size_t>(f.term)], 1e-9);
   }
-  /// Distance in standard deviations of this feature.
+  /// Distance of this feature in standard deviations.
   [[nodiscard]] double times(const FeatureRows& f) const {
     const auto j = fit_.jacobian.middleRows(f.row, f.size);
     const double leverage = std::min(0.99, (j * inverse_).cwiseProduct(j).sum() / f.size);
@@ -127,13 +127,13 @@ class CaptureSearch {
     return distance(f) / (sigma_of(f) * std::sqrt(in ? 1.0 - leverage : 1.0 + leverage));
   }
   [[nodiscard]] double limit(const FeatureRows& f) const {
-    constexpr double kFalse = 1e-3;  // data sets without bad captures in which one is found
+    constexpr double kFalse = 1e-3;  // share of good data sets with a false alarm
     const double t = std::log(static_cast<double>(features_.size()) / kFalse), k = f.size;
     const double factor = tail_counts_ ? tail_[static_cast<std::size_t>(f.term)] : 1.0;
     return factor * std::sqrt(k + 2.0 * std::sqrt(k * t) + 2.0 * t);
   }
-  /// Whether the limit is that of equal noise in all directions, or of the tail of the features that fit:
-  /// to be asked only when bad captures are no longer among them.
+  /// Assumes equal noise in all directions, or uses the observed tail of the features that fit.
+  /// The latter only when bad captures are no longer among them.
   enum class Tail { normal, as_seen };
 
   void mark(Tail tail = Tail::normal) {

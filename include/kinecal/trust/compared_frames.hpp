@@ -1,5 +1,4 @@
-// Which frames a problem compares: what the uncertainty of a pose is stated for, if nobody asks for
-// another one.
+// The frames that a problem compares: the uncertainty of a pose is reported for them by default.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,10 +12,10 @@
 
 namespace kinecal {
 
-/// What the first error block that samples have compares: the frames of its sensors' features.  A camera
-/// is the frame in which the other one is wanted, so it comes second.
+/// The frames compared by the first error block with samples: those of its sensors' features.  A
+/// camera comes second, because the other frame's pose is given in the camera.
 /// @param problem  with its samples
-/// @returns  nullopt if no error block has samples, or it compares nothing with itself
+/// @returns  nullopt if no error block has samples, or if it has only one sensor
 [[nodiscard]] std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
     const AnyProblem& problem, std::span<const Sample> samples);
 

@@ -34,10 +34,10 @@ struct GradientSums {
     together.noalias() += rows.transpose() * weighted;
     share.noalias() += rows.transpose() * loss.asDiagonal() * rows;
   }
-  /// Adds the sample, and begins another one.
+  /// Adds the sample and starts another one.
   void end_sample() {
     const Eigen::Index n = share.rows();
-    // A direction that this sample alone determines has no residual left: it adds nothing.
+    // A direction that only this sample determines has no residual left and adds nothing.
     constexpr double kAlone = 1e-6;
     const Eigen::MatrixXd others = (1.0 + kAlone) * Eigen::MatrixXd::Identity(n, n) - share;
     of_samples += together.dot(others.ldlt().solve(together));

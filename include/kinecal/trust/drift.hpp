@@ -1,16 +1,17 @@
 // Drift: does a calibration still hold for a few new samples, and if not, what has moved?
 //
-// If nothing has moved, the weighted residuals of new samples are noise and the error of the
+// If nothing has moved, the weighted residuals of new samples are noise plus the error of the
 // calibrated parameters: r ~ N(0, S + J C J^T), S the noise, C the covariance.  So
 //
 //   X = r^T (S + J C J^T)^-1 r = min over u of |S^-1/2 r(B u)|^2 + |u|^2      C = B B^T
 //
-// is chi-square with the number of residuals as degrees of freedom.  As S and C have been
-// estimated, X / freedom is compared with F.  Directions that nothing determined are free of charge.
-// "The elbow has moved" frees its parameters without cost; X falls by what chi-square of their number
-// is if it has not.  Half of the false alarms are for X itself, half for the largest of these falls.
-// Hypotheses are compared by X + 2 rank.  One new sample of five may be a bad capture: it is left out if the others
-// hold without it and it is further off than one in a thousand.
+// is chi-square with the number of residuals as degrees of freedom.  S and C are estimates, so
+// X / freedom is compared with F.  Undetermined directions cost nothing.
+// The hypothesis "the elbow has moved" frees its parameters; if it is false, X falls only by
+// chi-square of their number.  Half of the false alarms are for X itself, half for the largest of
+// these falls.  Hypotheses are compared by X + 2 rank.  One new sample in five may be a bad
+// capture: it is left out if the others hold without it and it is further off than one in a
+// thousand.
 // Source: Akaike, A New Look at the Statistical Model
 // Identification, 1974; Welch, The Generalization of Student's Problem, 1947 (freedom of S).
 // SPDX-License-Identifier: Apache-2.0
@@ -26,7 +27,7 @@
 
 namespace kinecal {
 
-/// What is known of a calibration that was done.
+/// A finished calibration.
 struct CalibratedState {
   std::vector<double> values;             ///< of all parameters of the table
   std::vector<int> parameters;            ///< table indices: columns of the covariance
@@ -35,16 +36,16 @@ struct CalibratedState {
   std::vector<BlockNoise> noise;          ///< of each error block, by name
 };
 
-/// What is known of a calibration from its assessment.
+/// The state of a calibration from its assessment.
 /// @param values  of all parameters of the table: its result
 [[nodiscard]] CalibratedState calibrated_state(const Assessment& assessment,
                                                std::span<const double> values);
 
-/// A sample that does not fit although the others do.
+/// A sample that does not fit while the others do.
 struct MissedSample {
   int sample = 0;      ///< by number in the problem
   int rows = 0;        ///< its residuals
-  double times = 0.0;  ///< root of its mean square, in standard deviations
+  double times = 0.0;  ///< root mean square, in standard deviations
 };
 
 /// A joint, frame or sensor that may have moved.
@@ -54,25 +55,25 @@ struct Mover {
   std::vector<int> parameters;            ///< table indices
   std::vector<double> change = {};        ///< of each parameter, since the calibration
   std::vector<double> deviation = {};     ///< standard deviation of each change
-  double statistic = 0.0;                 ///< X that is left
+  double statistic = 0.0;                 ///< remaining X
   double freedom = 0.0;                   ///< its degrees of freedom
-  double probability = 0.0;               ///< that chance leaves more
-  double score = 0.0;                     ///< X + 2 rank, and 14 more for each sample left out
-  bool explains = false;                  ///< what is left is no larger than chance makes it
-  std::vector<MissedSample> missed = {};  ///< samples left out for that
+  double probability = 0.0;               ///< of a larger X by chance
+  double score = 0.0;                     ///< X + 2 rank, plus 14 for each sample left out
+  bool explains = false;                  ///< the remaining X is within chance
+  std::vector<MissedSample> missed = {};  ///< samples left out for this
 };
 
 /// Whether a calibration still holds.
 struct Drift {
-  bool holds = true;           ///< chance makes X as large, at the level of the options
-  double statistic = 0.0;      ///< X, of all samples but those of `missed`
-  double freedom = 0.0;        ///< its degrees of freedom
-  double noise_freedom = 0.0;  ///< those of the noise
-  double probability = 1.0;    ///< that chance makes it, or what a mover explains of it, larger
+  bool holds = true;                 ///< X is within chance, at the level of the options
+  double statistic = 0.0;            ///< X, of all samples but those of `missed`
+  double freedom = 0.0;              ///< its degrees of freedom
+  double noise_freedom = 0.0;        ///< those of the noise
+  double probability = 1.0;          ///< of a larger X, or of a larger fall by a mover, by chance
   std::vector<MissedSample> missed;  ///< bad captures, if the others hold
   std::vector<Mover> movers;         ///< the most likely one first; empty if the calibration holds
-  /// How many of the first movers cannot be told apart: scores that differ by less than 6.  Of these,
-  /// the one with the fewest parameters is the first.
+  /// How many of the first movers are indistinguishable: scores that differ by less than 6.  The
+  /// one with the fewest parameters comes first.
   int alike = 0;
 };
 
@@ -82,9 +83,9 @@ struct DriftOptions {
 };
 
 /// Checks a calibration with new samples.
-/// @param problem  with the new samples; its table may have more parameters than the state calibrated:
-///                 each joint, frame and sensor of it is a hypothesis
-/// @throws std::invalid_argument  if the noise of an error block is not known
+/// @param problem  with the new samples; its table may have more parameters than were calibrated:
+///                 each of its joints, frames and sensors is a hypothesis
+/// @throws std::invalid_argument  if the noise of an error block is unknown
 /// @throws std::domain_error      if a residual is undefined
 [[nodiscard]] Drift check_drift(const AnyProblem& problem, const CalibratedState& state,
                                 const DriftOptions& options = {});

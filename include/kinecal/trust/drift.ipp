@@ -1,4 +1,4 @@
-// Deciding what has moved.
+// Decides what has moved.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// True unless a joint would have slipped further than any does: 30 degrees or 10 cm.
+/// True unless a joint would have slipped by more than 30 degrees or 10 cm.
 [[nodiscard]] inline bool is_plausible(const AnyProblem& problem, const Mover& mover) {
   if (mover.is_frame || !problem.robot().has_joint(mover.owner)) return true;
   for (std::size_t i = 0; i < mover.parameters.size(); ++i) {
@@ -77,9 +77,9 @@ KINECAL_INLINE Drift check_drift(const AnyProblem& problem, const CalibratedStat
   std::stable_sort(drift.movers.begin(), drift.movers.end(), [](const Mover& a, const Mover& b) {
     return a.explains != b.explains ? a.explains : a.score < b.score;
   });
-  constexpr double kTold = 6.0;  // likelihoods of 1 to 20
+  constexpr double kTold = 6.0;  // likelihood ratio of 20
   const auto best = drift.movers.begin();
-  // One sample that looks bad may be the only one that shows what moved.
+  // The one sample that looks bad may be the only one that shows what moved.
   if (drift.holds && (best == drift.movers.end() || !best->explains || !best->missed.empty() ||
                       best->score > still.score() - kTold)) {
     drift.movers.clear();

@@ -1,5 +1,5 @@
-// The least squares behind drift: new samples, the covariance of a calibration as a prior, and what
-// may have moved.
+// The least squares of drift: new samples, the covariance of a calibration as a prior, and the
+// parts that may have moved.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -32,7 +32,7 @@ class DriftFit {
     start_ = rows_at(state.values);
   }
 
-  /// Number of residuals of the samples that are used.
+  /// Number of residuals of the used samples.
   [[nodiscard]] double size(const std::vector<bool>& used) const {
     double rows = 0.0;
     for (const RowBlock& block : start_.fit.blocks) {
@@ -40,7 +40,7 @@ class DriftFit {
     }
     return rows;
   }
-  /// Freedom of the noise, by the shares of the error blocks among the residuals (Welch).
+  /// Degrees of freedom of the noise, by the error blocks' shares of the residuals (Welch).
   [[nodiscard]] double noise_freedom() const {
     std::vector<double> rows(state_.noise.size(), 0.0);
     for (const RowBlock& block : start_.fit.blocks) {
@@ -53,7 +53,7 @@ class DriftFit {
     }
     return shares > 0.0 ? sum * sum / shares : 1.0;
   }
-  /// The columns of the directions: errors of the calibration, what it did not determine, what moved.
+  /// The columns of the directions: errors of the calibration, undetermined directions, movements.
   [[nodiscard]] Eigen::MatrixXd directions(const std::vector<int>& moved) const {
     Eigen::MatrixXd all =
         Eigen::MatrixXd::Zero(free_.size(), prior_.cols() + unknown_.cols() + std::ssize(moved));
@@ -77,7 +77,7 @@ class DriftFit {
     }
     return all;
   }
-  /// By how much X falls from a minimum if these parameters have moved as well, to first order.
+  /// The fall of X from a minimum if these parameters have moved as well, to first order.
   [[nodiscard]] DriftFall fall(const DriftSums& sums, const std::vector<int>& moved,
                                const DriftMinimum& from) const {
     const Reduced system = reduced(sums, directions(moved), from.z);
@@ -88,14 +88,14 @@ class DriftFit {
                                       const std::vector<bool>& used) const {
     DriftMinimum at{.z = Eigen::VectorXd::Zero(directions.cols()), .inverse = {}, .rows = start_};
     at.statistic = start_.cost(used);
-    constexpr int kSteps = 40;  // a board that was put up again is far away
+    constexpr int kSteps = 40;  // a remounted board is far away
     bool falls = true;
     for (int i = 0; i < kSteps && falls; ++i) falls = step(directions, used, at);
     return at;
   }
 
  private:
-  /// What was calibrated, and all else on which these samples depend.
+  /// The calibrated parameters, and all others that affect these samples.
   [[nodiscard]] static FreeSet free_of(const AnyProblem& problem, const CalibratedState& state) {
     std::vector<int> all = state.parameters;
     for (const int p : problem.touched_parameters()) {
@@ -141,7 +141,7 @@ class DriftFit {
   struct Reduced {
     Eigen::MatrixXd inverse;
     Eigen::VectorXd slope;  ///< half the derivative of X
-    Eigen::Index rank;      ///< of the directions that are free of charge
+    Eigen::Index rank;      ///< of the directions that cost nothing
   };
   [[nodiscard]] Reduced reduced(const DriftSums& sums, const Eigen::MatrixXd& directions,
                                 const Eigen::VectorXd& z) const {
@@ -153,7 +153,7 @@ class DriftFit {
     const Spectrum spectrum(matrix);
     return {spectrum.pseudo_inverse(), slope, directions.cols() - spectrum.null - known};
   }
-  /// @returns  false if X does not fall any more
+  /// @returns  false if X no longer falls
   [[nodiscard]] bool step(const Eigen::MatrixXd& directions, const std::vector<bool>& used,
                           DriftMinimum& at) const {
     const Eigen::Index known = prior_.cols();
@@ -186,7 +186,7 @@ class DriftFit {
   std::vector<double> scale_;
   std::unique_ptr<AnyEvaluator> evaluator_;
   Eigen::MatrixXd prior_;    ///< (free x directions) B
-  Eigen::MatrixXd unknown_;  ///< (free x directions) that nothing determined
+  Eigen::MatrixXd unknown_;  ///< (free x directions) undetermined
   NewRows start_;
 };
 

@@ -45,17 +45,17 @@ struct DriftSums {
   Eigen::VectorXd gradient;  ///< (free) J^T r
 };
 
-/// By how much X falls when something is freed.
+/// The fall of X when something is freed.
 struct DriftFall {
   double fall = 0.0;
-  Eigen::Index rank = 0;  ///< of what is freed
+  Eigen::Index rank = 0;  ///< of the freed parameters
 };
 
 /// A minimum of X.
 struct DriftMinimum {
   Eigen::VectorXd z;        ///< (directions) where it is
   double statistic = 0.0;   ///< X
-  Eigen::Index rank = 0;    ///< of the directions that are free of charge
+  Eigen::Index rank = 0;    ///< of the directions that cost nothing
   Eigen::MatrixXd inverse;  ///< (directions x directions) covariance of z
   NewRows rows;             ///< there
 };

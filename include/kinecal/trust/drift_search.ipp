@@ -1,4 +1,4 @@
-// Testing what may have moved, and leaving out bad captures.
+// Tests hypotheses of what has moved, and leaves out bad captures.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,14 +10,14 @@
 
 namespace kinecal::detail {
 
-/// A minimum of X, without the samples that keep it from being one that chance makes.
+/// A minimum of X, without the samples that make it too large for chance.
 struct CleanFit {
   DriftMinimum at;
   std::vector<MissedSample> missed;
   double freedom = 0.0;      ///< of X
-  double probability = 0.0;  ///< that chance makes X larger
+  double probability = 0.0;  ///< of a larger X by chance
 
-  /// X + 2 rank; a sample that is left out has the X that chance makes of one in a thousand.
+  /// X + 2 rank; a sample left out counts with the X of one sample in a thousand.
   [[nodiscard]] double score() const {
     constexpr double kMissed = 14.0;
     double sum = at.statistic + 2.0 * static_cast<double>(at.rank);
@@ -26,7 +26,7 @@ struct CleanFit {
   }
 };
 
-/// What may have moved, each a joint's offset, a frame, or a sensor: its parameters.
+/// Possible movers: a joint's offset, a frame, or a sensor, each with its parameters.
 [[nodiscard]] inline std::vector<Mover> hypotheses(const AnyProblem& problem) {
   std::map<std::pair<std::string, bool>, std::vector<int>> groups;
   for (const int p : problem.touched_parameters()) {
@@ -46,7 +46,7 @@ struct CleanFit {
   return all;
 }
 
-/// Tries what may have moved.
+/// Tests possible movers.
 class DriftSearch {
  public:
   DriftSearch(const AnyProblem& problem, const CalibratedState& state, double level)
@@ -55,7 +55,7 @@ class DriftSearch {
   [[nodiscard]] double noise_freedom() const { return fit_.noise_freedom(); }
   [[nodiscard]] const std::vector<Mover>& movers() const { return movers_; }
 
-  /// The minimum if these parameters have moved; if nothing has, that is tested against each mover.
+  /// The minimum if these parameters have moved; with none, also tests against each mover.
   [[nodiscard]] CleanFit clean_fit(const std::vector<int>& moved) const {
     const Eigen::MatrixXd directions = fit_.directions(moved);
     std::vector<bool> used(static_cast<std::size_t>(problem_.num_samples()), true);
@@ -66,7 +66,7 @@ class DriftSearch {
     };
     CleanFit all = fit();
     CleanFit now = all;
-    constexpr int kShare = 5;  // one sample of five
+    constexpr int kShare = 5;  // one sample in five
     for (int n = 0; n < problem_.num_samples() / kShare && now.probability < level_; ++n) {
       const auto worst = worst_sample(now, directions, used);
       if (!worst) return all;
@@ -89,8 +89,8 @@ class DriftSearch {
         f_tail(found.at.statistic / found.freedom, found.freedom, fit_.noise_freedom());
     return found;
   }
-  /// Probability of what is seen if nothing has moved: half the level is for X itself, half for the
-  /// fall of X if one of the hypotheses is true (Bonferroni).
+  /// Probability of the result if nothing has moved: half of the level is for X itself, half for
+  /// the fall of X under the best hypothesis (Bonferroni).
   [[nodiscard]] double against_movers(const CleanFit& still, const std::vector<bool>& used) const {
     double least = 1.0;
     const DriftSums sums = fit_.sums(still.at.rows, used);
@@ -103,7 +103,7 @@ class DriftSearch {
     const double hypotheses = std::max(1.0, static_cast<double>(movers_.size()));
     return std::min(1.0, 2.0 * std::min(still.probability, hypotheses * least));
   }
-  /// The sample without which X falls most, if it is further off than one in a thousand.
+  /// The sample whose removal lowers X most, if it is further off than one in a thousand.
   [[nodiscard]] std::optional<MissedSample> worst_sample(const CleanFit& now,
                                                          const Eigen::MatrixXd& directions,
                                                          const std::vector<bool>& used) const {

@@ -1,7 +1,7 @@
-// Held-out error: how large the residuals of samples are that a fit has not seen.
+// Held-out error: the residuals of samples that the fit did not use.
 //
-// The fit without a fold starts at the fit of all samples, from which it is one Gauss-Newton step away
-// unless directions are hardly determined.
+// The fit without a fold starts from the fit of all samples: one Gauss-Newton step away unless some
+// directions are poorly determined.
 // Source: Stone, Cross-Validatory Choice and Assessment of Statistical Predictions, 1974.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -25,8 +25,8 @@ struct HeldOutError {
   double held_out = 0.0;  ///< the same, each feature held out once
 };
 
-/// The fold of each sample, 0 to folds - 1.  Samples are dealt out in the order of their joint
-/// positions, so folds do not depend on the order of samples, and each covers all of the poses.
+/// The fold of each sample, 0 to folds - 1.  Samples are dealt in the order of their joint
+/// positions, so folds do not depend on the order of samples, and each covers all poses.
 [[nodiscard]] std::vector<int> folds_of(std::span<const Sample> samples, int folds);
 
 /// Fitted and held-out error of each error block.

@@ -13,7 +13,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Sums of squared distances of the rows that a predicate takes, by error block, in their units.
+/// Sums of squared distances over selected rows, by error block, in their units.
 struct SquaredDistances {
   std::vector<double> sum;
   std::vector<int> features;

@@ -1,4 +1,4 @@
-// How far each sample moves the fit.
+// Influence: how far each sample moves the fit.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace kinecal::detail {
 
-/// Leave-one-out influence of each sample, by down-dating: without its rows J_s the coordinates move
-/// by H^-1 J_s^T (1 - J_s H^-1 J_s^T)^-1 r_s.
+/// Leave-one-out influence of each sample, by down-dating: without its rows J_s the coordinates
+/// move by H^-1 J_s^T (1 - J_s H^-1 J_s^T)^-1 r_s.
 inline void set_influences(const LinearFit& fit, std::vector<CaptureError>& captures) {
   const Eigen::MatrixXd hessian = information(fit, fit.loss);
   const Eigen::MatrixXd inverse = Spectrum(hessian).pseudo_inverse();
@@ -25,7 +25,7 @@ inline void set_influences(const LinearFit& fit, std::vector<CaptureError>& capt
     while (end < fit.blocks.size() && fit.blocks[end].sample == fit.blocks[b].sample) {
       size += fit.blocks[end++].size;
     }
-    const Eigen::Index first = fit.blocks[b].first;  // the blocks of a sample follow each other
+    const Eigen::Index first = fit.blocks[b].first;  // the blocks of a sample are consecutive
     const Eigen::VectorXd root = fit.loss.segment(first, size).cwiseSqrt();
     const Eigen::MatrixXd j = root.asDiagonal() * fit.jacobian.middleRows(first, size);
     const Eigen::VectorXd r = root.cwiseProduct(fit.residual.segment(first, size));

@@ -1,4 +1,4 @@
-// The free parameters that did not end at a bound.
+// The free parameters that are not at a bound.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

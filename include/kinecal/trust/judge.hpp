@@ -1,4 +1,4 @@
-// The verdict on a calibration: good, use with care, or do not use; and why.
+// The verdict on a calibration: good, use with care, or do not use; with reasons.
 //
 // Do not use                                          Use with care
 //   a step did not converge
@@ -18,12 +18,12 @@
 //                                                       a parameter ended at a bound
 //                                                       a parameter known to 5 degrees, 20 mm, 5 %
 //                                                       or 20 px only
-//                                                       a prior that moves a parameter by 4 standard
-//                                                       deviations
+//                                                       a prior that moves a parameter by 4
+//                                                       standard deviations
 //                                                       doubts about the input
 //
-// Freedom is the number of residuals minus that of determined parameters.  Combinations of parameters
-// that nothing determines are no reason as long as they do not move the pose in question.
+// Freedom is the number of residuals minus the number of determined parameters.  Undetermined
+// parameter combinations do not count unless they move the pose in question.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -45,10 +45,10 @@ enum class Grade { good, use_with_care, do_not_use };
   return grade == Grade::use_with_care ? "use with care" : "do not use";
 }
 
-/// A verdict and what led to it.
+/// A verdict and its reasons.
 struct Judgement {
   Grade verdict = Grade::good;
-  std::vector<std::string> reasons;  ///< the gravest first; sentences with figures
+  std::vector<std::string> reasons;  ///< worst first; sentences with figures
 
   /// Adds a reason.
   void add(Grade grade, const std::string& reason) {
@@ -60,16 +60,16 @@ struct Judgement {
 
 /// Judges a calibration.
 /// @param assessments  of its steps: see assess()
-/// @param doubts       about the input, as sentences
+/// @param doubts       about the input, in sentences
 [[nodiscard]] Judgement judge(const Calibration& calibration, const CalibrationResult& result,
                               const std::vector<Assessment>& assessments,
                               const std::vector<std::string>& doubts = {});
 
 /// Judges samples that were left out because they do not fit the others (ruined.hpp).
-/// @param samples  how many there were, with those left out
+/// @param samples  their number, including those left out
 void judge_left_out(int left_out, int samples, Judgement& judgement);
 
-/// True if the noise of an error block is a reason not to call a step good: something is wrong with
+/// True if the noise of an error block speaks against calling a step good: something is wrong with
 /// the model or the samples.
 [[nodiscard]] bool fits_badly(const Assessment& step);
 

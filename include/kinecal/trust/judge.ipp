@@ -13,7 +13,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// A step that determines nothing leaves the robot as it was, whatever fits.
+/// A step that determines nothing leaves the robot as it was, however well it fits.
 inline void judge_determined(const Assessment& step, bool last, Judgement& judgement) {
   if (step.parameters.empty() || step.uncertainty.determined > 0) return;
   judgement.add(last ? Grade::do_not_use : Grade::use_with_care,
@@ -37,7 +37,7 @@ inline void judge_held_out(const Assessment& step, Judgement& judgement) {
   constexpr Limits kTimes{1.5, 3.0};
   for (std::size_t t = 0; t < step.held_out.size(); ++t) {
     const HeldOutError& error = step.held_out[t];
-    // Few samples are fitted better than their noise; outliers under a loss are in both errors.
+    // Few samples fit better than their noise; outliers under a loss are in both errors.
     const double noise = step.noise[t].sigma * std::sqrt(step.noise[t].components);
     const double expected = std::max(noise, error.fitted);
     if (error.features == 0 || !(expected > 0.0)) continue;
@@ -50,7 +50,7 @@ inline void judge_held_out(const Assessment& step, Judgement& judgement) {
   }
 }
 
-/// Samples that do not fit: a few are captures gone wrong, many a model that is.
+/// Samples that do not fit: a few are bad captures, many show a wrong model.
 inline void judge_share(int bad, int samples, const std::string& where, const std::string& what,
                         Judgement& judgement) {
   constexpr Limits kShare{0.1, 0.25};
@@ -81,7 +81,7 @@ inline void judge_change(const Assessment& step, const AnyProblem& problem, Judg
                     " %; calibrate with the samples of one part");
 }
 
-/// How much a parameter changed; of a ratio 1 + v, by how much of it.
+/// The change of a parameter; for a ratio 1 + v, relative.
 [[nodiscard]] inline double change_of(const Parameter& p) {
   if (p.unit != "1" || !(1.0 + p.initial > 0.0)) return p.value - p.initial;
   return (1.0 + p.value) / (1.0 + p.initial) - 1.0;

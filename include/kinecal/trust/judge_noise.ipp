@@ -12,7 +12,7 @@
 
 namespace kinecal::detail {
 
-/// A sigma above this is in another unit, if the noise is far below it.
+/// A larger sigma was given in the wrong unit, if the noise is far below it.
 [[nodiscard]] inline double most_sigma(const std::string& unit) {
   if (unit == "m") return 0.05;
   return unit == "px" ? 30.0 : std::numeric_limits<double>::infinity();
@@ -22,7 +22,7 @@ inline void judge_noise(const Assessment& step, Judgement& judgement) {
   constexpr Limits kTimes{3.0, 10.0}, kMetres{0.008, 0.02}, kPixels{4.0, 12.0};
   for (const BlockNoise& noise : step.noise) {
     if (noise.features == 0 || noise.freedom <= 0.0) continue;
-    // Of both estimates: a few bad captures raise the one, a wrong model raises both.
+    // Use both estimates: a few bad captures raise one, a wrong model raises both.
     const double sigma = std::min(noise.sigma, noise.robust);
     const std::string shown = "residuals show " + reading(sigma, noise.unit);
     if (noise.given > 0.0) {

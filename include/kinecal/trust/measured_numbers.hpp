@@ -1,10 +1,10 @@
-// How many independent numbers samples measure of a robot.
+// How many independent numbers the samples measure of a robot.
 //
 //   numbers = sum over samples and error blocks of min(residuals, 6)
 //
-// However many corners a camera sees of a board, they show where one body is: six numbers.  The errors of
-// joints and links are in these six, so residuals beyond them average the noise of the camera only, and
-// samples with fewer numbers than free parameters fit whatever the parameters are.
+// A camera may see any number of corners of a board; together they give the pose of one body: six
+// numbers.  Errors of joints and links are in these six.  Further residuals only average the
+// camera's noise, and samples with fewer numbers than free parameters fit any parameters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

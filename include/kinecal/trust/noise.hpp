@@ -2,7 +2,7 @@
 //
 //   sigma^2 = sum r^2 / (rows - leverage)        leverage = trace of J H^-1 J^T over the block's rows
 //
-// and robustly from the median of the features' distances, which a few bad captures do not change.
+// and robustly from the median of the features' distances, which a few bad captures do not affect.
 // Source: Press et al., Numerical Recipes, 15.6; Rousseeuw, Leroy, Robust Regression, 1987, 1.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -20,20 +20,20 @@ struct BlockNoise {
   std::string unit;         ///< of the residual: "m", "px" or "1"
   int features = 0;         ///< compared features
   int components = 1;       ///< residuals of a feature
-  double freedom = 0.0;     ///< rows beyond what the parameters take up
+  double freedom = 0.0;     ///< rows minus those that parameters use up
   double given = 0.0;       ///< sigma of the configuration, in `unit`; 0: none
   double sigma = 0.0;       ///< standard deviation of a residual component, in `unit`
   double robust = 0.0;      ///< the same from the median
   double unit_sigma = 1.0;  ///< residual in `unit` of a weighted residual of one
 
-  /// Standard deviation of a weighted residual component: 1 where the given sigma is right.
+  /// Standard deviation of a weighted residual component: 1 if the given sigma is right.
   [[nodiscard]] double weighted() const { return sigma / unit_sigma; }
 };
 
 namespace detail {
-/// How much longer the tail of distances is than that of noise that is equal in all directions: noise of
-/// a depth camera is along its rays, and grows with distance.  From the quantile of 95 %; at most that
-/// of noise in one direction of three.
+/// Ratio of the tail of the distances to that of isotropic noise: a depth camera's noise is along
+/// its rays and grows with distance.  Uses the 95 % quantile; at most the value of noise in one
+/// direction of three.
 /// @param sigma  robust_sigma() of the same distances
 [[nodiscard]] double tail_factor(std::vector<double> distances, int components, double sigma);
 
@@ -51,7 +51,7 @@ namespace detail {
                                                      const LinearFit& fit,
                                                      const Eigen::MatrixXd& inverse);
 
-/// Variance of the weighted residuals of priors: 1 where weights are one over standard deviations,
+/// Variance of the weighted residuals of priors: 1 if weights are one over standard deviations,
 /// else that of all error blocks.
 [[nodiscard]] double prior_variance(const std::vector<BlockNoise>& noise);
 

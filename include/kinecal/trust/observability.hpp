@@ -1,10 +1,10 @@
-// Observability: which combinations of parameters the samples cannot determine, as they change no
+// Observability: which parameter combinations the samples cannot determine, because they change no
 // residual.
 //
-// It is computed on the error-free problem (measurements replaced by the model's prediction), without
-// priors.  J is its weighted Jacobian with columns scaled to length one; a singular value of J below
-// kUnobservable means that the combination of parameters belonging to it has no effect.  A basis of
-// these combinations is reduced until each has a parameter, absent from the others, with factor one.
+// It is computed on the error-free problem (measurements replaced by the model's prediction),
+// without priors.  J is its weighted Jacobian with columns scaled to length one.  A singular value
+// of J below kUnobservable means that its parameter combination has no effect.  A basis of these
+// combinations is reduced until each has a parameter with factor one that no other has.
 // Source: Hollerbach, Wampler, The Calibration Index and Taxonomy for Robot Kinematic Calibration
 // Methods, 1996; the error-free problem: ARCHITECTURE.md, "The error-free problem".
 // SPDX-License-Identifier: Apache-2.0
@@ -27,14 +27,14 @@ using Combination = std::vector<std::pair<int, double>>;
 /// What the samples of a step can determine.
 struct Observability {
   int rank = 0;            ///< number of observable combinations
-  double condition = 1.0;  ///< largest over least singular value of these combinations
+  double condition = 1.0;  ///< ratio of the largest to the smallest singular value of these
   std::vector<Combination> unobservable;  ///< combinations that change no residual
-  /// Table indices of parameters that, when held, leave the others observable: frames rather than
-  /// sensors, sensors rather than joints, and of these the last rather than the first.
+  /// Table indices of parameters to hold so that the others are observable: frames before sensors,
+  /// sensors before joints, and of these the last before the first.
   std::vector<int> hold;
 };
 
-/// The observability of a problem's free parameters from its samples, near the given values.
+/// The observability of a problem's free parameters from its samples, near given values.
 /// @param values  of all parameters of the table
 [[nodiscard]] Observability observability(const AnyProblem& problem, const FreeSet& free,
                                           std::span<const double> values);

@@ -1,4 +1,4 @@
-// Finding what cannot be observed.
+// Finds unobservable parameter combinations.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -38,7 +38,7 @@ inline void reduce(Eigen::MatrixXd& basis) {
   }
 }
 
-/// The parameters of one column whose effect is not negligible, in the parameters' own units.
+/// The parameters of one column with a significant effect, in the parameters' own units.
 /// @param scale  length of each parameter's column of the Jacobian
 [[nodiscard]] inline Combination combination(const Eigen::VectorXd& scaled,
                                              const Eigen::VectorXd& scale, const FreeSet& free) {
@@ -59,7 +59,7 @@ inline void reduce(Eigen::MatrixXd& basis) {
   return result;
 }
 
-/// Parameters to hold, so that nothing of a null space is left.
+/// Parameters to hold so that the null space vanishes.
 /// @param null  (free x directions), orthonormal
 [[nodiscard]] inline std::vector<int> parameters_to_hold(const AnyProblem& problem,
                                                          const FreeSet& free,
@@ -75,7 +75,7 @@ inline void reduce(Eigen::MatrixXd& basis) {
     for (const int c : order) {
       if (null.cols() == 0 || null.row(c).norm() < least) continue;
       held.push_back(parameter(c));
-      // What is left has no part of this parameter: reflect its row onto the last direction.
+      // The rest has no part of this parameter: reflect its row onto the last direction.
       const Eigen::HouseholderQR<Eigen::MatrixXd> qr(null.row(c).transpose());
       null = (null * qr.householderQ()).rightCols(null.cols() - 1).eval();
     }

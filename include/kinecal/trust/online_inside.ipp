@@ -1,4 +1,4 @@
-// What a calibration that follows a session knows, and its updates.
+// State and updates of a calibration that follows a session.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -26,7 +26,7 @@ struct OnlineCalibration::Inside {
   std::vector<Sample> ahead = {};                ///< poses where the pose is wanted as well
   Eigen::MatrixXd hessian = {};                  ///< (free x free) at the values
   double noise2 = 0.0;                           ///< s^2
-  int freedom = 0;                               ///< residuals that are left for the noise
+  int freedom = 0;                               ///< residuals left for the noise
   int measured = 0;                              ///< numbers: see measured_numbers()
 
   void step_to_minimum(AnyEvaluator& evaluator);
@@ -135,7 +135,7 @@ inline std::vector<const Sample*> some_of(const std::vector<Sample>& samples) {
 
 }  // namespace detail
 
-/// The worse of the captured poses and of those ahead.
+/// The worse of captured poses and poses ahead.
 inline void OnlineCalibration::Inside::set_pose(OnlineState& state,
                                                 const Eigen::MatrixXd& information) const {
   const detail::Spectrum spectrum(information);
@@ -143,8 +143,8 @@ inline void OnlineCalibration::Inside::set_pose(OnlineState& state,
   const Eigen::MatrixXd null =
       spectrum.scale.cwiseInverse().asDiagonal() * spectrum.vectors.leftCols(spectrum.null);
   detail::PoseDerivative derivative(*problem, free, values, frame, in);
-  // With less to spare, neither the noise nor the poses say much.
-  constexpr double kToSpare = 2.0;  // residuals for each direction that they determine
+  // With less redundancy, neither the noise nor the poses mean much.
+  constexpr double kToSpare = 2.0;  // residuals per determined direction
   const auto rank = static_cast<double>(spectrum.singular.size() - spectrum.null);
   state.known = freedom >= kToSpare * rank && measured >= free.size();
   state.position = state.rotation = 0.0;

@@ -1,4 +1,4 @@
-// Samples that do not fit the others: the new one, and earlier ones that turn out not to.
+// Samples that do not fit the others: the new one, or earlier ones.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,12 +14,12 @@ namespace kinecal {
 
 namespace detail {
 
-inline constexpr std::size_t kFewestToTest = 8;  ///< samples; with fewer none is tested
+inline constexpr std::size_t kFewestToTest = 8;  ///< samples; with fewer, none is tested
 
-/// True if a sample is too far off for chance.  Its features share the errors of its joints, so their
-/// number counts for little: it must be off by several times the noise as well.
-/// @param ratio  mean square of its residuals, over that of the noise
-/// @param tests  how many samples are asked
+/// True if a sample is too far off for chance.  Its features share the errors of its joints, so
+/// their number means little: it must also be off by several times the noise.
+/// @param ratio  mean square of its residuals over that of the noise
+/// @param tests  how many samples are tested
 inline bool is_misfit(double ratio, double rows, double freedom, double tests) {
   constexpr double kTimes = 3.0, kOnceIn = 1e-6;
   return ratio > kTimes * kTimes && f_tail(ratio, rows, freedom) < kOnceIn / tests;
@@ -46,7 +46,8 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
   if (means.empty()) return std::nullopt;
   const auto middle = means.begin() + std::ssize(means) / 2;
   std::nth_element(means.begin(), middle, means.end());
-  // The median of chi-square is about n (1 - 2 / (9 n))^3; residuals of a fit are smaller than noise.
+  // The median of chi-square is about n (1 - 2 / (9 n))^3; residuals of a fit are smaller than
+  // noise.
   const double n = rows[worst], all = problem->num_residuals();
   const double usual = *middle / std::pow(1.0 - 2.0 / (9.0 * n), 3.0) * (all / freedom);
   if (!(usual > 0.0)) return std::nullopt;
@@ -57,7 +58,7 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
   return worst;
 }
 
-/// A problem cannot forget a sample, so it is made anew.
+/// A problem cannot drop a sample, so it is built again.
 inline void OnlineCalibration::Inside::leave_out(std::size_t sample) {
   samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(sample));
   numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(sample));

@@ -1,4 +1,4 @@
-// Moves of one joint that a session could make next.
+// Possible next moves of one joint in a session.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// True if a point is in the image of the camera that observed a sample, as far as it says so.
+/// True if a point is in the image of the camera that observed a sample, or if that is unknown.
 [[nodiscard]] inline bool in_image(const Sample& sample, const Vector3<double>& p_camera) {
   if (!(p_camera.z() > 0.0)) return false;
   for (const Observation& seen : sample.observations) {
@@ -33,8 +33,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// Moves of one joint from the pose of the last sample, and that sample there.  Its measurements do not
-/// count: information is that of the error-free problem.
+/// Moves of one joint from the pose of the last sample, with that sample moved.  Its measurements
+/// do not matter: information is that of the error-free problem.
 inline std::vector<std::pair<NextMove, Sample>> OnlineCalibration::Inside::candidates(
     double step) const {
   const RobotState robot{*problem, values};

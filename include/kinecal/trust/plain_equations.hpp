@@ -1,4 +1,4 @@
-// Normal equations as plain numbers: for code that is not compiled for the processor (plain_matrix.hpp).
+// Normal equations as plain numbers, for code not compiled for the processor (plain_matrix.hpp).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

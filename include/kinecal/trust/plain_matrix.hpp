@@ -1,8 +1,8 @@
-// A matrix that may be made by one library and destroyed by another.
+// A matrix that one library may create and another destroy.
 //
-// The program loads evaluation and solving compiled for the instruction set of the processor.  There
-// Eigen allocates with another alignment than in the program, so results hold their numbers in
-// a std::vector.
+// The program loads evaluation and solving compiled for the processor's instruction set.  There,
+// Eigen allocates with another alignment than in the program, so results hold their numbers in a
+// std::vector.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace kinecal {
 
-/// Numbers of a matrix or vector, to be read.
+/// Read-only numbers of a matrix or vector.
 class PlainMatrix {
  public:
   PlainMatrix() = default;

@@ -1,4 +1,4 @@
-// How far a calibration should change parameters.
+// Plausible changes of parameters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace kinecal::detail {
 
-/// Two limits of a figure: from the first on, use with care; from the second on, do not use.
+/// Two limits of a figure: from the first, use with care; from the second, do not use.
 struct Limits {
   double care, refuse;
 
@@ -20,8 +20,8 @@ struct Limits {
   }
 };
 
-/// The largest change of a parameter that a calibration should make; a frame that was searched for or
-/// that is not in the URDF may be anywhere.
+/// The largest plausible change of a parameter; a frame that was searched for, or that is not in
+/// the URDF, may be anywhere.
 [[nodiscard]] inline Limits plausible_change(const CalibrationStep& step, int parameter) {
   const AnyProblem& problem = *step.problem;
   constexpr double kNever = 1e300, kDegree = std::numbers::pi / 180.0;
@@ -35,7 +35,7 @@ struct Limits {
       step.unknown_frames.begin(), step.unknown_frames.end(),
       [&](const UnknownFrame& frame) { return frame.name == owner && !frame.has_guess; });
   if (searched) return {kNever, kNever};
-  if (problem.robot().has_joint(owner)) {  // robots are built more precisely than things mounted
+  if (problem.robot().has_joint(owner)) {  // robots are built more precisely than their mounts
     const bool moving = moves(problem.robot().joint(owner).type);
     if (p.unit == "m") return moving ? Limits{0.05, 0.3} : Limits{0.2, 1.0};
     return moving ? Limits{15.0 * kDegree, 60.0 * kDegree} : Limits{30.0 * kDegree, kNever};

@@ -1,7 +1,7 @@
-// By how much the pose of one link in another differs between two calibrations: the gripper in the
+// The difference between two calibrations in the pose of one link in another: the gripper in the
 // camera's frame.
 //
-// Parameters trade with each other, but what a robot needs is a pose:
+// Parameters trade off against each other, but a robot needs a pose:
 //
 //   T_i = in_T_frame(values of i)      position |t_1 - t_2|, rotation |log(R_1^T R_2)|
 //
@@ -17,7 +17,7 @@ namespace kinecal {
 
 /// Change of the pose of a frame in another, over some poses of the robot.
 struct PoseChange {
-  int poses = 0;                ///< number of poses that have all joints of both chains
+  int poses = 0;                ///< number of poses with all joints of both chains
   double position = 0.0;        ///< root of the mean squared distance of the origins, metres
   double rotation = 0.0;        ///< the same of the angles, radians
   double worst_position = 0.0;  ///< the largest, metres
@@ -25,8 +25,8 @@ struct PoseChange {
 };
 
 /// Change of the pose of a frame in another.
-/// @param samples  poses at which it is computed; those that lack a joint of a chain are left out
-/// @throws RobotError  if a link does not exist, or no chain joins the two
+/// @param samples  poses at which it is computed; skips those that lack a joint of a chain
+/// @throws RobotError  if a link does not exist, or no chain connects the two
 [[nodiscard]] PoseChange pose_change(const RobotState& before, const RobotState& after,
                                      std::span<const Sample> samples, const FrameOnRobot& frame,
                                      const FrameOnRobot& in);

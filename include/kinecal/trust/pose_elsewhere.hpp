@@ -1,7 +1,7 @@
-// How well a pose is known where it was not measured.
+// The uncertainty of a pose where it was not measured.
 //
-// Where a camera saw the gripper, it measured the pose itself, so the pose is known there although
-// parameters are not.  What a calibration is for are other poses:
+// Where a camera saw the gripper, it measured the pose itself: the pose is known there even if the
+// parameters are not.  A calibration is for other poses:
 //
 //   J C J^T        at poses without a sample
 //   J_i C_i J_i^T  at the pose of sample i, with C_i = (H - A_i^T A_i)^-1 of all other samples,
@@ -22,12 +22,12 @@ namespace kinecal {
 /// The uncertainty of a pose at poses without a sample.
 /// @param step    of the problem
 /// @param values  of all parameters of the table: the solution
-/// @param poses   samples of which only the joint positions count
+/// @param poses   samples; uses only their joint positions
 [[nodiscard]] PoseUncertainty pose_at(const AnyProblem& problem, const Assessment& step,
                                       std::span<const double> values, std::span<const Sample> poses,
                                       const FrameOnRobot& frame, const FrameOnRobot& in);
 
-/// The uncertainty of a pose at each sample, by the other samples.
+/// The uncertainty of a pose at each sample, from the other samples.
 /// @param samples  those of the problem, in their order
 [[nodiscard]] PoseUncertainty pose_held_out(const AnyProblem& problem, const Assessment& step,
                                             std::span<const double> values,

@@ -1,4 +1,4 @@
-// Propagating covariances to poses that were not measured.
+// Propagates covariances to poses that were not measured.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,7 +18,7 @@ namespace detail {
   return linear_fit(*evaluator, values, determined_coordinates(problem, free, values));
 }
 
-/// Weights of rows that make their noise one.
+/// Weights that scale the noise of rows to one.
 [[nodiscard]] inline Eigen::VectorXd noise_weights(const LinearFit& fit,
                                                    const std::vector<BlockNoise>& noise) {
   constexpr double kLeast = 1e-12;  // of samples without any error

@@ -1,6 +1,6 @@
-// How well the pose of one link in another is known: the gripper in the camera's frame.
+// The uncertainty of the pose of one link in another: the gripper in the camera's frame.
 //
-// Parameters trade with each other, but what a robot needs is a pose.  Its covariance is
+// Parameters trade off against each other, but a robot needs a pose.  Its covariance is
 //
 //   J C J^T      J (6 x free) from the twists of both chains, at the joint positions of the samples
 //
@@ -28,7 +28,7 @@ struct FrameOnRobot {
   [[nodiscard]] const std::string& name() const { return frame.empty() ? link : frame; }
 };
 
-/// A robot with its parameters: samples are not needed.
+/// A robot with its parameters; needs no samples.
 struct RobotState {
   const AnyProblem& problem;       ///< robot, base and frames
   std::span<const double> values;  ///< of all parameters of its table
@@ -44,22 +44,22 @@ struct PoseUncertainty {
   double rotation = 0.0;        ///< the same of its orientation, radians
   double worst_position = 0.0;  ///< at the worst pose of the samples, metres
   double worst_rotation = 0.0;  ///< the same, radians
-  bool determined = true;       ///< false: a direction that nothing determines moves its origin
+  bool determined = true;       ///< false: an undetermined direction moves its origin
 };
 
 /// Uncertainty of the pose of a frame in another.
 /// @param values   of all parameters of the table
-/// @param samples  poses at which it is computed; those that lack a joint of the chain are left out
-/// @throws RobotError  if a link does not exist, or no chain joins the two
+/// @param samples  poses at which it is computed; skips those that lack a joint of the chain
+/// @throws RobotError  if a link does not exist, or no chain connects the two
 [[nodiscard]] PoseUncertainty pose_uncertainty(const AnyProblem& problem, const FreeSet& free,
                                                std::span<const double> values, const LinearFit& fit,
                                                const Uncertainty& known,
                                                std::span<const Sample> samples,
                                                const FrameOnRobot& frame, const FrameOnRobot& in);
 
-/// What an uncertainty of the parameters is worth for the position of a frame in another: the mean of
-/// J^T J over poses, J (3 x free) its derivative.  The mean variance of the position is trace(goal C).
-/// @param samples  poses; those that lack a joint of a chain are left out
+/// Maps parameter uncertainty to the position of a frame in another: the mean of J^T J over poses,
+/// J (3 x free) its derivative.  The mean variance of the position is trace(goal C).
+/// @param samples  poses; skips those that lack a joint of the chain
 /// @returns  (free x free), square metres by the units of the parameters
 /// @throws RobotError  as pose_uncertainty()
 [[nodiscard]] PlainMatrix position_goal(const AnyProblem& problem, const FreeSet& free,

@@ -1,4 +1,4 @@
-// Propagating covariances to poses.
+// Propagates covariances to poses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// Gathering the variance of the pose of a frame in another over poses of the robot.
+// Sums the variance of the pose of a frame in another over poses of the robot.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -60,7 +60,7 @@ class PoseVariance {
 
   /// @param jacobian    (6 x free) of the pose
   /// @param covariance  (free x free)
-  /// @param null        (free x changes) that nothing determines
+  /// @param null        (free x changes) undetermined changes
   void add(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& covariance,
            const Eigen::MatrixXd& null) {
     const Eigen::MatrixXd variance = jacobian * covariance * jacobian.transpose();
@@ -93,7 +93,7 @@ class PoseVariance {
   bool determined_ = true;
 };
 
-/// How near to features an origin is, in mean distances, for a turn about them not to count.
+/// Up to this distance from the features, in mean distances, rotations about them do not count.
 inline constexpr double kNearFeatures = 3.0;
 
 }  // namespace kinecal::detail

@@ -1,9 +1,9 @@
 // Priors that the samples contradict.
 //
-// A prior adds w^2 n r^2 / 2 to the cost, for n samples.  Without its gradient g the solution would be
-// off by H^-1 g.  A prior that is right moves a parameter by about one standard deviation at most, as
-// noise does.  One that moves it by several is not what the samples show, and the standard deviations,
-// which take it for a measurement, do not contain what it distorts.
+// A prior adds w^2 n r^2 / 2 to the cost, for n samples.  Without its gradient g the solution would
+// shift by H^-1 g.  A correct prior moves a parameter by about one standard deviation at most, like
+// noise.  One that moves it by several contradicts the samples, and the standard deviations, which
+// treat it as a measurement, do not include the distortion.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,8 +21,8 @@ namespace kinecal {
 /// A prior that moves the solution further than chance explains.
 struct PriorPull {
   std::string prior;   ///< its name
-  int parameter = -1;  ///< table index of the one that it moves most, in standard deviations
-  double shift = 0.0;  ///< by how much, to first order; unit of the parameter
+  int parameter = -1;  ///< table index of the one it moves most, in standard deviations
+  double shift = 0.0;  ///< to first order; unit of the parameter
   double times = 0.0;  ///< the same in standard deviations
 };
 

@@ -1,4 +1,4 @@
-// Finding priors that the samples contradict.
+// Finds priors that the samples contradict.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

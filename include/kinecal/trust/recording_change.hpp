@@ -1,9 +1,9 @@
-// Something that moved while samples were recorded: a tracker that was touched, a joint that slipped.
+// A change while samples were recorded: a tracker was touched, a joint slipped.
 //
-// With a joint, frame or sensor that is free to be another one from sample k on, the sum of squares falls
-// by the share x.  Without a change x has the beta distribution (q / 2, (freedom - q) / 2), q the
-// number of its parameters.  It counts if it is no chance among all owners and k, and if the noise
-// falls by half: deflection and the like vary over the workspace, too.
+// Let a joint, frame or sensor have other parameters from sample k on; the sum of squares falls by
+// the share x.  Without a change, x has the beta distribution (q / 2, (freedom - q) / 2), q the
+// number of its parameters.  A change is reported if chance is excluded over all owners and k, and
+// if the noise falls by half: deflection and the like also vary over the workspace.
 // Source: Chow, Tests of Equality Between Sets of Coefficients in Two Linear Regressions, 1960.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -18,12 +18,12 @@ namespace kinecal {
 /// A change during the recording.
 struct RecordingChange {
   std::string owner;        ///< joint, frame, sensor or error block that changed
-  int sample = 0;           ///< first one after it, by number in the problem
-  double noise_left = 1.0;  ///< noise with the change over that without
+  int sample = 0;           ///< first one after the change, by number in the problem
+  double noise_left = 1.0;  ///< ratio of the noise with the change to that without
 };
 
-/// The change that explains the residuals best; nullopt if none does.  Samples are in the order in
-/// which they were recorded.
+/// The change that explains the residuals best; nullopt if none does.  Samples must be in recording
+/// order.
 /// @param free  the parameters of `fit`, at its solution
 [[nodiscard]] std::optional<RecordingChange> recording_change(const AnyProblem& problem,
                                                               const FreeSet& free,

@@ -1,4 +1,4 @@
-// Finding a change during the recording.
+// Finds a change during the recording.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,7 +16,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// True if residuals are rounding, in their own units: simulated samples without noise.
+/// True if residuals are only rounding, in their own units: simulated samples without noise.
 [[nodiscard]] inline bool is_exact(const AnyProblem& problem, const LinearFit& fit) {
   constexpr double kRounding = 1e-7;
   double squares = 0.0;
@@ -27,15 +27,15 @@ namespace detail {
   return !(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()));
 }
 
-/// J^T W J and J^T W r of the samples from the first of a part on.
+/// J^T W J and J^T W r of the samples from some sample on.
 struct TailSums {
   int sample = 0;  ///< the first one
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
 };
 
-/// The sums from some samples on, in at most 64 places; without the first and the last samples, whose
-/// change cannot be told from a bad capture.
+/// The sums from some samples on, at up to 64 places; skips the first and the last samples, whose
+/// change is indistinguishable from a bad capture.
 [[nodiscard]] inline std::vector<TailSums> tail_sums(const LinearFit& fit, int samples) {
   constexpr int kParts = 64, kFew = 3;
   const Eigen::Index n = fit.size();
@@ -64,14 +64,15 @@ struct TailSums {
   return sums;
 }
 
-/// The share by which the sum of squares falls with parameters that change, times that sum.  Changes
-/// that other parameters could as well explain are left out: where the samples before and after have
-/// nothing in common, there are many.  So are parameters without an effect on the samples after it.
+/// The share by which the sum of squares falls with changing parameters, times that sum.  Skips
+/// changes that other parameters could explain just as well: if the samples before and after have
+/// nothing in common, there are many.  Also skips parameters without effect on the samples after
+/// the change.
 /// @param by     (coordinates x parameters) of the owner
 /// @param whole  (parameters) diagonal of their information in all samples
 [[nodiscard]] inline double fall_of(const TailSums& tail, const Eigen::MatrixXd& inverse,
                                     const Eigen::MatrixXd& by, const Eigen::VectorXd& whole) {
-  constexpr double kOwn = 1e-3;   // of what a change does, so much is not what others do
+  constexpr double kOwn = 1e-3;   // least share of a change's effect that others cannot explain
   constexpr double kNone = 1e-9;  // of the information in all samples: less is rounding
   const Eigen::MatrixXd cross = by.transpose() * tail.information;
   const Eigen::MatrixXd all = cross * by;
@@ -88,7 +89,7 @@ struct TailSums {
   return fall;
 }
 
-/// Probability that a share is above x by chance; q rounded up to an even number.
+/// Probability of a share above x by chance; rounds q up to an even number.
 [[nodiscard]] inline double chance_of_share(double x, int q, double freedom) {
   const double b = 0.5 * (freedom - q);
   double term = 1.0, sum = 0.0;

@@ -1,4 +1,4 @@
-// Which parameters are held rather than others, if samples do not determine all.
+// Which parameters to hold first if the samples do not determine all.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace kinecal::detail {
 
-/// How readily a parameter is held: 0 for parameters of frames, 1 for those of sensors and blocks, 2
-/// for joints.
+/// Order in which parameters are held: 0 for those of frames, 1 for sensors and blocks, 2 for
+/// joints.
 [[nodiscard]] inline int reluctance(const AnyProblem& problem, int parameter) {
   const std::string& name = problem.table()[parameter].name;
   const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];

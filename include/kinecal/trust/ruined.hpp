@@ -1,9 +1,9 @@
-// Samples that are left out: ruined captures, which no noise explains.
+// Leaves out ruined captures: samples that no noise explains.
 //
-// A sample is ruined if it is bad (captures.hpp) in the fit of the samples that are not.  Ruined samples
-// are left out and the others fitted again, until there are none.  Where more than a quarter of the
-// samples of a fit would be ruined, rather the model is wrong: none is left out.  Nothing in this
-// depends on the order of samples.
+// A sample is ruined if it is bad (captures.hpp) in the fit of the samples that are not.  Ruined
+// samples are left out and the others fitted again, until none is found.  If more than a quarter of
+// a fit's samples would be ruined, the model is more likely wrong, and none is left out.  The
+// result does not depend on the order of samples.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,8 +16,8 @@ namespace kinecal {
 /// The ruined samples of a fit, in their order; empty if there are none, or too many.
 [[nodiscard]] std::vector<CaptureError> ruined_captures(const Assessment& last);
 
-/// Fits, and fits again without ruined samples, until there are none.
-/// @param fit        the fit of the samples that have not been left out, of any type
+/// Fits repeatedly, without ruined samples, until none is found.
+/// @param fit        the fit of the remaining samples, of any type
 /// @param last       assessment of a fit's last step; nullptr if there is nothing to judge
 /// @param leave_out  takes a fit and those of its samples that are to be left out of the next one
 /// @returns  the last fit

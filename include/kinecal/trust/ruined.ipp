@@ -1,4 +1,4 @@
-// Finding ruined captures.
+// Finds ruined captures.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,4 +1,4 @@
-// Sums over the features of a shard that say how good a result is.
+// Sums over the features of a shard for the assessment of a result.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -39,8 +39,8 @@ struct DistanceBins {
 struct BlockSums {
   Eigen::MatrixXd information;  ///< (free x free) sum of rho' w^2 J^T J
   Eigen::MatrixXd bins;         ///< (bins x 3) distances before, after, and after over sigma
-  /// Features; sums of distances, squared components and the largest distance, before and after; squares of
-  /// weighted residuals with their losses.
+  /// Number of features; sums of distances, squared components and the largest distance, before and
+  /// after; squares of weighted residuals with their losses.
   Eigen::VectorXd figures;
 
   enum Figure {
@@ -60,7 +60,7 @@ struct BlockSums {
         bins(Eigen::MatrixXd::Zero(DistanceBins::kBins, 3)),
         figures(Eigen::VectorXd::Zero(kFigures)) {}
 
-  /// The largest distances are no sums.
+  /// False for the largest distances, which are not sums.
   [[nodiscard]] static bool is_sum(Eigen::Index figure) {
     return figure != max_before && figure != max_after;
   }
@@ -85,7 +85,7 @@ struct ShardSums {
         priors(hessian),
         blocks(static_cast<std::size_t>(terms), BlockSums(parameters)) {}
 
-  /// Calls something with each matrix.
+  /// Calls a function with each matrix.
   template <class Sums, class Call>
   static void for_each(Sums& sums, Call&& call) {
     call(sums.hessian);
@@ -109,8 +109,8 @@ struct ShardSums {
     all.push_back(cost);
     return all;
   }
-  /// Adds what packed() gave.
-  /// @throws std::invalid_argument  if the numbers are not as many
+  /// Adds the result of packed().
+  /// @throws std::invalid_argument  if the number of values is wrong
   void add(const std::vector<double>& all) {
     if (all.size() != packed().size()) throw std::invalid_argument("sums of another problem");
     const double* next = all.data();

@@ -1,4 +1,4 @@
-// The derivative of a chain's tip by the free parameters, and what nothing determines of it.
+// The derivative of a chain's tip by the free parameters, and its undetermined part.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -69,8 +69,9 @@ class TipDerivative {
   Eigen::Index free_;
 };
 
-/// True if changes that nothing determines move the origin of a frame: effects of parameters do not
-/// cancel.  A turn about the features, which are as near to it as residuals are large, does not count.
+/// True if undetermined changes move the origin of a frame: the effects of parameters do not
+/// cancel.  Ignores a rotation about the features if the origin is as near to them as residuals are
+/// large.
 /// @param jacobian  (6 x free) of its position and rotation
 /// @param null      (free x changes)
 /// @param near      metres

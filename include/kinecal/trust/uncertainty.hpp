@@ -1,12 +1,12 @@
-// The covariance of the parameters at the solution, from the noise that the residuals show.
+// The covariance of the parameters at the solution, from the noise of the residuals.
 //
 //   C = H^-1 V H^-1      H = sum w^2 J^T J + P      V = sum s_b^2 w^2 J^T J + s^2 P
 //
-// with P the priors, s_b the weighted noise of error block b, and s = 1 if all blocks have a sigma, else
-// that of all blocks: without sigmas weights are ratios.  One common s gives s^2 H^-1.  With robust losses the
-// sandwich of M-estimators: A^-1 B A^-1 with A the Hessian including rho'', B the sum of g g^T over
-// features, g their gradients.  Both suppose that features err independently; where those of a sample do
-// not, C is multiplied by the design effect.
+// with P the priors, s_b the weighted noise of error block b, and s = 1 if all blocks have a sigma,
+// else that of all blocks: without sigmas, weights are only ratios.  One common s gives s^2 H^-1.
+// With robust losses it is the sandwich of M-estimators: A^-1 B A^-1 with A the Hessian including
+// rho'', B the sum of g g^T over features, g their gradients.  Both assume that features err
+// independently; if those of a sample do not, C is multiplied by the design effect.
 // Source: Huber, Robust Statistics, 1981, 6.3.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -18,14 +18,14 @@
 
 namespace kinecal {
 
-/// How well the free parameters of a step are known.
+/// The uncertainty of the free parameters of a step.
 struct Uncertainty {
   int determined = 0;      ///< number of directions that samples and priors determine
-  PlainMatrix covariance;  ///< (free x free), units of the parameters; zero along directions
-                           ///< that nothing determines
+  PlainMatrix covariance;  ///< (free x free), units of the parameters; zero along undetermined
+                           ///< directions
   /// Standard deviation of each free parameter; infinite if samples and priors do not determine it.
   PlainMatrix deviation;
-  /// Factor in the covariance for features of a sample that err together: see design_effect().
+  /// Factor of the covariance if features of a sample err together: see design_effect().
   double design_effect = 1.0;
 };
 
@@ -35,20 +35,20 @@ struct Uncertainty {
                                       const std::vector<BlockNoise>& noise);
 
 namespace detail {
-/// Standard deviations from a covariance; infinite where more than a little of a parameter is not
-/// determined.
+/// Standard deviations from a covariance; infinite if more than a little of a parameter is
+/// undetermined.
 /// @param lost  (free) see Coordinates
 [[nodiscard]] PlainMatrix deviations(const PlainMatrix& covariance, const PlainMatrix& lost);
 
-/// Makes the deviation of parameters infinite that a small part in an undetermined combination can move
-/// further than their own deviation, if that combination is off as far as robots are: by 2 degrees,
-/// 8 mm or 2 % of its largest parameter.
+/// Sets deviations to infinity where an undetermined combination could move the parameter by more
+/// than its own deviation.  Assumes that the combination is off as far as typical robots are: 2
+/// degrees, 8 mm or 2 % of its largest parameter.
 /// @param free  the parameters of `known`
 void mark_undetermined(const AnyProblem& problem, const FreeSet& free, const Coordinates& by,
                        Uncertainty& known);
 }  // namespace detail
 
-/// Two parameters that can hardly be told apart.
+/// Two parameters that are nearly indistinguishable.
 struct Correlation {
   int a = 0, b = 0;          ///< columns of the free set
   double coefficient = 0.0;  ///< -1 to 1

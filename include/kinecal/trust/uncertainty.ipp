@@ -1,4 +1,4 @@
-// Computing covariances.
+// Computes covariances.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -68,7 +68,7 @@ KINECAL_INLINE void mark_undetermined(const AnyProblem& problem, const FreeSet& 
   if (by.null.cols() == 0) return;
   Eigen::VectorXd deviation = known.deviation.matrix();
   for (Eigen::Index i = 0; i < deviation.size(); ++i) {
-    // Of all undetermined combinations, that which moves this parameter most.
+    // Of all undetermined combinations, the one that moves this parameter most.
     const Eigen::VectorXd along = by.null * (by.scale(i) * by.null.row(i).transpose());
     double most = 0.0;
     for (int c = 0; c < free.size(); ++c) {

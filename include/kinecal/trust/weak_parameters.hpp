@@ -1,7 +1,6 @@
-// Parameters that samples hardly determine: their standard deviation exceeds the errors that robots
-// have.
+// Weak parameters: their standard deviation exceeds the typical errors of robots.
 //
-// Such values are large by chance and cancel in the samples at hand; elsewhere they do not.
+// Their values are large by chance and cancel in the given samples, but not elsewhere.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,19 +12,19 @@
 
 namespace kinecal {
 
-/// What samples hardly determine, and what to do.
+/// Poorly determined parameters, and what to do about them.
 struct WeakParameters {
   std::vector<int> parameters;  ///< table indices
-  /// Of these, what to hold, so that none is left: frames rather than sensors, sensors rather than
-  /// joints, and of these the one that is known worst.
+  /// Parameters to hold so that no weak ones remain: frames before sensors, sensors before joints,
+  /// and of these the one with the largest uncertainty.
   std::vector<int> hold;
 };
 
-/// The standard deviation up to which a parameter is of use: 5 degrees, 20 mm, 5 % of a factor,
-/// 20 px; infinite for other units.
+/// The largest useful standard deviation of a parameter: 5 degrees, 20 mm, 5 % of a factor, 20 px;
+/// infinite for other units.
 [[nodiscard]] double useful_deviation(const Parameter& parameter);
 
-/// The parameters that are determined, but worse than useful_deviation().
+/// The parameters that are determined, but with more than useful_deviation().
 /// @param free   the parameters of `known`
 [[nodiscard]] WeakParameters weak_parameters(const AnyProblem& problem, const FreeSet& free,
                                              const Uncertainty& known);

@@ -1,4 +1,4 @@
-// Finding parameters that are hardly determined.
+// Finds poorly determined parameters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,7 +23,7 @@ KINECAL_INLINE WeakParameters weak_parameters(const AnyProblem& problem, const F
   WeakParameters weak;
   Eigen::MatrixXd covariance = known.covariance.matrix();
   const auto parameter = [&](int c) { return free.parameters()[static_cast<std::size_t>(c)]; };
-  // Of what is left when others are held; NaN and parameters that nothing determines are not.
+  // With some parameters held; not NaN, and not undetermined.
   const auto times = [&](int c) {
     if (!std::isfinite(known.deviation(c))) return 0.0;
     return std::sqrt(std::max(0.0, covariance(c, c))) /

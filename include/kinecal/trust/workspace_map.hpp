@@ -1,5 +1,5 @@
-// How well the pose in question is known over the robot's workspace: where the gripper will be off, as
-// a camera sees it, also where no sample was taken.
+// A map of the uncertainty of a pose over the robot's workspace: how far the gripper will be off in
+// the camera's view, also where no sample was taken.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,20 +12,21 @@
 
 namespace kinecal {
 
-/// A place in the workspace, and how well a position is known when the robot is there.
+/// A place in the workspace, and the uncertainty of a position when the robot is there.
 struct KnownPoint {
   std::array<double, 3>
-      p_base{};            ///< of the frame in question, in the base, metres; of the one in which
-                           ///< it is given, if only that one moves: a camera that sees a board
+      p_base{};            ///< of the frame in question, in the base, metres; of the other frame
+                           ///< if only that one moves: a camera that sees a board
   double deviation = 0.0;  ///< standard deviation of the position, metres: sqrt(trace)
 };
 
-/// The uncertainty of the position of an assessed step's pose at poses spread evenly over the limits
-/// of the joints that move it; a joint without limits, or with wider ones, takes a turn or a metre.
+/// The uncertainty of an assessed step's pose at poses spread evenly over the limits of the joints
+/// that move it; a joint without limits, or with wider ones, moves over a turn or a metre.
 /// @param values  of all parameters of the table: the solution
-/// @param poses   how many
-/// @returns       empty if the step has no pose in question, or if some joint drives nothing known
-/// Source: Halton, On the efficiency of certain quasi-random sequences of points, 1960, for the poses.
+/// @param poses   their number
+/// @returns       empty if the step has no such pose, or if some joint drives nothing known
+/// Source: Halton, On the efficiency of certain quasi-random sequences of points, 1960, for the
+/// poses.
 [[nodiscard]] std::vector<KnownPoint> workspace_map(const AnyProblem& problem,
                                                     const Assessment& step,
                                                     std::span<const double> values, int poses);

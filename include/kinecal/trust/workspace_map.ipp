@@ -1,4 +1,4 @@
-// Computing the map of the workspace.
+// Computes the map of the workspace.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,7 +15,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Number i of the Halton sequence to a prime base: in [0, 1).
+/// Element i of the Halton sequence to a prime base: in [0, 1).
 [[nodiscard]] inline double halton(int i, int base) {
   double number = 0.0, digit = 1.0;
   for (; i > 0; i /= base) {

@@ -1,4 +1,4 @@
-// What to capture, and how: robot_calibration's capture.yaml in both dialects.
+// Configuration of a capture: robot_calibration's capture.yaml in both dialects.
 //
 //   chains:                                     which joints move, by which controllers
 //   - {name: arm, topic: /arm_controller/follow_joint_trajectory, joints: [...]}
@@ -34,26 +34,26 @@ struct CaptureChain {
   std::vector<std::string> joints;  ///< that it moves
 };
 
-/// Settings of a finder of any type.
+/// Settings of any finder.
 using FinderSettings = std::variant<LedFinder, CheckerboardSettings, AprilTagSettings,
                                     CharucoSettings, PlaneFinder, ScanFinder, RobotFinder>;
 
-/// A finder and where its views come from.
+/// A finder and the source of its views.
 struct CaptureFinder {
   std::string name;               ///< as poses name it
   std::string type;               ///< "LedFinder"
   std::string topic;              ///< of its images, clouds or scans
   std::string camera_info;        ///< topic of its camera's settings
-  std::string action = {};        ///< that switches LEDs
+  std::string action = {};        ///< switches LEDs
   std::string region_frame = {};  ///< link in which a region is given; empty: the camera's frame
-  FinderSettings settings;        ///< their frames are not on a robot yet: see on_robot()
+  FinderSettings settings;        ///< frames not yet on a robot: see on_robot()
   SourceLocation place;           ///< in the file
 };
 
-/// All of a file.
+/// The content of a file.
 struct CaptureConfig {
-  std::vector<CaptureChain> chains;    ///< none: every joint of a pose moves
-  double duration = 2.0;               ///< of a motion at least, seconds
+  std::vector<CaptureChain> chains;    ///< empty: every joint of a pose moves
+  double duration = 2.0;               ///< shortest duration of a motion, seconds
   std::vector<CaptureFinder> finders;  ///< at least one
 };
 
@@ -61,8 +61,8 @@ struct CaptureConfig {
 /// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
 [[nodiscard]] CaptureConfig read_capture_config(const std::string& path, Diagnostics& diagnostics);
 
-/// Settings of a finder whose regions and LEDs move with a robot's links.
-/// @throws InputError  naming the link that the robot does not have
+/// Settings of a finder with regions and LEDs attached to a robot's links.
+/// @throws InputError  naming a link that the robot does not have
 [[nodiscard]] FinderSettings on_robot(const CaptureFinder& finder, const Robot& robot);
 
 }  // namespace kinecal

@@ -25,7 +25,8 @@ namespace detail {
   return last == std::string::npos ? type : type.substr(last + 1);
 }
 
-/// camera_info beside a topic: /head_camera/rgb/image_raw has /head_camera/rgb/camera_info.
+/// The camera_info topic of an image topic: /head_camera/rgb/image_raw has
+/// /head_camera/rgb/camera_info.
 [[nodiscard]] inline std::string camera_info_beside(const std::string& topic) {
   return topic.substr(0, topic.find_last_of('/') + 1) + "camera_info";
 }
@@ -77,7 +78,7 @@ namespace detail {
   return chain;
 }
 
-/// The finders of ROS 1: a map by name; its order is that of the file.
+/// The finders of ROS 1: a map by name, in file order.
 [[nodiscard]] inline std::vector<ConfigItem> find_finders_in_map(ConfigMap& file) {
   std::vector<ConfigItem> items;
   if (const auto all = file.map("features", "features")) {
@@ -108,7 +109,7 @@ inline void read_capture(ConfigMap& file, bool is_ros2, CaptureConfig& config) {
   file.report_unknown();
 }
 
-/// The pose of a view's camera in a link, by the robot's URDF.
+/// The pose of a view's camera in a link, from the robot's URDF.
 [[nodiscard]] inline PoseOfView camera_in(const Robot& robot, const std::string& link) {
   return [robot = std::make_shared<const Robot>(robot),
           link](const View& view) -> std::optional<Pose<double>> {

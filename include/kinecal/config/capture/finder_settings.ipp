@@ -1,4 +1,4 @@
-// Finders of a capture.yaml, one type after the other.
+// Reads the finders of a capture.yaml, type by type.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,7 +30,7 @@ namespace kinecal::detail {
   return fallback;
 }
 
-/// Sensors of a finder of a target, and of which kind its corners are.
+/// Reads the sensors of a finder of a target, and the kind of its corners.
 inline void read_target(ConfigMap& map, TargetSettings& target) {
   target.camera_sensor = map.text("camera_sensor_name").value_or(target.camera_sensor);
   target.chain_sensor = map.text("chain_sensor_name").value_or(target.chain_sensor);

@@ -1,13 +1,14 @@
-// Whether a capture session may end.
+// Decides when a capture session may end.
 //
-// The last few poses that a robot needs are those in which its calibration is wrong.  So an accuracy is
-// reached only if
+// The last few poses that a robot needs are those at which its calibration is wrong.  So an
+// accuracy is reached only if
 //
-//   - the samples measure half as many numbers again as there are free parameters (measured_numbers.hpp),
+//   - the samples measure half as many numbers again as there are free parameters
+//     (measured_numbers.hpp),
 //   - the calibration of all samples is usable,
-//   - the pose is determined and known as well as asked for at the captured poses, at the pose of each
-//     sample by the other samples, and at the poses that are left (pose_elsewhere.hpp); where samples held
-//     out are further off than fitted ones, by as many times less well.
+//   - the pose is determined and as accurate as requested at the captured poses, at each sample's
+//     pose from the other samples, and at the remaining poses (pose_elsewhere.hpp).  If held-out
+//     samples are further off than fitted ones, the uncertainty grows by that factor.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,8 +31,8 @@ struct SessionResult {
   std::span<const Sample> samples;  ///< of the problem, in their order
 };
 
-/// Why a session must go on, as a sentence; empty if the accuracy is reached.
-/// @param ahead  poses that are left; of these, only joint positions count
+/// Why a session must continue, as a sentence; empty if the accuracy is reached.
+/// @param ahead  remaining poses; uses only their joint positions
 [[nodiscard]] std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
                                     std::span<const Sample> ahead);
 

@@ -16,9 +16,9 @@ namespace kinecal {
 
 namespace detail {
 
-/// How many times further off samples held out are than their noise and than fitted ones: few samples
-/// are fitted better than they predict.  What is in the uncertainty as design effect does not count
-/// twice.  At least 1.
+/// Factor by which held-out samples are further off than their noise and than fitted ones: few
+/// samples fit better than they predict.  The design effect is in the uncertainty already and is
+/// not counted twice.  At least 1.
 [[nodiscard]] inline double times_held_out(const Assessment& step) {
   double most = 0.0;
   for (std::size_t t = 0; t < step.held_out.size(); ++t) {
@@ -30,8 +30,8 @@ namespace detail {
   return std::max(1.0, most / std::sqrt(std::max(1.0, step.uncertainty.design_effect)));
 }
 
-/// Why a pose is not known well enough; empty if it is.
-/// @param times  its uncertainty is larger
+/// Why a pose is not accurate enough; empty if it is.
+/// @param times  factor of its uncertainty
 /// @param where  "at the poses that are left"
 [[nodiscard]] inline std::string not_known(const Accuracy& wanted, PoseUncertainty pose,
                                            double times, const std::string& where) {
@@ -84,7 +84,7 @@ KINECAL_INLINE std::string why_go_on(const Accuracy& wanted, const SessionResult
   const double times = detail::times_held_out(step);
   std::string why =
       detail::not_known(wanted, known_at(result.samples), times, "at the captured poses");
-  if (why.empty()) {  // which holds samples out already
+  if (why.empty()) {  // only then: held-out samples are included
     why = detail::not_known(
         wanted, pose_held_out(result.problem, step, result.values, result.samples, frame, in), 1.0,
         "at each pose by the samples of the others");

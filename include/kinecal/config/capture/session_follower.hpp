@@ -1,8 +1,9 @@
-// Calibrates during a capture session: from a configuration and the samples so far, how well the
-// gripper is known in the camera's frame, whether the last sample is good, and what to move next.
+// Calibrates during a capture session.  From a configuration and the samples so far it gives the
+// uncertainty of the gripper's pose in the camera's frame, the quality of the last sample, and the
+// next move.
 //
-// The first samples are calibrated as a whole, which finds unknown poses; from then on each sample is
-// an update (trust/online.hpp).  If two samples in a row do not fit, the start may have been
+// The first samples are calibrated as a whole, which finds unknown poses; after that, each sample
+// is an update (trust/online.hpp).  If two samples in a row do not fit, the start may have been
 // wrong, and all samples are calibrated anew.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -21,11 +22,11 @@
 
 namespace kinecal {
 
-/// What is known after a sample.
+/// The state after a sample.
 struct FollowedState {
-  OnlineState online;            ///< the pose and how well it is known
-  std::optional<NextMove> next;  ///< what to move next; nullopt if the pose is not known
-  std::string problem;           ///< why the sample cannot be used; empty if it can
+  OnlineState online;            ///< the pose and its uncertainty
+  std::optional<NextMove> next;  ///< nullopt if the pose is unknown
+  std::string problem;           ///< why the sample is unusable; empty if it is usable
 };
 
 /// The calibration of all samples of a session so far.
@@ -41,17 +42,17 @@ struct SessionCalibration {
 /// Follows a session.
 class SessionFollower {
  public:
-  /// @param frame  link or free frame whose pose is wanted; empty: what the first error block of
-  ///               the last step compares
-  /// @throws InputError  if the configuration does not suit the robot, or the robot has no such
+  /// @param frame  link or free frame whose pose is wanted; empty: that of the first error block of
+  ///               the last step
+  /// @throws InputError  if the configuration does not match the robot, or the robot has no such
   ///                     link, with the nearest name
   SessionFollower(Config config, Robot robot, const std::string& frame = {});
   SessionFollower(const SessionFollower&) = delete;
   SessionFollower& operator=(const SessionFollower&) = delete;
   ~SessionFollower() = default;
 
-  /// Takes the next sample of the session.
-  /// @param ahead  poses that are left, where the pose is wanted as well
+  /// Adds the next sample of the session.
+  /// @param ahead  remaining poses, where the pose is wanted as well
   FollowedState add(const Sample& sample, std::span<const Sample> ahead = {});
 
   /// Calibrates and judges all samples so far.
@@ -82,7 +83,7 @@ struct Accuracy {
   std::optional<double> position;  ///< standard deviation, metres
   std::optional<double> rotation;  ///< the same, radians
 
-  /// True if a pose is known as well as that.
+  /// True if a pose is at least this accurate.
   [[nodiscard]] bool reached(const OnlineState& state) const;
 };
 

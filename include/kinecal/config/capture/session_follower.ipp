@@ -29,13 +29,13 @@ KINECAL_INLINE SessionFollower::SessionFollower(Config config, Robot robot,
   throw InputError("the robot has no link '" + frame + "'" + did_you_mean(frame, names));
 }
 
-/// @throws SampleError  if a sample does not suit the configuration
+/// @throws SampleError  if a sample does not match the configuration
 KINECAL_INLINE void SessionFollower::check(const Sample& sample) const {
   problem_->without_samples()->add_sample(sample);
 }
 
-/// Calibrates all samples so far, and goes on from there.
-/// @returns  false if they do not suffice
+/// Calibrates all samples so far, and continues from there.
+/// @returns  false if there are too few
 KINECAL_INLINE bool SessionFollower::start() {
   Diagnostics diagnostics;
   Calibration calibration = assemble(config_, robot_, samples_, diagnostics);

@@ -1,5 +1,5 @@
-// What only cameras get wrong: pixels that are none, intrinsics of another image, a driver that has
-// stopped.
+// Checks specific to cameras: features that are not pixels, intrinsics of another image, a driver
+// that has stopped.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,12 +29,12 @@ namespace kinecal::detail {
 
 /// Doubt: pixels outside of the image.
 /// @param pixels  (u, v, any) of each of the recorded points
-/// @param few     share of them that may be outside
+/// @param few     fraction of them that may be outside
 inline void check_inside(const RecordedPoints& recorded, std::span<const Vector3<double>> pixels,
                          const CameraInfo& camera, double few, std::span<const Sample> samples,
                          Diagnostics& diagnostics) {
   const double width = camera.width, height = camera.height;
-  std::size_t last = 0;  // sample that is counted
+  std::size_t last = 0;  // sample already counted
   double all = 0.0;
   Occurrences outside;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -53,7 +53,7 @@ inline void check_inside(const RecordedPoints& recorded, std::span<const Vector3
                                 recorded.model.name, width, height, outside.others()));
 }
 
-/// Error or doubt: pixels that are none.
+/// Error or doubt: features that are not pixels.
 inline void check_pixels(const RecordedPoints& recorded, std::span<const Sample> samples,
                          Diagnostics& diagnostics) {
   const CameraInfo* camera = sized_camera(recorded, samples);
@@ -72,7 +72,7 @@ inline void check_pixels(const RecordedPoints& recorded, std::span<const Sample>
   }
 }
 
-/// Error or doubt: points of a depth camera that its camera_info cannot have given.
+/// Error or doubt: points of a depth camera that contradict its camera_info.
 inline void check_depth_points(const RecordedPoints& recorded, std::span<const Sample> samples,
                                Diagnostics& diagnostics) {
   std::vector<Vector3<double>> pixels;
@@ -97,7 +97,7 @@ inline void check_depth_points(const RecordedPoints& recorded, std::span<const S
   if (camera != nullptr) check_inside(recorded, pixels, *camera, kFew, samples, diagnostics);
 }
 
-/// Doubt: a principal point far from the middle of the image, as of another resolution.
+/// Doubt: a principal point far from the middle of the image, as if from another resolution.
 inline void check_principal_points(std::span<const Sample> samples, Diagnostics& diagnostics) {
   std::set<std::string> checked;
   for (std::size_t s = 0; s < samples.size(); ++s) {
@@ -125,7 +125,7 @@ inline void check_principal_points(std::span<const Sample> samples, Diagnostics&
   }
 }
 
-/// Error: a camera that records the same in every sample though the robot moves.
+/// Error: a camera that records the same in every sample although the robot moves.
 inline void check_frozen(const RecordedPoints& recorded, std::span<const Sample> samples,
                          Diagnostics& diagnostics) {
   const auto last = recorded.samples.back();

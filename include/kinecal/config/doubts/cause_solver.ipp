@@ -1,4 +1,4 @@
-// Solving a calibration with a mistake undone, and saying what that changes.
+// Solves a calibration with a mistake undone, and describes the change.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,13 +17,13 @@
 
 namespace kinecal::detail {
 
-/// A calibration solved: its cost and its error blocks.
+/// A solved calibration: its cost and its error blocks.
 struct SolvedSamples {
   double cost = 0.0;
   std::vector<BlockStatistics> blocks;
 };
 
-/// How hypotheses are solved.
+/// How to solve hypotheses.
 struct CauseSolver {
   const Config& config;
   const Robot& robot;
@@ -31,7 +31,7 @@ struct CauseSolver {
   const ParameterTable* from = nullptr;  ///< where it starts, instead of the initial values
 };
 
-/// Assembles and solves; nullopt if the samples cannot be used so, or if the fit is not finite.
+/// Assembles and solves; nullopt if these samples are unusable, or if the fit is not finite.
 [[nodiscard]] inline std::optional<SolvedSamples> solve_samples(const CauseSolver& solver,
                                                                 const Config& config,
                                                                 std::span<const Sample> samples) {
@@ -57,8 +57,8 @@ struct CauseSolver {
   return [](const Calibration& calibration) { return calibrate(calibration); };
 }
 
-/// "the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm", of the block that falls most; of a
-/// prior only if no other falls.
+/// "the mean residual of 'hand_eye' falls from 93 mm to 0.11 mm", for the block that falls most;
+/// for a prior only if no other falls.
 [[nodiscard]] inline std::string fall_of(const SolvedSamples& before, const SolvedSamples& after) {
   std::string text = fmt::format("the cost falls from {:.3g} to {:.3g}", before.cost, after.cost);
   double most = 1.0;

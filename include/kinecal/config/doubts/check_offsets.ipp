@@ -23,16 +23,15 @@ namespace detail {
                            : fmt::format("{:.1f} mm", 1e3 * offset);
 }
 
-/// The offset between half a turn and minus half a turn, for joints that turn.
+/// The offset between half a turn and minus half a turn, for rotating joints.
 [[nodiscard]] inline double as_angle(const Joint& joint, double offset) {
   return turns(joint.type) ? std::remainder(offset, 2 * std::numbers::pi) : offset;
 }
 
-/// The recorded position that is furthest outside its limits after the offset.
+/// The recorded position furthest outside its limits after the offset.
 struct FurthestOutside {
   double position = 0.0;  ///< with the offset
-  double excess =
-      0.0;  ///< 0 if none is further outside than it was, and by more than offsets explain
+  double excess = 0.0;  ///< 0 if none is further outside than before, by more than offsets explain
 };
 
 [[nodiscard]] inline FurthestOutside furthest_outside(const UsedJoint& joint, double offset) {

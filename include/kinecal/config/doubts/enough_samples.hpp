@@ -1,4 +1,4 @@
-// Are the samples enough for the parameters, and is every observation used?
+// Checks that there are enough samples for the parameters, and that every observation is used.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,12 +13,12 @@
 namespace kinecal::detail {
 
 /// Error: a step has more free parameters than 4/5 of its residuals.  Doubt: than half of them, or
-/// of six for each sample: a pose has six numbers, however many features show it.
-/// @param distinct  number of samples that differ; copies do not count
+/// than half of six per sample: a pose has six numbers, however many features show it.
+/// @param distinct  number of different samples; copies do not count
 void check_enough_samples(const Config& config, const Calibration& calibration,
                           std::size_t distinct, Diagnostics& diagnostics);
 
-/// Warning: observations without a usable feature, and samples that no error block takes.
+/// Warning: observations without a usable feature, and samples that no error block uses.
 void check_dropped_observations(const Config& config, std::span<const Sample> samples,
                                 Diagnostics& diagnostics);
 

@@ -13,7 +13,7 @@
 
 namespace kinecal::detail {
 
-/// The place of a step in the configuration; the whole file for a step that it does not have.
+/// The source location of a step; the whole file if the configuration lacks the step.
 [[nodiscard]] inline SourceLocation place_of_step(const Config& config, const std::string& name) {
   for (const StepConfig& step : config.steps) {
     if (step.name == name) return step.place;
@@ -73,7 +73,7 @@ KINECAL_INLINE void check_enough_samples(const Config& config, const Calibration
                      [](const Feature& feature) { return feature.point.allFinite(); });
 }
 
-/// True if some error block of the configuration finds all of its models in the sample.
+/// True if some error block finds all of its models in the sample.
 [[nodiscard]] inline bool is_used(const Config& config, const Sample& sample) {
   for (const StepConfig& step : config.steps) {
     for (const BlockConfig& block : step.error_blocks) {
@@ -106,7 +106,7 @@ KINECAL_INLINE void check_dropped_observations(const Config& config,
     if (!is_used(config, samples[s])) unused.add(s);
   }
   for (const auto& [sensor, found] : empty) {
-    if (!with_features.contains(sensor)) continue;  // one that never sees anything is reported
+    if (!with_features.contains(sensor)) continue;  // never sees anything: reported elsewhere
     diagnostics.warning(place_of(samples, found.first),
                         fmt::format("sensor '{}' has no usable feature, so its observation is left "
                                     "out{}",

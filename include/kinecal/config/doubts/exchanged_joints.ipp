@@ -1,5 +1,4 @@
-// Joints whose names and positions were exchanged: positions outside the limits that are inside
-// under another joint's name.
+// Exchanged names of joints: positions outside the limits, but inside those of another joint.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,7 +20,7 @@
 
 namespace kinecal::detail {
 
-/// True if so many of all positions are no matter of single bad captures.
+/// True if so many positions cannot be single bad captures.
 [[nodiscard]] inline bool are_many(std::size_t count, std::size_t all) {
   return 20 * count >= all && (count >= 2 || all == 1);
 }
@@ -33,21 +32,21 @@ namespace kinecal::detail {
                     [&](double position) { return is_outside(limits, position); }));
 }
 
-/// Two joints whose positions fit when their names are exchanged.
+/// Two joints whose positions fit if their names are exchanged.
 struct ExchangedPair {
   std::size_t a = 0, b = 0;
   std::size_t outside = 0;  ///< positions outside the limits as they are named
   bool both_outside = false;
 };
 
-/// Number of positions outside the limits of their own joint, of all joints.
+/// Total number of positions outside the limits of their own joint.
 [[nodiscard]] inline std::size_t count_all_outside(std::span<const UsedJoint> joints) {
   std::size_t outside = 0;
   for (const UsedJoint& joint : joints) outside += count_outside(joint, joint);
   return outside;
 }
 
-/// Pairs that explain all positions outside the limits, those that explain most first.
+/// Pairs that explain all positions outside the limits, best explanation first.
 [[nodiscard]] inline std::vector<ExchangedPair> exchanged_pairs(std::span<const UsedJoint> joints) {
   std::vector<ExchangedPair> pairs;
   const std::size_t outside = count_all_outside(joints);
@@ -70,7 +69,7 @@ struct ExchangedPair {
 }
 
 /// Error, or doubt if only few positions show it: names of two joints are exchanged.
-/// @returns  indices of the joints that were reported
+/// @returns  indices of the reported joints
 inline std::vector<std::size_t> report_exchanged(std::span<const UsedJoint> joints,
                                                  std::span<const Sample> samples,
                                                  Diagnostics& diagnostics) {
@@ -102,13 +101,13 @@ inline std::vector<std::size_t> report_exchanged(std::span<const UsedJoint> join
   return {best.a, best.b};
 }
 
-/// Another order of the joints: joint j has the positions that are named after joint order[j].
+/// Another order of the joints: joint j gets the positions named after joint order[j].
 struct JointOrder {
   std::vector<std::size_t> order;
   const char* how;
 };
 
-/// Orders that drivers and people produce.
+/// Orders that drivers and people commonly produce.
 [[nodiscard]] inline std::vector<JointOrder> joint_orders(std::span<const UsedJoint> joints) {
   std::vector<std::size_t> sorted(joints.size());
   std::iota(sorted.begin(), sorted.end(), 0);
@@ -151,7 +150,7 @@ inline bool report_order(std::span<const UsedJoint> joints, std::span<const Samp
 }
 
 /// Error, or doubt if only few positions show it: the positions of one joint have the wrong sign.
-/// @returns  indices of the joints that were reported: none or one
+/// @returns  indices of the reported joints: none or one
 inline std::vector<std::size_t> report_negated(std::span<const UsedJoint> joints,
                                                std::span<const Sample> samples,
                                                Diagnostics& diagnostics) {

@@ -1,7 +1,7 @@
-// What looks wrong in the input of a calibration, before anything is solved.
+// Finds what looks wrong in the input of a calibration, before anything is solved.
 //
-// Errors are what cannot be right, doubts what could be.  Each finding stands once, with the place
-// where it occurs first, and names the likely cause.
+// Errors cannot be right; doubts could be.  Each finding is reported once, with its first source
+// location and the likely cause.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace kinecal {
 
-/// The input of a calibration, as it was read and assembled.
+/// The input of a calibration, read and assembled.
 struct CalibrationInput {
   const Config& config;          ///< from read_config()
   const Robot& robot;            ///< from parse_urdf()
@@ -30,9 +30,9 @@ struct CalibrationInput {
   bool is_part = false;                 ///< there are more samples elsewhere: these may be few
 };
 
-/// Adds what looks wrong to the errors, doubts and warnings.  The URDF is checked first, then joint
-/// positions, then points: a wrong unit in one makes the next look wrong, too, so it is not
-/// reported.  If there are errors already, only the URDF and initial values are checked.
+/// Adds findings to the errors, doubts and warnings.  Checks the URDF first, then joint positions,
+/// then points: a wrong unit in one makes the next look wrong, too, so that is not reported.  If
+/// there are already errors, checks only the URDF and initial values.
 void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics);
 
 }  // namespace kinecal

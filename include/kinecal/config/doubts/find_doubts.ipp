@@ -20,7 +20,7 @@ KINECAL_INLINE void find_doubts(const CalibrationInput& input, Diagnostics& diag
   detail::check_initial_values(config, diagnostics);
   detail::check_xacro(urdf_text, urdf, diagnostics);
   detail::check_urdf_units(config, robot, urdf_text, urdf, diagnostics);
-  if (samples.empty() || before > 0) return;  // the rest needs models that fit the robot
+  if (samples.empty() || before > 0) return;  // the rest needs models that match the robot
   const std::vector<detail::UsedJoint> joints = detail::used_joints(config, robot, samples);
   detail::check_joint_positions(joints, samples, diagnostics);
   detail::check_dropped_observations(config, samples, diagnostics);

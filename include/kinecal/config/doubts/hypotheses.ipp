@@ -1,4 +1,4 @@
-// Mistakes in samples or configurations, each with how to undo it.
+// Possible mistakes in samples or configurations, and how to undo each.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,12 +17,12 @@
 
 namespace kinecal::detail {
 
-/// A mistake that may have been made.
+/// A possible mistake.
 struct Hypothesis {
   std::string undone;  ///< "with the positions of 'a' and 'b' exchanged"
   std::function<void(Sample&)> correct = {};
   std::function<void(Config&)> correct_config = {};
-  double shrinks = 1.0;  ///< lengths, and with them residuals, by this factor
+  double shrinks = 1.0;  ///< factor on lengths, and so on residuals
 };
 
 /// The position of a joint in a sample; nullptr if it has none.
@@ -50,7 +50,7 @@ inline void add_joint_hypotheses(const std::vector<UsedJoint>& joints,
   }
 }
 
-/// Positions in the robot's order under names in another order, or the other way round.
+/// Positions in the robot's order under names in another order, or vice versa.
 inline void add_order_hypotheses(const std::vector<UsedJoint>& joints,
                                  std::vector<Hypothesis>& all) {
   std::vector<std::string> names, sorted, reversed;

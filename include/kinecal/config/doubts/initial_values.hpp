@@ -1,4 +1,4 @@
-// Initial values of a configuration: degrees, millimetres, absurd numbers.
+// Checks initial values of a configuration: degrees, millimetres, absurd numbers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace kinecal::detail {
 
-/// Error: a number that cannot be meant.  Doubt: a frame that starts more than a turn away, which
-/// looks like degrees, or more than 100 m, which looks like millimetres.
+/// Error: an absurd number.  Doubt: a frame that starts more than a turn away, which looks like
+/// degrees, or more than 100 m, which looks like millimetres.
 void check_initial_values(const Config& config, Diagnostics& diagnostics);
 
 }  // namespace kinecal::detail

@@ -1,4 +1,4 @@
-// Positions of a joint against its limits.
+// Compares positions of a joint with its limits.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,8 +17,8 @@ namespace kinecal::detail {
   return std::max({joint.limits->lower - position, position - joint.limits->upper, 0.0});
 }
 
-/// True if a position is further outside than offsets of real robots explain.  A whole turn more or
-/// less is the same pose.
+/// True if a position is further outside than offsets of real robots explain.  Full turns do not
+/// count.
 [[nodiscard]] inline bool is_outside(const UsedJoint& joint, double position) {
   const double margin = turns(joint.joint.type) ? 0.35 : 0.1;  // 20 degrees, 10 cm
   if (excess_of(joint, position) <= margin) return false;

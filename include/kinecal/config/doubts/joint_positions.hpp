@@ -1,7 +1,8 @@
-// Joint positions against the limits of the URDF: degrees, exchanged names, wrong signs, absurd numbers.
+// Checks joint positions against the limits of the URDF: degrees, exchanged names, wrong signs,
+// absurd numbers.
 //
-// Robots exceed their limits a little, by their own offsets: that is a warning.  Positions that are
-// far outside but inside after a conversion, or under another joint's name, have that cause.
+// Robots exceed their limits slightly, by their own offsets: that is a warning.  Positions far
+// outside but inside after a conversion, or under another joint's name, have that cause.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,14 +17,14 @@
 namespace kinecal::detail {
 
 /// Error: positions in degrees or millimetres, exchanged joints, a number that no joint reaches.
-/// Doubt: positions far outside the limits.  Warning: positions a little outside, or by a turn.
-/// @param joints   of used_joints()
-/// @param samples  for their places
+/// Doubt: positions far outside the limits.  Warning: positions slightly outside, or by a turn.
+/// @param joints   from used_joints()
+/// @param samples  for their source locations
 void check_joint_positions(std::span<const UsedJoint> joints, std::span<const Sample> samples,
                            Diagnostics& diagnostics);
 
 /// Doubt: a joint never moves although its offset is free.
-/// @param config  says which offsets are free, and where
+/// @param config  defines which offsets are free, and where
 void check_still_joints(const Config& config, std::span<const UsedJoint> joints,
                         Diagnostics& diagnostics);
 

@@ -17,10 +17,10 @@
 
 namespace kinecal::detail {
 
-/// A joint without limits that reaches further than this looks wound up, or in degrees.
+/// A joint without limits beyond this looks wound up, or in degrees.
 inline constexpr double kWoundUp = 4 * std::numbers::pi;
 
-/// True if the positions are wrong as they are and right after multiplication by `factor`.
+/// True if the positions are wrong as they are but right when multiplied by `factor`.
 [[nodiscard]] inline bool fits_in_other_unit(const UsedJoint& joint, double factor) {
   const auto of = [&](auto&& is) {
     return static_cast<std::size_t>(
@@ -54,7 +54,7 @@ inline constexpr double kWoundUp = 4 * std::numbers::pi;
     found.push_back(j);
     limited += joints[j].limits ? 1 : 0;
   }
-  // Without limits, one joint may just be wound up.
+  // Without limits, a single joint may just be wound up.
   return limited > 0 || 2 * found.size() >= std::max<std::size_t>(all, 2)
              ? found
              : std::vector<std::size_t>();
@@ -69,7 +69,7 @@ inline constexpr double kWoundUp = 4 * std::numbers::pi;
       q.begin());
 }
 
-/// One error for all joints that look like degrees or millimetres.
+/// One error for all joints that seem to be in degrees or millimetres.
 inline void report_unit(std::span<const UsedJoint> joints, const std::vector<std::size_t>& wrong,
                         std::span<const Sample> samples, Diagnostics& diagnostics) {
   const UsedJoint& joint = joints[wrong.front()];
@@ -112,7 +112,7 @@ inline bool report_absurd(const UsedJoint& joint, std::span<const Sample> sample
   return true;
 }
 
-/// Reports positions outside the limits: far (doubt), a little or by a turn (warning).
+/// Reports positions outside the limits: far (doubt), slightly or by a turn (warning).
 inline void report_outside(const UsedJoint& joint, std::span<const Sample> samples,
                            Diagnostics& diagnostics) {
   if (!joint.limits) return;

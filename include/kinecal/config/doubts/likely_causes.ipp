@@ -18,13 +18,13 @@ namespace kinecal {
 
 namespace detail {
 
-/// A mistake explains a bad fit if the cost is this part of it without.
+/// A mistake explains a bad fit if undoing it leaves this fraction of the cost.
 inline constexpr double kExplains = 0.1;
-/// A factor of points is wrong, also of a fit that is not bad, if the noise is half of it without.
+/// A scale of points is wrong, even if the fit is not bad, if correcting it halves the noise.
 inline constexpr double kExplainsScale = 0.25;
 
-/// The factor of a model's points with which the samples fit best: a board whose squares are larger than
-/// was said.  Parabolas through three costs, over the logarithm of the factor.
+/// The scale of a model's points that fits best: a board with larger squares than configured.  Fits
+/// parabolas through three costs, over the logarithm of the scale.
 [[nodiscard]] inline std::optional<Cause> scale_cause(const CauseSolver& solver,
                                                       const std::vector<Sample>& samples,
                                                       const std::string& model,
@@ -58,7 +58,7 @@ inline constexpr double kExplainsScale = 0.25;
       at_best = *next;
     }
     if (i == 0 && std::abs(move) < most && at_best.cost > 2.0 * explains * now.cost) {
-      return std::nullopt;  // the parabola fits well enough to see that nothing is to be gained
+      return std::nullopt;  // the parabola shows well enough that nothing can be gained
     }
     step = std::min(step, std::max(0.1 * step, std::abs(move)));
   }
@@ -69,7 +69,7 @@ inline constexpr double kExplainsScale = 0.25;
                                          std::exp(best), fall_of(now, at_best))};
 }
 
-/// The models whose points fit better with a factor.
+/// The models whose points fit better at another scale.
 [[nodiscard]] inline std::vector<Cause> scale_causes(const CauseSolver& solver,
                                                      const std::vector<Sample>& samples,
                                                      const SolvedSamples& now, double explains) {
@@ -83,8 +83,8 @@ inline constexpr double kExplainsScale = 0.25;
   return found;
 }
 
-/// The sentences, the lowest costs first; alike costs in the order of the hypotheses.  What only
-/// explains a part beside a better one is left out, and so is what does the same to the samples.
+/// The sentences, lowest cost first; equal costs in the order of the hypotheses.  Drops causes that
+/// only explain a part of a better one, or that change the samples in the same way.
 [[nodiscard]] inline std::vector<std::string> sentences(std::vector<Cause> found) {
   constexpr double kAlike = 1.5, kPartly = 100.0;
   double best = HUGE_VAL;

@@ -1,4 +1,4 @@
-// How often something occurs, and where it does first: a finding stands once, not once per sample.
+// Counts occurrences and keeps the first: a finding is reported once, not once per sample.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace kinecal::detail {
 
-/// Where a sample stands, for Diagnostics; "sample 3" if it was not read from a file.
+/// The source location of a sample; "sample 3" if it was not read from a file.
 /// @param index  of the sample, from 0
 [[nodiscard]] inline SourceLocation place_of(std::span<const Sample> samples, std::size_t index) {
   const std::string& source = samples[index].source;
@@ -28,13 +28,13 @@ namespace kinecal::detail {
   return unit == "1" ? fmt::format("{:.3g}", value) : fmt::format("{:.3g} {}", value, unit);
 }
 
-/// What occurs in some samples.
+/// Samples in which something occurs.
 struct Occurrences {
   std::size_t count = 0;  ///< number of samples
   std::size_t first = 0;  ///< index of the first one
 
   /// Counts a sample.
-  /// @returns  true if it is the first one so far
+  /// @returns  true if it is the first one
   bool add(std::size_t sample) {
     const bool is_first = count == 0 || sample < first;
     if (is_first) first = sample;

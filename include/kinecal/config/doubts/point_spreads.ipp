@@ -1,5 +1,5 @@
-// How points spread about their center: a sensor that does not move against the arm that it measures.
-// About the median and without the farthest tenth, so that a few points far away do not decide.
+// Compares how points spread about their center: those of a fixed sensor, and those of the arm.
+// Uses the median and drops the farthest tenth, so that a few distant points do not decide.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -44,7 +44,7 @@ KINECAL_INLINE double spread_of(std::span<const Vector3<double>> points) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, near)));
 }
 
-/// Keeps the points of the samples in which the other model has some, too.
+/// Keeps the points of samples in which the other model has points, too.
 [[nodiscard]] inline RecordedPoints together_with(const RecordedPoints& other,
                                                   const RecordedPoints& all) {
   RecordedPoints kept = all;
@@ -58,7 +58,7 @@ KINECAL_INLINE double spread_of(std::span<const Vector3<double>> points) {
   return kept;
 }
 
-/// The points of a moving model in the base, as the URDF has the robot.
+/// The points of a moving model in the base, for the robot of the URDF.
 [[nodiscard]] inline std::vector<Vector3<double>> points_in_base(const RecordedPoints& recorded,
                                                                  std::span<const Sample> samples) {
   std::vector<Vector3<double>> points;
@@ -74,7 +74,7 @@ KINECAL_INLINE double spread_of(std::span<const Vector3<double>> points) {
   return points;
 }
 
-/// The unit that explains a factor between lengths; empty if none does.
+/// The unit mistake that explains a factor between lengths; empty if none does.
 [[nodiscard]] inline std::string unit_of_factor(double factor) {
   struct Unit {
     double factor;
@@ -91,7 +91,7 @@ KINECAL_INLINE double spread_of(std::span<const Vector3<double>> points) {
   return {};
 }
 
-/// Error or doubt: the two spread differently.
+/// Error or doubt: the two spreads differ.
 /// @param fixed  of a sensor that does not move; @param arm  of one that moves
 inline void compare_spreads(const RecordedPoints& fixed, const RecordedPoints& arm,
                             std::span<const Sample> samples, double reach,
@@ -138,7 +138,7 @@ KINECAL_INLINE void check_spreads(const Config& config, const Robot& robot,
       if (of_block.size() != 2 || of_block[0]->moves == of_block[1]->moves) continue;
       const RecordedPoints* fixed = of_block[of_block[0]->moves ? 1 : 0];
       const RecordedPoints* arm = of_block[of_block[0]->moves ? 0 : 1];
-      // What a moving camera sees depends on where it is mounted, which may be unknown.
+      // The view of a moving camera depends on its mount, which may be unknown.
       if (!arm->model.type.starts_with("chain")) continue;
       if (!compared.insert({fixed, arm}).second || fixed->points.size() < 3) continue;
       compare_spreads(together_with(*arm, *fixed), together_with(*fixed, *arm), samples,

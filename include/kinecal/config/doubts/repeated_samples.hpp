@@ -1,4 +1,4 @@
-// Samples that are copies of others, and samples of one pose that contradict each other.
+// Finds samples that are copies of others, and samples of one pose that contradict each other.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,11 +11,11 @@
 
 namespace kinecal::detail {
 
-/// Error: all samples are the same one.  Doubt (warning if they are few): some are copies.  Doubt: at
-/// equal joint positions a sensor sees something else although the target is the same, so the robot
-/// was moving or the target slipped.
-/// @param joints  of used_joints(): the others do not matter
-/// @returns       number of samples that differ
+/// Error: all samples are the same.  Doubt (warning if few): some are copies.  Doubt: at equal
+/// joint positions a sensor sees something else although the target is the same, so the robot was
+/// moving or the target slipped.
+/// @param joints  from used_joints(): the others do not matter
+/// @returns       number of different samples
 std::size_t check_repeated_samples(const Config& config, std::span<const UsedJoint> joints,
                                    std::span<const Sample> samples, Diagnostics& diagnostics);
 

@@ -57,13 +57,13 @@ namespace kinecal::detail {
   return compared > 0 || (a.features.empty() && b.features.empty()) ? most : HUGE_VAL;
 }
 
-/// All that the sensors recorded in a sample, for comparison; in steps of 1e-6 of their units, so that
-/// a copy that was printed with fewer digits is one.
+/// All numbers recorded by the sensors in a sample, for comparison; rounded to 1e-6 of their units,
+/// so that a copy printed with fewer digits still counts.
 using RecordedNumbers = std::pair<std::vector<std::string>, std::vector<double>>;
 
 [[nodiscard]] inline RecordedNumbers recorded_in(const Sample& sample) {
   RecordedNumbers all;
-  const auto add = [&](double number) {  // what is not a number must be comparable, too
+  const auto add = [&](double number) {  // NaN must be comparable, too
     all.second.push_back(std::isnan(number) ? HUGE_VAL : std::round(1e6 * number));
   };
   for (const Observation& seen : sample.observations) {
@@ -100,12 +100,12 @@ using RecordedNumbers = std::pair<std::vector<std::string>, std::vector<double>>
   return same > 0 ? changed : nullptr;
 }
 
-/// What is repeated in all samples.
+/// Repetitions in all samples.
 struct Repetitions {
   Occurrences copies, contradictions;
-  std::size_t copied = 0;  ///< the sample of which copies.first is a copy
+  std::size_t copied = 0;  ///< the original of copies.first
   std::size_t before = 0;  ///< the sample that contradictions.first contradicts
-  std::string sensor;      ///< that sees something else
+  std::string sensor;      ///< the sensor that sees something else
 };
 
 /// Adds the samples of one pose.

@@ -45,13 +45,13 @@ KINECAL_INLINE void add_rising(const std::map<std::string, double>& rising,
 
 namespace detail {
 
-/// How well samples fit: the cost, and the mean residual of the first error block.
+/// The quality of a fit: the cost, and the mean residual of the first error block.
 struct FitOfSamples {
   double cost = 0.0, mean = 0.0;
   std::string unit;
 };
 
-/// The fit of the first step with the offsets of these joints held: free, they would take up any
+/// The fit of the first step with the offsets of these joints held: free offsets would absorb the
 /// difference between the two assumptions.
 [[nodiscard]] inline std::optional<FitOfSamples> fit_with_held_offsets(
     const Config& config, const Robot& robot, std::span<const Sample> samples,
@@ -83,7 +83,7 @@ struct FitOfSamples {
   return std::isfinite(fit.cost) ? std::optional(fit) : std::nullopt;
 }
 
-/// Doubt: the samples fit better by the other assumption.
+/// Doubt: the samples fit better under the other assumption.
 inline void doubt_assumption(const Config& config, const Robot& robot,
                              const std::map<std::string, double>& rising,
                              const SourceLocation& place, std::span<const Sample> samples,

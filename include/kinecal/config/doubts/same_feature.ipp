@@ -1,4 +1,4 @@
-// The same feature in another observation.
+// Finds the same feature in another observation.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace kinecal::detail {
 
-/// The feature of an observation that has the same id, or without an id the same place; nullptr if
-/// there is none.
+/// The feature of an observation with the same id or, without ids, the same place; nullptr if there
+/// is none.
 [[nodiscard]] inline const Feature* same_feature(const Observation& in, const Feature& feature,
                                                  std::size_t place) {
   if (!feature.id) return place < in.features.size() ? &in.features[place] : nullptr;

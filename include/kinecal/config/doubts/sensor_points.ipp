@@ -17,7 +17,7 @@
 
 namespace kinecal::detail {
 
-/// Adds what the model saw in one sample.
+/// Adds the model's points in one sample.
 /// @param first  the observation of the first sample with one
 inline void add_points(RecordedPoints& all, const Observation& seen, std::size_t sample,
                        const Observation& first) {
@@ -73,12 +73,12 @@ KINECAL_INLINE double reach_of(const Robot& robot, const RuntimeChain& chain) {
     const auto& limits = robot.joint(joint.name).limits;
     if (!limits) continue;
     const double travel = std::max(std::abs(limits->lower), std::abs(limits->upper));
-    if (travel < 100.0) reach += travel;  // more stands for no limit
+    if (travel < 100.0) reach += travel;  // larger values stand for no limit
   }
   return reach;
 }
 
-/// Error: coordinates that cannot be meant.
+/// Error: absurd coordinates.
 /// @returns  true if there are any
 inline bool report_absurd_points(const RecordedPoints& recorded, std::span<const Sample> samples,
                                  Diagnostics& diagnostics) {
@@ -101,8 +101,8 @@ inline bool report_absurd_points(const RecordedPoints& recorded, std::span<const
   return true;
 }
 
-/// How large the recorded points are: their distance from a sensor that moves, their extent for one
-/// that does not, for a tracker may stand far away.
+/// Size of the recorded points: their distance from a moving sensor, their extent for a fixed one,
+/// because a tracker may stand far away.
 [[nodiscard]] inline double size_of(const RecordedPoints& recorded) {
   std::vector<double> sizes;
   Vector3<double> center = Vector3<double>::Zero();
@@ -116,7 +116,7 @@ inline bool report_absurd_points(const RecordedPoints& recorded, std::span<const
   return *at;  // half of the points are as large
 }
 
-/// Error or doubt: points further away than the robot is large.
+/// Error or doubt: points further away than the robot's size.
 inline void check_distances(const RecordedPoints& recorded, double reach,
                             std::span<const Sample> samples, Diagnostics& diagnostics) {
   const double size = size_of(recorded), scale = reach + 0.5;  // metres: the smallest robots, too

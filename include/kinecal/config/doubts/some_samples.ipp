@@ -1,4 +1,4 @@
-// Every n-th sample, where all of them would take too long.
+// Every n-th sample, if all of them would take too long.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

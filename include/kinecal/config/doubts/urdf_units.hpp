@@ -1,4 +1,4 @@
-// Lengths and angles of a URDF: millimetres, degrees.
+// Checks lengths and angles of a URDF: millimetres, degrees.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,9 +11,9 @@
 
 namespace kinecal::detail {
 
-/// Error: origins between the base link and a model in millimetres, kilometres or degrees.  Doubt: a
-/// single one of them; limits in degrees.  Warning: a lower limit above the upper one.
-/// @param text               the URDF, as parse_urdf() took it
+/// Error: origins between the base link and a model in millimetres, kilometres or degrees.  Doubt:
+/// only one of them; limits in degrees.  Warning: a lower limit above the upper one.
+/// @param text               the URDF, as given to parse_urdf()
 /// @param name_for_messages  its file
 void check_urdf_units(const Config& config, const Robot& robot, const std::string& text,
                       const std::string& name_for_messages, Diagnostics& diagnostics);

@@ -32,7 +32,7 @@ struct SuspectNumber {
   return fmt::format(" (and {} more like it)", count - 1);
 }
 
-/// Origins that are long: millimetres.  Error if they are several or very long, doubt otherwise.
+/// Long origins: millimetres.  Error if there are several or a very long one, else doubt.
 inline void check_lengths(const UrdfText& source, const std::vector<const Joint*>& joints,
                           Diagnostics& diagnostics) {
   constexpr double kLong = 20.0, kVeryLong = 100.0, kTiny = 0.005;  // metres
@@ -96,7 +96,7 @@ inline void check_angles(const UrdfText& source, const std::vector<const Joint*>
   }
 }
 
-/// Limits such as ±180 of joints that turn: degrees.  1e2, 1e3, … stand for no limit.
+/// Limits such as ±180 of rotating joints: degrees.  1e2, 1e3, … stand for no limit.
 inline void check_limits(const UrdfText& source, const std::vector<const Joint*>& joints,
                          Diagnostics& diagnostics) {
   std::vector<SuspectNumber> large;
@@ -120,7 +120,7 @@ inline void check_limits(const UrdfText& source, const std::vector<const Joint*>
           large[0].joint, large[0].value, more_joints(large.size())));
 }
 
-/// Limits the wrong way round are limits of nothing.
+/// Reversed limits.
 inline void check_order_of_limits(const UrdfText& source, const std::vector<const Joint*>& joints,
                                   Diagnostics& diagnostics) {
   for (const Joint* joint : joints) {

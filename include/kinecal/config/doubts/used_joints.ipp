@@ -14,8 +14,8 @@
 
 namespace kinecal::detail {
 
-/// The limits of a joint if they bound anything.  Many URDFs have 0 and 0, or 1e16, where a limit is
-/// not known.
+/// The limits of a joint if they bound anything.  Many URDFs have 0 and 0, or 1e16, for unknown
+/// limits.
 [[nodiscard]] inline std::optional<JointLimits> useful_limits(const Joint& joint) {
   constexpr double kMostTurns = 4 * 2 * std::numbers::pi, kMostTravel = 100.0;
   if (!joint.limits || !(joint.limits->lower < joint.limits->upper)) return std::nullopt;

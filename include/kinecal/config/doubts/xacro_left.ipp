@@ -13,7 +13,7 @@
 
 namespace kinecal::detail {
 
-/// A name as one word of a shell's command.
+/// A name quoted as one word for a shell.
 [[nodiscard]] inline std::string shell_word(const std::string& name) {
   constexpr std::string_view kPlain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:@%+-";
@@ -31,7 +31,7 @@ KINECAL_INLINE std::string xacro_command(const std::string& file) {
                      shell_word(stem.string() + "_expanded.urdf"));
 }
 
-/// Error: what may hold a part of the robot.
+/// Error: remnants that may hold a part of the robot.
 inline void report_missing(const UrdfText& source, const std::vector<XacroRemnant>& remnants,
                            Diagnostics& diagnostics) {
   const auto missing = [](const XacroRemnant& remnant) { return !remnant.is_inert; };
@@ -51,10 +51,10 @@ inline void report_missing(const UrdfText& source, const std::vector<XacroRemnan
                                        : ""));
 }
 
-/// Warning: what nothing depends on.
+/// Warning: remnants that nothing depends on.
 inline void report_inert(const UrdfText& source, const std::vector<XacroRemnant>& remnants,
                          Diagnostics& diagnostics) {
-  constexpr std::size_t kMost = 5;  // that are named
+  constexpr std::size_t kMost = 5;  // number to list
   std::vector<XacroRemnant> inert;
   std::copy_if(remnants.begin(), remnants.end(), std::back_inserter(inert),
                [](const XacroRemnant& remnant) { return remnant.is_inert; });

@@ -1,4 +1,4 @@
-// Names of topics and types, from ROS 2 to ROS 1 and back.
+// Converts names of topics and types between ROS 1 and ROS 2.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

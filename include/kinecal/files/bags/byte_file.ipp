@@ -1,4 +1,4 @@
-// A seekable, untrusted stream that is read piece by piece.
+// A seekable, untrusted stream, read piece by piece.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace kinecal::detail {
 
-/// Something begins in the file and ends beyond it.
+/// An item begins in the file but ends beyond it.
 struct CutOffError : BytesError {
   using BytesError::BytesError;
 };
@@ -44,8 +44,8 @@ class ByteFile {
     in_.seekg(0);
   }
 
-  /// Reports the place after each megabyte.
-  /// @param what  is being done
+  /// Reports progress after each megabyte.
+  /// @param what  the current activity
   void show_progress(const ProgressMeter& meter, std::string what) {
     meter_ = meter;
     what_ = std::move(what);
@@ -57,7 +57,7 @@ class ByteFile {
 
   /// The next `count` bytes.
   /// @param buffer  holds them; it never shrinks
-  /// @throws CutOffError  if there are fewer; then nothing is read
+  /// @throws CutOffError  if there are fewer; then reads nothing
   [[nodiscard]] Bytes read(std::uint64_t count, std::vector<std::byte>& buffer) {
     if (count > left()) fail_short_of(count);
     if (buffer.size() < count) buffer.resize(count);
@@ -65,7 +65,7 @@ class ByteFile {
     return Bytes(buffer).first(count);
   }
 
-  /// @throws CutOffError  if there are fewer bytes; then nothing is read
+  /// @throws CutOffError  if there are fewer bytes; then reads nothing
   void read(std::span<std::byte> bytes) {
     if (bytes.size() > left()) fail_short_of(bytes.size());
     const auto wanted = static_cast<std::streamsize>(bytes.size());
@@ -88,7 +88,7 @@ class ByteFile {
 
   /// @param place  not beyond the end
   void go_to(std::uint64_t place) {
-    // A seek throws away what the stream has read ahead.
+    // A seek discards the stream's read-ahead.
     constexpr std::uint64_t kNear = 4096;
     if (place >= place_ && place - place_ <= kNear) {
       in_.ignore(static_cast<std::streamsize>(place - place_));

@@ -1,4 +1,4 @@
-// Untrusted bytes: numbers and texts are read from them within bounds, or not at all.
+// Untrusted bytes: numbers and texts are read within bounds, or not at all.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,26 +16,26 @@
 
 namespace kinecal {
 
-/// Bytes that somebody else owns.
+/// Bytes owned by someone else.
 using Bytes = std::span<const std::byte>;
 
 namespace detail {
 
-/// Bytes that are not what they should be: "byte 1234: what is wrong".
+/// Unexpected bytes: "byte 1234: what is wrong".
 struct BytesError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads from the front of bytes.  It never reads beyond their end: it throws instead.
+/// Reads from the front of bytes.  Throws instead of reading beyond their end.
 class ByteReader {
  public:
-  /// @param start  what messages call the first byte: its place in the file
+  /// @param start  position of the first byte in its file, for messages
   explicit ByteReader(Bytes bytes, std::endian order = std::endian::little, std::uint64_t start = 0)
       : bytes_(bytes), order_(order), start_(start) {}
 
   [[nodiscard]] std::size_t read() const { return read_; }                  ///< bytes so far
   [[nodiscard]] std::size_t left() const { return bytes_.size() - read_; }  ///< bytes to come
-  [[nodiscard]] bool at_end() const { return left() == 0; }  ///< whether everything was read
+  [[nodiscard]] bool at_end() const { return left() == 0; }  ///< true if everything was read
   [[nodiscard]] std::uint64_t place() const { return start_ + read_; }  ///< of the next byte
 
   /// The next number, in the byte order of the reader.
@@ -93,7 +93,7 @@ void append_number(std::string& bytes, T number) {
   bytes.append(raw.data(), raw.size());
 }
 
-/// "byte 1234: ", as messages about bytes begin.
+/// "byte 1234: ", the beginning of messages about bytes.
 [[nodiscard]] std::string at_byte(std::uint64_t place);
 
 /// "1 byte", "2 bytes".

@@ -1,4 +1,4 @@
-// What messages say about bytes.
+// Messages about bytes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

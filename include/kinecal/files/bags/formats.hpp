@@ -1,4 +1,4 @@
-// How the files of bags begin: that identifies their format, whatever their names.
+// Bag formats, identified by the first bytes of a file, whatever its name.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,24 +9,24 @@
 
 namespace kinecal::detail {
 
-/// An MCAP file begins and ends with these bytes.
+/// First and last bytes of an MCAP file.
 inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
-/// A database of SQLite begins with these bytes.
+/// First bytes of an SQLite database.
 inline constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
-/// One little-endian frame of zstd.
+/// First bytes of a zstd frame, little-endian.
 inline constexpr std::string_view kZstdMagic{"\x28\xB5\x2F\xFD", 4};
 
 [[nodiscard]] inline bool begins_with(Bytes bytes, std::string_view magic) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
-/// Whether a file is MCAP.
-/// @param first  its first bytes, at least 16 if it has as many
+/// True if a file is MCAP.
+/// @param first  its first bytes, at least 16 unless it has fewer
 [[nodiscard]] inline bool is_mcap(Bytes first) {
   return begins_with(first, kMcapMagic);
 }
-/// Whether a file is a database of SQLite, such as a .db3 bag.
-/// @param first  its first bytes, at least 16 if it has as many
+/// True if a file is an SQLite database, such as a .db3 bag.
+/// @param first  its first bytes, at least 16 unless it has fewer
 [[nodiscard]] inline bool is_sqlite(Bytes first) {
   return begins_with(first, kSqliteMagic);
 }

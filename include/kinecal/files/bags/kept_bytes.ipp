@@ -1,4 +1,4 @@
-// Bounds what is kept of a bag while it is read: its topics and their definitions.
+// Limits the memory kept while a bag is read: topics and their definitions.
 //
 // A few compressed bytes may hold a million connections, or a definition of a gigabyte.
 // SPDX-License-Identifier: Apache-2.0
@@ -15,9 +15,9 @@ class KeptBytes {
  public:
   static constexpr std::uint64_t kMost = std::uint64_t{1} << 26;  ///< 6000 long definitions
 
-  /// Call it before keeping something.
+  /// Call it before keeping a topic or definition.
   /// @param bytes  of its texts
-  /// @throws BytesError  if that is more than any bag has
+  /// @throws BytesError  if that is more than any real bag has
   void add(std::uint64_t bytes) {
     constexpr std::uint64_t kEach = 128;  // of memory, besides the texts
     if (bytes > kMost || (kept_ += kEach + bytes) > kMost) {

@@ -1,4 +1,4 @@
-// Parts of camera files in every format: matrices, sizes, checks and defaults.
+// Common parts of camera file formats: matrices, sizes, checks and defaults.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace kinecal::detail {
 
-/// Keys of the same meaning.
+/// Keys with the same meaning.
 using CameraKeys = std::vector<std::string>;
 
 /// The entry of one of several keys, or nullptr; two of them are an error.
@@ -40,8 +40,8 @@ using CameraKeys = std::vector<std::string>;
   return fmt::format("{} has {} number{}", key, count, count == 1 ? "" : "s");
 }
 
-/// Finite numbers: a list, or the `data` of a matrix {rows, cols, data}; nothing, and an error, for
-/// anything else.
+/// Finite numbers: a list, or the `data` of a matrix {rows, cols, data}; anything else is an error
+/// and gives nullopt.
 [[nodiscard]] inline std::optional<std::vector<double>> camera_numbers(const ConfigMap& map,
                                                                        const ConfigEntry& entry) {
   const YamlNode* list = entry.value.is_map() ? entry.value.find("data") : &entry.value;
@@ -71,7 +71,7 @@ using CameraKeys = std::vector<std::string>;
 }
 
 /// A matrix of N numbers; an error if it has another size.
-/// @return  whether it is in the file
+/// @return  true if it is in the file
 template <std::size_t N>
 bool read_camera_matrix(ConfigMap& map, const CameraKeys& keys, std::array<double, N>& matrix) {
   const ConfigEntry* entry = find_camera_key(map, keys);
@@ -92,8 +92,7 @@ bool read_camera_matrix(ConfigMap& map, const CameraKeys& keys, std::array<doubl
   return entry == nullptr ? 0 : map.count(entry->key, 0);
 }
 
-/// R = 1 and P = [K 0] for files without them: pixels of an image that was rectified to the
-/// camera's own matrix.
+/// Defaults R = 1 and P = [K 0]: pixels of an image rectified to the camera's own matrix.
 inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const SourceLocation& place,
                             Diagnostics& diagnostics) {
   const auto& k = camera.k;
@@ -108,8 +107,8 @@ inline void complete_camera(CameraInfo& camera, bool has_r, bool has_p, const So
       "be of images that were rectified to it");
 }
 
-/// Reports values that a pinhole camera cannot have.  One of K and P may be all zero.
-/// @param k_line  of K, from 1; 0 if it is unknown
+/// Reports values impossible for a pinhole camera.  One of K and P may be all zero.
+/// @param k_line  of K, from 1; 0 if unknown
 inline void check_camera(const CameraInfo& camera, const SourceLocation& place,
                          Diagnostics& diagnostics, int k_line = 0) {
   const SourceLocation k_place{place.file, k_line > 0 ? k_line : place.line};

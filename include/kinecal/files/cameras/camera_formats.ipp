@@ -29,7 +29,7 @@
 
 namespace kinecal::detail {
 
-/// Warns of a camera_info that is of a part of the image.
+/// Warns if a camera_info describes only a part of the image.
 inline void doubt_image_part(ConfigMap& file, const CameraInfo& camera) {
   ImagePart part{file.number("binning_x", 0.0), file.number("binning_y", 0.0)};
   if (const ConfigEntry* entry = file.find("roi"); entry != nullptr && entry->value.is_map()) {
@@ -41,7 +41,7 @@ inline void doubt_image_part(ConfigMap& file, const CameraInfo& camera) {
   if (!doubt.empty()) file.diagnostics().warning(file.place(), doubt);
 }
 
-/// Warns of a camera without distortion; refuses one that has it under another key.
+/// Warns of a camera without distortion; rejects one with the distortion under another key.
 /// @param known  keys that were read
 inline void doubt_no_distortion(ConfigMap& file, const CameraKeys& known,
                                 const std::string& intended, bool any_name) {
@@ -79,12 +79,12 @@ inline void doubt_no_distortion(ConfigMap& file, const CameraKeys& known,
   return camera;
 }
 
-/// True for a camera of Kalibr's camchain: a map with its model.
+/// True for a camera of Kalibr's camchain: a map with a camera model.
 [[nodiscard]] inline bool is_kalibr_camera(const ConfigEntry& entry) {
   return entry.value.find("camera_model") != nullptr;
 }
 
-/// `count` numbers; zeros, and an error, if they are missing or fewer or more.
+/// `count` numbers; zeros, and an error, if they are missing or their number differs.
 [[nodiscard]] inline std::vector<double> kalibr_numbers(ConfigMap& camera, const std::string& key,
                                                         std::size_t count) {
   const ConfigEntry* entry = camera.find(key);
@@ -101,7 +101,7 @@ inline void doubt_no_distortion(ConfigMap& file, const CameraKeys& known,
   return *numbers;
 }
 
-/// Reports any model but the expected one.
+/// Reports any other than the expected model.
 inline void expect_kalibr_model(ConfigMap& camera, const std::string& key,
                                 const std::string& expected) {
   const auto model = camera.required_text(key);

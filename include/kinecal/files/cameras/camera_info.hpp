@@ -9,7 +9,7 @@
 
 namespace kinecal {
 
-/// True for the message that ROS sends for a sensor that is not a camera: all of it is zero.
+/// True for an all-zero message, which ROS sends for a sensor that is not a camera.
 [[nodiscard]] bool is_blank(const CameraInfo& camera);
 
 /// The camera_info file of a camera, all numbers with full precision.
@@ -17,7 +17,7 @@ namespace kinecal {
 [[nodiscard]] std::string to_camera_info_yaml(const CameraInfo& camera,
                                               const std::string& camera_name);
 
-/// The same as ROS 2 prints the message: sensor_msgs/CameraInfo without its header.
+/// The same in the format of a ROS 2 message: sensor_msgs/CameraInfo without its header.
 [[nodiscard]] std::string to_camera_message_yaml(const CameraInfo& camera);
 
 }  // namespace kinecal

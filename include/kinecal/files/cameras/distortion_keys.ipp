@@ -1,8 +1,8 @@
-// The keys under which people keep a lens distortion.
+// Keys that people use for a lens distortion.
 //
-// OpenCV's own samples call it distortion_coefficients, tutorials dist_coeffs, distCoeff, distortion,
-// D and so on.  A matrix that looks like a distortion under a key that is none of these must not get
-// lost: without it a calibration with raw images is off by all of the distortion.
+// OpenCV's own samples call it distortion_coefficients, tutorials dist_coeffs, distCoeff,
+// distortion, D and so on.  A matrix that looks like a distortion under any other key must not be
+// ignored silently:  the calibration of raw images would be wrong by all of the distortion.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -27,8 +27,8 @@ namespace kinecal::detail {
   return plain;
 }
 
-/// True for a well-known key of a distortion: "D", or "distortion" and its short forms with or without
-/// "camera" or "lens" before it and "coefficients" or the like after it.
+/// True for a well-known key of a distortion: "D", or "distortion" and its short forms with or
+/// without "camera" or "lens" before it and "coefficients" or the like after it.
 [[nodiscard]] inline bool is_distortion_key(const std::string& key) {
   const std::string plain = plain_key(key);
   if (plain == "d") return true;
@@ -73,7 +73,7 @@ namespace kinecal::detail {
   return named && number && *number != 0.0;
 }
 
-/// True for a key of which distortions are meant, whatever its spelling: "distorsion", "kc", "radial".
+/// True for a key that sounds like a distortion: "distorsion", "kc", "radial".
 [[nodiscard]] inline bool sounds_like_distortion(const std::string& key) {
   const std::string plain = plain_key(key);
   if (plain.find("distan") != std::string::npos || plain.starts_with("undist")) return false;
@@ -84,7 +84,7 @@ namespace kinecal::detail {
   return plain == "kc" || nearest_name(key, known).has_value();
 }
 
-/// True for numbers that could be those of a distortion: 4, 5, 8, 12 or 14, not all of them integers.
+/// True for numbers that could be a distortion: 4, 5, 8, 12 or 14, not all integers.
 [[nodiscard]] inline bool could_be_distortion(const std::vector<double>& numbers) {
   constexpr std::array<std::size_t, 5> kSizes = {4, 5, 8, 12, 14};
   return std::find(kSizes.begin(), kSizes.end(), numbers.size()) != kSizes.end() &&
@@ -92,7 +92,7 @@ namespace kinecal::detail {
                      [](double v) { return v != std::floor(v) && std::abs(v) < 1e3; });
 }
 
-/// True for keys of other numbers that OpenCV's programs write: errors of views, poses, quaternions.
+/// True for keys of other numbers that OpenCV's programs write: view errors, poses, quaternions.
 [[nodiscard]] inline bool is_of_something_else(const std::string& key) {
   const std::string plain = plain_key(key);
   for (const char* word :
@@ -103,11 +103,11 @@ namespace kinecal::detail {
   return false;
 }
 
-/// Where a distortion is missing: an error for each entry that could be it.
+/// If there is no distortion: an error for each entry that could be one.
 /// @param known     keys that were read, in any spelling
 /// @param intended  the key of the distortion in this format
-/// @param any_name  whether a matrix of the right size counts whatever its key
-/// @returns         whether there is such an entry
+/// @param any_name  a matrix of the right size counts under any key
+/// @returns         true if there is such an entry
 inline bool refuse_lost_distortion(ConfigMap& file, const std::vector<std::string>& known,
                                    const std::string& intended, bool any_name) {
   bool found = false;
@@ -118,7 +118,7 @@ inline bool refuse_lost_distortion(ConfigMap& file, const std::vector<std::strin
     const bool fits = any_name && could_be_distortion(numbers) && !is_of_something_else(entry.key);
     if (!sounds && !fits && !is_coefficient(entry)) continue;
     found = true;
-    (void)file.use(entry.key);  // reported here
+    (void)file.use(entry.key);  // reported below
     file.error(entry.place,
                "unknown key '" + entry.key +
                    "': is it the distortion of the lens, which would be lost?  Then " +

@@ -1,7 +1,7 @@
-// The part of the full image that a camera delivers: binning and region of interest of camera_info.
+// Binning and region of interest in camera_info: the camera delivers only a part of the full image.
 //
-// K and P of a CameraInfo belong to the full image.  Kinecal takes pixels as they are: those of a
-// binned or cut image do not fit K.
+// K and P of a CameraInfo belong to the full image, but kinecal uses pixels as they are: those of a
+// binned or cropped image do not match K.
 // Source: sensor_msgs/CameraInfo, binning_x and roi.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -27,7 +27,7 @@ struct ImagePart {
   }
 };
 
-/// The warning about a camera whose image is not the full one; empty if it is.
+/// The warning about a camera with a partial image; empty if the image is full.
 [[nodiscard]] inline std::string doubt_image_part(const ImagePart& part, const CameraInfo& camera) {
   std::string what;
   if (part.is_binned()) what = fmt::format("binning {} x {}", part.binning_x, part.binning_y);

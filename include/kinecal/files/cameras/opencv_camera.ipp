@@ -13,7 +13,7 @@
 
 namespace kinecal::detail {
 
-/// The text without OpenCV's first line %YAML:1.0, which is not YAML; lines keep their numbers.
+/// The text without OpenCV's first line %YAML:1.0, which is not YAML; keeps line numbers.
 [[nodiscard]] inline std::string without_opencv_header(std::string text) {
   const std::size_t begin = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
   const std::string_view line = std::string_view(text).substr(begin);
@@ -37,7 +37,7 @@ namespace kinecal::detail {
   return keys;
 }
 
-/// All keys of a file that are well known for a distortion and have numbers.
+/// All keys of a file that are well-known for a distortion and have numbers.
 [[nodiscard]] inline CameraKeys opencv_distortion_keys(const ConfigMap& file) {
   CameraKeys keys;
   for (const ConfigEntry& entry : file.entries()) {

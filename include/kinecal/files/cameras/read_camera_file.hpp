@@ -1,5 +1,5 @@
-// Intrinsics of a camera from a file: a camera_info file or message, Kalibr's camchain, OpenCV's
-// FileStorage.  The content shows which format it is.
+// Reads camera intrinsics from a file: a camera_info file or message, Kalibr's camchain, OpenCV's
+// FileStorage.  The content identifies the format.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,14 +14,14 @@ namespace kinecal {
 /// Reads a camera.
 /// @param path         a YAML file
 /// @param diagnostics  receives errors and warnings, each with "file:line: "
-/// @param which        of several cameras in one file: cam1
+/// @param which        one of several cameras in a file: cam1
 /// @return             incomplete if there are errors; z_offset 0 and z_scaling 1
 /// @throws InputError  if the file cannot be read or is not YAML
 [[nodiscard]] CameraInfo read_camera_file(const std::string& path, Diagnostics& diagnostics,
                                           const std::string& which = {});
 
 /// Reads a camera from "file.yaml" or "file.yaml:cam1".  If a file has the whole argument as its
-/// name, colons included, that file is read.
+/// name, colons included, reads that file.
 [[nodiscard]] CameraInfo read_camera_argument(const std::string& argument,
                                               Diagnostics& diagnostics);
 

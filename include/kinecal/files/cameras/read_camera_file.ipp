@@ -38,7 +38,7 @@ namespace detail {
   return camera ? read_kalibr_camera(*camera) : CameraInfo{};
 }
 
-/// The map of a camera file; of several messages the first.
+/// The map of a camera file; of several messages, the first.
 [[nodiscard]] inline YamlNode camera_document(const std::string& path) {
   for (YamlNode& document : parse_yaml(without_opencv_header(read_yaml_text(path)), path)) {
     if (document.is_map()) return std::move(document);

@@ -1,4 +1,4 @@
-// A camera for samples that were recorded without one.
+// Assigns a camera to samples recorded without one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace kinecal {
 
-/// Gives a camera to those observations of a sensor that were recorded without one.
+/// Assigns a camera to the observations of a sensor recorded without one.
 /// @param argument     "NAME=FILE", or "NAME=FILE:cam1" for a file with several cameras
 /// @param diagnostics  receives an error if no sample has the sensor, and a warning if some
-///                     observations have a camera already
+///                     observations already have a camera
 /// @throws InputError  if the argument or the file cannot be read
 void set_camera(std::vector<Sample>& samples, const std::string& argument,
                 Diagnostics& diagnostics);

@@ -21,11 +21,11 @@ namespace kinecal::detail {
 /// A table whose columns are found by name or number.
 class CsvColumns {
  public:
-  /// @param header  names of the columns; empty if the table does not have them
+  /// @param header  names of the columns; empty if the table has none
   CsvColumns(std::vector<std::string> header, std::size_t columns, Diagnostics& diagnostics)
       : header_(std::move(header)), columns_(columns), diagnostics_(diagnostics) {}
 
-  /// The index of a column, from 0; nothing, and an error, if there is no such column.
+  /// The index of a column, from 0; an error and nullopt if there is no such column.
   [[nodiscard]] std::optional<std::size_t> find(const CsvColumn& column) {
     const auto same = std::find(header_.begin(), header_.end(), column.name);
     if (same != header_.end()) {
@@ -65,7 +65,7 @@ class CsvColumns {
 };
 
 /// The number in a cell, NaN if it is missing.
-/// @return  nothing if the cell contains something else
+/// @return  nullopt if the cell contains anything else
 [[nodiscard]] inline std::optional<double> csv_number(const std::string& cell) {
   for (const char* missing : {"", "-", "NA", "N/A", "n/a", "null", "NULL", "None"}) {
     if (cell == missing) return std::numeric_limits<double>::quiet_NaN();

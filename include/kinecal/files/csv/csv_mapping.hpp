@@ -1,4 +1,4 @@
-// The meaning of a table's columns: a small YAML file.
+// Assigns meaning to a table's columns, by a small YAML file.
 //
 //   separator: comma                # comma (default), semicolon, tab or space
 //   header: true                    # the first row contains the columns' names; default true
@@ -21,9 +21,9 @@
 //      ids: [4, 7]                  # of the points, pixels or constants: what pairs the sensors'
 //                                   #   features.  From columns: id_columns: [tag1, tag2]
 //
-// A column is given by its name or by its number from 1.  Each point becomes a feature.  A sensor may
-// occur several times, each time with another frame: its features follow one another.  If the frame
-// changes from row to row, frame_column: reflector takes the place of frame.
+// Give a column by its name or by its number from 1.  Each point becomes a feature.  A sensor may
+// occur several times with different frames: its features are appended.  If the frame changes from
+// row to row, use frame_column: reflector instead of frame.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -37,7 +37,7 @@
 
 namespace kinecal {
 
-/// A column as the user names it.
+/// A column as named by the user.
 struct CsvColumn {
   std::string name;      ///< as in the header, or its number from 1
   SourceLocation place;  ///< where the mapping names it
@@ -86,7 +86,7 @@ struct CsvMapping {
   std::vector<CsvObservation> observations;  ///< of every sample
 };
 
-/// Reads the meaning of columns.  It collects all errors; with errors, the mapping is incomplete.
+/// Reads the meaning of columns.  Collects all errors; with errors, the mapping is incomplete.
 /// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
 [[nodiscard]] CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics);
 

@@ -1,4 +1,4 @@
-// What a mapping says of one sensor: columns of its points or pixels, frames, ids.
+// Reads one sensor of a mapping: columns of its points or pixels, frames, ids.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -126,7 +126,7 @@ inline void read_csv_ids(ConfigMap& map, CsvObservation& observation) {
   }
 }
 
-/// Reports a sensor that measures points in one entry and pixels in another.
+/// Reports a sensor with points in one entry and pixels in another.
 inline void check_csv_kinds(const ConfigMap& map, const CsvMapping& mapping,
                             const CsvObservation& observation) {
   const auto in_pixels = [](const CsvObservation& o) {

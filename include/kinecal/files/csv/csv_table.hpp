@@ -1,4 +1,4 @@
-// A table of text: rows of cells, each row with its line.
+// A table of text: rows of cells, each row with its line number.
 //
 // RFC 4180 and its variants: commas, semicolons, tabs or spaces between cells, "quoted" cells in
 // which "" is a quote, line ends of Unix, DOS and old Macs, a byte order mark, empty lines.

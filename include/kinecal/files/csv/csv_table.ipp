@@ -9,7 +9,7 @@
 
 namespace kinecal::detail {
 
-/// Cuts a text into rows.
+/// Splits a text into rows.
 class CsvReader {
  public:
   CsvReader(std::string_view text, char separator, std::string file, Diagnostics& diagnostics)
@@ -21,7 +21,7 @@ class CsvReader {
     std::vector<CsvRow> all;
     while (at_ < text_.size()) {
       CsvRow row = next_row();
-      // Spreadsheets write rows of separators at the end.
+      // Spreadsheets append rows of separators.
       const bool is_empty = std::all_of(row.cells.begin(), row.cells.end(),
                                         [](const std::string& cell) { return cell.empty(); });
       if (!is_empty) all.push_back(std::move(row));

@@ -1,8 +1,7 @@
-// Samples from a table: each row is a pose of the robot and its observations.
+// Reads samples from a table: each row is a pose of the robot and its observations.
 //
-// A feature with a missing value becomes NaN and gets no weight.  If its id is missing, too, it is left
-// out.  A row in which a joint's position
-// is missing is left out, with a warning.
+// A feature with a missing value becomes NaN and has no weight.  If its id is missing, too, it is
+// skipped.  A row without a joint's position is skipped, with a warning.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,7 +22,7 @@ namespace kinecal {
 [[nodiscard]] std::vector<Sample> csv_samples(std::string_view text, const CsvMapping& mapping,
                                               const std::string& file, Diagnostics& diagnostics);
 
-/// Reads samples from a table.  It collects all errors.
+/// Reads samples from a table.  Collects all errors.
 /// @param csv          the table
 /// @param mapping      the meaning of its columns: csv_mapping.hpp
 /// @param diagnostics  receives errors and warnings, each with "file:line: "

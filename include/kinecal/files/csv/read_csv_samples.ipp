@@ -23,7 +23,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Makes samples of rows.  After a few bad cells it only counts the others.
+/// Converts rows to samples.  After a few bad cells it only counts the rest.
 class CsvSamples {
  public:
   CsvSamples(const CsvMapping& mapping, CsvColumns columns, std::string file,
@@ -45,7 +45,7 @@ class CsvSamples {
     }
   }
 
-  /// The sample of a row; nothing, and a warning, if a joint's position is missing.
+  /// The sample of a row; a warning and nullopt if a joint's position is missing.
   [[nodiscard]] std::optional<Sample> sample(const CsvRow& row) {
     Sample sample;
     sample.source = SourceLocation{file_, row.line}.str();
@@ -89,7 +89,7 @@ class CsvSamples {
   using Indices = std::vector<std::pair<std::size_t, const CsvColumn*>>;
 
   /// Adds the features of one entry to the observation of its sensor.
-  /// @param next  index in points_ of its first number; advanced beyond its last one
+  /// @param next  index in points_ of its first number; advanced past its last one
   void add_features(const CsvRow& row, const CsvObservation& observation, const Indices& column,
                     const Indices& ids, std::size_t& next, Sample& sample) {
     const std::string frame = column.empty() ? observation.frame : text(row, column.front());
@@ -111,7 +111,8 @@ class CsvSamples {
     add_ids(row, observation.ids, ids, before, seen->features);
   }
 
-  /// Sets the ids of the features from `first` on.  One with neither point nor id was not seen.
+  /// Sets the ids of the features from `first` on.  A feature with neither point nor id was not
+  /// seen.
   void add_ids(const CsvRow& row, const std::vector<int>& ids, const Indices& columns,
                std::size_t first, std::vector<Feature>& features) {
     for (std::size_t i = 0; i < ids.size(); ++i) features[first + i].id = ids[i];
@@ -145,7 +146,7 @@ class CsvSamples {
     return indices;
   }
 
-  /// Warns once of a number so large that it is probably in another unit.
+  /// Warns once of a number so large that its unit is probably wrong.
   void doubt(const CsvRow& row, const std::string& what, double number, double most,
              const char* unit) {
     if (!(std::abs(number) > most) || !doubted_.insert(what).second) return;
@@ -198,7 +199,7 @@ class CsvSamples {
   std::set<std::string> doubted_;  ///< joints and sensors with a warning
 };
 
-/// Warns of a header that contains numbers only, unless it counts the columns.
+/// Warns of a header with only numbers, unless it counts the columns.
 inline void doubt_csv_header(const CsvRow& row, const std::string& file, Diagnostics& diagnostics) {
   bool counts = true;
   double before = std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,4 @@
-// JPEG images by libjpeg.
+// Decodes JPEG images with libjpeg.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@
 #ifdef KINECAL_HAVE_JPEG
 #include <csetjmp>
 #include <cstdio>
-// libjpeg's header needs FILE from before it.
+// libjpeg's header needs FILE declared before it.
 #include <jerror.h>
 #include <jpeglib.h>
 #endif
@@ -19,9 +19,9 @@
 namespace kinecal::detail {
 
 #ifdef KINECAL_HAVE_JPEG
-/// libjpeg's handler of errors, which by default ends the program.
+/// Replaces libjpeg's error handler, which exits the program.
 struct JpegErrors {
-  jpeg_error_mgr handler{};  ///< first, so that libjpeg's pointer to it is one to this
+  jpeg_error_mgr handler{};  ///< first, so that libjpeg's pointer to it also points to this
   std::jmp_buf back{};
   char reason[JMSG_LENGTH_MAX] = {};
 };
@@ -32,13 +32,13 @@ struct JpegErrors {
   std::longjmp(errors->back, 1);
 }
 
-/// What libjpeg reads on in spite of: an image that ends early or is damaged is an error here.
+/// Turns libjpeg's warnings into errors: an image that ends early or is damaged.
 inline void jpeg_warned(j_common_ptr jpeg, int level) {
   const int code = jpeg->err->msg_code;
   if (level < 0 && code != JWRN_EXTRANEOUS_DATA && code != JWRN_JFIF_MAJOR) jpeg_failed(jpeg);
 }
 
-/// A decoder, freed in any case.
+/// A decoder that always frees its memory.
 struct JpegDecoder {
   jpeg_decompress_struct jpeg{};
   JpegErrors errors;
@@ -52,7 +52,7 @@ struct JpegDecoder {
   JpegDecoder& operator=(const JpegDecoder&) = delete;
 };
 
-/// Reads the header.  No object is constructed where libjpeg may jump.
+/// Reads the header.  Constructs no objects where libjpeg may jump.
 /// @return  false, with the reason in the decoder, if it is damaged
 [[nodiscard]] inline bool begin_jpeg(JpegDecoder& decoder, std::string_view bytes) {
   if (setjmp(decoder.errors.back) != 0) return false;

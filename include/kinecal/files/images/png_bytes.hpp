@@ -1,4 +1,4 @@
-// Images as the bytes of PNG files, to write them together with other files.
+// Encodes images as the bytes of PNG files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,11 +15,11 @@ struct Rgb {
   std::uint8_t red = 0, green = 0, blue = 0;
 };
 
-/// A PNG file with 8 bits for each pixel.
+/// A PNG file with 8 bits per pixel.
 /// @throws std::invalid_argument  if the image is empty
 [[nodiscard]] std::string png_bytes(const GrayImage& image);
 
-/// A PNG file with 16 bits for each pixel, such as a depth image in millimetres.
+/// A PNG file with 16 bits per pixel, such as a depth image in millimetres.
 /// @throws std::invalid_argument  if the image is empty
 [[nodiscard]] std::string png_bytes(const Image<std::uint16_t>& image);
 

@@ -12,7 +12,7 @@
 
 namespace kinecal::detail {
 
-/// The lowest bytes of a number, the highest of them first.
+/// The lowest bytes of a number, most significant first.
 inline void append_big_endian(std::string& out, std::uint32_t number, int bytes) {
   for (int i = bytes - 1; i >= 0; --i) out.push_back(static_cast<char>(number >> (8 * i)));
 }

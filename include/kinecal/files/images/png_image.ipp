@@ -1,4 +1,4 @@
-// PNG images by libpng's simplified interface, which has no jumps.
+// Decodes PNG images with libpng's simplified interface, which has no jumps.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace kinecal::detail {
 
-/// @throws InputError  if an image is too large or has no pixel
+/// @throws InputError  if an image is too large or has no pixels
 inline void check_image_size(std::uint64_t width, std::uint64_t height, const std::string& name) {
   if (width > 0 && height > 0 && width <= kMostPixels && height <= kMostPixels / width) return;
   throw InputError(name + ": has " + std::to_string(width) + "x" + std::to_string(height) +
@@ -23,7 +23,7 @@ inline void check_image_size(std::uint64_t width, std::uint64_t height, const st
 }
 
 #ifdef KINECAL_HAVE_PNG
-/// An image of libpng, which it keeps until it is freed.
+/// An image held by libpng until it is freed.
 struct PngImage {
   png_image png{};
   PngImage() { png.version = PNG_IMAGE_VERSION; }
@@ -51,7 +51,7 @@ template <class P>
   return pixels;
 }
 
-/// 16 bits as they are in the file; libpng would take them for linear and change them to 8.
+/// 16 bits as stored in the file; libpng would treat them as linear and convert them to 8.
 [[nodiscard]] inline Image<std::uint16_t> read_png16(PngImage& image, const std::string& name) {
   return finish_png<std::uint16_t>(image, PNG_FORMAT_LINEAR_Y, name);
 }

@@ -1,4 +1,4 @@
-// JSON from elsewhere: fields of the expected type, or a sentence that names the field.
+// JSON from untrusted sources: fields of the expected type, or an error that names the field.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,18 +13,18 @@
 
 namespace kinecal::detail {
 
-/// What is wrong with a JSON text or a field of it.
+/// An error in a JSON text or one of its fields.
 struct JsonError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A value of a JSON text.  The library that reads it is seen only by json_value.ipp.
+/// A value of a JSON text.  Only json_value.ipp sees the library that parses it.
 class JsonValue {
  public:
   /// @throws JsonError  if the text is not JSON
   [[nodiscard]] static JsonValue parse(std::string_view text);
 
-  /// A field of an object; nullopt if it is not there, null, or this is not an object.
+  /// A field of an object; nullopt if it is missing or null, or this is not an object.
   [[nodiscard]] std::optional<JsonValue> find(const std::string& field) const;
 
   /// Fields of an object that must be there.
@@ -39,12 +39,12 @@ class JsonValue {
   [[nodiscard]] std::vector<double> numbers(const std::string& field) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& field) const;
 
-  /// A text that need not be there.
-  /// @throws JsonError  if it is of another type
+  /// An optional text.
+  /// @throws JsonError  if it has the wrong type
   [[nodiscard]] std::string text_or(const std::string& field, const std::string& otherwise) const;
 
   /// This value itself.
-  /// @throws JsonError  naming its place if it is of another type
+  /// @throws JsonError  naming its position if it has the wrong type
   [[nodiscard]] std::string as_text() const;
   [[nodiscard]] double as_number() const;
   [[nodiscard]] std::int64_t as_integer() const;  ///< also of 3.0; not of 0.5

@@ -1,4 +1,4 @@
-// Definitions of json_value.hpp, by nlohmann-json.
+// Definitions of json_value.hpp, with nlohmann-json.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,7 +1,6 @@
 // COLLADA files (DAE): triangles and polygons of the nodes of their scene.
 //
-// As in RViz, the unit of the file counts and its up axis does not.  Materials, skins and animations are
-// left out.
+// Like RViz, applies the file's unit but not its up axis.  Ignores materials, skins and animations.
 // Source: COLLADA 1.4.1 specification, 5: <node>, <triangles>, <polylist>, <polygons>.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -64,14 +63,14 @@ class DaeReader {
     return found == by_id_.end() ? pugi::xml_node() : found->second;
   }
 
-  /// The numbers of an element; zeros in place of those that are missing.
+  /// The numbers of an element; zeros for missing ones.
   [[nodiscard]] static std::vector<double> numbers(pugi::xml_node element, std::size_t count) {
     std::vector<double> all = all_numbers<double>(element.child_value());
     all.resize(count);
     return all;
   }
 
-  /// The pose of a node: its transforms in their order.
+  /// The pose of a node: its transforms in order.
   [[nodiscard]] static Eigen::Affine3d pose_of(pugi::xml_node node) {
     Eigen::Affine3d pose = Eigen::Affine3d::Identity();
     for (const pugi::xml_node child : node.children()) {

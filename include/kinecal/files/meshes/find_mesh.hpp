@@ -1,8 +1,8 @@
-// Finds the mesh files that a URDF names: package://fetch_description/meshes/base_link.dae.
+// Finds the mesh files named in a URDF: package://fetch_description/meshes/base_link.dae.
 //
-// A package is looked for, in this order, in the folders that the user gives, in those of ROS_PACKAGE_PATH,
-// in <prefix>/share of AMENT_PREFIX_PATH, and in the folders above the URDF.  Nothing is fetched from a
-// network, and nothing outside of the folders that were found is read: a URDF may come from anywhere.
+// Packages are searched, in this order, in the folders that the user gives, in ROS_PACKAGE_PATH, in
+// <prefix>/share of AMENT_PREFIX_PATH, and in the folders above the URDF.  Never downloads
+// anything, and never reads outside the folders found: a URDF may come from anywhere.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,12 +15,12 @@
 
 namespace kinecal {
 
-/// A mesh that cannot be drawn; a sentence without its name.
+/// A mesh that cannot be drawn; the reason, without its name.
 struct MeshError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Where packages and meshes may be.
+/// Folders to search for packages and meshes.
 struct MeshPlaces {
   std::filesystem::path urdf = {};                       ///< folder of the URDF
   std::vector<std::filesystem::path> given = {};         ///< packages, or folders of packages
@@ -28,7 +28,7 @@ struct MeshPlaces {
   std::vector<std::filesystem::path> prefixes = {};      ///< AMENT_PREFIX_PATH
 };
 
-/// The places for a URDF, with those of the environment.
+/// The folders for a URDF, including those of the environment.
 /// @param urdf   its file
 /// @param given  by the user
 [[nodiscard]] MeshPlaces mesh_places(const std::filesystem::path& urdf,
@@ -36,7 +36,7 @@ struct MeshPlaces {
 
 /// The file of a mesh.
 /// @param name  package://..., file://..., or relative to the URDF
-/// @throws MeshError  if there is none, or it is outside of its package
+/// @throws MeshError  if there is none, or it is outside its package
 [[nodiscard]] std::filesystem::path find_mesh(const std::string& name, const MeshPlaces& places);
 
 }  // namespace kinecal

@@ -19,7 +19,7 @@ namespace detail {
 
 namespace fs = std::filesystem;
 
-/// The folders of a variable of the environment.
+/// The folders of an environment variable.
 [[nodiscard]] inline std::vector<fs::path> folders_of_variable(const char* variable) {
   const char* value = std::getenv(variable);
   std::vector<fs::path> folders;
@@ -37,22 +37,22 @@ namespace fs = std::filesystem;
   return fs::is_directory(path, missing);
 }
 
-/// Without links and dots; nullopt if it cannot be.
+/// The path without links and dots; nullopt if it does not exist.
 [[nodiscard]] inline std::optional<fs::path> canonical_path(const fs::path& path) {
   std::error_code wrong;
   fs::path found = fs::weakly_canonical(fs::absolute(path, wrong), wrong);
   if (wrong) return std::nullopt;
-  if (!found.has_filename()) found = found.parent_path();  // "meshes/" is "meshes"
+  if (!found.has_filename()) found = found.parent_path();  // "meshes/" becomes "meshes"
   return found;
 }
 
-/// True if a path is in a folder; both canonical.
+/// True if a path is in a folder; both must be canonical.
 [[nodiscard]] inline bool is_inside(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
          folder.end();
 }
 
-/// True if the folder is the package: by its name or by the name in its package.xml.
+/// True if the folder is the package, by its name or by the name in its package.xml.
 [[nodiscard]] inline bool is_package(const fs::path& folder, const std::string& package) {
   if (!is_folder(folder)) return false;
   if (folder.filename() == package) return true;
@@ -64,7 +64,7 @@ namespace fs = std::filesystem;
   return text.find("<name>" + package + "</name>") != std::string::npos;
 }
 
-/// The folder and those above it, the nearest first.
+/// The folder and its parents, nearest first.
 [[nodiscard]] inline std::vector<fs::path> with_parents(const fs::path& folder) {
   std::vector<fs::path> all;
   const auto canonical = canonical_path(folder.empty() ? "." : folder);
@@ -73,7 +73,7 @@ namespace fs = std::filesystem;
   return all;
 }
 
-/// Folders of a package, in the order in which they are tried.
+/// Folders of a package, in search order.
 [[nodiscard]] inline std::vector<fs::path> package_folders(const std::string& package,
                                                            const MeshPlaces& places) {
   std::vector<fs::path> all;
@@ -109,8 +109,8 @@ namespace fs = std::filesystem;
   return all.empty() ? fs::path() : all.front();
 }
 
-/// A file, if it is one and inside of one of the folders.
-/// @throws MeshError  if it is outside of all
+/// A file, if it exists inside one of the folders.
+/// @throws MeshError  if it is outside all of them
 [[nodiscard]] inline std::optional<fs::path> file_inside(const fs::path& file,
                                                          const std::vector<fs::path>& folders) {
   const auto found = canonical_path(file);
@@ -128,7 +128,7 @@ namespace fs = std::filesystem;
   return fs::is_regular_file(*found, missing) ? found : std::nullopt;
 }
 
-/// "%20" is a space.
+/// Decodes "%20" as a space.
 [[nodiscard]] inline std::string decoded(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -156,7 +156,7 @@ namespace fs = std::filesystem;
   for (const fs::path& folder : folders) {
     try {
       if (const auto file = file_inside(folder / inside, {folder})) return *file;
-    } catch (const MeshError& e) {  // another folder may have the file itself, not a link to it
+    } catch (const MeshError& e) {  // another folder may have the file itself instead of a link
       why = e.what();
     }
   }
@@ -192,7 +192,7 @@ KINECAL_INLINE std::filesystem::path find_mesh(const std::string& name, const Me
     folders.push_back(detail::own_folder(places));
     const auto file = detail::file_inside(path.is_absolute() ? path : places.urdf / path, folders);
     if (file) return *file;
-  } catch (const std::filesystem::filesystem_error&) {  // a name that no file can have
+  } catch (const std::filesystem::filesystem_error&) {  // an impossible file name
   }
   throw MeshError("is not there");
 }

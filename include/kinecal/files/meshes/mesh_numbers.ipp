@@ -1,4 +1,4 @@
-// Numbers in the text of mesh files.
+// Parses numbers in the text of mesh files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace kinecal::detail {
 
-/// The next number of a text, which then begins behind it; nullopt if there is none.
+/// Parses and removes the next number of a text; nullopt if there is none.
 template <class T>
 [[nodiscard]] std::optional<T> next_number(std::string_view& text) {
   const std::size_t at = text.find_first_not_of(" \t\r\n");
@@ -24,7 +24,7 @@ template <class T>
   return number;
 }
 
-/// All numbers of a text, up to what is none.
+/// All numbers of a text, up to the first that is invalid.
 template <class T>
 [[nodiscard]] std::vector<T> all_numbers(std::string_view text) {
   std::vector<T> all;

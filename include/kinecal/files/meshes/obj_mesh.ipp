@@ -1,5 +1,5 @@
-// OBJ files: lines of vertices (v x y z) and of polygons (f 1/2/3 ...), counted from 1 or, if negative,
-// from the last vertex so far.  Everything else is left out.
+// Reads OBJ files: lines of vertices (v x y z) and of polygons (f 1/2/3 ...), counted from 1 or, if
+// negative, from the last vertex so far.  Ignores everything else.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,7 +28,7 @@ inline void add_polygon(const std::vector<std::uint32_t>& corners, Mesh& mesh) {
   while (const auto index = next_number<std::int64_t>(line)) {
     const std::int64_t place =
         *index < 0 ? static_cast<std::int64_t>(vertices) + *index : *index - 1;
-    // One that does not exist is left out later, with its triangle.
+    // If it does not exist, its triangle is dropped later.
     corners.push_back(static_cast<std::uint32_t>(
         place < 0 ? UINT32_MAX : std::min<std::int64_t>(place, UINT32_MAX)));
     line.remove_prefix(std::min(line.find_first_of(" \t\r"), line.size()));  // texture, normal

@@ -1,10 +1,10 @@
 // Reads meshes of triangles: STL, DAE (COLLADA) and OBJ.
 //
-// They are read here and not by a library: a URDF and its meshes may come from anywhere, and assimp 5.2 ends
-// the program when one letter of a DAE file is changed.
+// Uses no library: a URDF and its meshes may come from anywhere, and assimp 5.2 crashes the program
+// if one letter of a DAE file is changed.
 //
-// A mesh is for looking at.  So what is wrong in a file is left out where that is possible: vertices that
-// are not numbers, triangles without area or beyond the vertices.
+// Meshes are only for display, so wrong parts of a file are dropped if possible: vertices that are
+// NaN, triangles without area or with missing vertices.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,27 +19,27 @@
 
 namespace kinecal {
 
-/// What of a mesh is read.
+/// Limits on the size of a mesh.
 struct MeshLimits {
-  std::size_t triangles = 20000;                    ///< above it, the mesh is thinned
-  std::uintmax_t bytes = std::uintmax_t{64} << 20;  ///< above it, a file is not read
+  std::size_t triangles = 20000;                    ///< a larger mesh is simplified
+  std::uintmax_t bytes = std::uintmax_t{64} << 20;  ///< a larger file is not read
 };
 
-/// The mesh of a file, in metres.  The unit of a DAE file counts, its up axis does not: as in RViz.
-/// @throws MeshError  if it cannot be read: a sentence without the name of the file
+/// The mesh of a file, in metres.  Like RViz, applies the unit of a DAE file but not its up axis.
+/// @throws MeshError  if it cannot be read: the reason, without the name of the file
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& file, const MeshLimits& limits = {});
 
-/// A mesh of at most so many triangles: vertices in one cell of a grid become one.  The grid is the finest
-/// of a few, so the result may have far fewer.
+/// A simplified mesh with at most this many triangles: merges the vertices in each cell of a grid.
+/// Uses the finest of a few grids, so the result may have far fewer.
 [[nodiscard]] Mesh thinned(const Mesh& mesh, std::size_t triangles);
 
 namespace detail {
 
-/// The mesh without what cannot be drawn.
-/// @param mesh  vertices that are not numbers, indices that do not exist, triangles without area
+/// The mesh without parts that cannot be drawn.
+/// @param mesh  may have NaN vertices, invalid indices and triangles without area
 [[nodiscard]] Mesh cleaned(const Mesh& mesh);
 
-/// The mesh of a file's bytes, as it is.
+/// The mesh in a file's bytes, unchanged.
 /// @param type  extension of the file: "stl", "dae" or "obj"
 /// @throws MeshError
 [[nodiscard]] Mesh mesh_of(const std::string& bytes, const std::string& type);

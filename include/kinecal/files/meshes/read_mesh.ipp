@@ -52,7 +52,7 @@ class MeshCopy {
 };
 
 KINECAL_INLINE Mesh cleaned(const Mesh& mesh) {
-  // Millimetres are allowed, but nothing beyond a kilometre in them: squares of larger numbers overflow.
+  // Millimetres are allowed, but at most a kilometre in them: squares of larger numbers overflow.
   constexpr float kFar = 1e6F;
   const auto good = [&](std::uint32_t vertex) {
     if (vertex >= mesh.num_vertices()) return false;
@@ -68,7 +68,7 @@ KINECAL_INLINE Mesh cleaned(const Mesh& mesh) {
   return copy.take();
 }
 
-/// The mesh with one vertex for each cell of a grid: the first one in it.
+/// The mesh with one vertex per cell of a grid: the first one in it.
 /// @param cells  along the longest side of the mesh
 [[nodiscard]] inline Mesh clustered(const Mesh& mesh, int cells) {
   std::array<float, 3> low, high;
@@ -81,7 +81,7 @@ KINECAL_INLINE Mesh cleaned(const Mesh& mesh) {
   float side = 0.0F;
   for (std::size_t k = 0; k < 3; ++k) side = std::max(side, high[k] - low[k]);
   if (!(side > 0.0F)) return {};
-  std::unordered_map<std::uint32_t, std::uint32_t> first;  // by cell: ten bits for each side
+  std::unordered_map<std::uint32_t, std::uint32_t> first;  // by cell: ten bits per side
   std::vector<std::uint32_t> stand_in;
   for (std::uint32_t v = 0; v < mesh.num_vertices(); ++v) {
     std::uint32_t cell = 0;
@@ -92,7 +92,7 @@ KINECAL_INLINE Mesh cleaned(const Mesh& mesh) {
     stand_in.push_back(first.emplace(cell, v).first->second);
   }
   Mesh merged{mesh.vertices, {}};
-  std::set<std::array<std::uint32_t, 3>> known;  // triangles fall on one another
+  std::set<std::array<std::uint32_t, 3>> known;  // triangles may coincide
   for (std::size_t t = 0; t < mesh.num_triangles(); ++t) {
     std::array<std::uint32_t, 3> corners{};
     for (std::size_t k = 0; k < 3; ++k) corners[k] = stand_in[mesh.triangles[3 * t + k]];
@@ -133,7 +133,7 @@ KINECAL_INLINE Mesh mesh_of(const std::string& bytes, const std::string& type) {
 
 KINECAL_INLINE Mesh thinned(const Mesh& mesh, std::size_t triangles) {
   if (mesh.num_triangles() <= triangles) return mesh;
-  // A surface meets about as many cells as the square of those along a side.
+  // A surface meets about the square of the cells along a side.
   const double most = std::min(512.0, 2.0 * std::sqrt(static_cast<double>(triangles)));
   for (int cells = static_cast<int>(most); cells > 1; cells = cells * 4 / 5) {
     Mesh coarse = detail::clustered(mesh, cells);

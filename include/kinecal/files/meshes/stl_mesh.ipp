@@ -1,7 +1,7 @@
 // STL files: binary, or text.
 //
-//   binary  80 bytes of anything, number of triangles (uint32), then of each: normal, three corners
-//           (float32 x y z), two bytes of anything; least significant byte first
+//   binary  80 ignored bytes, number of triangles (uint32), then for each: normal, three corners
+//           (float32 x y z), two ignored bytes; little endian
 //   text    solid ... vertex x y z ... endsolid
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -20,18 +20,18 @@
 
 namespace kinecal::detail {
 
-/// Adds triangles whose corners are written one by one; equal corners become one vertex.
+/// Adds triangles corner by corner; merges equal corners.
 class StlTriangles {
  public:
   void add(const std::array<float, 3>& corner) {
-    std::array<std::uint32_t, 3> bits{};  // a NaN is not less than anything, its bits are
+    std::array<std::uint32_t, 3> bits{};  // compares bits, because NaN is not less than anything
     std::memcpy(bits.data(), corner.data(), sizeof bits);
     const auto place = static_cast<std::uint32_t>(mesh_.num_vertices());
     const auto [known, is_new] = known_.try_emplace(bits, place);
     if (is_new) mesh_.vertices.insert(mesh_.vertices.end(), corner.begin(), corner.end());
     mesh_.triangles.push_back(known->second);
   }
-  /// The whole triangles.
+  /// The complete triangles.
   [[nodiscard]] Mesh take() {
     mesh_.triangles.resize(mesh_.triangles.size() / 3 * 3);
     return std::move(mesh_);
@@ -52,7 +52,7 @@ class StlTriangles {
 
 inline constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;  // bytes
 
-/// Number of triangles that a binary file says it has.
+/// Number of triangles in the header of a binary file.
 [[nodiscard]] inline std::uint32_t stl_count(std::string_view bytes) {
   std::uint32_t count = 0;
   for (std::size_t k = 0; k < 4 && bytes.size() >= kStlHeader; ++k) {
@@ -93,7 +93,7 @@ inline constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;  // bytes
   return triangles.take();
 }
 
-/// Some programs begin binary files with "solid", too: their size says what they are.
+/// Some programs start binary files with "solid", too: then the size decides.
 [[nodiscard]] inline Mesh stl_mesh(std::string_view bytes) {
   const bool fits = bytes.size() >= kStlHeader &&
                     bytes.size() == kStlHeader + std::uint64_t{stl_count(bytes)} * kStlTriangle;

@@ -14,10 +14,10 @@
 
 namespace kinecal::detail {
 
-/// No field of a point.
+/// Marks an absent field of a point.
 inline constexpr std::size_t kNoField = 1 << 20;
 
-/// Byte of a field in each point; kNoField if the cloud does not have it as a 4-byte number.
+/// Offset of a field in each point; kNoField if the cloud does not have it as a 4-byte number.
 [[nodiscard]] inline std::size_t point_field(const MessageFields& cloud, std::string_view name) {
   constexpr double kUint32 = 6, kFloat32 = 7;
   for (const MessageValue& item : list_at(cloud, "fields")) {

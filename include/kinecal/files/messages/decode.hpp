@@ -11,7 +11,7 @@ namespace kinecal::detail {
 
 /// @param definition  must outlive the result
 /// @param data        must outlive the result
-/// @throws BytesError  if the bytes are not such a message: what is wrong, at which byte
+/// @throws BytesError  if the bytes are not such a message, with the reason and the byte
 [[nodiscard]] MessageFields decode(const MessageDefinition& definition, Encoding encoding,
                                    Bytes data);
 

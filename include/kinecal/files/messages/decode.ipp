@@ -4,8 +4,8 @@
 //   CDR     a header of 4 bytes, the second of which gives the byte order; a number of N bytes
 //           stands at a multiple of N after the header; the length of a text counts its final NUL
 //
-// Nobody trusts these bytes.  A length is checked against the bytes that are left before memory is
-// allocated.  A decoded value takes more memory than its bytes, so the number of values is bounded.
+// The bytes are untrusted.  A length is checked against the remaining bytes before memory is
+// allocated.  A decoded value takes more memory than its bytes, so the number of values is limited.
 // Source: ROS 1 wiki, Connection header and msg; OMG CORBA 3.0, 15.3; DDSI-RTPS 2.2, 10; DDS-XTypes
 // 1.3, 7.6.3.
 // SPDX-License-Identifier: Apache-2.0
@@ -91,7 +91,7 @@ class Decoder {
     const MessageType& message = definition_[type];
     if (message.fields.empty()) {
       wire_.empty_message();
-      // In ROS 1 it takes no bytes, so that a few bytes could claim any number of them.
+      // In ROS 1 it takes no bytes, so a few bytes could claim any number of them.
       if (++empty_ > kMostEmpty) {
         wire_.reader().fail("the message has more than " + std::to_string(kMostEmpty) +
                             " messages without fields in it");

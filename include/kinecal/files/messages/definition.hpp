@@ -1,4 +1,4 @@
-// The fields of a message type, read from the .msg text that a bag carries.
+// The fields of a message type, parsed from the .msg text in a bag.
 //
 //   # comment                        geometry_msgs/PointStamped[] features
 //   uint8 FLOAT32 = 7                float64[9] K
@@ -6,7 +6,7 @@
 //   MSG: geometry_msgs/PointStamped
 //   ...
 //
-// A type without a package belongs to the package that uses it; Header, where that package does not
+// A type without a package belongs to the package that uses it; Header, if that package does not
 // define one, is std_msgs/Header.  The time and duration of ROS 1 are two numbers.  ROS 2 adds
 // bounds (string<=10) and default values.
 // It is parsed by hand: Debian's only parser of .msg text, genmsg, is in Python.
@@ -58,15 +58,15 @@ struct MessageType {
   std::vector<MessageField> fields;  ///< in the order of the definition
 };
 
-/// A message type and all types that it uses; the message type itself is the first.
+/// A message type, followed by all types that it uses.
 using MessageDefinition = std::vector<MessageType>;
 
-/// A definition that cannot be read: what is wrong, with the line of the text.
+/// An invalid definition, with the reason and the line of the text.
 struct DefinitionError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Bytes of a definition text, at most.  Real ones have about 1 % of that.
+/// Largest size of a definition text, bytes.  Real ones have about 1 % of that.
 inline constexpr std::size_t kMostOfADefinition = std::size_t{1} << 20;
 
 /// @param type  "package/Type" of the message, spelt as in ROS 1 or ROS 2

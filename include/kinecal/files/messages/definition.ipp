@@ -1,8 +1,8 @@
-// Definitions of definition.hpp: a text is cut into the parts of its types; the parser starts with
-// the first part and adds each type where a field first uses it.
+// Definitions of definition.hpp.  The text is split into the parts of its types; the parser starts
+// with the first part and adds each type at its first use in a field.
 //
-// Nobody trusts these texts.  A type that contains itself would never end when a message is read,
-// and a deep one would overflow the stack, so both are refused.
+// The texts are untrusted.  A type that contains itself would never end when a message is read, and
+// a deep one would overflow the stack, so both are rejected.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -96,7 +96,7 @@ class DefinitionParser {
     return here;
   }
 
-  /// The times of ROS 1, and those of ROS 2, which some writers of bags leave out.
+  /// The times of ROS 1, and those of ROS 2, which some writers of bags omit.
   [[nodiscard]] static std::vector<MessageField> built_in(const std::string& name) {
     if (name == kTime) return {{"secs", FieldType::uint32}, {"nsecs", FieldType::uint32}};
     if (name == kDuration) return {{"secs", FieldType::int32}, {"nsecs", FieldType::int32}};

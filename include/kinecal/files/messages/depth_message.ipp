@@ -17,7 +17,7 @@
 
 namespace kinecal::detail {
 
-/// The bytes of a sensor_msgs/CompressedImage; nullopt of other messages.
+/// The bytes of a sensor_msgs/CompressedImage; nullopt for other messages.
 [[nodiscard]] inline std::optional<std::string_view> compressed(const MessageFields& message) {
   const MessageValue* data = field_at(message, "data");
   const auto* bytes = data == nullptr ? nullptr : data->as<Bytes>();
@@ -25,8 +25,8 @@ namespace kinecal::detail {
   return std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
-/// A PNG of 16 bits, or the same by RVL, after the settings that the transport compressedDepth puts
-/// before it: a number of 4 bytes, then a and b of 32FC1, whose pixels are a / depth + b.
+/// A 16-bit PNG, or RVL, after the header of the transport compressedDepth: a 4-byte number, then a
+/// and b for 32FC1, whose pixels are a / depth + b.
 [[nodiscard]] inline DepthImage compressed_depth(std::string_view file, std::string_view format) {
   constexpr std::size_t kSettings = 12;
   constexpr float kMetre = 1000.0F;

@@ -1,4 +1,4 @@
-// Messages as the bytes in which ROS 1 and ROS 2 (CDR) write them.
+// Encodes messages as the bytes of ROS 1 and ROS 2 (CDR).
 //
 // The definition decides what is written.  Fields are found by name; a field that the value does
 // not have is written as zero or empty.  So a message of ROS 1 becomes one of ROS 2, and back.  By hand, as

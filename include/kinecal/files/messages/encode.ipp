@@ -1,4 +1,4 @@
-// Definitions of encode.hpp.  What the bytes look like stands in decode.ipp.
+// Definitions of encode.hpp.  decode.ipp describes the format of the bytes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -141,7 +141,7 @@ class Encoder {
     wire_.number(result);
   }
 
-  /// Zero where the definition wants a whole number and the value is out of range.
+  /// Zero if the definition wants a whole number and the value is out of range.
   template <class T, class X>
   [[nodiscard]] static T converted(X x) {
     if constexpr (std::floating_point<X> && std::integral<T>) {

@@ -1,5 +1,5 @@
-// Definitions of the messages that kinecal reads and writes: for bags that do not carry any (SQLite
-// of older ROS 2), and for writing bags.  A bag that carries definitions is read by those.
+// Definitions of the messages that kinecal reads and writes: for bags without definitions (SQLite
+// of older ROS 2), and for writing bags.  Otherwise, the bag's own definitions are used.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,11 +9,11 @@
 
 namespace kinecal::detail {
 
-/// The .msg text of a message and of all types that it uses; empty if kinecal does not know it.
+/// The .msg text of a message and of all types that it uses; empty if unknown to kinecal.
 /// @param type  "package/Type"
 [[nodiscard]] std::string known_definition(const std::string& type, Encoding encoding);
 
-/// The checksum by which ROS 1 identifies a message; empty for those that kinecal does not write.
+/// The checksum that identifies a message in ROS 1; empty for those that kinecal does not write.
 [[nodiscard]] std::string known_md5(const std::string& type);
 
 }  // namespace kinecal::detail

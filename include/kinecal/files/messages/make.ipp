@@ -1,4 +1,4 @@
-// Makes messages to be written: fields by name, lists of numbers and texts.
+// Builds messages for writing: fields by name, lists of numbers and texts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace kinecal::detail {
 
-/// Names and values in turns: fields("x", 1.0, "y", 2.0).
+/// Alternating names and values: fields("x", 1.0, "y", 2.0).
 template <class... Rest>
 [[nodiscard]] MessageFields fields(Rest&&... rest) {
   MessageFields result;

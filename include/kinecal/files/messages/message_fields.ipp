@@ -62,7 +62,7 @@ namespace kinecal::detail {
   return fields;
 }
 
-/// "12.345 s" of a stamp, for messages.
+/// A stamp as text: "12.345 s".
 [[nodiscard]] inline std::string stamp_text(Stamp stamp) {
   const auto milliseconds = stamp.count() / 1'000'000;
   const bool negative = milliseconds < 0;

@@ -19,14 +19,14 @@ struct MessageRows {
   Bytes data;
   std::endian order = std::endian::little;
 
-  /// What follows a byte of a row.
+  /// The bytes of a row from some byte on.
   [[nodiscard]] ByteReader at(int row, std::size_t byte) const {
     return ByteReader(data.subspan(static_cast<std::size_t>(row) * step + byte), order);
   }
 };
 
 /// @param item  bytes of a pixel or point
-/// @throws BytesError  if the data has another size than its rows
+/// @throws BytesError  if the size of the data does not match its rows
 [[nodiscard]] inline MessageRows rows_of(const MessageFields& message, const char* step,
                                          std::size_t item) {
   constexpr double kMost = 1 << 16;
@@ -51,7 +51,7 @@ struct MessageRows {
                    byte_count(bytes == nullptr ? 0 : bytes->size()));
 }
 
-/// Brightness of a colour, by the weights of ITU-R BT.601.
+/// Brightness of a colour, with the weights of ITU-R BT.601.
 [[nodiscard]] inline unsigned brightness(unsigned red, unsigned green, unsigned blue) {
   return (299 * red + 587 * green + 114 * blue + 500) / 1000;
 }

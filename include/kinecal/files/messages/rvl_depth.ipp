@@ -1,8 +1,9 @@
-// Depth images of the codec RVL: runs of pixels without and with depth, and differences of neighbours.
+// Decodes depth images of the codec RVL: runs of pixels without and with depth, and differences of
+// neighbours.
 //
-// Width and height come first, 32 bits each.  Then follow groups of four bits, eight in a word of 32
-// bits, the first in its highest bits; a number is of groups of three bits, the lowest first, and the
-// fourth bit says whether more follow.  Differences have their sign in the lowest bit.
+// Width and height come first, 32 bits each.  Then groups of four bits follow, eight in a 32-bit
+// word, highest bits first.  A number consists of groups of three bits, lowest first; the fourth
+// bit is set if more follow.  Differences have their sign in the lowest bit.
 // Source: A. D. Wilson, "Fast Lossless Depth Image Compression", ISS 2017.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -22,7 +23,7 @@ class RvlNumbers {
  public:
   explicit RvlNumbers(ByteReader words) : words_(words) {}
 
-  /// @throws std::runtime_error  if the stream ends before, or the number has more than 32 bits
+  /// @throws std::runtime_error  if the stream ends early, or the number has more than 32 bits
   [[nodiscard]] std::uint32_t next() {
     std::uint32_t number = 0;
     for (unsigned shift = 0;; shift += 3) {
@@ -47,12 +48,12 @@ class RvlNumbers {
 
   ByteReader words_;
   std::uint32_t word_ = 0;
-  unsigned left_ = 0;  ///< groups of the word that were not read
+  unsigned left_ = 0;  ///< unread groups of the word
 };
 
 /// @param stream  width, height and runs
-/// @returns       metres of 16-bit millimetres; pixels without depth are not numbers
-/// @throws std::runtime_error  if it is truncated or does not fit its size
+/// @returns       metres from 16-bit millimetres; NaN for pixels without depth
+/// @throws std::runtime_error  if it is truncated or does not match its size
 [[nodiscard]] inline DepthImage decode_rvl(std::string_view stream) {
   constexpr float kMillimetre = 1e-3F;
   ByteReader bytes(as_bytes(stream));

@@ -20,19 +20,20 @@ struct MessageFields {
   /// Name and value.
   std::vector<std::pair<std::string_view, MessageValue>> fields;
 
-  /// The field with this name, or nullptr.  The spellings of ROS 1 and ROS 2 are the same name:
-  /// D K R P and d k r p, `secs` and `sec`, `nsecs` and `nanosec`.
+  /// The field with this name, or nullptr.  ROS 1 and ROS 2 spellings are equivalent: D K R P and d
+  /// k r p, `secs` and `sec`, `nsecs` and `nanosec`.
   [[nodiscard]] const MessageValue* find(std::string_view name) const;
 };
 
-/// A value of a message.  Texts and bytes are views of the decoded message, which must outlive this.
+/// A value of a message.  Texts and bytes are views of the decoded message, which must outlive
+/// this.
 struct MessageValue : std::variant<std::int64_t, std::uint64_t, double, std::string_view, Bytes,
                                    std::vector<MessageValue>, MessageFields> {
   /// The values of a list.
   using List = std::vector<MessageValue>;
   using variant::variant;
 
-  /// The value if it is of this type, or nullptr.
+  /// The value if it has this type, else nullptr.
   template <class T>
   [[nodiscard]] const T* as() const {
     return std::get_if<T>(static_cast<const variant*>(this));

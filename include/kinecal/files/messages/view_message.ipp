@@ -20,8 +20,8 @@
 
 namespace kinecal::detail {
 
-/// Pixels of an encoding: their values, and which of these are red, green and blue; the same if it is
-/// gray, or brightness beside two colours.
+/// Pixels of an encoding: their values, and which of these are red, green and blue; all the same
+/// for gray, or for brightness beside two colours.
 struct PixelForm {
   std::string_view name;
   std::size_t values, red, green, blue;
@@ -61,7 +61,7 @@ inline constexpr std::array<std::string_view, 4> kBayer = {"bayer_rggb", "bayer_
                            "16 bits");
 }
 
-/// Brightness of all pixels, 0 to 255, or to 65535 of 16 bits.
+/// Brightness of all pixels, 0 to 255, or to 65535 for 16 bits.
 [[nodiscard]] inline Image<std::uint16_t> values_of(const MessageRows& rows,
                                                     const PixelForm& form) {
   Image<std::uint16_t> image(rows.width, rows.height);
@@ -84,11 +84,11 @@ inline constexpr std::array<std::string_view, 4> kBayer = {"bayer_rggb", "bayer_
   return image;
 }
 
-/// Weights 1 2 1 along rows and columns: on a mosaic, red and blue have a quarter and green a half of
-/// every pixel, whichever of them stands there.
+/// Weights 1 2 1 along rows and columns: on a mosaic, red and blue have a quarter and green a half
+/// of every pixel, whatever its colour.
 [[nodiscard]] inline Image<std::uint16_t> smoothed(const Image<std::uint16_t>& mosaic) {
   Image<std::uint16_t> smooth(mosaic.width, mosaic.height);
-  const auto mirrored = [](int i, int size) {  // at the border, which keeps the colour
+  const auto mirrored = [](int i, int size) {  // at the border; keeps the colour
     return size < 2 ? 0 : i < 0 ? 1 : i >= size ? size - 2 : i;
   };
   for (int v = 0; v < mosaic.height; ++v) {
@@ -108,8 +108,8 @@ inline constexpr std::array<std::string_view, 4> kBayer = {"bayer_rggb", "bayer_
   return smooth;
 }
 
-/// How many of the lower bits of 16-bit values are beyond 8: cameras of 10, 12 and 14 bits do not use
-/// the upper ones.
+/// Number of used bits beyond 8 in 16-bit values: cameras of 10, 12 and 14 bits leave the upper
+/// ones unused.
 [[nodiscard]] inline int spare_bits(const Image<std::uint16_t>& image) {
   const auto most = *std::max_element(image.pixels.begin(), image.pixels.end());
   int bits = 2;

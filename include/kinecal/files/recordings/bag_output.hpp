@@ -1,6 +1,6 @@
 // Writes a bag: ROS 1, or MCAP for ROS 2.
 //
-// The file appears under its name when it is complete, not before.
+// The file appears under its name only when it is complete.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,7 +18,7 @@ namespace detail {
 class BagFile;
 }
 
-/// A bag that is being written.  It gets its name at the end: see finish().
+/// A bag being written.  It gets its name at the end: see finish().
 class BagOutput {
  public:
   /// @param encoding     ros1 for a ROS 1 bag, cdr for MCAP
@@ -30,7 +30,7 @@ class BagOutput {
 
   [[nodiscard]] Encoding encoding() const { return encoding_; }  ///< of its messages
 
-  /// Writes a message as it is: its topic must have this bag's encoding and a definition.
+  /// Copies a message unchanged: its topic must have this bag's encoding and a definition.
   /// @param time  of recording, nanoseconds
   void copy(const BagTopic& topic, std::int64_t time, Bytes data);
 
@@ -40,7 +40,7 @@ class BagOutput {
   void write(const BagTopic& topic, std::int64_t time, const MessageFields& message);
 
   /// Gives the bag its name.
-  /// @throws OutputError  if the bag cannot be written to its end, as on a full disk
+  /// @throws OutputError  if the bag cannot be completed, as on a full disk
   void finish();
 
  private:

@@ -95,13 +95,13 @@ class BagFile {
     return numbers_.emplace(key, number).first->second;
   }
 
-  /// As rosbag records it, since rosbag finds a topic only by its whole name.
+  /// The name in ROS 1, with a slash, because rosbag finds topics only by their full names.
   [[nodiscard]] static std::string name_in_ros1(const std::string& name) {
     const bool is_poses = name == "calibration_joint_states";  // robot_calibration's has no slash
     return is_poses ? name : "/" + name;
   }
 
-  /// Calls `act`; adds the path and why to the message of what it throws.
+  /// Calls `act`; adds path and reason to the message of its exceptions.
   template <class Act>
   void with_path(const Act& act) const {
     errno = 0;
@@ -113,7 +113,7 @@ class BagFile {
     if (!file_) throw OutputError(path_.string() + ": cannot be written" + reason());
   }
 
-  /// ": No space left on device"; nothing if the system does not say.
+  /// ": No space left on device"; empty if the system gives no reason.
   [[nodiscard]] static std::string reason() {
     return errno == 0 ? std::string() : std::string(": ") + std::strerror(errno);
   }
@@ -123,7 +123,7 @@ class BagFile {
   StagingFolder staging_;
   std::ofstream file_;
   std::variant<std::monostate, Ros1BagWriter, McapWriter> writer_;
-  /// By name, type and definition: a topic may have messages of several versions.
+  /// By name, type and definition: a topic may have several versions of its type.
   std::map<std::tuple<std::string, std::string, std::string>, std::uint32_t, std::less<>> numbers_;
   std::map<std::string, MessageDefinition> definitions_;  ///< of known types, in this encoding
 };

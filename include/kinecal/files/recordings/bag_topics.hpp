@@ -1,4 +1,4 @@
-// The content of a bag: its topics, their types, how many messages, and what kinecal can use.
+// The content of a bag: its topics with their types, numbers of messages and use for kinecal.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,26 +12,26 @@
 
 namespace kinecal {
 
-/// What kinecal can use a topic for.
+/// Uses of a topic in kinecal.
 enum class TopicUse { none, samples, poses, urdf };
 
-/// What kinecal can use a topic for, by its type.
+/// The use of a topic in kinecal, by its type.
 [[nodiscard]] TopicUse use_of(const BagTopic& topic);
 
-/// The use of a topic in words.
+/// The use of a topic as text.
 [[nodiscard]] std::string_view to_string(TopicUse use);
 
 /// A topic of a bag and its size.
 struct TopicContent {
   std::string name;               ///< without a leading slash
   std::string type;               ///< "sensor_msgs/JointState"
-  TopicUse use = TopicUse::none;  ///< what kinecal can use it for
+  TopicUse use = TopicUse::none;  ///< in kinecal
   std::int64_t messages = 0;      ///< number of them
   std::uint64_t bytes = 0;        ///< of all messages
 };
 
 /// All topics of a bag, sorted by name.
-/// @param diagnostics  receives what is wrong with the bag
+/// @param diagnostics  receives errors in the bag
 [[nodiscard]] std::vector<TopicContent> bag_topics(const std::string& path,
                                                    Diagnostics& diagnostics);
 

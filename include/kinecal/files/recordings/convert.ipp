@@ -25,7 +25,7 @@
 namespace kinecal {
 namespace detail {
 
-/// The same message without images and point clouds, which calibration does not use.
+/// The message without images and point clouds, which calibration does not use.
 [[nodiscard]] inline MessageFields without_clouds(const MessageFields& message) {
   MessageFields kept = message;
   for (auto& [name, value] : kept.fields) {

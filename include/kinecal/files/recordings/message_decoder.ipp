@@ -1,4 +1,4 @@
-// Decodes the messages of a bag by the definitions that the bag carries.
+// Decodes the messages of a bag with the bag's own definitions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,8 +18,7 @@
 
 namespace kinecal::detail {
 
-/// Decodes messages and reports why it cannot: once for each definition, and for the first
-/// messages.
+/// Decodes messages and reports failures: once per definition, and for the first messages.
 class MessageDecoder {
  public:
   /// @param file  name of the bag in messages
@@ -27,7 +26,7 @@ class MessageDecoder {
       : file_(std::move(file)), diagnostics_(diagnostics) {}
 
   /// @param number  of the message on its topic, from 1
-  /// @return        views of the message; nullopt if its bytes are not of its type
+  /// @return        views of the message; nullopt if its bytes do not match its type
   [[nodiscard]] std::optional<MessageFields> decode(const BagMessage& message, int number) {
     const MessageDefinition* definition = definition_of(message.topic);
     if (definition == nullptr) return std::nullopt;
@@ -49,7 +48,7 @@ class MessageDecoder {
   }
 
  private:
-  /// nullptr if the topic has none that can be read, which has been reported.
+  /// nullptr if the topic has no readable definition, which has been reported.
   [[nodiscard]] const MessageDefinition* definition_of(const BagTopic& topic) {
     const auto key = std::tie(topic.type, topic.definition);
     auto found = definitions_.find(key);

@@ -1,8 +1,8 @@
 // Samples from messages: robot_calibration_msgs/CalibrationData of a bag.
 //
-// A message takes the way of a YAML document: as events through the SampleHandler.  So a bag and a
+// A message is processed like a YAML document: as events through the SampleHandler.  So a bag and a
 // YAML file with the same content give the same samples and the same errors.  The numbers of a
-// message never become text, except where the handler expects a word.
+// message never become text, unless the handler expects a word.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,7 +23,7 @@ class MessageSamples {
   /// @param file  name of the bag in messages and in Sample::source
   explicit MessageSamples(std::string file) : file_(std::move(file)), handler_(file_) {}
 
-  /// @param number  of the message among those of its kind, from 1; takes the place of the line
+  /// @param number  of the message among those of its kind, from 1; used instead of the line
   void add(const MessageFields& message, int number) {
     handler_.document_starts();
     emit(message, number);

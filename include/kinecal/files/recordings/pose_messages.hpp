@@ -12,11 +12,11 @@
 namespace kinecal {
 
 /// The poses of a bag of any format, in its order.
-/// @param diagnostics  receives every error, also that there are no poses
+/// @param diagnostics  receives every error, also if there are no poses
 [[nodiscard]] std::vector<CapturePose> read_bag_poses(const std::string& path,
                                                       Diagnostics& diagnostics);
 
-/// Writes poses as robot_calibration reads them: on calibration_joint_states, one a second.
+/// Writes poses for robot_calibration: on calibration_joint_states, one per second.
 void write_poses(BagOutput& to, const std::vector<CapturePose>& poses);
 
 }  // namespace kinecal

@@ -45,7 +45,7 @@ namespace detail {
 
 /// @return  nullopt if names and positions differ in number
 [[nodiscard]] inline std::optional<CapturePose> pose_of(const MessageFields& message) {
-  const MessageValue* joints = message.find("joint_states");  // JointState is all of it
+  const MessageValue* joints = message.find("joint_states");  // else it is a JointState
   const auto* state = joints == nullptr ? &message : joints->as<MessageFields>();
   if (state == nullptr) return std::nullopt;
   CapturePose pose{

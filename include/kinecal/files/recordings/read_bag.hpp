@@ -1,4 +1,4 @@
-// Bags of any format, recognized by their content and not by their names.
+// Reads bags of any format, identified by content, not by name.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,12 +16,12 @@ enum class RecordingFormat { yaml, ros1_bag, mcap, sqlite, ros2_bag, zstd };
 /// The name of a format in messages.
 [[nodiscard]] std::string_view to_string(RecordingFormat format);
 
-/// The format of a file by its first bytes.  A folder is a bag of ROS 2.  Everything else is YAML,
-/// also a file that cannot be read: its reader then reports that.
+/// The format of a file by its first bytes.  A folder is a ROS 2 bag.  Everything else counts as
+/// YAML, also an unreadable file: the YAML reader then reports it.
 [[nodiscard]] RecordingFormat recording_format(const std::string& path);
 
 /// Reads a bag of any format, but not YAML.
-/// @param diagnostics  receives what is wrong with the bag; nothing is thrown for that
+/// @param diagnostics  receives errors in the bag, which are not thrown
 void read_bag(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace kinecal

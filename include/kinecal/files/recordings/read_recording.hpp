@@ -1,4 +1,4 @@
-// Samples, and the robot they were recorded on, from a file of any format.
+// Reads samples, and the robot they were recorded on, from a file of any format.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,17 +12,17 @@
 
 namespace kinecal {
 
-/// What a recording contains.
+/// The content of a recording.
 struct Recording {
-  /// As read_samples() returns them.  Sample::source of a bag is "path:number of the message".
+  /// Like the result of read_samples().  Sample::source of a bag is "path:number of the message".
   std::vector<Sample> samples;
   std::string urdf;  ///< the last /robot_description; empty if there is none
 };
 
-/// Reads YAML, a ROS 1 bag, MCAP or a ROS 2 bag, recognized by its content.
-/// @param diagnostics  receives every error, also that there are no samples
-/// @param threads      as for read_samples()
-/// @param meter        the same
+/// Reads YAML, a ROS 1 bag, MCAP or a ROS 2 bag, identified by content.
+/// @param diagnostics  receives every error, also if there are no samples
+/// @param threads      like read_samples()
+/// @param meter        like read_samples()
 [[nodiscard]] Recording read_recording(const std::string& path, Diagnostics& diagnostics,
                                        unsigned threads = 0, const ProgressMeter& meter = {});
 

@@ -1,4 +1,4 @@
-// Point clouds that a bag has beside its samples, read when somebody wants to look at them.
+// Point clouds recorded with samples, read only for display.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,15 +14,15 @@ namespace kinecal {
 
 /// Some points of a cloud.
 struct RecordedCloud {
-  std::string frame;          ///< link in which they are given
+  std::string frame;          ///< link in which points are given
   std::vector<float> points;  ///< x y z, x y z ..., metres; all finite
 };
 
-/// The clouds of some samples of a bag: of each sample that of the first observation that has one.
+/// The clouds of some samples of a bag: for each sample, that of the first observation with one.
 /// @param path    bag of any format; YAML has no clouds
 /// @param wanted  Sample::source of the samples
-/// @param most    points of a cloud; of more, an even choice
-/// @returns       by Sample::source, those that are there and can be read
+/// @param most    largest number of points per cloud; larger clouds are thinned evenly
+/// @returns       by Sample::source, those that exist and are readable
 [[nodiscard]] std::map<std::string, RecordedCloud> read_clouds(const std::string& path,
                                                                const std::set<std::string>& wanted,
                                                                std::size_t most);

@@ -17,7 +17,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// An even choice of the points of a cloud.
+/// Evenly thinned points of a cloud.
 [[nodiscard]] inline std::vector<float> some_points(const PointCloud& cloud, std::size_t most) {
   std::vector<std::size_t> measured;
   for (std::size_t i = 0; i < cloud.pixels.size(); ++i) {
@@ -32,7 +32,7 @@ namespace detail {
   return points;
 }
 
-/// The cloud of a sample's message; nullopt if it has none that can be read.
+/// The cloud of a sample's message; nullopt if it has no readable one.
 [[nodiscard]] inline std::optional<RecordedCloud> cloud_of(const MessageFields& sample,
                                                            std::size_t most) {
   for (const MessageValue& item : list_at(sample, "observations")) {
@@ -60,7 +60,7 @@ KINECAL_INLINE std::map<std::string, RecordedCloud> read_clouds(const std::strin
                                                                 std::size_t most) {
   std::map<std::string, RecordedCloud> clouds;
   if (recording_format(path) == RecordingFormat::yaml) return clouds;
-  Diagnostics unused;  // what is wrong was reported when the samples were read
+  Diagnostics unused;  // errors were reported when the samples were read
   detail::MessageDecoder decoder(path, unused);
   int number = 0;
   const auto wants = [](const BagTopic& topic) { return use_of(topic) == TopicUse::samples; };

@@ -38,7 +38,7 @@ namespace kinecal::detail {
 }
 
 /// The depth driver's parameters and the ids of features: see feature_id_parameters.ipp.
-/// @param texts  keeps the names that the message views
+/// @param texts  keeps the names that the message refers to
 [[nodiscard]] inline MessageValue::List parameters_message(const Observation& seen,
                                                            std::deque<std::string>& texts) {
   MessageValue::List parameters;
@@ -68,7 +68,7 @@ namespace kinecal::detail {
   return message;
 }
 
-/// @param texts  keeps names; like the sample, it must outlive the message, which views them
+/// @param texts  keeps names; like the sample, must outlive the message, which refers to them
 [[nodiscard]] inline MessageFields sample_message(const Sample& sample,
                                                   std::deque<std::string>& texts) {
   if (!sample.conditions.empty()) {

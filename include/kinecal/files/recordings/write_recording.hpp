@@ -1,4 +1,4 @@
-// Writes samples in the format that the name of the file asks for.
+// Writes samples in the format given by the file's extension.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace kinecal {
 
-/// The encoding of the bag that a name asks for: .bag is ROS 1, .mcap ROS 2; nullopt for .yaml and .yml.
-/// @throws InputError  if the name ends otherwise
+/// The encoding of the bag, by extension: .bag is ROS 1, .mcap ROS 2; nullopt for .yaml and .yml.
+/// @throws InputError  for any other extension
 [[nodiscard]] std::optional<Encoding> output_encoding(const std::string& path);
 
-/// Writes samples as YAML, ROS 1 bag or MCAP.  The file gets its name when it is complete; one of that
-/// name is replaced, and stays if an error occurs.
-/// @param urdf  put into bags as /robot_description; empty: none
-/// @throws InputError   if the name asks for another format
+/// Writes samples as YAML, ROS 1 bag or MCAP.  The file gets its name when it is complete; it
+/// replaces an existing file only on success.
+/// @param urdf  stored in bags as /robot_description; empty: none
+/// @throws InputError   for another extension
 /// @throws OutputError  if the file cannot be written
 void write_recording(const std::string& path, const std::vector<Sample>& samples,
                      const std::string& urdf = {});

@@ -1,4 +1,4 @@
-// A set of files that is written completely or not at all.
+// Writes a set of files completely or not at all.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,8 +13,8 @@ namespace detail {
 class StagingFolder;
 }  // namespace detail
 
-/// A folder into which a set of files will be written.  The constructor checks that this is
-/// possible, before any work is done, and creates the folder if it is missing.
+/// A folder for a set of files.  The constructor checks that it is writable, before any work is
+/// done, and creates it if it is missing.
 class OutputFolder {
  public:
   /// @throws OutputError  if the folder cannot be created or written to
@@ -22,19 +22,19 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Removes the folders that it created and that are still empty.
+  /// Removes the folders that it created if they are still empty.
   ~OutputFolder();
 
   /// The folder.
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
-  /// Writes all files or none; a file of the same name is replaced.
-  /// @throws OutputError  naming the file; the folder is then as it was
+  /// Writes all files or none; replaces files of the same name.
+  /// @throws OutputError  naming the file; the folder is then unchanged
   void write(const std::vector<OutputFile>& files);
 
  private:
   void create();
-  /// A temporary folder in the folder, which is created if it is missing.
+  /// A temporary folder in the folder, which is created if missing.
   [[nodiscard]] detail::StagingFolder stage();
 
   std::filesystem::path folder_;

@@ -1,7 +1,7 @@
 // A set of files: definitions of file_set.hpp.
 //
 // All files are first written to a temporary folder inside the target folder, then renamed.  If
-// something fails, the old files are put back.  A reader never sees half a file.
+// anything fails, the old files are restored.  A reader never sees half a file.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,7 +19,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Ending of the second name that a file keeps while it is replaced.
+/// Suffix of the second name that a file keeps while it is replaced.
 inline constexpr const char* kBefore = ".before";
 
 inline void check_target(const std::filesystem::path& target) {
@@ -29,7 +29,7 @@ inline void check_target(const std::filesystem::path& target) {
   }
 }
 
-/// Gives a second name to a file that is about to be replaced, if there is one.
+/// Gives a second name to a file that will be replaced, if it exists.
 inline void keep_file(const std::filesystem::path& file, const std::filesystem::path& kept) {
   if (!std::filesystem::exists(file)) return;
   std::error_code error;
@@ -55,7 +55,7 @@ KINECAL_INLINE OutputFolder::OutputFolder(std::filesystem::path folder)
 }
 
 KINECAL_INLINE detail::StagingFolder OutputFolder::stage() {
-  constexpr int kTries = 50;  // a run that made the folder removes it while it is empty
+  constexpr int kTries = 50;  // the run that made the folder removes it while it is empty
   for (int i = 1;; ++i) {
     try {
       create();

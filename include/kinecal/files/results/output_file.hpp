@@ -1,4 +1,4 @@
-// A file to be written, and why it could not be.
+// A file to write, and the error if it cannot be written.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace kinecal {
 
-/// A file could not be written: which, and why.
+/// A file could not be written: its name, and the reason.
 struct OutputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -15,7 +15,7 @@ struct OutputError : std::runtime_error {
 /// A file to write.
 struct OutputFile {
   std::string name;     ///< in its folder
-  std::string content;  ///< all bytes of it
+  std::string content;  ///< all its bytes
 };
 
 }  // namespace kinecal

@@ -1,13 +1,13 @@
-// The files that a calibration writes: the robot, its cameras, the values.
+// The output files of a calibration: the robot, its cameras, the values.
 //
 //   calibrated.urdf        the URDF, patched in place
 //   depth_<camera>.yaml    camera_info of each depth camera, and
 //   rgb_<camera>.yaml      of each colour camera
-//   calibration.yaml       lines `name: value`, then the names of the files above, as installers
-//                          read them
+//   calibration.yaml       lines `name: value`, then the names of the files above, for
+//                          installers
 //
 // With upstream's names: calibrated_<date>.urdf, depth_[<camera>_]<date>.yaml and so on.  These
-// leave out the name of a camera called "camera".
+// omit the name of a camera called "camera".
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -27,7 +27,7 @@ struct Calibration;
 struct CalibrationResult;
 class ParameterTable;
 
-/// How result files are written.
+/// Options for result files.
 struct ResultFileOptions {
   OffsetStyle offsets = OffsetStyle::rising;  ///< where the URDF holds joint offsets
   std::string date = {};  ///< Y_m_d_H_M_S for upstream's names; empty: kinecal's names
@@ -35,20 +35,20 @@ struct ResultFileOptions {
   std::map<int, double> deviations = {};
 };
 
-/// The calibration of each joint of the robot, from the values of the parameters.  Virtual frames
-/// are left out: no URDF contains them.
+/// The calibration of each joint of the robot, from the parameter values.  Skips virtual frames,
+/// which no URDF contains.
 [[nodiscard]] std::vector<JointPatch> joint_patches(const Robot& robot,
                                                     const ParameterTable& table);
 
-/// Why a calibrated camera is physically impossible, as one bad capture far away may make it; empty
-/// if all cameras are possible.
+/// Why a calibrated camera is physically impossible, for example after one bad capture far away;
+/// empty if all cameras are possible.
 [[nodiscard]] std::string impossible_camera(const Calibration& calibration,
                                             const ParameterTable& table,
                                             std::span<const Sample> samples);
 
 /// The files of a result, with their content.
 /// @param urdf_text  content of the URDF, as it was read
-/// @param urdf_name  its name, for messages
+/// @param urdf_name  its name in messages
 [[nodiscard]] std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf_text,
                                                    const std::string& urdf_name,
                                                    const Calibration& calibration,

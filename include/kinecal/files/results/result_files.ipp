@@ -21,7 +21,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// A camera of a calibration with its parameters applied to what was recorded.
+/// A camera of a calibration, with its parameters applied to the recorded settings.
 struct CalibratedCamera {
   Mount mount;
   CameraInfo info;

@@ -14,7 +14,7 @@
 
 namespace kinecal::detail {
 
-/// "depth_camera.yaml"; with a date "depth_<date>.yaml", the name "camera" left out.
+/// "depth_camera.yaml"; with a date "depth_<date>.yaml", without the name "camera".
 [[nodiscard]] inline std::string camera_file(const char* kind, const std::string& camera,
                                              const std::string& date) {
   std::string name = camera;
@@ -30,8 +30,8 @@ namespace kinecal::detail {
                       : fmt::format("{}_{}{}", stem, date, ending);
 }
 
-/// Lines `name: value` for the parameters that some step freed, and for those held at another value
-/// than zero.  Standard deviations are comments.
+/// Lines `name: value` for the parameters that some step freed, and for those held at nonzero
+/// values.  Standard deviations are comments.
 [[nodiscard]] inline std::string values_yaml(const CalibrationResult& result,
                                              const std::map<int, double>& deviations) {
   std::string text;

@@ -19,13 +19,13 @@
 
 namespace kinecal::detail {
 
-/// @throws OutputError  with the path, what failed, and errno in words
+/// @throws OutputError  with the path, what failed, and errno as text
 [[noreturn]] inline void throw_output_error(const std::filesystem::path& path, const char* what) {
   throw OutputError(path.string() + ": " + what + ": " + std::strerror(errno));
 }
 
-/// Writes a file and waits until it is on the disk, so that a full disk is noticed here.
-/// @param target  its name once it is complete, for messages
+/// Writes a file and waits until it is on disk, so that a full disk is noticed here.
+/// @param target  its final name, for messages
 inline void write_durably(const std::filesystem::path& path, const std::string& content,
                           const std::filesystem::path& target) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0644);
@@ -61,7 +61,7 @@ class FolderLock {
   int folder_;
 };
 
-/// How the name of each temporary folder begins.
+/// Prefix of the names of temporary folders.
 inline constexpr const char* kStagingPrefix = ".kinecal-";
 
 /// Removes a temporary folder of this user unless a process holds its lock.
@@ -77,7 +77,7 @@ inline void remove_if_stale(const std::filesystem::path& folder) {
   ::close(file);
 }
 
-/// Removes the temporary folders of runs that were killed.
+/// Removes the temporary folders of killed runs.
 inline void sweep_staging_folders(const std::filesystem::path& folder) {
   const std::size_t length = std::string(kStagingPrefix).size() + 6;  // as mkdtemp() names it
   std::error_code ignored;
@@ -87,8 +87,8 @@ inline void sweep_staging_folders(const std::filesystem::path& folder) {
   }
 }
 
-/// A temporary folder inside another, removed with its content.  It holds a lock on itself, so that
-/// only a folder of a run that was killed has none.
+/// A temporary folder inside another, removed with its content.  It locks itself, so a folder
+/// without a lock belongs to a killed run.
 class StagingFolder {
  public:
   explicit StagingFolder(const std::filesystem::path& folder) {
@@ -107,7 +107,7 @@ class StagingFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  /// @return  false if another run took the folder for stale before it was locked
+  /// @return  false if another run considered the folder stale before it was locked
   bool make(const std::filesystem::path& folder) {
     std::string name = (folder / (std::string(kStagingPrefix) + "XXXXXX")).string();
     if (::mkdtemp(name.data()) == nullptr) throw_output_error(folder, "cannot be written to");

@@ -1,10 +1,10 @@
-// Ids of features in messages of samples, which have no field for them: as parameters of the
-// observation's ext_camera_info, beside z_offset_mm.
+// Ids of features in messages of samples, which have no field for them.  They are stored as
+// parameters in the observation's ext_camera_info, beside z_offset_mm.
 //
-//   feature_id_<k>: n     feature k, from 0, has the id n, the one behind it n + 1, and so on until the
+//   feature_id_<k>: n     feature k, from 0, has the id n, the next one n + 1, and so on until the
 //                         next such parameter.  n = -1: they have no ids
 //
-// A whole board is one parameter, `feature_id_0: 0`.  robot_calibration skips names it does not know.
+// A whole board needs one parameter, `feature_id_0: 0`.  robot_calibration skips unknown names.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -26,7 +26,7 @@ namespace kinecal::detail {
 
 inline constexpr std::string_view kFeatureId = "feature_id_";
 
-/// An id as files give it; nullopt if it is not a whole number from 0.
+/// An id in a file; nullopt if it is not a whole number from 0.
 [[nodiscard]] inline std::optional<int> feature_id(double value) {
   if (!(value >= 0.0 && value <= std::numeric_limits<int>::max() && value == std::floor(value))) {
     return std::nullopt;
@@ -38,7 +38,7 @@ inline constexpr std::string_view kFeatureId = "feature_id_";
 [[nodiscard]] inline std::vector<std::pair<std::string, double>> feature_id_parameters(
     const std::vector<Feature>& features) {
   std::vector<std::pair<std::string, double>> parameters;
-  double next = -1.0;  // the id that feature k has without a parameter
+  double next = -1.0;  // id of feature k without a parameter
   for (std::size_t k = 0; k < features.size(); ++k) {
     const double id = features[k].id ? *features[k].id : -1.0;
     if (id != next) parameters.emplace_back(fmt::format("{}{}", kFeatureId, k), id);
@@ -47,10 +47,10 @@ inline constexpr std::string_view kFeatureId = "feature_id_";
   return parameters;
 }
 
-/// The parameters of one observation, as they are read.
+/// The parameters of one observation while it is read.
 class FeatureIdParameters {
  public:
-  /// @returns  what is wrong; empty if nothing is
+  /// @returns  the error; empty if there is none
   [[nodiscard]] std::string add(std::string_view name, std::optional<double> value) {
     const std::string_view digits = name.substr(kFeatureId.size());
     std::size_t k = 0;
@@ -65,8 +65,8 @@ class FeatureIdParameters {
     return {};
   }
 
-  /// Gives features their ids, unless they have ids already.
-  /// @returns  what is wrong; empty if nothing is
+  /// Gives features their ids, unless they already have ids.
+  /// @returns  the error; empty if there is none
   [[nodiscard]] std::string apply(std::vector<Feature>& features) const {
     if (!starts_.empty() && starts_.rbegin()->first >= features.size()) {
       return fmt::format("{}{} is the id of feature {} of {}", kFeatureId, starts_.rbegin()->first,

@@ -1,7 +1,7 @@
-// Keys of samples that are probably mistakes.
+// Finds probable mistakes in the keys of samples.
 //
-// No message has the keys that only kinecal reads: a wrong letter would silently leave out a sigma,
-// an id or the conditions.  And {x: 0,03} is the number 0 and a key 03.
+// Only kinecal has some of the keys: a typo would silently ignore a sigma, an id or the conditions.
+// And {x: 0,03} is the number 0 and a key 03.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,8 +17,8 @@
 
 namespace kinecal::detail {
 
-/// The key that was probably meant; empty if none is within two letters.
-/// @param parent  the map in which the key stands
+/// The probably intended key; empty if none is within two letters.
+/// @param parent  the map with the key
 [[nodiscard]] inline std::string_view meant_sample_key(SampleNode parent, std::string_view key) {
   constexpr std::size_t kMostLetters = 2;
   for (const SampleNode own :
@@ -31,8 +31,8 @@ namespace kinecal::detail {
   return {};
 }
 
-/// Warns of an unknown key that resembles one of kinecal's own, once in a file.  A key of digits among
-/// numbers is an error.
+/// Warns of an unknown key that resembles one of kinecal's own, once per file.  A key of digits
+/// among numbers is an error.
 inline void doubt_sample_key(SampleErrors& errors, SampleNode parent, int line,
                              std::string_view key) {
   const bool digits = key.find_first_not_of("0123456789") == std::string_view::npos;

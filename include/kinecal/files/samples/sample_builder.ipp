@@ -1,4 +1,4 @@
-// Builds one sample from the values of its document or message, and collects what is wrong with it.
+// Builds one sample from the values of its document or message, and collects errors.
 //
 // The nodes are those of sample_schema.ipp; sample_handler.ipp finds them.
 // SPDX-License-Identifier: Apache-2.0
@@ -76,7 +76,7 @@ class SampleBuilder {
     number(node, line, value.value_or(0.0));
   }
 
-  /// @param node  one whose kind is SampleNodeKind::number
+  /// @param node  of kind SampleNodeKind::number
   void number(SampleNode node, int line, double value) {
     if (node == SampleNode::joint_position) {
       sample_.joint_positions.push_back(value);
@@ -119,7 +119,7 @@ class SampleBuilder {
     }
   }
 
-  /// Zero is what is sent where nobody knows the time.
+  /// Ignores zero, which stands for an unknown time.
   void add_to_stamp(double unit, double value) {
     constexpr double kMost = 9e18;  // nanoseconds
     const double nanoseconds = unit * value;

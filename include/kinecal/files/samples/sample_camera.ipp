@@ -24,9 +24,9 @@
 
 namespace kinecal::detail {
 
-/// What is wrong with a file of samples, or with a piece of it.
+/// Errors in a file of samples, or in a piece of it.
 struct SampleErrors {
-  /// Listed for one file; the rest usually have the same cause.
+  /// Largest number listed per file; the rest usually have the same cause.
   static constexpr std::size_t kMost = 20;
 
   struct Message {
@@ -61,7 +61,7 @@ inline void report(const SampleErrors& all, const std::string& file, Diagnostics
   }
 }
 
-/// A text of the file for a message: short, and without control characters.
+/// A text of the file for a message: shortened, without control characters.
 [[nodiscard]] inline std::string shown(std::string_view text) {
   if (text == "...") {
     return "'...', for values left out ('ros2 topic echo --full-length' prints them all),";
@@ -107,8 +107,8 @@ class SampleCamera {
 
   [[nodiscard]] const ImagePart& part() const { return part_; }
 
-  /// Only z_offset_mm, z_scaling and ids matter; others may have any value.  The value is text until
-  /// here: millimetres become metres by moving its decimal point, without a rounding error.
+  /// Only z_offset_mm, z_scaling and ids matter; others may have any value.  Until here the value
+  /// is text:  moving its decimal point converts millimetres to metres without a rounding error.
   void end_parameter(SampleErrors& errors) {
     if (parameter_.name.starts_with(kFeatureId)) {
       const std::string wrong = ids_.add(parameter_.name, number_from_yaml(parameter_.value));
@@ -126,7 +126,7 @@ class SampleCamera {
     (offset ? info_.z_offset : info_.z_scaling) = value.value_or(0.0);
   }
 
-  /// The ids of features that its parameters give.
+  /// The feature ids in its parameters.
   [[nodiscard]] const FeatureIdParameters& ids() const { return ids_; }
 
   /// @param where  returns "sample at line 37, sensor 'camera'"

@@ -1,8 +1,8 @@
-// A file of samples, read piece by piece on several threads.
+// Reads a file of samples piece by piece on several threads.
 //
-// The pieces do not depend on the number of threads, and their content is joined in the order of
-// the file.  So samples and messages do not depend on the number of threads either.  Memory holds
-// the samples and one piece for each thread.
+// The pieces do not depend on the number of threads, and are joined in file order.  So samples and
+// messages do not depend on the number of threads either.  Memory holds the samples and one piece
+// per thread.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -36,12 +36,12 @@ namespace kinecal::detail {
 struct SamplePiece {
   std::vector<Sample> samples;
   SampleErrors errors;
-  std::optional<YamlError> not_yaml;    ///< the reason if it was not read to its end
+  std::optional<YamlError> not_yaml;    ///< the reason if it was not read completely
   int sample_line = 0;                  ///< where its last sample begins
-  bool last_document_is_empty = false;  ///< as it is after a final `---`
-  bool may_be_cut_off = false;          ///< not YAML in the file's last document
+  bool last_document_is_empty = false;  ///< as after a final `---`
+  bool may_be_cut_off = false;          ///< invalid YAML in the file's last document
 
-  /// True if the rest of the file is not read.
+  /// True if the rest of the file will not be read.
   [[nodiscard]] bool stops() const { return not_yaml || errors.too_many(); }
 };
 
@@ -67,34 +67,34 @@ struct SamplePiece {
 
 class SampleFile {
  public:
-  /// Bytes of a piece: some 100 samples, so that the threads end at about the same time.
+  /// Size of a piece, bytes: some 100 samples, so that the threads end at about the same time.
   static constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
 
   /// @param file  name of the file in messages
   SampleFile(std::istream& in, std::string file, std::size_t piece_bytes = kPieceBytes)
       : file_(std::move(file)), pieces_(in, piece_bytes) {}
 
-  /// Reports how far reading is.
+  /// Reports the progress of reading.
   /// @param bytes  size of the file
   void show_progress(std::uintmax_t bytes, const ProgressMeter& meter) {
     bytes_ = bytes;
     meter_ = meter;
   }
 
-  /// Reads the file to its end, or to the first text that is not YAML, or up to too many errors.
+  /// Reads the file to its end, to the first invalid YAML, or until there are too many errors.
   void read(std::size_t threads) {
     std::vector<std::future<void>> others;
     try {
       while (others.size() + 1 < threads) {
         others.push_back(std::async(std::launch::async, [this] { work(); }));
       }
-    } catch (const std::system_error&) {  // no more threads are available: fewer do it
+    } catch (const std::system_error&) {  // no more threads available: continue with fewer
     }
     work();
     for (std::future<void>& other : others) other.get();
   }
 
-  /// The samples in the order of the file, and what is wrong with them.
+  /// The samples in file order, and their errors.
   [[nodiscard]] std::vector<Sample> take(Diagnostics& diagnostics) {
     std::vector<Sample> samples;
     SampleErrors all;
@@ -117,7 +117,7 @@ class SampleFile {
   }
 
  private:
-  /// One thread's share: the next piece, until there are no more.
+  /// One thread's work: pieces, until there are no more.
   void work() {
     for (;;) {
       std::unique_lock lock(mutex_);
@@ -128,7 +128,7 @@ class SampleFile {
       if (meter_ && bytes_ > 0) {
         meter_(std::min(1.0, double(done_) / double(bytes_)), "reading " + file_);
       }
-      SamplePiece& read = read_.emplace_back();  // keeps its address while others are added
+      SamplePiece& read = read_.emplace_back();  // its address is stable while others are added
       lock.unlock();
       read = read_sample_piece(file_, std::move(*piece));
       if (!read.stops()) continue;
@@ -153,13 +153,13 @@ class SampleFile {
     return text + (piece.may_be_cut_off ? "; is the file cut off?" : "");
   }
 
-  /// True if the last error is in the last sample of the file, which no `---` ends.
+  /// True if the last error is in the last sample of the file, which is not followed by `---`.
   [[nodiscard]] static bool is_wrong_at_end(const SamplePiece& last, const SampleErrors& all) {
     return !last.last_document_is_empty && last.sample_line > 0 && !all.errors.empty() &&
            all.errors.back().line >= last.sample_line;
   }
 
-  /// A recording that was interrupted may end in the middle of a number and still be YAML.
+  /// An interrupted recording may end in the middle of a number and still be valid YAML.
   void check_end(const std::vector<Sample>& samples, int sample_line, SampleErrors& all) const {
     if (samples.empty()) {
       all.add(0, done_ == 0 ? "no samples: the file is empty" : "no samples in this file");
@@ -178,7 +178,7 @@ class SampleFile {
   }
 
   std::string file_;
-  std::mutex mutex_;  ///< guards what follows while threads work
+  std::mutex mutex_;  ///< guards the members below while threads work
   YamlPieces pieces_;
   std::deque<SamplePiece> read_;  ///< in the order of the file
   bool stopped_ = false;

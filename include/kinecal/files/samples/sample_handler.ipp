@@ -1,7 +1,7 @@
-// Follows the events of a YAML document, or of a message, through a sample: no tree is built.
+// Follows the events of a YAML document or a message through a sample, without building a tree.
 //
-// The handler knows its place in the tree of sample_schema.ipp and skips unknown keys with all that
-// stands under them.  Values go to the SampleBuilder.
+// The handler knows its place in the tree of sample_schema.ipp and skips unknown keys with
+// everything below them.  Values go to the SampleBuilder.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -28,7 +28,7 @@ class SampleHandler {
 
   [[nodiscard]] std::vector<Sample> take() { return std::move(samples_); }
   [[nodiscard]] SampleBuilder& builder() { return builder_; }
-  /// True within something unknown: its content need not be emitted.
+  /// True inside something unknown: its content may be omitted.
   [[nodiscard]] bool skips() const { return skipped_ > 0; }
   [[nodiscard]] bool last_document_is_empty() const { return last_document_is_empty_; }
 
@@ -44,7 +44,7 @@ class SampleHandler {
       last_document_is_empty_ = true;
       return;
     }
-    // The parser may be on a later line by now; the user looks for the line of the key.
+    // The parser may already be on a later line; users look for the line of the key.
     const bool is_value = !levels_.empty() && levels_.back().is_map && !at_key();
     const SampleNode node = next_node();
     if (node != SampleNode::unknown) null(node, is_value ? key_line_ : line);
@@ -63,8 +63,8 @@ class SampleHandler {
     if (node != SampleNode::unknown) scalar(node, line, text);
   }
 
-  /// A number of a message.  It reaches the sample as it is; where something else is expected, it
-  /// is handled as its text.
+  /// A number of a message.  It reaches the sample unchanged; if something else is expected, its
+  /// text is used.
   template <class X>
   void number(int line, X x) {
     const SampleNode node = next_node();
@@ -93,7 +93,7 @@ class SampleHandler {
 
   [[nodiscard]] bool at_key() const { return !levels_.empty() && levels_.back().at_key; }
 
-  /// The node of the value that comes now, after which another one is expected.
+  /// The node of the current value; advances to the next one.
   [[nodiscard]] SampleNode next_node() {
     if (skipped_ > 0) return SampleNode::unknown;
     if (levels_.empty()) return SampleNode::sample;

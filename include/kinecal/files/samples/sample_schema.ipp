@@ -1,4 +1,4 @@
-// The keys of a recorded sample as a tree: which key stands where, and what may be under it.
+// The keys of a recorded sample as a tree.
 //
 //   joint_states: {header: {stamp: {secs: ..., nsecs: ...}},                (if it is known)
 //                  name: [...], position: [...]}
@@ -23,7 +23,7 @@
 
 namespace kinecal::detail {
 
-/// A place in the tree.  `document` is above everything, `unknown` is what is skipped.
+/// A place in the tree.  `document` is the root, `unknown` is skipped.
 enum class SampleNode : std::uint8_t {
   document,
   sample,
@@ -86,7 +86,8 @@ enum class SampleNode : std::uint8_t {
 /// `parameter_value` is a word: its meaning depends on the parameter's name.
 enum class SampleNodeKind : std::uint8_t { map, list, word, number };
 
-/// One row: the node, its parent, its key (none for list items and free keys) and its other key.
+/// One row: the node, its parent, its key (empty for list items and user-defined keys), its other
+/// key.
 struct SampleNodeRule {
   SampleNode node, parent;
   SampleNodeKind kind;
@@ -167,12 +168,12 @@ inline constexpr auto kSampleNodeRules = sample_node_rules();
   return kind == SampleNodeKind::word || kind == SampleNodeKind::number;
 }
 
-/// One bit for each node, to remember which keys of a map have been read.
+/// One bit per node, to remember which keys of a map have been read.
 [[nodiscard]] constexpr std::uint64_t sample_bit(SampleNode node) {
   return std::uint64_t{1} << static_cast<int>(node);
 }
 
-/// What may stand under a node.
+/// The possible children of a node.
 struct SampleChildren {
   std::array<SampleNode, 10> nodes{};
   std::size_t size = 0;
@@ -195,8 +196,7 @@ inline constexpr auto kSampleChildren = [] {
   return kSampleChildren[static_cast<std::size_t>(parent)];
 }
 
-/// The node under `parent` with this key; `unknown` if there is none.  The items of a list have
-/// the key "".
+/// The node under `parent` with this key; `unknown` if there is none.  List items have the key "".
 [[nodiscard]] constexpr SampleNode sample_child(SampleNode parent, std::string_view key) {
   if (parent == SampleNode::conditions) return SampleNode::condition;  // their names are free
   const SampleChildren& children = sample_children(parent);

@@ -1,4 +1,4 @@
-// Lines that a tool which records topics as YAML writes among the messages.
+// Lines that ROS tools print among the messages of a topic in YAML.
 //
 // ros2 topic echo    A message was lost!!!, with two lines of counts
 // rostopic echo      WARNING: no messages received and simulated time is active. / Is /clock being
@@ -20,7 +20,7 @@
 
 namespace kinecal::detail {
 
-/// Blanks the output of a tool in a piece of a file, so that the rest can be read.
+/// Blanks the output of a tool in a piece of a file, so that the rest is readable.
 /// @return  an error for each output
 [[nodiscard]] inline std::vector<SampleErrors::Message> take_tool_output(YamlPiece& piece) {
   struct Output {
@@ -48,7 +48,7 @@ namespace kinecal::detail {
   return errors;
 }
 
-/// Adds the errors of a tool's output at their lines.
+/// Adds the errors of a tool's output in line order.
 inline void add_in_order(SampleErrors& all, std::vector<SampleErrors::Message> outputs) {
   for (SampleErrors::Message& output : outputs) {
     const auto is_later = [&](const SampleErrors::Message& m) { return m.line > output.line; };
@@ -57,7 +57,7 @@ inline void add_in_order(SampleErrors& all, std::vector<SampleErrors::Message> o
   }
 }
 
-/// True if a `---` begins a line from this one on: the document there is not the last one.
+/// True if a line from this one on begins with `---`: then the document there is not the last one.
 [[nodiscard]] inline bool has_marker_from(const YamlPiece& piece, int line) {
   const std::string& text = piece.text;
   std::size_t at = 0;

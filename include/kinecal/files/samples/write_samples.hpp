@@ -1,7 +1,7 @@
-// Writes samples as read_samples() reads them: one YAML document for each, with the keys of ROS 1.
+// Writes samples for read_samples(): one YAML document each, with the keys of ROS 1.
 //
 // Numbers are the shortest text that reads back as the same double.  Sample::source is not written.
-// A camera that is all zeros (see is_blank) reads back as no camera.
+// An all-zero camera (see is_blank) reads back as no camera.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,8 +13,8 @@
 namespace kinecal {
 
 /// Writes all samples in their order, each followed by `---`.
-/// @throws std::invalid_argument  if a sample has more or fewer positions than joint names; the
-///                                samples before it have then been written
+/// @throws std::invalid_argument  if the numbers of positions and joint names of a sample differ;
+///                                the samples before it have then been written
 void write_samples(std::ostream& out, const std::vector<Sample>& samples);
 
 }  // namespace kinecal

@@ -35,7 +35,7 @@ namespace detail {
                      numbers_to_yaml(sample.joint_positions));
 }
 
-/// Nothing for a sample without conditions.
+/// Empty for a sample without conditions.
 [[nodiscard]] inline std::string conditions_to_yaml(const Sample& sample) {
   std::string all;
   for (const auto& [name, value] : sample.conditions) {

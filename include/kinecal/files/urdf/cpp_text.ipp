@@ -35,8 +35,8 @@ namespace kinecal::detail {
   return all;
 }
 
-/// A string literal.  Bytes beyond ASCII are escaped, for compilers may assume different encodings;
-/// so is '?', which may begin a trigraph.
+/// A string literal.  Escapes bytes beyond ASCII, because compilers may assume different encodings,
+/// and '?', which may begin a trigraph.
 [[nodiscard]] inline std::string cpp_string(std::string_view text) {
   std::string literal = "\"";
   for (const char c : text) {
@@ -51,7 +51,7 @@ namespace kinecal::detail {
   return literal + '"';
 }
 
-/// True if this can be the name of a namespace: an identifier that neither C++ nor kinecal uses.
+/// True for a valid namespace name: an identifier that neither C++ nor kinecal uses.
 [[nodiscard]] inline bool is_namespace_name(std::string_view name) {
   static constexpr std::string_view kTaken =
       " kinecal std alignas alignof and and_eq asm auto bitand bitor bool break case catch "
@@ -75,7 +75,7 @@ namespace kinecal::detail {
   return end == std::string_view::npos || is_namespace(name.substr(end + 2));
 }
 
-/// The letters and digits of a name; whatever stands between them becomes one '_'.
+/// The letters and digits of a name; anything between them becomes one '_'.
 [[nodiscard]] inline std::string joined_words(std::string_view name) {
   std::string joined;
   bool in_word = false;
@@ -88,8 +88,7 @@ namespace kinecal::detail {
   return joined;
 }
 
-/// The joints in the order of the text, except that each stands after the joint that moves its
-/// parent link.
+/// The joints in text order, but each after the joint that moves its parent link.
 [[nodiscard]] inline std::vector<const Joint*> joints_parents_first(const Robot& robot) {
   std::vector<const Joint*> ordered;
   std::set<const Joint*> placed;
@@ -133,8 +132,8 @@ namespace kinecal::detail {
   return text + "},\n";
 }
 
-/// The namespace of a robot's header: the one asked for, or else the robot's name.
-/// @throws InputError  if it cannot be a namespace
+/// The namespace of a robot's header: the requested one, or else the robot's name.
+/// @throws InputError  if it is not a valid namespace
 [[nodiscard]] inline std::string robot_namespace(const UrdfText& source,
                                                  const std::string& asked_for) {
   if (is_namespace(asked_for)) return asked_for;

@@ -4,11 +4,11 @@
 //
 //   frame correction             origin <- origin * correction
 //   offset, OffsetStyle::rising  <calibration rising="..."> <- rising + offset; `falling` likewise
-//                                if it is there
+//                                if present
 //   offset, OffsetStyle::origin  origin <- origin * correction * motion(axis, offset)
 //
-// The last one holds because motions along one axis add up: motion(offset) * motion(q) =
-// motion(q + offset).  A joint that mimics an offset joint moves with it; folded into origins, the
+// The last one is valid because motions along one axis add up: motion(offset) * motion(q) =
+// motion(q + offset).  A mimic joint moves with the joint it follows; folded into origins, the
 // offset reaches it as motion(axis, multiplier * offset).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -29,11 +29,11 @@ struct JointPatch {
   Pose<double> correction = {};  ///< of the joint's frame, after its origin; metres
 };
 
-/// Where joint offsets go: into <calibration rising>, or into the joint's origin, which every
+/// Where to write joint offsets: into <calibration rising>, or into the joint's origin, which every
 /// program reads.
 enum class OffsetStyle { rising, origin };
 
-/// The text of a URDF with calibration written into it.
+/// The text of a URDF with the calibration written into it.
 /// @param text               the URDF, UTF-8
 /// @param name_for_messages  name of the text in messages: its file
 /// @param robot              what parse_urdf() read from the text

@@ -1,7 +1,7 @@
 // The edits of a URDF's text: definitions of patch_urdf.hpp.
 //
-// Numbers are rewritten one by one, where they differ.  A missing element or attribute is created
-// in the style of its neighbours, with their quotes, indentation and line ends.
+// Numbers are rewritten one by one, where they differ.  Missing elements or attributes are created
+// in the style of their neighbours, with the same quotes, indentation and line ends.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,7 +30,7 @@ struct UrdfJointEditor {
   std::vector<TextEdit>& edits;
   Diagnostics diagnostics = {};
 
-  /// A tag without attributes gets the quotes of the joint's tag.
+  /// A tag without attributes uses the quotes of the joint's tag.
   [[nodiscard]] XmlTagEditor tag_of(pugi::xml_node element) const {
     StartTag tag = scan_start_tag(source.text(), source.offset(element));
     if (tag.attributes.empty()) {
@@ -39,7 +39,7 @@ struct UrdfJointEditor {
     return {source.text(), tag, edits};
   }
 
-  /// origin <- origin * moved_by; numbers that moved_by does not change stay as they are.
+  /// origin <- origin * moved_by; numbers that do not change keep their text.
   void move_origin(const Pose<double>& moved_by) {
     const bool is_shifted = moved_by.translation != Vector3<double>::Zero();
     const bool is_turned = moved_by.rotation != Matrix3<double>::Identity();
@@ -58,7 +58,7 @@ struct UrdfJointEditor {
     editor.finish();
   }
 
-  /// Adds to `rising`, and to `falling` if it is there.
+  /// Adds to `rising`, and to `falling` if present.
   void add_rising(double offset) {
     if (offset == 0.0) return;
     const pugi::xml_node calibration = joint.child("calibration");
@@ -116,7 +116,7 @@ struct UrdfJointEditor {
   }
 };
 
-/// How one joint changes in the text.
+/// The change of one joint in the text.
 struct UrdfJointChange {
   Pose<double> moved_by = {};  ///< origin <- origin * moved_by
   double rising = 0.0;         ///< to be added to <calibration rising>
@@ -150,7 +150,7 @@ inline void check_patch(const UrdfText& source, const Robot& robot, const JointP
   }
 }
 
-/// How each joint changes by all patches together.
+/// The changes of all joints by all patches together.
 [[nodiscard]] inline UrdfJointChanges urdf_joint_changes(const UrdfText& source, const Robot& robot,
                                                          const std::vector<JointPatch>& patches,
                                                          OffsetStyle style) {

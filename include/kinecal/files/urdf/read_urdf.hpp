@@ -1,4 +1,4 @@
-// A robot from its URDF, read by urdfdom.
+// Reads a robot from its URDF, with urdfdom.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal {
 
-/// The robot that a URDF describes, its joints in the order of the text.
+/// The robot described by a URDF, with its joints in text order.
 /// @param text               the URDF, UTF-8
 /// @param name_for_messages  name of the text in messages: its file
 /// @throws InputError  "file:line: message" if the text is not a URDF or its joints are not a tree
@@ -19,8 +19,8 @@ namespace kinecal {
 /// @throws InputError  if it cannot be read
 [[nodiscard]] std::string read_urdf_text(const std::string& path);
 
-/// The robot that a URDF file describes.
-/// @throws InputError  if the file cannot be read, and as parse_urdf()
+/// The robot described by a URDF file.
+/// @throws InputError  if the file cannot be read, and like parse_urdf()
 [[nodiscard]] Robot read_urdf(const std::string& path);
 
 }  // namespace kinecal

@@ -1,9 +1,8 @@
-// A robot from its URDF: definitions of read_urdf.hpp.
+// Reads a robot from its URDF: definitions of read_urdf.hpp.
 //
-// urdfdom decides what a valid URDF is.  Before it runs, the errors that people often make are
-// searched for and reported with file and line, for urdfdom has no clear message for them.  The
-// rotation of an origin is computed from the roll, pitch and yaw of the file, not from urdfdom's
-// quaternion, which rounds.
+// urdfdom decides what a valid URDF is.  Common errors for which urdfdom has no clear message are
+// found before it runs and reported with file and line.  The rotation of an origin is computed from
+// the roll, pitch and yaw in the file, not from urdfdom's quaternion, which rounds.
 // Source: URDF specification, <joint>.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -74,7 +73,7 @@ inline void check_urdf_joint(const UrdfText& source, pugi::xml_node joint,
   (void)source.vector(joint.child("axis"), "xyz", diagnostics);
 }
 
-/// The robot made of these joints, which must be a tree.
+/// The robot with these joints, which must be a tree.
 /// @throws InputError  if the joints are not a robot, or not a tree
 [[nodiscard]] inline Robot make_urdf_robot(const UrdfText& source, std::vector<Joint> joints) {
   try {
@@ -89,8 +88,8 @@ inline void check_urdf_joint(const UrdfText& source, pugi::xml_node joint,
   }
 }
 
-/// Reports the errors of the joints, and of how they are connected, for which urdfdom has no clear
-/// message.  (urdfdom would also leak links that form a circle.)
+/// Reports errors of the joints and their connections for which urdfdom has no clear message.
+/// (urdfdom would also leak links that form a circle.)
 inline void check_urdf_joints(const UrdfText& source) {
   Diagnostics diagnostics;
   const std::string robot = source.robot().attribute("name").value();
@@ -111,7 +110,7 @@ inline void check_urdf_joints(const UrdfText& source) {
   (void)make_urdf_robot(source, std::move(joints));
 }
 
-/// The joint with the numbers of the file, where urdfdom's are rounded.
+/// The joint with the exact numbers of the file; urdfdom rounds.
 [[nodiscard]] inline Joint make_urdf_joint(const UrdfText& source, pugi::xml_node node,
                                            const urdf::Joint& parsed) {
   Joint joint;

@@ -1,4 +1,4 @@
-// The text of a URDF: its joints, their numbers, and the lines that both stand in.
+// The text of a URDF: its joints and numbers, with their lines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -32,7 +32,7 @@ class UrdfText : public XmlText {
     return robot().find_child_by_attribute("joint", "name", name.c_str());
   }
 
-  /// Place of the first joint, or else of the first link, that a message names in '' or [].
+  /// Location of the first joint, or else of the first link, that a message names in '' or [].
   [[nodiscard]] SourceLocation place_of_name_in(std::string_view message) const {
     for (const char* kind : {"joint", "link"}) {
       for (std::size_t open = message.find_first_of("'["); open != std::string_view::npos;
@@ -48,7 +48,7 @@ class UrdfText : public XmlText {
   }
 
   /// The numbers of an attribute.
-  /// @param count  how many there must be; others are an error
+  /// @param count  required number; any other is an error
   /// @return       (count) zeros if there is no such attribute, or an error
   [[nodiscard]] std::vector<double> numbers(pugi::xml_node element, const char* attribute,
                                             std::size_t count, Diagnostics& diagnostics) const {
@@ -75,7 +75,7 @@ class UrdfText : public XmlText {
     return {values[0], values[1], values[2]};
   }
 
-  /// Throws the errors gathered.  If xacro has not been run, only the first error and the likely
+  /// Throws the collected errors.  If xacro has not been run, only the first error and the likely
   /// cause.
   /// @throws InputError  if there are errors
   void throw_if_errors(const Diagnostics& diagnostics) const {

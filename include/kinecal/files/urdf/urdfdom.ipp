@@ -1,5 +1,5 @@
-// A URDF parsed by urdfdom.  What urdfdom would print becomes the text of an error: a library never
-// prints.
+// Parses a URDF with urdfdom.  Messages that urdfdom would print become the text of an error,
+// because a library never prints.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,8 +18,8 @@
 
 namespace kinecal::detail {
 
-/// Gathers the messages of urdfdom while it exists.  console_bridge has one output for the whole
-/// process: a second thread waits.
+/// Collects the messages of urdfdom during its lifetime.  console_bridge has one output per
+/// process, so a second thread waits.
 class UrdfdomMessages : public console_bridge::OutputHandler {
  public:
   UrdfdomMessages()
@@ -53,7 +53,7 @@ class UrdfdomMessages : public console_bridge::OutputHandler {
   console_bridge::LogLevel previous_level_;
 };
 
-/// Reports attributes that an element has twice, the first ones, for which urdfdom has no clear message.
+/// Reports duplicate attributes of an element, for which urdfdom has no clear message.
 struct DoubleAttributes : pugi::xml_tree_walker {
   DoubleAttributes(const UrdfText& from, Diagnostics& to) : source(from), diagnostics(to) {}
 
@@ -73,9 +73,9 @@ struct DoubleAttributes : pugi::xml_tree_walker {
   Diagnostics& diagnostics;
 };
 
-/// urdfdom's model of the robot.  urdfdom gets the text of the tree, in which the white space of
-/// attributes is normalized: a tab or a line break between two numbers would make it fail.
-/// @throws InputError  with what urdfdom says, if it refuses the text
+/// urdfdom's model of the robot.  urdfdom gets the text of the tree with normalized white space in
+/// attributes: it would fail on a tab or a line break between two numbers.
+/// @throws InputError  with urdfdom's message, if it rejects the text
 [[nodiscard]] inline urdf::ModelInterfaceSharedPtr parse_with_urdfdom(const UrdfText& source) {
   std::ostringstream text;
   text.imbue(std::locale::classic());

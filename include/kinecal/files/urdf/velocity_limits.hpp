@@ -1,4 +1,4 @@
-// How fast the joints of a URDF may move.
+// Velocity limits of the joints of a URDF.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal {
 
-/// Velocity limits by joint, rad/s or m/s.  Joints without a positive one are left out.
+/// Velocity limits by joint, rad/s or m/s.  Skips joints without a positive one.
 /// @param text               the URDF, UTF-8
 /// @param name_for_messages  name of the text in messages: its file
 /// @throws InputError  "file:line: message" if the text is not a URDF, or a limit is not a number

@@ -1,4 +1,4 @@
-// What the links of a URDF look like: its <visual> elements.
+// The appearance of a URDF's links: its <visual> elements.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,11 +20,11 @@ enum class VisualShape {
   mesh       ///< of a file
 };
 
-/// What a link looks like, or a part of it.
+/// The appearance of a link, or of a part of it.
 struct Visual {
   std::string link;                            ///< its name
   Pose<double> link_T_visual;                  ///< metres
-  VisualShape shape = VisualShape::box;        ///< decides which of the numbers count
+  VisualShape shape = VisualShape::box;        ///< decides which of the numbers below apply
   std::array<double, 3> size{};                ///< of a box, metres
   double radius = 0.0;                         ///< of a cylinder or sphere, metres
   double length = 0.0;                         ///< of a cylinder, metres
@@ -33,8 +33,7 @@ struct Visual {
   std::array<double, 4> color{0.7, 0.7, 0.7, 1.0};  ///< red, green, blue and opacity, 0 to 1
 };
 
-/// The visuals of all links, in the order of the text.  One that cannot be drawn is left out with a
-/// warning.
+/// The visuals of all links, in text order.  Skips those that cannot be drawn, with a warning.
 /// @param text               the URDF, UTF-8
 /// @param name_for_messages  name of the text in messages: its file
 /// @throws InputError  "file:line: message" if the text is not a URDF

@@ -22,8 +22,8 @@ struct NoVisual {
   std::string why;
 };
 
-/// Reads <visual> elements.  They are no reason to refuse a robot, so nothing here is an error of the
-/// file.
+/// Reads <visual> elements.  They are no reason to reject a robot, so nothing here is an error of
+/// the file.
 class VisualReader {
  public:
   VisualReader(const UrdfText& urdf, Diagnostics& diagnostics)
@@ -73,7 +73,7 @@ class VisualReader {
                    (N == 1 ? "a number" : std::to_string(N) + " numbers")};
   }
 
-  /// The same of sizes, which must be there and be positive.
+  /// The same for sizes, which are required and must be positive.
   template <std::size_t N>
   [[nodiscard]] static std::array<double, N> sizes(pugi::xml_node element, const char* attribute) {
     const auto all = numbers<N>(element, attribute);

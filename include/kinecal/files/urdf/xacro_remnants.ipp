@@ -1,7 +1,7 @@
-// What xacro left in a URDF: elements <xacro:...>, and attributes with ${...} or $(...).
+// Remnants of xacro in a URDF: elements <xacro:...>, and attributes with ${...} or $(...).
 //
-// ROS ignores elements that it does not know, so a robot works although some are left.  A remnant is
-// inert if no link, joint or number of a joint can depend on it:
+// ROS ignores unknown elements, so a robot may work although some are left.  A remnant is inert if
+// no link, joint or number of a joint can depend on it:
 //
 //   inert    definitions (property, arg, macro); what stands in a <link>, <material>, <gazebo> or any
 //            other element of the robot; a call of a macro that this file defines without links and joints
@@ -20,7 +20,7 @@
 
 namespace kinecal::detail {
 
-/// An element that xacro should have replaced, or that has such an attribute.
+/// An element that xacro should have replaced, or one with such an attribute.
 struct XacroRemnant {
   pugi::xml_node element;
   std::string text;      ///< "<xacro:hand>", or "xyz="${x} 0 0" of <origin>"
@@ -38,7 +38,7 @@ class XacroRemnants {
   [[nodiscard]] const std::vector<XacroRemnant>& all() const { return all_; }
 
  private:
-  /// Where an element stands.
+  /// Where an element is.
   enum class Place { robot, joint, elsewhere };
 
   /// The name without the prefix of xacro; empty for elements that are not of xacro.
@@ -59,8 +59,8 @@ class XacroRemnants {
     return name == "property" || name == "arg" || name == "macro";
   }
 
-  /// Whether links or joints could come of an element of xacro that stands beside them.
-  /// @param in_macro  whether it is in one: calls of others are not followed, as they may form a circle
+  /// True if an element of xacro could expand to links or joints at its place.
+  /// @param in_macro  true inside a macro: does not follow calls of others, which may form a circle
   [[nodiscard]] bool could_hold_links(pugi::xml_node element, bool in_macro = false) const {
     const std::string_view name = xacro_name(element);
     if (is_definition(name)) return false;
@@ -81,13 +81,13 @@ class XacroRemnants {
     });
   }
 
-  /// Whether a joint lacks something that an element of xacro in it could hold.
+  /// True if a joint lacks something that an element of xacro in it could supply.
   [[nodiscard]] static bool lacks_a_part(pugi::xml_node joint) {
     return !joint.child("origin") || !joint.child("parent") || !joint.child("child") ||
            (std::string_view(joint.attribute("type").value()) != "fixed" && !joint.child("axis"));
   }
 
-  /// @param matters  whether the element is of a joint
+  /// @param matters  true if the element belongs to a joint
   void add_expressions(pugi::xml_node element, bool matters) {
     const bool is_link = std::string_view(element.name()) == "link" && element.parent() == robot_;
     for (const pugi::xml_attribute attribute : element.attributes()) {
@@ -122,7 +122,7 @@ class XacroRemnants {
   std::vector<XacroRemnant> all_;
 };
 
-/// Whether links, joints or numbers of joints may be missing, because xacro has not been run.
+/// True if links, joints or numbers of joints may be missing, because xacro has not been run.
 [[nodiscard]] inline bool is_unexpanded(pugi::xml_node robot) {
   const XacroRemnants remnants(robot);
   return std::any_of(remnants.all().begin(), remnants.all().end(),

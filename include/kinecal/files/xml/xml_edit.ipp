@@ -1,9 +1,9 @@
-// Edits of the text of an XML file that leave every other byte as it is.
+// Edits the text of an XML file and leaves every other byte unchanged.
 //
-// An XML library that writes its tree back loses what the tree does not hold: line ends,
-// indentation, the order and quotes of attributes.  Here the tree only says where an element
-// begins.  Its start tag is scanned in the text, and the edits are made there.  The text is
-// well-formed: the library has parsed it before.
+// An XML library that writes its tree loses line ends, indentation, and the order and quotes of
+// attributes.  Here the tree only gives the position of an element.  Its start tag is scanned in
+// the text, and the edits are made there.  The text is well-formed, because the library has already
+// parsed it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -74,19 +74,19 @@ struct StartTag {
     return nullptr;
   }
 
-  /// How an empty tag in the style of this one ends: "/>" or " />".
+  /// The end of an empty tag in this style: "/>" or " />".
   [[nodiscard]] std::string_view closing() const {
     return empty && end - attributes_end > 2 ? " />" : "/>";
   }
 };
 
-/// @throws InputError  if a search found nothing: the text is not the one that was parsed
+/// @throws InputError  if a search fails: the text is not the one that was parsed
 [[nodiscard]] inline std::size_t found_in_tag(std::size_t position) {
   if (position == std::string_view::npos) throw InputError("the text ends inside an XML tag");
   return position;
 }
 
-/// The start tag at `begin`, where its '<' stands.
+/// The start tag at `begin`, the position of its '<'.
 [[nodiscard]] inline StartTag scan_start_tag(std::string_view text, std::size_t begin) {
   StartTag tag;
   tag.begin = begin;
@@ -106,7 +106,7 @@ struct StartTag {
   return tag;
 }
 
-/// Where the element that begins at `begin` ends: after its end tag.
+/// The end of the element that begins at `begin`: after its end tag.
 [[nodiscard]] inline std::size_t element_end(std::string_view text, std::size_t begin) {
   const auto behind = [&](std::string_view mark, std::size_t from) {
     return found_in_tag(text.find(mark, from)) + mark.size();
@@ -134,8 +134,8 @@ struct StartTag {
   return at;
 }
 
-/// The white space before `at`, from the last line break on: what to insert before a new element
-/// that gets its own line.
+/// The white space before `at`, from the last line break on, for inserting a new element on its own
+/// line.
 [[nodiscard]] inline std::string line_start_before(std::string_view text, std::size_t at) {
   const std::string_view before = text.substr(0, at);
   const std::size_t last = before.find_last_not_of(kXmlSpace);

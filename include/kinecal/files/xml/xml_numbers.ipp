@@ -1,5 +1,5 @@
-// Lists of numbers in XML attributes, such as xyz="0 0.1 0": read with their places, and rewritten
-// one by one where they differ.
+// Lists of numbers in XML attributes, such as xyz="0 0.1 0": reads them with their positions, and
+// rewrites those that differ.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,13 +20,13 @@
 
 namespace kinecal::detail {
 
-/// A number and where in a text it stands.
+/// A number and its position in a text.
 struct NumberToken {
   std::size_t begin, end;
   double value;
 };
 
-/// The numbers of a text, separated by white space; nothing if any of them is not a finite number.
+/// The numbers of a text, separated by white space; nullopt unless all are finite numbers.
 /// Independent of the locale.
 [[nodiscard]] inline std::optional<std::vector<NumberToken>> number_tokens(std::string_view text) {
   std::vector<NumberToken> tokens;

@@ -1,5 +1,5 @@
-// The text of an XML file beside its tree: errors name the line, and each element of the tree is
-// found in the text.
+// The text of an XML file beside its tree: errors name the line, and each element of the tree has a
+// position in the text.
 //
 // The tree is parsed as UTF-8, byte for byte, so the offset of an element in the tree is its offset
 // in the text.  White space in attributes is normalized as in the XML specification: a tab or a
@@ -18,7 +18,7 @@
 
 namespace kinecal::detail {
 
-/// What an XML file should be, such as "a URDF", and the name of its root, such as "robot".
+/// The expected kind of an XML file, such as "a URDF", and the name of its root, such as "robot".
 struct XmlKind {
   std::string what, root;
 };
@@ -53,7 +53,7 @@ class XmlText {
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
 
-  /// Where in the text the '<' of an element stands.
+  /// Position of an element's '<' in the text.
   [[nodiscard]] std::size_t offset(pugi::xml_node element) const {
     return static_cast<std::size_t>(element.offset_debug()) - 1;
   }

@@ -1,8 +1,8 @@
-// A map of a configuration: values by key, errors with their places.
+// A map of a configuration: values by key, errors with source locations.
 //
-// A key becomes known when the reader asks for it.  Keys that nobody asked for are reported at the
-// end: as an error if the key is near a known one, since a misspelt `free_parms` must not silently
-// free nothing, and as a warning otherwise.
+// A key becomes known when the reader asks for it.  At the end, unknown keys are reported: as an
+// error if the key is near a known one, because a misspelt `free_parms` must not silently free
+// nothing; otherwise as a warning.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -31,7 +31,7 @@ struct ConfigEntry {
 class ConfigMap {
  public:
   /// @param map      a map; must outlive this
-  /// @param subject  what the map describes, for messages: "model 'arm'"; may be empty
+  /// @param subject  the map's meaning, for messages: "model 'arm'"; may be empty
   ConfigMap(const YamlNode& map, SourceLocation place, std::string subject,
             Diagnostics& diagnostics)
       : place_(std::move(place)), subject_(std::move(subject)), diagnostics_(&diagnostics) {
@@ -56,7 +56,8 @@ class ConfigMap {
     diagnostics_->warning(place, subject_.empty() ? message : subject_ + ": " + message);
   }
 
-  /// "; did you mean ...?", and nothing after many errors: hostile files have thousands of names.
+  /// "; did you mean ...?"; nothing after many errors, because hostile files have thousands of
+  /// names.
   template <class Names>
   [[nodiscard]] std::string did_you_mean(const std::string& name, const Names& names) const {
     constexpr std::size_t kMostErrors = 50;
@@ -69,7 +70,7 @@ class ConfigMap {
     return use(key);
   }
 
-  /// The entry of a name that the user chose, or nullptr.  Other names may be near it.
+  /// The entry of a user-defined name, or nullptr.  Other names may be near it.
   const ConfigEntry* use(const std::string& name) {
     used_.insert(name);
     return peek(name);
@@ -80,19 +81,19 @@ class ConfigMap {
     return found == indices_.end() ? nullptr : &entries_[found->second];
   }
 
-  /// Keys that other programs read.
+  /// Ignores keys of other programs.
   void ignore(std::initializer_list<const char*> keys) {
     for (const char* key : keys) find(key);
   }
 
-  /// A text; nothing, and an error, if it is missing or not a text.
+  /// A required text; an error and nullopt if it is missing or not a text.
   std::optional<std::string> required_text(const std::string& key) {
     if (find(key) != nullptr) return text(key);
     error(place_, key + " is missing");
     return std::nullopt;
   }
 
-  /// A text; nothing if it is missing.
+  /// An optional text.
   std::optional<std::string> text(const std::string& key) {
     return read<std::string>(key, config_text, "a text");
   }
@@ -136,14 +137,14 @@ class ConfigMap {
     return elements;
   }
 
-  /// A map; nothing if it is missing or empty.
+  /// A map; nullopt if it is missing or empty.
   std::optional<ConfigMap> map(const std::string& key, const std::string& subject) {
     const ConfigEntry* entry = find(key);
     if (entry == nullptr || entry->value.is_null()) return std::nullopt;
     return map(*entry, subject);
   }
 
-  /// An entry as a map; nothing, and an error, if it is not a map.
+  /// An entry as a map; an error and nullopt if it is not a map.
   std::optional<ConfigMap> map(const ConfigEntry& entry, const std::string& subject) const {
     if (entry.value.is_map()) return ConfigMap(entry.value, entry.place, subject, *diagnostics_);
     const std::string what = entry.key.empty() ? subject : entry.key;
@@ -151,7 +152,7 @@ class ConfigMap {
     return std::nullopt;
   }
 
-  /// Takes over the entries of these keys that only the other map has.
+  /// Inherits the entries of these keys that only the other map has.
   void inherit(ConfigMap& other, std::initializer_list<const char*> keys) {
     for (const char* key : keys) {
       const ConfigEntry* entry = other.find(key);
@@ -159,7 +160,7 @@ class ConfigMap {
     }
   }
 
-  /// @param strict  an error for every unknown key; else for those that resemble a known one
+  /// @param strict  an error for every unknown key; else only for those that resemble a known one
   void report_unknown(bool strict = false) const {
     for (const ConfigEntry& entry : entries_) {
       if (used_.contains(entry.key)) continue;
@@ -187,7 +188,7 @@ class ConfigMap {
     return key.is_scalar() && key.text == "<<";
   }
 
-  /// `<<: *map` or `<<: [*map, ...]`: what the map itself does not have; an earlier map goes first.
+  /// `<<: *map` or `<<: [*map, ...]`: adds what the map itself lacks; earlier maps take precedence.
   /// Source: Merge Key Language-Independent Type for YAML 1.1
   void merge(const YamlNode& merged, int line) {
     if (merged.is_list()) {
@@ -232,7 +233,7 @@ class ConfigMap {
   std::vector<ConfigEntry> entries_;
   std::map<std::string, std::size_t> indices_;  ///< key -> index in entries_
   std::set<std::string> words_;                 ///< known keys
-  std::set<std::string> used_;                  ///< known keys and names that the user chose
+  std::set<std::string> used_;                  ///< known keys and user-defined names
 };
 
 /// One of a few words; the fallback, and an error, for any other.

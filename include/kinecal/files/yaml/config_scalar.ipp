@@ -1,7 +1,7 @@
-// Numbers, counts, flags and texts from the scalars of a configuration; nothing from other scalars.
+// Numbers, counts, flags and texts from the scalars of a configuration; nullopt for other scalars.
 //
-// The program's locale does not matter.  A tag that is not YAML's, as in `!degrees 90`, changes the
-// meaning of a scalar, so such a scalar is not read.
+// Independent of the locale.  A tag that is not YAML's, as in `!degrees 90`, changes the meaning of
+// a scalar, so such a scalar is rejected.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,7 +25,7 @@ namespace kinecal::detail {
   return node.is_scalar() && (tag.empty() || tag == "!" || tag.starts_with("tag:yaml.org,2002:"));
 }
 
-/// What a node is, for messages: 'abc', a list, a map, empty.
+/// A node's description in messages: 'abc', a list, a map, empty.
 [[nodiscard]] inline std::string describe_config(const YamlNode& node) {
   if (node.is_list()) return "a list";
   if (node.is_map()) return "a map";
@@ -36,7 +36,7 @@ namespace kinecal::detail {
   return is_config_scalar(node) ? "'" + text + "'" : "'" + node.tag + " " + text + "'";
 }
 
-/// A text of at least one character, without control characters: texts are names, and are printed.
+/// A nonempty text without control characters: texts are names, and are printed.
 [[nodiscard]] inline std::optional<std::string> config_text(const YamlNode& node) {
   if (!is_config_scalar(node) || node.text.empty()) return std::nullopt;
   if (has_control_characters(node.text)) return std::nullopt;

@@ -1,8 +1,8 @@
-// YAML text as events: documents, maps, lists and scalars in the order of the text, each with its
-// line.  libyaml parses; no tree is built.
+// YAML text as events: documents, maps, lists and scalars in text order, each with its line.
+// libyaml parses; no tree is built.
 //
-// Added to libyaml: a document may follow `...` without `---` (YAML 1.2), an alias must have its
-// anchor in the same document, and depth is bounded, so that no text makes a handler grow.
+// Beyond libyaml: a document may follow `...` without `---` (YAML 1.2), an alias must have its
+// anchor in the same document, and the depth is limited, so that no text exhausts memory.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,8 +20,8 @@
 
 namespace kinecal::detail {
 
-/// Receives the events of documents.  Keys and values of a map come in turns; what `map_starts` or
-/// `list_starts` began, `ends` ends.  Lines count from 1; a text is valid during the call only.
+/// Receives the events of documents.  Keys and values of a map alternate; `ends` ends what
+/// `map_starts` or `list_starts` began.  Lines count from 1; a text is valid only during the call.
 template <class H>
 concept YamlHandler = requires(H& handler, int line, std::string_view text) {
   handler.document_starts();
@@ -50,7 +50,7 @@ class YamlEvents {
 
   /// Passes the next document to the handler.
   /// @return            false at the end of the text
-  /// @throws YamlError  where the text is not YAML; nothing can be read after it
+  /// @throws YamlError  if the text is not YAML there; nothing after it can be read
   template <YamlHandler H>
   bool next_document(H& handler) {
     for (;;) {
@@ -104,8 +104,8 @@ class YamlEvents {
     }
   }
 
-  /// Anchor (`&name`, or the name after an alias's `*`) and tag (`!name`) of what the handler is
-  /// called for; empty without.  Valid during the call only.
+  /// Anchor (`&name`, or the name after an alias's `*`) and tag (`!name`) of the current event;
+  /// empty if absent.  Valid only during the call.
   [[nodiscard]] std::string_view anchor() const { return anchor_; }
   [[nodiscard]] std::string_view tag() const { return tag_; }
 
@@ -179,7 +179,7 @@ class YamlEvents {
                                       begin < line ? fmt::format(" from line {}", begin) : ""));
   }
 
-  std::string_view part_, rest_;  ///< what is being read, and what follows it
+  std::string_view part_, rest_;  ///< the part being read, and the rest
   int line_ = 1, next_line_;      ///< of their first characters
   yaml_parser_t parser_{};
   std::set<std::string, std::less<>> anchors_;  ///< of this document

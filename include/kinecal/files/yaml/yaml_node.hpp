@@ -12,12 +12,12 @@
 
 namespace kinecal::detail {
 
-/// A value of a YAML document, which owns all values below it.  An alias is a copy.
+/// A value of a YAML document; owns all values below it.  An alias is a copy.
 struct YamlNode {
-  /// What a node is.
+  /// Kinds of nodes.
   enum class Kind : std::uint8_t { null, scalar, list, map };
 
-  Kind kind = Kind::null;       ///< what this node is
+  Kind kind = Kind::null;       ///< of this node
   int line = 0;                 ///< from 1; that of the anchor for an alias; 0 without a document
   std::string text;             ///< of a scalar, without quotes
   std::string tag;              ///< "!degrees" of `!degrees 90`; empty without a tag
@@ -33,7 +33,7 @@ struct YamlNode {
   [[nodiscard]] const YamlNode* find(std::string_view key) const;
 };
 
-/// Most bytes of a file that becomes a tree, and of the tree.
+/// Largest size of a file that becomes a tree, and of the tree, bytes.
 inline constexpr std::size_t kMostYamlBytes = std::size_t{1} << 27;
 
 /// The text of a YAML file.
@@ -42,7 +42,7 @@ inline constexpr std::size_t kMostYamlBytes = std::size_t{1} << 27;
 
 /// All documents of a text.
 /// @param path         of the file, for messages
-/// @throws InputError  "path:line: ..." where the text is not YAML, lists and maps are nested more
+/// @throws InputError  "path:line: ..." if the text is not YAML, lists and maps are nested more
 ///                     than 500 deep, or the tree is larger than kMostYamlBytes
 [[nodiscard]] std::vector<YamlNode> parse_yaml(std::string_view text, const std::string& path);
 

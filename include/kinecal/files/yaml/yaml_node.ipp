@@ -1,7 +1,7 @@
 // Builds trees from the events of libyaml.
 //
-// Files may be hostile.  Memory is charged before it is used, aliases like values that are written
-// out, so `&b [*a, *a]`, `&c [*b, *b]` and so on end in an error.  An alias inside of what it names
+// Files may be hostile.  Memory is counted before it is used, and aliases count like copies, so
+// `&b [*a, *a]`, `&c [*b, *b]` and so on end in an error.  An alias inside the node that it names
 // is a copy of an empty list or map: no tree contains itself.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -61,7 +61,7 @@ class YamlTrees {
     std::size_t name = kNoName;  ///< index in named_ of a node with an anchor
   };
 
-  /// A node without its content, which can be referred to from now on.
+  /// A node without its content, which aliases may refer to from now on.
   Open begin(YamlNode::Kind kind, int line, std::string_view text) {
     Open open{{kind, line, std::string(text), std::string(events_.tag()), {}, {}}};
     charge(open.node, line, 0);
@@ -84,7 +84,7 @@ class YamlTrees {
     (is_key ? parent.keys : parent.items).push_back(std::move(node));
   }
 
-  /// Counts the bytes of a node that is to be made.
+  /// Counts the bytes of a node before it is made.
   /// @param depth  of the lists and maps around it
   void charge(const YamlNode& node, int line, int depth) {
     if (depth > YamlEvents::kDeepest) {

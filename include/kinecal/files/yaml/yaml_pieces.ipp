@@ -1,4 +1,4 @@
-// Cuts a file of YAML documents into pieces that can be parsed independently, in any order.
+// Splits a file of YAML documents into pieces that can be parsed independently, in any order.
 //
 // A line that begins with `---` in its first column, alone or before a blank, always begins a
 // document: no scalar may contain it (YAML 1.2, 9.1.2).  Directives (%YAML, %TAG) stay with the
@@ -37,7 +37,7 @@ struct YamlPiece {
   return at + 3 < text.size() && kBlank.find(text[at + 3]) != std::string_view::npos;
 }
 
-/// True if the last line before `at` is a directive, empty lines and comments apart.
+/// True if the last line before `at` is a directive, ignoring empty lines and comments.
 [[nodiscard]] inline bool follows_directive(std::string_view text, std::size_t at) {
   while (at > 0) {
     const std::size_t before = text.substr(0, at - 1).rfind('\n');
@@ -85,7 +85,7 @@ struct YamlPiece {
 
 class YamlPieces {
  public:
-  /// Bounds the piece of a file without `---`.
+  /// Limits the piece of a file without `---`.
   static constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 
   /// @param bytes  approximate size of a piece; a document is never cut
@@ -103,7 +103,8 @@ class YamlPieces {
       if (text.size() > most_) {
         throw YamlError(line_, fmt::format("no '---' within {} bytes", text.size()));
       }
-      // Only part of a marker may have been read; the one that begins this piece does not end it.
+      // Possibly only part of a marker has been read; the one that begins this piece does not end
+      // it.
       const std::size_t from = text.size() < 4 ? 0 : text.size() - 4;
       read(text);
       cut = last_yaml_start(text, from);
@@ -131,7 +132,7 @@ class YamlPieces {
 
   std::istream& in_;
   std::size_t bytes_, most_;
-  std::string rest_;  ///< read already; belongs to the next piece
+  std::string rest_;  ///< already read; belongs to the next piece
   int line_ = 1;      ///< of rest_
   char last_ = '\n';
 };

@@ -18,7 +18,7 @@ namespace kinecal {
 namespace detail {
 
 /// True for a word that every YAML reader takes for a string: letters, digits and _ / . - after a
-/// letter, an underscore or a slash, except for the words of YAML itself.
+/// letter, an underscore or a slash, except the words of YAML itself.
 [[nodiscard]] inline bool is_plain_yaml_word(std::string_view word) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto starts = [&](char c) { return is_letter(c) || c == '_' || c == '/'; };
@@ -35,9 +35,9 @@ namespace detail {
   return std::find(kReserved.begin(), kReserved.end(), lower) == kReserved.end();
 }
 
-/// The escape for the first character of a text (UTF-8) in double quotes, if it needs one: quotes
-/// and backslashes, control characters, and what YAML takes for a line break or refuses.
-/// @return  size of the character in bytes, and its escape; size 0 if it needs none
+/// The escape for the first character of a text (UTF-8) in double quotes, if needed: quotes and
+/// backslashes, control characters, and characters that YAML takes for a line break or rejects.
+/// @return  size of the character in bytes, and its escape; size 0 if not needed
 [[nodiscard]] inline std::pair<std::size_t, std::string> yaml_escape(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (text[0] == '"' || text[0] == '\\') return {1, std::string("\\") + text[0]};

@@ -1,4 +1,4 @@
-// The connection of web_socket.hpp, by Boost.Beast.
+// The connection of web_socket.hpp, with Boost.Beast.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace kinecal::detail {
 
-/// All that follows the handshake happens in one thread, so nothing needs a lock.
+/// Everything after the handshake happens in one thread, so no locks are needed.
 class WebSocket::Connection {
  public:
   Connection(const BridgeOptions& options, TakeFrame take_frame, TakeEnd take_end)
@@ -65,10 +65,10 @@ class WebSocket::Connection {
   void shake_hands(const std::string& host) {
     namespace ws = boost::beast::websocket;
     constexpr auto kProtocol = boost::beast::http::field::sec_websocket_protocol;
-    // A connection without a sign of life for so long has ended; pings ask for one.
+    // A connection without any traffic for this time has ended; pings cause traffic.
     constexpr std::chrono::seconds kSilence{10};
     stream_.set_option(ws::stream_base::timeout{options_.time_limit, kSilence, true});
-    // The same protocol has two names; newer bridges refuse the old one.
+    // The protocol has two names; newer bridges reject the old one.
     stream_.set_option(ws::stream_base::decorator([](ws::request_type& request) {
       request.set(kProtocol, "foxglove.sdk.v1, foxglove.websocket.v1");
     }));
@@ -88,7 +88,7 @@ class WebSocket::Connection {
     }
   }
 
-  /// Starts something and waits until it calls done(error).
+  /// Starts an operation and waits until it calls done(error).
   template <class Start>
   void wait(Start&& start, const std::string& what_failed) {
     bool is_done = false;
@@ -105,8 +105,8 @@ class WebSocket::Connection {
     throw ConnectionError("bridge '" + options_.url + "': " + why);
   }
 
-  /// Reads on, piece by piece: a read of whole frames asks for the size of the one that async_close()
-  /// is leaving out, and asserts that there is one.
+  /// Reads on, piece by piece: reading whole frames asks for the size of the frame that
+  /// async_close() is dropping, and asserts that there is one.
   void read() {
     constexpr std::size_t kPiece = 1 << 18;
     stream_.async_read_some(incoming_.prepare(kPiece), [this](Error error, std::size_t bytes) {
@@ -145,7 +145,7 @@ class WebSocket::Connection {
     take_end_("bridge '" + options_.url + "': " + why);
   }
 
-  /// Says goodbye, and does not wait for long.
+  /// Closes the connection, with a short wait.
   void close() {
     closing_ = true;
     if (ended_) return context_.stop();

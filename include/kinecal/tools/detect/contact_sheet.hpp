@@ -1,4 +1,4 @@
-// A contact sheet: one picture of all views and what was found in them, to glance at.
+// A contact sheet: one picture of all views with their features, for a quick look.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,13 +21,13 @@ struct Thumbnail {
 /// Width of a thumbnail, pixels.
 inline constexpr int kThumbnailWidth = 320;
 
-/// Shrinks an image by averages, and its marks with it.
+/// Shrinks an image by averaging, with its marks.
 [[nodiscard]] Thumbnail thumbnail(const GrayImage& image, std::vector<Mark> marks,
                                   const std::string& name, const std::string& refusal);
 
-/// A PNG of all: what was found is marked green; a view in which nothing was found has a red frame and
-/// the reason below.
-/// @throws std::invalid_argument  if there is none
+/// A PNG of all views: features are marked green; a view without any has a red frame and the reason
+/// below.
+/// @throws std::invalid_argument  if there are no views
 [[nodiscard]] std::string contact_sheet(const std::vector<Thumbnail>& thumbnails);
 
 }  // namespace kinecal

@@ -18,7 +18,7 @@ inline constexpr int kSheetColumns = 4, kSheetGap = 6, kReasonLines = 3;
 inline constexpr Rgb kPaper{245, 245, 245}, kInk{30, 30, 30}, kFoundColour{0, 200, 60},
     kRefusedColour{215, 30, 30};
 
-/// A picture that is drawn on; what is outside it is left out.
+/// A picture to draw on; ignores anything outside.
 struct Sheet {
   Image<Rgb> picture;
 
@@ -38,7 +38,7 @@ struct Sheet {
   }
 };
 
-/// A cross, open at the point itself.
+/// A cross, open at its center.
 inline void draw_mark(Sheet& sheet, int x, int y, const Rgb& colour) {
   for (const int d : {-3, -2, -1, 1, 2, 3}) {
     sheet.dot(x + d, y, colour);
@@ -46,7 +46,7 @@ inline void draw_mark(Sheet& sheet, int x, int y, const Rgb& colour) {
   }
 }
 
-/// Puts a thumbnail and its words in its place.
+/// Draws a thumbnail and its text at its place.
 inline void draw(Sheet& sheet, const Thumbnail& view, int x, int y) {
   for (int v = 0; v < view.image.height; ++v) {
     for (int u = 0; u < view.image.width; ++u) {

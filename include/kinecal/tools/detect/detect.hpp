@@ -1,4 +1,4 @@
-// Samples of recorded views: finders look at one view after the other.
+// Detects samples in recorded views: runs finders on one view after the other.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,22 +15,22 @@ namespace kinecal {
 
 /// A finder of recorded views.
 struct ViewFinder {
-  std::string name;                             ///< as the configuration has it
+  std::string name;                             ///< as in the configuration
   std::function<Found(const View& view)> find;  ///< in one view
 };
 
-/// What was found in one view.
+/// The result of one view.
 struct Detection {
-  std::vector<Sample> samples;  ///< none if nothing was found; one, or more where finders observe
-                                ///< with the same sensors
+  std::vector<Sample> samples;  ///< empty if nothing was found; several if finders observe with
+                                ///< the same sensors
   std::vector<Mark> marks;      ///< of all finders, in pixels of the view
   std::vector<std::string> refused;  ///< "april_tag_finder: no tag is in the image"
-  std::size_t features = 0;          ///< that were found, by all finders
+  std::size_t features = 0;          ///< found by all finders
 };
 
-/// Makes the finder that settings describe.
-/// @throws InputError  "file:line: ..." if settings are impossible, or it cannot work without the
-///                     robot: LEDs have to be switched
+/// Makes the finder for some settings.
+/// @throws InputError  "file:line: ..." if settings are impossible, or the finder needs the robot:
+///                     LEDs must be switched
 [[nodiscard]] ViewFinder view_finder(const CaptureFinder& finder, const FinderSettings& settings);
 
 /// Runs all finders on a view.

@@ -1,9 +1,9 @@
-// Photographs in a folder, and a table with the robot's joint positions for each.
+// Photographs in a folder, with a table of the robot's joint positions.
 //
-//   image,joint_1,joint_2        a column `image` names the files; without one, rows are in the
-//   0001.png,0.52,-1.04          order of the files' names as people count: 2.png before 10.png
+//   image,joint_1,joint_2        a column `image` names the files; without one, rows follow the
+//   0001.png,0.52,-1.04          natural order of the file names: 2.png before 10.png
 //
-// Positions are in radians and metres, unless a file of columns (io/csv/csv_mapping.hpp) says otherwise.
+// Positions are radians and metres, unless a column file (io/csv/csv_mapping.hpp) says otherwise.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,15 +17,15 @@
 
 namespace kinecal {
 
-/// Where photographs are.
+/// Location of photographs.
 struct ImageFolder {
   std::string images;   ///< folder of PNG and JPEG files
   std::string table;    ///< of joint positions, CSV
-  std::string columns;  ///< meaning of its columns; empty: each is a joint, but for `image`
-  std::string depth;    ///< folder with depth under the same names, but for the ending; empty: none
+  std::string columns;  ///< meaning of its columns; empty: each is a joint, except `image`
+  std::string depth;    ///< folder of depth images, same names except the extension; empty: none
 };
 
-/// A photograph and where the robot was.
+/// A photograph and the robot's joint positions.
 struct PosedImage {
   std::string path;       ///< of the image
   std::string depth;      ///< of its depth image; empty: none
@@ -33,16 +33,16 @@ struct PosedImage {
   std::string source;     ///< row of the table: "poses.csv:3"
 };
 
-/// Lists photographs in the order of the table.  Collects all errors: images without a row, rows
-/// without an image, rows that name one twice, cells that are not numbers.
+/// Lists photographs in table order.  Collects all errors: images without a row, rows without an
+/// image, rows that name an image twice, cells that are not numbers.
 /// @throws InputError  if the folder or a file cannot be read
 [[nodiscard]] std::vector<PosedImage> list_images(const ImageFolder& folder,
                                                   Diagnostics& diagnostics);
 
 /// Reads a photograph as a view of a camera.
 /// @param frame        of the camera
-/// @throws InputError  if a file is damaged, depth has another size than the image, or points cannot
-///                     be computed for want of a camera
+/// @throws InputError  if a file is damaged, the sizes of depth and image differ, or points cannot
+///                     be computed because there is no camera
 [[nodiscard]] View read_view(const PosedImage& image, const std::optional<CameraInfo>& camera,
                              const std::string& frame);
 

@@ -21,19 +21,19 @@
 namespace kinecal {
 namespace detail {
 
-/// A text in small letters (ASCII).
+/// A text in lower case (ASCII).
 [[nodiscard]] inline std::string in_small_letters(std::string text) {
   for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return text;
 }
 
-/// Whether a name is that of an image.
+/// True for the name of an image.
 [[nodiscard]] inline bool is_image_name(const std::string& name) {
   const std::string ending = in_small_letters(std::filesystem::path(name).extension().string());
   return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
 }
 
-/// Names of the images in a folder, as people count.
+/// Names of the images in a folder, in natural order.
 [[nodiscard]] inline std::vector<std::string> image_names(const std::string& folder) {
   std::error_code failed;
   std::filesystem::directory_iterator files(folder, failed);
@@ -56,8 +56,8 @@ namespace detail {
   return ' ';
 }
 
-/// Where the names of images are: a column of that name, or one whose first cell names an image; nullopt
-/// if the table has none.
+/// The column with the names of images: by its name, or because its first cell names an image;
+/// nullopt if the table has none.
 [[nodiscard]] inline std::optional<std::size_t> image_column(const std::vector<CsvRow>& rows) {
   for (std::size_t i = 0; !rows.empty() && i < rows.front().cells.size(); ++i) {
     const std::string name = in_small_letters(rows.front().cells[i]);
@@ -69,7 +69,7 @@ namespace detail {
   return std::nullopt;
 }
 
-/// Each column is a joint, but for the one of images.
+/// Every column except that of the images is a joint.
 [[nodiscard]] inline CsvMapping joints_of_header(const std::vector<CsvRow>& rows, char separator,
                                                  std::optional<std::size_t> image,
                                                  const std::string& table) {
@@ -119,7 +119,7 @@ namespace detail {
   return result;
 }
 
-/// The depth image of an image: the same name, ending in .png.
+/// The depth image of an image: the same name, with extension .png.
 [[nodiscard]] inline std::string depth_of(const ImageFolder& folder, const std::string& image,
                                           const std::string& source, Diagnostics& diagnostics) {
   if (folder.depth.empty()) return {};
@@ -144,7 +144,7 @@ KINECAL_INLINE std::vector<PosedImage> list_images(const ImageFolder& folder,
   CsvMapping mapping;
   if (!folder.columns.empty()) mapping = read_csv_mapping(folder.columns, diagnostics);
   const char separator = folder.columns.empty() ? detail::separator_of(text) : mapping.separator;
-  Diagnostics repeated;  // by csv_samples()
+  Diagnostics repeated;  // csv_samples() reports them again
   const auto rows = detail::csv_rows(text, separator, folder.table, repeated);
   const bool header = folder.columns.empty() || mapping.header;
   const auto image = header ? detail::image_column(rows) : std::nullopt;

@@ -1,4 +1,4 @@
-// Whether the stamps of a joint track can be used.
+// Checks that the stamps of a joint track are usable.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace kinecal::detail {
 
-/// An error if stamps go back; a warning if joints were not measured all the time.
+/// An error if stamps go back; a warning if joints were not measured throughout.
 /// @param all  from the first to the last reading of any joint
 inline void check_stamps(const JointTrack& track, const Standstill& all, const std::string& file,
                          Diagnostics& diagnostics) {

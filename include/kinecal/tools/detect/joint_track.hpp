@@ -13,43 +13,44 @@
 
 namespace kinecal {
 
-/// A stretch of time in which all joints stand still.
+/// A period in which all joints stand still.
 struct Standstill {
-  Stamp begin{};  ///< when it begins
-  Stamp end{};    ///< when it ends
+  Stamp begin{};  ///< start
+  Stamp end{};    ///< end
 };
 
 namespace detail {
 
-/// Positions of the same joints over time, 100 a second at most: what comes faster is averaged.
+/// Positions of the same joints over time, at most 100 per second; faster readings are averaged.
 struct JointTrack {
-  std::string topic;               ///< on which they came
+  std::string topic;               ///< of the messages
   std::vector<std::string> names;  ///< of joints
-  std::vector<bool> used = {};     ///< whether a joint's positions come from here
+  std::vector<bool> used = {};     ///< true if a joint's positions are taken from here
   std::vector<Stamp> stamps = {};  ///< of the positions
   std::vector<std::vector<double>> rows =
       {};                               ///< positions of each stamp, in the order of the names
-  Stamp bin = {};                       ///< begin of the last stamp's hundredth
+  Stamp bin = {};                       ///< start of the last stamp's hundredth of a second
   Stamp newest = {};                    ///< stamp
-  int readings = 0;                     ///< in the last hundredth
-  std::optional<Standstill> back = {};  ///< where stamps go back by much: from end to begin
+  int readings = 0;                     ///< in the last hundredth of a second
+  std::optional<Standstill> back = {};  ///< where stamps go back far: from end to begin
 
-  /// Takes positions in the order of the names.
+  /// Adds positions in the order of the names.
   void add(Stamp stamp, const std::vector<double>& positions);
 
   /// Sorts by stamps.
   void sort();
 
-  /// When some of the joints stand still.
+  /// The periods in which these joints stand still.
   /// @param joints  indices
   [[nodiscard]] std::vector<Standstill> rests(const std::vector<std::size_t>& joints,
                                               const SettleOptions& options) const;
 
-  /// Indices of the rows within a time, the last one excluded; of the nearest row if there is none.
+  /// Indices of the rows within a time, the last one excluded; of the nearest row if there are
+  /// none.
   [[nodiscard]] std::pair<std::size_t, std::size_t> near(Stamp stamp, const Standstill& time) const;
 };
 
-/// Stretches that are in both lists.
+/// Periods common to both lists.
 [[nodiscard]] std::vector<Standstill> common(const std::vector<Standstill>& a,
                                              const std::vector<Standstill>& b);
 

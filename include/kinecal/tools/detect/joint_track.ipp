@@ -59,7 +59,7 @@ KINECAL_INLINE std::vector<Standstill> JointTrack::rests(const std::vector<std::
   const Stamp period = usual_period(stamps);
   const Stamp gap = std::max<Stamp>(4 * period, kLeastGap);
   SettleOptions own = options;
-  own.window = std::max(options.window, 3 * period);  // JointRest wants four readings
+  own.window = std::max(options.window, 3 * period);  // JointRest needs four readings
   MeasuredJoints reading;
   for (const std::size_t j : joints) reading.names.push_back(names[j]);
   reading.positions.resize(joints.size());

@@ -1,7 +1,7 @@
 // Joint positions of a recording over time, and when the robot stood still.
 //
 // Several nodes may publish different joints, on one topic or on several, at different rates.  Each
-// list of joints is a track of its own; the robot stands still while all of them do.
+// list of joints is a separate track; the robot stands still while all of them do.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -21,28 +21,28 @@ namespace kinecal {
 /// The joints of a recording.
 class JointTracks {
  public:
-  /// Takes a message of joint states.  One without positions says nothing.
-  /// @param topic  on which it came
+  /// Adds a message of joint states.  Ignores one without positions.
+  /// @param topic  of the message
   void add(const std::string& topic, const MeasuredJoints& reading);
 
-  /// Decides where each joint's positions come from, after all were added.  A joint on two topics is
-  /// taken from `joint_states`.
-  /// @param topics  that are used; empty: all
+  /// Chooses the track of each joint, after all messages were added.  For a joint on two topics,
+  /// uses `joint_states`.
+  /// @param topics  to use; empty: all
   /// @param file    name of the recording in messages
-  /// @param diagnostics  receives: no positions, a topic of `topics` that is not there, a joint on two
-  ///                     topics, stamps that go back, joints that were measured a few times only
+  /// @param diagnostics  receives: no positions, a missing topic of `topics`, a joint on two
+  ///                     topics, stamps that go back, joints with only a few measurements
   void choose(const std::vector<std::string>& topics, const std::string& file,
               Diagnostics& diagnostics);
 
-  /// All stretches of at least options.window, sorted.
+  /// All standstills of at least options.window, sorted.
   /// @param restless  joints that need not stand still
   [[nodiscard]] std::vector<Standstill> standstills(const std::set<std::string>& restless = {},
                                                     const SettleOptions& options = {}) const;
 
-  /// Joints that never stand still, whatever others do.
+  /// Joints that never stand still, whatever the others do.
   [[nodiscard]] std::vector<std::string> never_still(const SettleOptions& options = {}) const;
 
-  /// All joints that are measured.
+  /// All measured joints.
   [[nodiscard]] std::set<std::string> names() const;
 
   /// Mean positions of all joints near a moment of a standstill.

@@ -26,7 +26,7 @@ KINECAL_INLINE void JointTracks::add(const std::string& topic, const MeasuredJoi
       is_whole = is_whole && !measures(topic, reading.names[i]);
     }
   }
-  if (!is_whole) return;  // a gap of joints that are measured otherwise
+  if (!is_whole) return;  // a gap of joints that other tracks measure
   if (sorted.empty()) {
     silent_.insert(topic);
     return;
@@ -92,7 +92,7 @@ KINECAL_INLINE void JointTracks::settle_conflicts(const std::string& file,
   for (const auto& [joint, topics] : topics_of) {
     if (topics.size() < 2) continue;
     if (topics.count("joint_states") == 0) {
-      if (!conflict.empty()) continue;  // one shows them all
+      if (!conflict.empty()) continue;  // one example is enough
       conflict = joint;
       diagnostics.error({file, 0}, "joint '" + printable(joint) +
                                        "' is on several topics: " + detail::listed(topics) +

@@ -1,4 +1,4 @@
-// Names in messages.
+// Lists of names in messages.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal::detail {
 
-/// "'a', 'b'"; of many, the first.
+/// "'a', 'b'"; only the first if there are many.
 template <class Names>
 [[nodiscard]] std::string listed(const Names& names) {
   constexpr std::size_t kMost = 6;

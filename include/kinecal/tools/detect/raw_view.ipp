@@ -1,4 +1,4 @@
-// Messages of a recording that together are a view, before they are decoded.
+// Undecoded messages of a recording that together form a view.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,7 +29,7 @@ struct RawView {
   }
 };
 
-/// Topics of a camera's messages; the first is the one whose stamps count.
+/// Topics of a camera's messages; the stamps of the first one count.
 [[nodiscard]] inline std::vector<std::string> parts_of(const ViewTopics& topics) {
   std::vector<std::string> parts;
   for (const std::string& topic : {topics.image, topics.depth, topics.cloud}) {
@@ -39,7 +39,7 @@ struct RawView {
 }
 
 /// Decodes a view.
-/// @param frame  of the camera; empty: as the messages have it
+/// @param frame  of the camera; empty: from the messages
 /// @throws std::runtime_error  naming the topic, if a message cannot be read
 [[nodiscard]] inline View decoded(const RawView& raw, const ViewTopics& topics,
                                   const std::optional<CameraInfo>& camera,
@@ -81,8 +81,8 @@ template <class T>
   return some;
 }
 
-/// Views worth a look in a standstill: a few in its middle two seconds, else the one nearest to its
-/// middle.  Its ends are left out: stamps and exposures are a little off.
+/// Candidate views of a standstill: a few in its middle two seconds, else the one nearest to its
+/// middle.  Skips its ends, because stamps and exposures are slightly off.
 [[nodiscard]] inline std::vector<ViewStamp> worth_a_look(const std::vector<ViewStamp>& views,
                                                          const Standstill& time) {
   constexpr std::chrono::milliseconds kEnd{100}, kHalf{1000};
@@ -102,7 +102,7 @@ template <class T>
   return spread_out(within, kMost);
 }
 
-/// The message of another topic that is nearest in time, if it is near.
+/// The message of another topic nearest in time, if near enough.
 [[nodiscard]] inline const ViewStamp* companion(const std::vector<ViewStamp>& views, Stamp stamp) {
   constexpr std::chrono::milliseconds kTogether{40};  // as for live cameras
   const auto away = [&](const ViewStamp& view) { return std::chrono::abs(view.stamp - stamp); };

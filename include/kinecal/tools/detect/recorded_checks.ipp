@@ -1,4 +1,4 @@
-// What is wrong with a recording, and when the robot stood still in it.
+// Checks a recording, and finds when the robot stood still.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace kinecal::detail {
 
-/// Warnings of messages that are left out; an error if a camera has no other.
+/// Warnings about skipped messages; an error if a camera has no others.
 inline void report_messages(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
                             const std::string& file, Diagnostics& diagnostics) {
   std::set<std::string> used;
@@ -54,7 +54,7 @@ inline void report_messages(const RecordedSurvey& survey, const std::vector<View
   return *middle;
 }
 
-/// An error if a camera and the joints have no time in common; a doubt if their clocks seem to differ.
+/// An error if camera and joints never overlap in time; a doubt if their clocks seem to differ.
 inline void check_clocks(const RecordedSurvey& survey, const std::vector<ViewTopics>& cameras,
                          const std::string& file, Diagnostics& diagnostics) {
   constexpr std::chrono::seconds kSameClock{1};
@@ -87,7 +87,7 @@ inline void check_clocks(const RecordedSurvey& survey, const std::vector<ViewTop
   }
 }
 
-/// When the robot stood still; an error if it never did.
+/// The times when the robot stood still; an error if it never did.
 [[nodiscard]] inline std::vector<Standstill> find_standstills(const RecordedSurvey& survey,
                                                               const RecordingOptions& options,
                                                               Diagnostics& diagnostics) {

@@ -1,4 +1,4 @@
-// First pass over a recording: joint positions, camera settings, and when images come.
+// First pass over a recording: joint positions, camera settings, and times of images.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,7 +22,7 @@
 
 namespace kinecal::detail {
 
-/// How the messages of a topic are written.
+/// The form of a topic's messages.
 struct MessageForm {
   MessageDefinition definition;
   Encoding encoding = Encoding::ros1;
@@ -52,7 +52,7 @@ class MessageForms {
 /// A message of images, depth or points in a recording.
 struct ViewStamp {
   Stamp stamp;             ///< of the header; of recording if that is zero
-  std::int64_t ahead = 0;  ///< time of recording less the stamp, nanoseconds
+  std::int64_t ahead = 0;  ///< time of recording minus stamp, nanoseconds
   std::size_t index = 0;   ///< among all messages of the topic
 };
 
@@ -62,7 +62,7 @@ struct ViewStamp {
   return stamp == Stamp{} ? Stamp(time) : stamp;
 }
 
-/// What is in a recording, without its images.
+/// The content of a recording, without its images.
 struct RecordedSurvey {
   struct Topic {
     RecordedTopic topic;
@@ -71,7 +71,7 @@ struct RecordedSurvey {
     std::size_t unstamped = 0;              ///< messages without a stamp
     std::string damage = {};                ///< of the first one
     std::optional<CameraInfo> camera = {};  ///< the first one
-    std::string image_part = {};            ///< the doubt if its image is not the full one
+    std::string image_part = {};            ///< the doubt about a partial image
     bool camera_changes = false;
   };
   std::map<std::string, Topic> topics = {};  ///< by name
@@ -131,7 +131,7 @@ struct RecordedSurvey {
     }
   }
 
-  /// @throws std::runtime_error  if names and positions differ in number, or a joint is in it twice
+  /// @throws std::runtime_error  if names and positions differ in number, or a joint occurs twice
   [[nodiscard]] static MeasuredJoints joints_of(const MessageFields& state, Stamp stamp) {
     MeasuredJoints joints;
     joints.stamp = stamp;

@@ -1,8 +1,8 @@
-// Views of a recording, one of each time that the robot stood still.
+// Views of a recording, one for each standstill of the robot.
 //
-// The recording is read twice: first for the joints and for when images come, which shows when the
-// robot stood still; then for a few images of each standstill.  So memory holds the images of few
-// standstills, however long the recording is.
+// The recording is read twice: first for joints and image times, which show when the robot stood
+// still; then for a few images of each standstill.  So memory holds the images of only a few
+// standstills, for any length of recording.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,14 +20,14 @@
 
 namespace kinecal {
 
-/// What is taken from a recording, and how.
+/// Options for reading a recording.
 struct RecordingOptions {
   std::string path;                       ///< ROS 1 bag, ROS 2 bag or MCAP
   std::vector<std::string> joints = {};   ///< topics of joint states, without slash; empty: all
   std::set<std::string> restless = {};    ///< joints that need not stand still
-  std::string depth = {};                 ///< topic of depth that goes with images
-  std::string frame = {};                 ///< of the camera; empty: as the messages have it
-  std::optional<CameraInfo> camera = {};  ///< instead of camera_info, of the only camera
+  std::string depth = {};                 ///< topic of the depth for images
+  std::string frame = {};                 ///< of the camera; empty: from the messages
+  std::optional<CameraInfo> camera = {};  ///< replaces camera_info, of the only camera
   SettleOptions settle = {};              ///< when joints stand still
 };
 
@@ -36,11 +36,11 @@ struct RecordedSurvey;
 struct RawView;
 }  // namespace detail
 
-/// A standstill, and messages of views in it.
+/// A standstill, and messages of its views.
 struct RecordedStandstill {
   std::size_t number = 0;  ///< from 0, in the order of time
   std::string source;      ///< "drive.bag at 12.300 s": since the first joint states
-  Standstill time;         ///< when it was
+  Standstill time;         ///< begin and end
   std::size_t bytes = 0;   ///< of the messages
   std::vector<std::vector<std::shared_ptr<detail::RawView>>> views;  ///< a few of each camera
 };
@@ -49,29 +49,29 @@ struct RecordedStandstill {
 struct RecordedView {
   std::optional<View> view = {};  ///< with the joints of its moment
   std::string refusal = {};       ///< empty if there is one
-  bool compared = true;           ///< false: of a single image, which may have moved
+  bool compared = true;           ///< false: from a single image, which may have moved
 };
 
 /// A recording: see above.
 class RecordedViews {
  public:
   /// Reads the recording for the first time.
-  /// @param diagnostics  receives why nothing can be used (no or other clocks' joint states, topics
-  ///                     that are missing or cannot be chosen, no standstill) and what is left out
+  /// @param diagnostics  receives why nothing is usable (no joint states or another clock, missing
+  ///                     or ambiguous topics, no standstill) and what was skipped
   RecordedViews(RecordingOptions options, const std::vector<CaptureFinder>& finders,
                 Diagnostics& diagnostics, const ProgressMeter& meter = {});
   ~RecordedViews();
   RecordedViews(RecordedViews&&) noexcept;
   RecordedViews& operator=(RecordedViews&&) noexcept;
 
-  [[nodiscard]] std::size_t standstills() const { return times_.size(); }  ///< how many there are
-  /// Topics of each camera: finders that look through the same ones share it.
+  [[nodiscard]] std::size_t standstills() const { return times_.size(); }  ///< their number
+  /// Topics of each camera; finders that look through the same ones share it.
   [[nodiscard]] const std::vector<ViewTopics>& cameras() const { return cameras_; }
   /// The camera of a finder, by its place in the list.
   [[nodiscard]] std::size_t camera_of(std::size_t finder) const { return camera_of_.at(finder); }
 
   /// Reads the recording again.
-  /// @param handle  takes each standstill, when its last message was read
+  /// @param handle  receives each standstill after its last message
   void read(const std::function<void(RecordedStandstill)>& handle,
             const ProgressMeter& meter = {}) const;
 
@@ -80,7 +80,7 @@ class RecordedViews {
 
  private:
   void choose_cameras(const std::vector<CaptureFinder>& finders, Diagnostics& diagnostics);
-  /// Messages of a camera in a standstill that are worth a look: a few, spread over its middle.
+  /// A few candidate messages of a camera in a standstill, spread over its middle.
   [[nodiscard]] std::vector<std::shared_ptr<detail::RawView>> planned(const Standstill& time,
                                                                       std::size_t camera) const;
 

@@ -17,7 +17,7 @@
 namespace kinecal {
 namespace detail {
 
-/// Second pass over a recording: hands out standstills when all their messages were read.
+/// Second pass over a recording: delivers each standstill when all its messages were read.
 class StandstillReader {
  public:
   StandstillReader(std::vector<RecordedStandstill> standstills,
@@ -51,7 +51,7 @@ class StandstillReader {
     }
   }
 
-  /// Hands out the others: those without messages, and those that the recording has only in part.
+  /// Delivers the rest: those without messages, and those that the recording has only in part.
   void finish() {
     for (std::size_t s = 0; s < standstills_.size(); ++s) {
       if (!given_.count(s)) give(s);
@@ -161,7 +161,7 @@ KINECAL_INLINE void RecordedViews::read(const std::function<void(RecordedStandst
     standstills.push_back(std::move(standstill));
   }
   detail::StandstillReader reader(std::move(standstills), handle);
-  Diagnostics repeated;  // by the first pass
+  Diagnostics repeated;  // the first pass has reported them
   read_bag(options_.path,
            {[&](const BagTopic& topic) { return reader.wants(topic); },
             [&](const BagMessage& message) { reader.take(message); }, meter},

@@ -1,4 +1,4 @@
-// Letters of 5 x 7 pixels, to write into pictures.
+// Letters of 5 x 7 pixels, for writing into pictures.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -69,7 +69,7 @@ inline constexpr std::array kGlyphs = {Glyph{' ', {0, 0, 0, 0, 0}},
 
 inline constexpr int kGlyphWidth = 6, kGlyphHeight = 9;  ///< with space between letters and lines
 
-/// Calls pixel(x, y) for each pixel of a text; letters that are not there become question marks.
+/// Calls pixel(x, y) for each pixel of a text; unknown letters become question marks.
 template <class Pixel>
 void for_pixels_of(std::string_view text, Pixel&& pixel) {
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -13,7 +13,7 @@
 namespace kinecal {
 namespace detail {
 
-/// Share of the pixels that change by more than noise and light.
+/// Fraction of the pixels that change by more than noise and light.
 [[nodiscard]] inline double change_between(const GrayImage& earlier, const GrayImage& later) {
   if (earlier.width != later.width || earlier.height != later.height) return 1.0;
   ImageMotion motion;

@@ -1,8 +1,8 @@
-// Which topics of a recording make the views of each finder.
+// Chooses the topics of a recording that form the views of each finder.
 //
-// A finder's topic is the one of its configuration.  If the recording does not have it, but only one
-// topic of its kind, that one is taken; otherwise the candidates are named.  Names of image_transport
-// (/compressed, /compressedDepth) are those of the raw topic.
+// A finder uses the topic in its configuration.  If the recording lacks it but has only one topic
+// of the same kind, that one is used; otherwise the error lists the candidates.  Names of
+// image_transport (/compressed, /compressedDepth) count as the raw topic.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,7 +19,7 @@ namespace kinecal {
 struct RecordedTopic {
   std::string name;           ///< without a leading slash
   std::string type;           ///< "sensor_msgs/Image"
-  std::string encoding = {};  ///< of images, as the first message has it; empty of others
+  std::string encoding = {};  ///< of images, from the first message; else empty
 };
 
 /// Topics of a camera; empty: none.
@@ -29,18 +29,18 @@ struct ViewTopics {
   std::string cloud = {};        ///< points; its colour is the image if there is none
   std::string camera_info = {};  ///< settings of the camera
 
-  bool operator==(const ViewTopics&) const = default;  ///< Whether it is the same camera.
+  bool operator==(const ViewTopics&) const = default;  ///< true if it is the same camera
 };
 
-/// How topics are chosen.
+/// Wishes for the choice of topics.
 struct ViewWishes {
   std::string file;         ///< name of the recording in messages
-  std::string depth = {};   ///< topic of depth that goes with images; empty: the only one
-  bool has_camera = false;  ///< whether the user gave the camera's settings: no topic is needed
+  std::string depth = {};   ///< topic of the depth for images; empty: the only one
+  bool has_camera = false;  ///< the user gave the camera's settings: no topic is needed
 };
 
-/// The topics of each finder; of one that has none, which is an error, they are empty.
-/// @param diagnostics  receives errors, and as notes what was chosen although not named
+/// The topics of each finder; empty, with an error, if there are none.
+/// @param diagnostics  receives errors, and notes about unnamed topics that were chosen
 [[nodiscard]] std::vector<ViewTopics> choose_topics(const std::vector<RecordedTopic>& recorded,
                                                     const std::vector<CaptureFinder>& finders,
                                                     const ViewWishes& wishes,

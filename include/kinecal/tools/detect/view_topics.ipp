@@ -14,7 +14,7 @@
 namespace kinecal {
 namespace detail {
 
-/// The topic of which image_transport made this one.
+/// The raw topic of an image_transport topic.
 [[nodiscard]] inline std::string raw_topic(const std::string& name) {
   for (const std::string_view ending : {"/compressed", "/compressedDepth"}) {
     if (name.ends_with(ending)) return name.substr(0, name.size() - ending.size());
@@ -40,7 +40,7 @@ class TopicChoice {
               const ViewWishes& wishes, Diagnostics& diagnostics)
       : recorded_(recorded), finder_(finder), wishes_(wishes), diagnostics_(diagnostics) {}
 
-  /// An error if the recording does not have the depth that is asked for.
+  /// An error if the recording lacks the requested depth.
   void check_depth() const {
     if (wishes_.depth.empty()) return;
     const RecordedTopic* named = find(wishes_.depth);
@@ -83,7 +83,7 @@ class TopicChoice {
  private:
   [[nodiscard]] bool wants_points() const { return !finder_.type.ends_with("2d"); }
 
-  /// The topic of this name; else one that image_transport made of it.
+  /// The topic of this name; else its image_transport variant.
   [[nodiscard]] const RecordedTopic* find(const std::string& name) const {
     const std::string plain = plain_topic(name);
     const RecordedTopic* made = nullptr;
@@ -95,7 +95,7 @@ class TopicChoice {
     return made;
   }
 
-  /// All of a kind; of a raw topic and those made of it, the raw one.
+  /// All topics of a kind; the raw one instead of its image_transport variants.
   [[nodiscard]] std::vector<const RecordedTopic*> candidates(TopicKind kind) const {
     std::vector<const RecordedTopic*> all;
     for (const RecordedTopic& topic : recorded_) {
@@ -114,7 +114,7 @@ class TopicChoice {
 
   [[nodiscard]] std::string about() const { return "finder '" + finder_.name + "': "; }
 
-  /// The only candidate; nullptr and an error if there are several.
+  /// The only candidate; an error and nullptr if there are several.
   [[nodiscard]] const RecordedTopic* only(const std::vector<const RecordedTopic*>& all,
                                           const std::string& what, const std::string& remedy) {
     if (all.size() == 1) {

@@ -1,4 +1,4 @@
-// The links and joints of a camera, and the joint that describes how it is mounted.
+// The links and joints of a camera, and the joint whose frame describes its mount.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,7 +25,7 @@ namespace kinecal::detail {
   return false;
 }
 
-/// Whether a link and all that it carries look like parts of a camera and do not move.
+/// True if a link and everything it carries look like parts of a camera and do not move.
 [[nodiscard]] inline bool is_camera_only(const Robot& robot, const std::string& link) {
   if (!looks_like_camera(link)) return false;
   return std::all_of(robot.joints().begin(), robot.joints().end(), [&](const Joint& joint) {
@@ -34,9 +34,9 @@ namespace kinecal::detail {
   });
 }
 
-/// The joints of a camera: its own, and fixed ones above it up to the one by which it hangs on the robot.
-/// What a joint above its own moves must be the camera only: a flange is not part of it.
-/// @param others  links; the joints that lead to them do not belong to the camera
+/// The joints of a camera: its own, and fixed ones above it up to the one that attaches it to the
+/// robot.  A joint above its own may carry only the camera: a flange is not part of it.
+/// @param others  links whose joints do not belong to the camera
 [[nodiscard]] inline std::vector<const Joint*> camera_joints(
     const Robot& robot, const std::string& camera, const std::vector<std::string>& others) {
   std::set<const Joint*> shared;
@@ -55,9 +55,9 @@ namespace kinecal::detail {
   return own;
 }
 
-/// The joint whose frame describes how a camera is mounted.  The joint by which it hangs on the robot, if
-/// that has no origin, as if somebody had left it to the calibration; else the nearest one that does not
-/// only turn the axes into an optical frame.  Null if no joint belongs to the camera alone.
+/// The joint whose frame describes a camera's mount.  Usually the joint that attaches it to the
+/// robot, if that has no origin, as if left to the calibration; else the nearest one that does more
+/// than rotate the axes into an optical frame.  Null if no joint belongs to the camera alone.
 [[nodiscard]] inline const Joint* camera_mount(const Robot& robot, const std::string& camera,
                                                const std::vector<std::string>& others) {
   const std::vector<const Joint*> own = camera_joints(robot, camera, others);

@@ -1,4 +1,4 @@
-// What is wrong with the answers of `kinecal init`, before anything is planned.
+// Checks the answers of `kinecal init` before planning.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -32,7 +32,7 @@ inline void check_reflectors(const Robot& robot, const InitAnswers& answers,
   }
 }
 
-/// Checks the answers before anything is planned.
+/// Checks the answers before planning.
 /// @throws InputError  with all their errors
 inline void check_answers(const Robot& robot, const InitAnswers& answers) {
   Diagnostics diagnostics;

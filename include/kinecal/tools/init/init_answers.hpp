@@ -1,5 +1,5 @@
-// The answers to the questions of `kinecal init`: what a first configuration must know about a
-// robot and its surroundings.
+// The answers to the questions of `kinecal init`: the facts about a robot and its surroundings that
+// a first configuration needs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace kinecal {
 
-/// What the robot is measured against.
+/// The targets that a robot is measured against.
 enum class InitTarget { leds, checkerboard, world_checkerboard, tracker, ground };
 
-/// A target, its name on the command line, and a line that explains it.
+/// A target, its name on the command line, and a one-line explanation.
 struct InitTargetWord {
   InitTarget target;      ///< the target
   std::string_view word;  ///< its name on the command line
@@ -37,7 +37,7 @@ inline constexpr std::array<InitTargetWord, 5> kInitTargets = {{
   return kInitTargets[static_cast<std::size_t>(target)].word;
 }
 
-/// The target with this name on the command line; nothing if there is no such target.
+/// The target with this name on the command line; nullopt if there is none.
 [[nodiscard]] inline std::optional<InitTarget> init_target(std::string_view word) {
   for (const InitTargetWord& known : kInitTargets) {
     if (known.word == word) return known.target;
@@ -45,24 +45,24 @@ inline constexpr std::array<InitTargetWord, 5> kInitTargets = {{
   return std::nullopt;
 }
 
-/// Whether the target needs an arm.
+/// True if the target needs an arm.
 [[nodiscard]] constexpr bool needs_arm(InitTarget target) {
   return target == InitTarget::leds || target == InitTarget::checkerboard ||
          target == InitTarget::tracker;
 }
-/// Whether the target needs a camera.
+/// True if the target needs a camera.
 [[nodiscard]] constexpr bool needs_camera(InitTarget target) {
   return target != InitTarget::tracker;
 }
 
-/// Whether points are recorded in a frame of the target, which the URDF does not contain.
+/// True if points are recorded in a frame of the target, which is not in the URDF.
 [[nodiscard]] constexpr bool needs_target_frame(InitTarget target) {
   return target != InitTarget::leds && target != InitTarget::ground;
 }
 
-/// What the user answered.  Links are links of the URDF; what a target does not need stays empty.
+/// The user's answers.  Links are links of the URDF; fields that a target does not need stay empty.
 struct InitAnswers {
-  InitTarget target = InitTarget::leds;  ///< what the robot is measured against
+  InitTarget target = InitTarget::leds;  ///< the target
   bool with_ground = false;              ///< the camera also sees the floor, in separate samples
   std::string base;                      ///< link in which all measurements are compared
   std::string arm;                       ///< link at the end of the arm
@@ -71,7 +71,7 @@ struct InitAnswers {
   std::string camera_name = "camera";    ///< sensor_name of the samples, prefix of its parameters
   std::string target_frame = {};  ///< of the board or the reflector, the frame_id of its points
   std::vector<std::string> more_reflectors = {};  ///< frames of further ones, with a tracker
-  std::string tracker_frame = {};  ///< of a laser tracker, the frame_id of what it measures
+  std::string tracker_frame = {};  ///< of a laser tracker, the frame_id of its measurements
 };
 
 }  // namespace kinecal

@@ -13,15 +13,14 @@
 
 namespace kinecal::detail {
 
-/// One entry of a list: a comment, a name, and keys with their values as YAML.  Without keys the
-/// entry is the name alone.
+/// One entry of a list: a comment, a name, and keys with YAML values.  Without keys, only the name.
 struct InitEntry {
   std::string why;
-  std::string name;  ///< not yet YAML
+  std::string name;  ///< not yet quoted for YAML
   std::vector<std::pair<std::string, std::string>> fields;
 };
 
-/// An offset that is not freed, and why.
+/// An offset that is not freed, with the reason.
 struct InitLeftOut {
   std::string joint, why;
 };
@@ -31,7 +30,7 @@ struct InitPlan {
   std::vector<InitLeftOut> left_out;
 };
 
-/// The initial value of a frame that the URDF does not contain: zeros, to be replaced by hand.
+/// The initial value of a frame that is not in the URDF: zeros, to be replaced by hand.
 inline void add_initial_value(InitPlan& plan, const std::string& frame, const std::string& why) {
   plan.initial_values.push_back({why, frame, {}});
   for (const char* key : {"x", "y", "z", "roll", "pitch", "yaw"}) {
@@ -39,7 +38,7 @@ inline void add_initial_value(InitPlan& plan, const std::string& frame, const st
   }
 }
 
-/// Frees a frame, once: its position, and its rotation unless it is the frame of a point.
+/// Frees a frame once: its position and, unless it is the frame of a point, its rotation.
 inline void free_frame(InitPlan& plan, const std::string& name, const std::string& why,
                        bool is_point = false) {
   for (const InitEntry& frame : plan.free_frames) {
@@ -53,14 +52,14 @@ inline void free_frame(InitPlan& plan, const std::string& name, const std::strin
 }
 
 /// The joints that move between two links.
-/// @throws RobotError  as make_chain()
+/// @throws RobotError  like make_chain()
 [[nodiscard]] inline std::vector<ChainJoint> movers(const Robot& robot, const std::string& base,
                                                     const std::string& tip) {
   return make_chain(robot, base, tip).joints;
 }
 
-/// Removes the joints that two chains have in common at their beginning.
-/// @return  names of the joints removed
+/// Removes the common joints at the beginning of two chains.
+/// @return  names of the removed joints
 inline std::vector<std::string> leave_out_common(std::vector<ChainJoint>& a,
                                                  std::vector<ChainJoint>& b) {
   std::vector<std::string> common;
@@ -72,16 +71,16 @@ inline std::vector<std::string> leave_out_common(std::vector<ChainJoint>& a,
   return common;
 }
 
-/// Number of joints up to the first one that turns, including it: a free frame before them can move
-/// all that follows just as their offsets do.  Joints that slide count even if they are not
-/// parallel, for only samples that move them would show the difference.
+/// Number of joints up to and including the first one that rotates: a free frame before them can
+/// replace their offsets.  Sliding joints count even if they are not parallel, because only samples
+/// that move them would show the difference.
 template <class Iterator>
 [[nodiscard]] std::size_t up_to_first_turn(Iterator begin, Iterator end) {
   const auto first = std::find_if(begin, end, [](const ChainJoint& j) { return turns(j.type); });
   return static_cast<std::size_t>(first - begin) + (first == end ? 0 : 1);
 }
 
-/// Frees a joint's offset; leaves it out if the joint mimics another.
+/// Frees a joint's offset; skips a mimic joint.
 inline void free_offset(InitPlan& plan, const ChainJoint& joint) {
   if (joint.drive.joint != joint.name) {
     plan.left_out.push_back({joint.name, "It mimics joint " + name_to_yaml(joint.drive.joint) +
@@ -91,8 +90,8 @@ inline void free_offset(InitPlan& plan, const ChainJoint& joint) {
   plan.free_params.push_back({"", joint.name, {}});
 }
 
-/// Frees the offsets of the joints of a chain, except for those at its ends that a free frame there
-/// can replace.
+/// Frees the offsets of a chain's joints, except those at its ends that a free frame there can
+/// replace.
 /// @param before, after  free frames at the beginning and the end of the chain; empty: not free
 inline void free_offsets(InitPlan& plan, const std::vector<ChainJoint>& way,
                          const std::string& before, const std::string& after) {

@@ -1,4 +1,4 @@
-// The first configuration of a robot: its URDF and a few answers in, commented YAML out.
+// Writes the first configuration of a robot: URDF and a few answers in, commented YAML out.
 //
 // Pure functions: the program asks the questions and writes the file.
 // SPDX-License-Identifier: Apache-2.0
@@ -18,16 +18,16 @@ namespace kinecal {
 void check_init_link(const Robot& robot, const std::string& option, const std::string& link,
                      Diagnostics& diagnostics);
 
-/// Reports a name that a frame cannot have if the URDF does not contain the frame.
+/// Reports a name that is not allowed for a frame outside the URDF.
 void check_init_frame(const Robot& robot, const std::string& option, const std::string& name,
                       Diagnostics& diagnostics);
 
-/// Reports a name that a camera cannot have because another model has it.
+/// Reports a camera name that another model already has.
 void check_init_camera_name(const std::string& option, const std::string& name,
                             Diagnostics& diagnostics);
 
-/// The text of a configuration, in robot_calibration's dialect of ROS 1.
-/// @param given  the base and the names of frames may be left out: with_proposals()
+/// The text of a configuration, in robot_calibration's ROS 1 dialect.
+/// @param given  may omit the base and the names of frames: see with_proposals()
 /// @throws InputError  "--option: what is wrong; what to do": a link that does not exist or cannot
 ///                     be reached, or a target that determines nothing of this robot
 [[nodiscard]] std::string initial_config(const Robot& robot, const InitAnswers& given);

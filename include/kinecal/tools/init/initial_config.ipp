@@ -50,7 +50,7 @@ KINECAL_INLINE void check_init_camera_name(const std::string& option, const std:
 
 namespace detail {
 
-/// A text as lines of comments, at most 100 columns wide.
+/// A text as comment lines of at most 100 columns.
 [[nodiscard]] inline std::string comment_lines(std::string_view text, const std::string& indent) {
   constexpr std::size_t kWidth = 100;
   std::string lines, line = indent + "#";
@@ -70,7 +70,7 @@ namespace detail {
   return text.empty() ? "" : lines + line + '\n';
 }
 
-/// A list of entries with its comment above; empty if there are no entries.
+/// A list of entries below its comment; empty if there are no entries.
 /// @param on_a_line  write each entry in braces, on one line
 [[nodiscard]] inline std::string list_to_yaml(const std::string& key, const std::string& why,
                                               const std::vector<InitEntry>& entries,
@@ -93,7 +93,7 @@ namespace detail {
   return text;
 }
 
-/// The offsets that are not freed, as comments below those that are.
+/// Offsets that are not freed, as comments below the free ones.
 [[nodiscard]] inline std::string left_out_comments(const InitPlan& plan) {
   std::string text;
   for (const InitLeftOut& left_out : plan.left_out) {

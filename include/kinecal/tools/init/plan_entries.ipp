@@ -1,4 +1,4 @@
-// Entries of a first configuration that several targets need: models, the camera's parameters,
+// Entries of a first configuration that several targets share: models, the camera's parameters,
 // error blocks, a board.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -45,7 +45,7 @@ inline void free_camera(InitPlan& plan, const InitAnswers& answers, bool floor_o
   add("z_scaling", "");
 }
 
-/// Compares the points that the camera sees with those of a model.
+/// Compares the points seen by the camera with those of a model.
 inline void add_hand_eye(InitPlan& plan, const InitAnswers& answers, const std::string& model) {
   InitEntry block{"", "hand_eye", {}};
   if (answers.camera_type == "camera3d") {
@@ -101,7 +101,7 @@ inline void keep_near_zero(InitPlan& plan, const std::string& frame, const std::
         {"rotation_scale", "1.0"}}});
 }
 
-/// The joint whose frame describes how the camera is mounted.
+/// The joint whose frame describes the camera's mount.
 /// @throws InputError  if there is no such joint
 [[nodiscard]] inline const Joint& require_mount(const Robot& robot, const InitAnswers& answers,
                                                 const std::vector<std::string>& others) {
@@ -115,7 +115,7 @@ inline void keep_near_zero(InitPlan& plan, const std::string& frame, const std::
   return *mount;
 }
 
-/// Frees the frame of a board that the gripper holds or that stands in the world.
+/// Frees the frame of a board that is in the gripper or fixed in the world.
 inline void add_board(InitPlan& plan, const std::string& name, const std::string& link) {
   free_frame(
       plan, name,

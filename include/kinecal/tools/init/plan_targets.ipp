@@ -1,9 +1,9 @@
-// Which offsets and frames each target determines: those are freed, the others left out.
+// The offsets and frames that each target determines: these are freed, the others left out.
 //
 // A free frame at an end of a chain can replace the offset of the joint next to it: the rotation of
-// a tracker that of the first joint, the position of a reflector that of the last.  If both were
-// free, the samples would only determine their sum.  So one of them is left out, and the
-// configuration says why.
+// a tracker that of the first joint, the position of a reflector that of the last.  With both free,
+// the samples would only determine their sum.  So one of them is left out, and the configuration
+// gives the reason.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace kinecal::detail {
 
-/// LEDs on the gripper or a board in it, seen by a camera that does not move with it.
+/// LEDs or a board on the gripper, seen by a camera that does not move with it.
 [[nodiscard]] inline InitPlan plan_hand_eye(const Robot& robot, const InitAnswers& answers) {
   InitPlan plan;
   std::vector<ChainJoint> arm = movers(robot, answers.base, answers.arm);
@@ -60,7 +60,8 @@ namespace kinecal::detail {
   return plan;
 }
 
-/// True if at least two joints turn: fewer do not determine where something is on what they move.
+/// True if at least two joints rotate: with fewer, the position of a point on what they move is not
+/// determined.
 [[nodiscard]] inline bool turns_about_two_axes(const std::vector<ChainJoint>& way) {
   return std::count_if(way.begin(), way.end(),
                        [](const ChainJoint& joint) { return turns(joint.type); }) >= 2;
@@ -95,7 +96,7 @@ namespace kinecal::detail {
   return plan;
 }
 
-/// A reflector on the arm and a tracker that stands in the world.
+/// A reflector on the arm and a tracker fixed in the world.
 [[nodiscard]] inline InitPlan plan_tracker(const Robot& robot, const InitAnswers& answers) {
   InitPlan plan;
   const std::vector<ChainJoint> way = movers(robot, answers.base, answers.arm);
@@ -168,7 +169,7 @@ namespace kinecal::detail {
   return plan;
 }
 
-/// What is freed and compared.
+/// Plans what to free and compare.
 /// @throws InputError  if a link cannot be reached, or the target determines nothing of this robot
 [[nodiscard]] inline InitPlan plan_initial_config(const Robot& robot, const InitAnswers& answers) {
   try {

@@ -1,4 +1,4 @@
-// How likely parts of a robot are recognized: definitions of robot_parts.hpp.
+// Recognizes likely parts of a robot: definitions of robot_parts.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -26,7 +26,7 @@ namespace detail {
   return moves(joint.type) && !joint.mimic;
 }
 
-/// Number of driven joints that lead to a link only: below the last fork to other driven joints.
+/// Number of driven joints that lead only to this link: below the last fork to other driven joints.
 [[nodiscard]] inline std::size_t own_joints(const Robot& robot, const std::string& link) {
   const std::vector<const Joint*> way = joints_to_root(robot, link);
   std::size_t count = 0;
@@ -47,16 +47,16 @@ namespace detail {
   return count;
 }
 
-/// Whether the name of a joint, or of the link that it moves, contains one of these words.
+/// True if the name of a joint, or of the link it moves, contains one of these words.
 [[nodiscard]] inline bool is_called(const Joint& joint, std::initializer_list<const char*> words) {
   return std::any_of(words.begin(), words.end(), [&](const char* word) {
     return contains_word(joint.name, word) || contains_word(joint.child, word);
   });
 }
 
-/// Whether a joint at the end of a chain moves a finger: it mimics another or is mimicked, or is
-/// called so, beyond an arm.
-/// @param turning  number of joints above it that turn
+/// True if a joint at the end of a chain moves a finger: it mimics another or is mimicked, or its
+/// name says so, beyond an arm.
+/// @param turning  number of rotating joints above it
 [[nodiscard]] inline bool moves_a_finger(const Robot& robot, const Joint& joint,
                                          std::ptrdiff_t turning) {
   constexpr std::ptrdiff_t kArm = 3;
@@ -90,7 +90,7 @@ namespace detail {
   }
 }
 
-/// Whether a wheel or a caster is on the way to a link.
+/// True if a wheel or a caster is on the path to a link.
 [[nodiscard]] inline bool is_on_a_wheel(const Robot& robot, const std::string& link) {
   const std::vector<const Joint*> way = joints_to_root(robot, link);
   return std::any_of(way.begin(), way.end(), [](const Joint* joint) {

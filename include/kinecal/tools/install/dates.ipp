@@ -1,4 +1,4 @@
-// The date of a calibration: in the names of files, and as people read it.
+// The date of a calibration: in file names, and in readable form.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

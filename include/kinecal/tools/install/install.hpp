@@ -1,7 +1,8 @@
-// Installs a calibration on a robot: its files beside the launch file, and their names in it.
+// Installs a calibration on a robot: copies its files beside the launch file, and enters their
+// names there.
 //
-// The names of the files contain the date of the calibration, so earlier versions stay untouched.
-// Installing the installed calibration again changes nothing.
+// File names contain the date of the calibration, so earlier versions stay untouched.  Installing
+// the installed calibration again changes nothing.
 // Source: Fetch paper, III-C.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -16,31 +17,31 @@
 
 namespace kinecal {
 
-/// What an installation did.
+/// The result of an installation.
 struct Installation {
   std::vector<std::string> added;  ///< files, by name
-  std::string backup;              ///< new name of the old launch file; empty: it did not change
+  std::string backup;              ///< new name of the old launch file; empty: unchanged
 };
 
 /// Installs a result.
-/// @param folder       with the robot's launch file; it will hold the result's files
+/// @param folder       with the robot's launch file; receives the result's files
 /// @param launch       name of the launch file, usually robot.launch
-/// @param diagnostics  gets warnings
+/// @param diagnostics  receives warnings
 /// @throws InputError   if the launch file has no place for a setting, or more than one
-/// @throws OutputError  if something cannot be written; the earlier installation then still holds
+/// @throws OutputError  if something cannot be written; the earlier installation then stays valid
 Installation install(const ResultFolder& result, const std::filesystem::path& folder,
                      const std::string& launch, const LaunchNames& names, Diagnostics& diagnostics);
 
 /// Undoes the last installation; called again, the one before it.
-/// @param force  also if files are missing that the earlier launch file names
+/// @param force  even if files named by the earlier launch file are missing
 /// @return       new name of the replaced launch file: robot.launch.undone_<n>
 /// @throws InputError   if there is no backup of the launch file, or it names missing files
-/// @throws OutputError  if something cannot be written; the folder is then as it was
+/// @throws OutputError  if something cannot be written; the folder is then unchanged
 std::string restore_installed(const std::filesystem::path& folder, const std::string& launch,
                               bool force = false);
 
 /// The date of the installed calibration, from the launch file.
-/// @throws InputError  if the launch file does not have it
+/// @throws InputError  if it is not there
 [[nodiscard]] std::string installed_date(const std::filesystem::path& folder,
                                          const std::string& launch, const LaunchNames& names);
 

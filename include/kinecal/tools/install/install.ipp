@@ -19,7 +19,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// The result's files under names with this date.
+/// The result's files, with this date in their names.
 [[nodiscard]] inline InstalledFiles dated_files(const ResultFolder& result,
                                                 const std::string& date) {
   InstalledFiles files{{with_date(result.urdf.name, date), result.urdf.content}, {}};
@@ -35,8 +35,7 @@ namespace detail {
   return all;
 }
 
-/// The result's files under names that no other file has.  If there is another result of the same
-/// second, the names end in _2.
+/// The result's files under unused names.  A second result of the same second gets the suffix _2.
 [[nodiscard]] inline InstalledFiles files_for(const ResultFolder& result,
                                               const std::filesystem::path& folder) {
   for (int n = 1;; ++n) {
@@ -51,7 +50,7 @@ namespace detail {
   }
 }
 
-/// Refuses paths that a launch file cannot contain: roslaunch substitutes $(...) and ${...}, and
+/// Rejects paths that a launch file cannot contain: roslaunch substitutes $(...) and ${...}, and
 /// XML does not allow control characters.
 inline void check_path(const std::filesystem::path& folder) {
   for (const char c : folder.string()) {
@@ -61,7 +60,7 @@ inline void check_path(const std::filesystem::path& folder) {
   }
 }
 
-/// Refuses a launch file that names missing files of its folder.
+/// Rejects a launch file that names missing files of its folder.
 inline void check_named_files(const std::filesystem::path& launch) {
   std::string missing;
   for (const std::filesystem::path& file :

@@ -1,10 +1,10 @@
-// The folder of a robot's launch file, changed so that the robot can be started at any moment: even
-// if a change is interrupted, the launch file is the old one or the new one, and the files that it
-// names exist.
+// Changes the folder of a robot's launch file so that the robot can start at any moment: even after
+// an interruption, the launch file is the old one or the new one, and the files that it names
+// exist.
 //
-// New files are written to a temporary folder, synchronized to the disk, and renamed; the launch
-// file comes last.  The old launch file stays as robot.launch.backup_<n>; the greatest n is the
-// newest, whatever the clock says.
+// New files are written to a temporary folder, synchronized to disk, and renamed; the launch file
+// comes last.  The old launch file stays as robot.launch.backup_<n>; the largest n is the newest,
+// whatever the clock says.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -29,7 +29,7 @@ namespace kinecal::detail {
 
 class LaunchFolder {
  public:
-  /// Locks the folder: waits for others that change it; they wait until this is destroyed.
+  /// Locks the folder: waits for others that change it; others wait until this is destroyed.
   /// @param folder  absolute, or relative to the working folder
   /// @param launch  name of the launch file in it
   /// @throws InputError   if the folder or the launch file is missing
@@ -42,22 +42,22 @@ class LaunchFolder {
 
   [[nodiscard]] bool launch_is_link() const { return std::filesystem::is_symlink(launch()); }
 
-  /// Removes what an interrupted run has left.
+  /// Removes the leftovers of an interrupted run.
   void remove_leftovers() const {
     std::error_code ignored;
     std::filesystem::remove_all(folder_ / kStaging, ignored);
   }
 
-  /// Adds files and replaces the launch file; the old one is kept.
-  /// @param files  new ones: the folder does not contain their names yet
+  /// Adds files and replaces the launch file; keeps the old one.
+  /// @param files  new ones, with names not yet in the folder
   /// @return       new name of the old launch file
-  /// @throws OutputError  naming the file; the folder is then as it was
+  /// @throws OutputError  naming the file; the folder is then unchanged
   std::string replace_launch(const std::vector<OutputFile>& files, const std::string& text) {
     const Staging staging(folder_);
     New placed{folder_, {}};
     write_like_launch(staging, {{launch_, text}});
     place(staging, files, placed);
-    // A backup that equals the launch file comes from a run that stopped between the two.
+    // A backup equal to the launch file comes from a run that stopped between the two.
     int n = newest_backup();
     if (n == 0 || read_text_file(folder_ / backup_name(n)) != read_text_file(launch())) {
       keep(staging, backup_name(++n));
@@ -70,8 +70,8 @@ class LaunchFolder {
     return backup_name(n);
   }
 
-  /// Adds files; the launch file stays.
-  /// @throws OutputError  naming the file; the folder is then as it was
+  /// Adds files; does not change the launch file.
+  /// @throws OutputError  naming the file; the folder is then unchanged
   void add(const std::vector<OutputFile>& files) {
     const Staging staging(folder_);
     New placed{folder_, {}};
@@ -80,17 +80,17 @@ class LaunchFolder {
     placed.names.clear();
   }
 
-  /// The launch file that restore() would put back: the newest backup.
+  /// The launch file that restore() would restore: the newest backup.
   /// @throws InputError  if there is none
   [[nodiscard]] std::filesystem::path backup() const {
     return folder_ / backup_name(checked_backup());
   }
 
-  /// Puts the newest backup in place of the launch file, which is kept as robot.launch.undone_<n>:
-  /// n is the number of the backup, or the next one that is free.
+  /// Replaces the launch file by the newest backup; keeps it as robot.launch.undone_<n>: n is the
+  /// number of the backup, or the next free one.
   /// @return  new name of the replaced launch file
   /// @throws InputError   if there is no backup
-  /// @throws OutputError  naming the file; the folder is then as it was
+  /// @throws OutputError  naming the file; the folder is then unchanged
   std::string restore() {
     const std::string text = read_text_file(launch());
     const int n = checked_backup();
@@ -128,7 +128,7 @@ class LaunchFolder {
     std::filesystem::path path;
   };
 
-  /// New files, removed again unless their change succeeds.
+  /// New files; removed again unless the change succeeds.
   struct New {
     const std::filesystem::path& folder;
     std::vector<std::string> names;
@@ -158,7 +158,7 @@ class LaunchFolder {
     throw InputError((folder / launch).string() + ": is not there" + did_you_mean(launch, others));
   }
 
-  /// True for a file that exists with other content.
+  /// True if a file exists with other content.
   [[nodiscard]] bool is_other(const std::string& name, const std::string& content) const {
     return std::filesystem::exists(folder_ / name) && read_text_file(folder_ / name) != content;
   }
@@ -182,8 +182,8 @@ class LaunchFolder {
     return newest;
   }
 
-  /// Number of the newest backup that differs from the launch file.  One that equals it comes from
-  /// an interrupted run and would restore nothing.
+  /// Number of the newest backup that differs from the launch file.  An equal one comes from an
+  /// interrupted run and would restore nothing.
   /// @throws InputError  if there is none
   [[nodiscard]] int checked_backup() const {
     const std::string text = read_text_file(launch());
@@ -206,7 +206,7 @@ class LaunchFolder {
       write_durably(path, written.content, target);
       const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
       if (file < 0) throw_output_error(target, "cannot be read");
-      // Only root may give files away; for others this may fail.
+      // Only root may change the owner; for others this may fail.
       [[maybe_unused]] const int may_fail = ::fchown(file, like.st_uid, like.st_gid);
       const bool done = ::fchmod(file, like.st_mode & 0777) == 0 && ::fsync(file) == 0;
       if (::close(file) != 0 || !done) throw_output_error(target, "cannot be written");
@@ -221,8 +221,8 @@ class LaunchFolder {
     }
   }
 
-  /// Gives the launch file a second name.  Of a symbolic link its content is kept: the file that it
-  /// names may change later.
+  /// Gives the launch file a second name.  For a symbolic link, copies the content, because its
+  /// target may change later.
   void keep(const Staging& staging, const std::string& name) const {
     const std::filesystem::path kept = staging.path / name;
     if (launch_is_link() || ::link(launch().c_str(), kept.c_str()) != 0) {  // or no links here
@@ -237,7 +237,7 @@ class LaunchFolder {
     }
   }
 
-  /// Waits until the names in the folder are on the disk.
+  /// Waits until the folder's entries are on disk.
   void sync_folder() const {
     const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const bool done = folder >= 0 && ::fsync(folder) == 0;

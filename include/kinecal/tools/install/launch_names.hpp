@@ -1,7 +1,7 @@
-// The keys of what a calibration sets in a launch file, and their names there.
+// The keys of a calibration's settings in a launch file, and their names there.
 //
-// The keys are fixed; the names differ from robot to robot, with Fetch's as the default.  A key
-// with an empty name is not set.  The keys of a second camera begin with its name
+// The keys are fixed; the names differ from robot to robot, with Fetch's as defaults.  A key with
+// an empty name is not set.  The keys of a second camera begin with its name
 // (left_rgb_camera_info_url); their names in a launch file are unknown, so they have no default.
 // Source: Fetch paper, III-C; the launch file of the Fetch robot.
 // SPDX-License-Identifier: Apache-2.0
@@ -36,9 +36,9 @@ inline constexpr std::array kAll = {kDate,         kRobot,     kDepthOffset,
 /// The names in the launch file of the Fetch robot, for every key.
 [[nodiscard]] LaunchNames fetch_launch_names();
 
-/// Fetch's names, except for those that the user gave.
-/// @param given        "KEY=NAME" each; "KEY=" for a key that is not to be set
-/// @throws InputError  for a text without '=', an unknown key, or a key that is given twice
+/// Fetch's names, except those given by the user.
+/// @param given        "KEY=NAME" each; "KEY=" for a key not to set
+/// @throws InputError  for a text without '=', an unknown key, or a key given twice
 [[nodiscard]] LaunchNames launch_names(const std::vector<std::string>& given);
 
 }  // namespace kinecal

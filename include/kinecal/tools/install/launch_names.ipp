@@ -41,7 +41,7 @@ KINECAL_INLINE LaunchNames launch_names(const std::vector<std::string>& given) {
       throw InputError("name '" + text + "': '" + key + "' is named twice");
     }
   }
-  own.merge(fetch_launch_names());  // keeps the names that were given
+  own.merge(fetch_launch_names());  // keeps the given names
   return own;
 }
 

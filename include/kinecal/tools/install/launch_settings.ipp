@@ -1,4 +1,4 @@
-// What a calibration sets in a robot's launch file.
+// The settings of a calibration in a robot's launch file.
 //
 //   calibration_date               <param value>     Y-m-d H:M:S
 //   robot_description              <param textfile>  the URDF's path
@@ -7,8 +7,8 @@
 //   z_scaling                      <param value>     1 + z_scaling
 //   depth_, rgb_camera_info_url    <arg default>     file://<path>
 //
-// If the result has no z_offset or z_scaling for a depth camera, the camera was calibrated without
-// depth correction, whatever its driver was set to while recording: 0 and 1 are set.
+// If the result lacks z_offset or z_scaling for a depth camera, the camera was calibrated without
+// depth correction, whatever its driver used during recording: 0 and 1 are set.
 // Source: Fetch paper, III-C.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -39,9 +39,9 @@ struct InstalledFiles {
   std::vector<OutputFile> cameras;  ///< as ResultFolder::cameras
 };
 
-/// A depth camera's parameter, which is zero if the result does not have it.  The prefix of
-/// parameters may differ from the camera's name: with one depth camera, the only parameter that
-/// ends so is taken.
+/// A depth camera's parameter; zero if the result does not have it.  The prefix of parameters may
+/// differ from the camera's name: with one depth camera, the only parameter with this ending is
+/// used.
 /// @param ending  such as "_z_offset"
 [[nodiscard]] inline double depth_parameter(const ResultFolder& result, const ResultCamera& camera,
                                             const std::string& ending) {
@@ -57,7 +57,7 @@ struct InstalledFiles {
 
 /// z_offset in millimetres as an integer.
 /// @param metres  the parameter
-/// @param file    that it is from, for messages
+/// @param file    its source, for messages
 [[nodiscard]] inline std::string whole_millimetres(double metres, const std::string& file) {
   constexpr double kFarthest = 1e3;  // of a depth camera, metres
   if (std::abs(metres) < kFarthest) return fmt::format("{}", static_cast<int>(metres * 1000.0));
@@ -65,7 +65,7 @@ struct InstalledFiles {
                                metres, kFarthest));
 }
 
-/// Gathers settings for those keys that have a name.
+/// Collects settings for the keys that have a name.
 class LaunchSettings {
  public:
   LaunchSettings(const LaunchNames& names, Diagnostics& diagnostics)
@@ -85,8 +85,8 @@ class LaunchSettings {
     }
   }
 
-  /// @throws InputError  if a name is given for a key that this result does not have; Fetch's keys
-  ///                     have names in any case
+  /// @throws InputError  if a name is given for a key that this result lacks; Fetch's keys always
+  ///                     have names
   [[nodiscard]] std::vector<LaunchSetting> take() {
     for (const auto& [key, name] : names_) {
       const auto& all = launch_key::kAll;
@@ -104,10 +104,10 @@ class LaunchSettings {
   std::vector<LaunchSetting> settings_;
 };
 
-/// The settings that a result makes.
-/// @param folder       where the files will be, an absolute path
-/// @param diagnostics  gets a warning for each key without a name
-/// @throws InputError  if a name or a value cannot be used
+/// The settings of a result.
+/// @param folder       future folder of the files, an absolute path
+/// @param diagnostics  receives a warning for each key without a name
+/// @throws InputError  if a name or a value is unusable
 [[nodiscard]] inline std::vector<LaunchSetting> launch_settings(const ResultFolder& result,
                                                                 const InstalledFiles& files,
                                                                 const std::filesystem::path& folder,

@@ -1,9 +1,9 @@
-// The text of a launch file: the values of its <param>s and <arg>s, read and replaced in place.
+// The text of a launch file: reads and replaces the values of its <param>s and <arg>s in place.
 //
 // A <param> is found by its full name, with the namespaces of its groups and its node.  An <arg> is
 // found at its declaration, or else where it is passed to an <include>.  Only the value changes in
-// the text.  If a <param> was computed (command="...") and is now a file (textfile="..."), the name
-// of this attribute changes too.
+// the text.  If a <param> was computed (command="...") and is now a file (textfile="..."), the
+// attribute is renamed, too.
 // Source: ROS wiki, roslaunch/XML.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -34,7 +34,7 @@ struct LaunchSetting {
   std::string key;  ///< as users know it: launch_names.hpp
   LaunchElement element = LaunchElement::param;
   std::string name;       ///< in the launch file
-  std::string attribute;  ///< that holds the value: value, textfile or default
+  std::string attribute;  ///< holds the value: value, textfile or default
   std::string value;      ///< without escapes
 };
 
@@ -45,8 +45,7 @@ class LaunchText : public XmlText {
   LaunchText(std::string text, std::string file)
       : XmlText(std::move(text), std::move(file), {"a launch file", "launch"}) {}
 
-  /// The element that a setting is about; nothing, and an error, if there is no such element or
-  /// several.
+  /// The element of a setting; an error and a null node if there are none or several.
   [[nodiscard]] pugi::xml_node find(const LaunchSetting& setting, Diagnostics& diagnostics) const {
     const std::vector<Named> all = elements(setting.element);
     const std::string what = subject(setting);
@@ -73,7 +72,7 @@ class LaunchText : public XmlText {
     return found.size() == 1 ? found[0] : pugi::xml_node();
   }
 
-  /// The value of an element, whichever attribute holds it; empty if no attribute does.
+  /// The value of an element, in any attribute; empty if there is none.
   [[nodiscard]] static std::string value_of(pugi::xml_node element) {
     for (const std::string_view name : kValueAttributes) {
       if (const auto value = element.attribute(name.data())) return value.value();
@@ -94,7 +93,7 @@ class LaunchText : public XmlText {
     return files;
   }
 
-  /// Adds the edit that sets an element; nothing if it has the value already.
+  /// Adds the edit that sets an element; does nothing if it already has the value.
   void set(pugi::xml_node element, const LaunchSetting& setting, std::vector<TextEdit>& edits,
            Diagnostics& diagnostics) const {
     const StartTag tag = scan_start_tag(text(), offset(element));
@@ -125,8 +124,8 @@ class LaunchText : public XmlText {
                      xml_attribute_text(setting.value, text()[old->begin - 1])});
   }
 
-  /// The text with all settings made, every other byte as it was.
-  /// @throws InputError  with every setting for which the text has no place, or more than one
+  /// The text with all settings; every other byte is unchanged.
+  /// @throws InputError  with every setting that has no place in the text, or more than one
   [[nodiscard]] std::string with(const std::vector<LaunchSetting>& settings) const {
     std::vector<TextEdit> edits;
     Diagnostics diagnostics;
@@ -147,7 +146,7 @@ class LaunchText : public XmlText {
   }
 
  private:
-  /// The attributes that may hold a value; an element has one of them.
+  /// Attributes that may hold a value; an element has one of them.
   static constexpr std::array<std::string_view, 5> kValueAttributes = {
       "value", "default", "textfile", "command", "binfile"};
 

@@ -1,10 +1,10 @@
-// The result of a calibration, read back from the folder that it was written to.
+// Reads the result of a calibration back from its folder.
 //
 //   calibration[_<date>].yaml   values by name, and the names of the other files: urdf, depth_info,
 //                               rgb_info; for further cameras left_depth_info and so on
 //   report.json                 whether the calibration converged, and the verdict
 //
-// The date is the one in the name of calibration_<date>.yaml, or else the time at which
+// The date is that in the name of calibration_<date>.yaml, or else the time at which
 // calibration.yaml was written.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -29,19 +29,19 @@ struct ResultCamera {
   OutputFile file;     ///< camera_info
 };
 
-/// The files that a calibration wrote.
+/// The files of a calibration.
 struct ResultFolder {
   std::string date;                          ///< Y_m_d_H_M_S
   OutputFile urdf;                           ///< the calibrated URDF
   OutputFile values;                         ///< the file of the parameters
   std::vector<ResultCamera> cameras;         ///< the calibrated cameras
   std::map<std::string, double> parameters;  ///< name and value: radians, metres or relative
-  std::optional<bool> converged;             ///< nothing if there is no report
-  std::string refusal;                       ///< why not to use it, if the report says so
+  std::optional<bool> converged;             ///< nullopt if there is no report
+  std::string refusal;                       ///< why not to use it, according to the report
 };
 
-/// Reads a result.  The URDF and the camera files are read as a robot would read them, so that no
-/// broken file is installed.
+/// Reads a result.  Parses the URDF and the camera files as a robot would, so that no broken file
+/// is installed.
 /// @throws InputError  if something is missing or broken
 [[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& folder);
 

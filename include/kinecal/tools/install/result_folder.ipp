@@ -1,4 +1,4 @@
-// Reading a result: definitions of result_folder.hpp.
+// Reads a result: definitions of result_folder.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -32,7 +32,7 @@ namespace detail {
   throw InputError(path + ": is not a map of names and values");
 }
 
-/// The calibration file of a folder; the newest of several dated ones, which report.json describes.
+/// The calibration file of a folder; if there are several, the newest, which report.json describes.
 [[nodiscard]] inline std::filesystem::path values_file(const std::filesystem::path& folder) {
   std::error_code error;
   std::vector<std::filesystem::path> plain, dated;
@@ -54,7 +54,7 @@ namespace detail {
   return plain.empty() ? *std::max_element(dated.begin(), dated.end()) : plain[0];
 }
 
-/// A file that calibration.yaml names, with its content.
+/// A file named in calibration.yaml, with its content.
 [[nodiscard]] inline OutputFile named_file(const std::filesystem::path& folder,
                                            const std::string& values, const YamlNode& name) {
   const std::filesystem::path path = folder / name.text;
@@ -65,7 +65,7 @@ namespace detail {
   return {path.filename().string(), read_text_file(path)};
 }
 
-/// The camera of a key such as left_depth_info, prefix "left_"; nothing for other keys.
+/// The camera of a key such as left_depth_info, prefix "left_"; nullopt for other keys.
 [[nodiscard]] inline std::optional<ResultCamera> camera_key(const std::string& key) {
   for (const std::string kind : {"depth_info", "rgb_info"}) {
     if (!key.ends_with(kind)) continue;
@@ -88,7 +88,7 @@ namespace detail {
   return name != nullptr ? name->text : std::string();
 }
 
-/// Reads whether the calibration converged, and the first reason not to use it.
+/// Reads whether the calibration converged, and the first reason against using it.
 inline void read_report(const std::filesystem::path& report, ResultFolder& result) {
   if (!std::filesystem::exists(report)) return;
   try {

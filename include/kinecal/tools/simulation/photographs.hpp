@@ -1,5 +1,5 @@
-// Photographs of a simulated robot: images, a table of joint positions, and what a user would have
-// beside them; and the truth, to judge a calibration by.
+// Photographs of a simulated robot: images, a table of joint positions, and the files that a user
+// would have; also the truth, for judging a calibration.
 //
 //   images/0001.png ...   what the camera saw
 //   depth/0001.png ...    of a camera3d: millimetres, 16 bits, 0 where nothing was measured
@@ -30,13 +30,13 @@ struct PhotographFiles {
   std::vector<std::string> skipped = {};  ///< poses without an image, and why
 };
 
-/// The files that say what a simulation is, without images.
+/// The files that describe a simulation, without images.
 [[nodiscard]] std::vector<OutputFile> files_of(const SimulationPlan& plan,
                                                const std::vector<JointTarget>& poses);
 
-/// Moves the robot to each pose, waits until it rests, and takes an image of it.
+/// Moves the robot to each pose, waits until it rests, and takes an image.
 /// @param progress     called before each pose with its number, from 0; may be empty
-/// @throws InputError  if no image came
+/// @throws InputError  if there is no image
 [[nodiscard]] PhotographFiles take_photographs(const SimulationPlan& plan,
                                                const std::vector<JointTarget>& poses,
                                                const std::function<void(std::size_t)>& progress);

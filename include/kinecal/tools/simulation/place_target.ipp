@@ -1,4 +1,4 @@
-// Where the target of a simulation is, for simulation_plan.ipp.
+// Places the target of a simulation, for simulation_plan.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -36,7 +36,7 @@ namespace kinecal::detail {
           (target.rows * (kTagBits + kTagGap) + kTagGap) * bit};
 }
 
-/// The frame in the middle of a target, as that of a patch: link_T_middle.
+/// The frame in the middle of a target, like that of a patch: link_T_middle.
 [[nodiscard]] inline Pose<double> middle_of(const SimulatedTarget& target) {
   if (!is_board(target)) return target.pose;
   const auto [width, height] = board_size(target);
@@ -54,7 +54,7 @@ inline void set_middle(SimulatedTarget& target, const Pose<double>& link_T_middl
   target.pose = link_T_middle * middle_of(target).inverse();
 }
 
-/// What is to be seen of a target, metres, in its link.
+/// The visible points of a target, metres, in its link.
 [[nodiscard]] inline std::vector<Vector3<double>> points_of(const SimulatedTarget& target) {
   if (!target.leds.empty()) return target.leds;
   constexpr double kLedsX = 0.06, kLedsY = 0.05, kFloor = 0.4;  // metres
@@ -84,7 +84,7 @@ inline void set_goal(SimulationPlan& plan) {
   if (camera.has_depth) goal.farthest = std::min(goal.farthest, camera.farthest);
   goal.least_size = is_board(target) ? kBoard : kLeds;
   if (target.type == "ground") goal.most_angle = 70.0 * std::numbers::pi / 180.0;
-  goal.margin = 0.12;  // the true robot looks elsewhere than its URDF
+  goal.margin = 0.12;  // the true robot points elsewhere than its URDF
   goal.ground = -0.01;
 }
 
@@ -95,7 +95,7 @@ inline void set_goal(SimulationPlan& plan) {
   return reach;
 }
 
-/// Places in which a target may be seen, the most usual first: link_T_middle.
+/// Candidate places of a target, most usual first: link_T_middle.
 [[nodiscard]] inline std::vector<Pose<double>> usual_places(const Robot& robot,
                                                             const SimulationPlan& plan) {
   const Vector3<double> x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
@@ -120,7 +120,7 @@ inline void set_goal(SimulationPlan& plan) {
 }
 
 /// Places a target where the camera can see it, and sets the goal.
-/// @throws InputError  if it is nowhere
+/// @throws InputError  if there is no such place
 inline void place_target(SimulationPlan& plan) {
   if (plan.target.has_pose) {
     set_goal(plan);
@@ -144,7 +144,7 @@ inline void place_target(SimulationPlan& plan) {
                    "[r, p, y]}");
 }
 
-/// Adds what is to be seen: target, floor and wall.
+/// Adds the visible objects: target, floor and wall.
 inline void furnish(SimulationPlan& plan) {
   SimulatedTarget& target = plan.target;
   Scene& scene = plan.setup.scene;

@@ -31,7 +31,7 @@ class PoseSampling {
     chain_T_link_ = rigid(models_.chain->frame, plan.target.link);
   }
 
-  /// Where the target's frame is, as parameters.
+  /// The pose of the target's frame, as parameters.
   [[nodiscard]] ParameterTable values() const {
     ParameterTable values;
     if (models_.frame.empty()) return values;

@@ -1,6 +1,6 @@
-// The keys of a scene file, for simulation_plan.ipp.
+// Reads the keys of a scene file, for simulation_plan.ipp.
 //
-//   seed: 1                         the same one: the same robot, noise and faults
+//   seed: 1                         same seed: same robot, noise and faults
 //   camera:
 //     frame: LINK, name: camera, type: camera3d | camera2d, info: FILE, image: raw | rectified
 //     blur: 0.6 (pixels), exposure: 1.0, noise: 1.5 (of 255), nearest: 0.3, farthest: 5.0 (metres)
@@ -9,11 +9,12 @@
 //     type: leds | checkerboard | apriltag | ground, link: LINK, xyz: [x, y, z], rpy: [r, p, y]
 //     columns: 6, rows: 5, size: 0.025, leds: [[x, y, z], ...]
 //   errors:                         each between half of it and all of it, with either sign
-//     joint: 0.05, sliding: 0.01, position: 0.01, rotation: 0.02, intrinsics: 0.01, z_offset: 0.005,
-//     z_scaling: 0.01, values: {shoulder_pan_joint: 0.03}
+//     joint: 0.05, sliding: 0.01, position: 0.01, rotation: 0.02, intrinsics: 0.01, z_offset:
+//     0.005, z_scaling: 0.01, values: {shoulder_pan_joint: 0.03}
 //   noise: {pixel: 0.3, point: 5e-5 (metres), rotation: 1e-4}
 //   motion: {speed: 1.0, encoder_noise: 2e-5, repeatability: 5e-5, backlash: 1e-4, image_rate: 15,
-//            image_latency: 0.06, exposure_time: 0.0 (seconds), late_stamps: 0.0, lamp_latency: 0.04}
+//            image_latency: 0.06, exposure_time: 0.0 (seconds), late_stamps: 0.0, lamp_latency:
+//            0.04}
 //   faults: {stuck_joint: NAME, joints_end: 60.0, views_end: 60.0, connection_ends: 60.0,
 //            other_clock: 100.0, dark_led: 1, no_camera_info: true, passer_by: 0.1, outliers: 0.05}
 //   poses: 30, or poses: FILE       as robot_calibration has them
@@ -38,7 +39,7 @@
 
 namespace kinecal::detail {
 
-/// A file named in a scene: beside the scene.
+/// The path of a file named in a scene, relative to the scene.
 [[nodiscard]] inline std::string beside(const SourceLocation& place, const std::string& file) {
   return (std::filesystem::path(place.file).parent_path() / file).string();
 }
@@ -58,7 +59,7 @@ namespace kinecal::detail {
   return std::nullopt;
 }
 
-/// One of a few words; nothing, and an error, if it is another.
+/// One of a few words; an error and nullopt for any other.
 [[nodiscard]] inline std::optional<std::string> read_word(ConfigMap& map, const std::string& key,
                                                           const std::vector<std::string>& words) {
   std::optional<std::string> word = map.text(key);
@@ -69,7 +70,7 @@ namespace kinecal::detail {
   return std::nullopt;
 }
 
-/// The name of a link; nothing, and an error, if the robot has no such link.
+/// The name of a link; an error and nullopt if the robot has no such link.
 [[nodiscard]] inline std::optional<std::string> read_link(ConfigMap& map, const std::string& key,
                                                           const Robot& robot) {
   std::optional<std::string> link = map.text(key);
@@ -141,7 +142,7 @@ inline void read_plan_poses(ConfigMap& map, SimulationPlan& plan) {
   }
 }
 
-/// Noise of features follows from that of the camera and of the joints.
+/// Sets the noise of features from that of the camera and of the joints.
 inline void set_noise(SimulationPlan& plan) {
   const SimulatedTiming& timing = plan.setup.timing;
   plan.noise.depth = plan.setup.camera.depth_noise;
@@ -149,7 +150,7 @@ inline void set_noise(SimulationPlan& plan) {
 }
 
 /// Reads a scene file into a plan.
-/// @returns  errors that the file gives itself
+/// @returns  errors given in the file
 [[nodiscard]] inline ParameterTable read_scene(const std::string& path, SimulationPlan& plan,
                                                Diagnostics& diagnostics) {
   ParameterTable given;

@@ -11,7 +11,7 @@
 
 namespace kinecal::detail {
 
-/// @returns  errors that the file gives itself
+/// @returns  errors given in the file
 [[nodiscard]] inline ParameterTable read_errors(ConfigMap& map, ErrorSizes& errors) {
   ParameterTable given;
   for (const auto& [key, value] : {std::pair{"joint", &errors.joint},
@@ -21,7 +21,7 @@ namespace kinecal::detail {
                                    {"intrinsics", &errors.intrinsics},
                                    {"z_offset", &errors.z_offset},
                                    {"z_scaling", &errors.z_scaling}}) {
-    constexpr double kMost = 1.0;  // radians, metres, or all of it
+    constexpr double kMost = 1.0;  // radians, metres, or 100 %
     *value = map.number(key, *value);
     if (*value >= 0.0 && *value <= kMost) continue;
     map.error(map.find(key)->place,
@@ -37,7 +37,7 @@ namespace kinecal::detail {
   return given;
 }
 
-/// Noise of features, and of joints as the motion makes it.
+/// Reads the noise of features; that of joints follows from the motion.
 inline void read_noise(ConfigMap& map, MeasurementNoise& noise) {
   for (const auto& [key, value] :
        {std::pair{"pixel", &noise.pixel}, {"point", &noise.point}, {"rotation", &noise.rotation}}) {

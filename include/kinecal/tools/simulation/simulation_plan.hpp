@@ -1,4 +1,4 @@
-// A simulation of a robot: from its URDF, and a scene file where the defaults are not wanted.
+// The plan of a simulation: from a robot's URDF, and a scene file that overrides defaults.
 //
 //   seed: 1
 //   camera: {frame: head_optical_frame, name: camera, type: camera3d, image: rectified, blur: 0.6}
@@ -7,9 +7,9 @@
 //   noise: {pixel: 0.3}             # of features in studies, which draw no pictures
 //   poses: 30                       # a number, or a file
 //
-// Whatever is left out follows from the URDF: the camera and the arm that `kinecal init` proposes, and a
-// target at the arm's end, or beside the robot if the arm carries the camera.  The errors are those
-// parameters that a first configuration calibrates.  All keys: `read_scene.ipp`.
+// Defaults follow from the URDF: the camera and the arm that `kinecal init` proposes, and a target
+// at the arm's end, or beside the robot if the arm carries the camera.  The errors are in the
+// parameters that a first configuration calibrates.  `read_scene.ipp` lists all keys.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -27,11 +27,11 @@
 
 namespace kinecal {
 
-/// What a simulated camera looks at.
+/// The target of a simulated camera.
 struct SimulatedTarget {
   std::string type = "checkerboard";       ///< leds, checkerboard, apriltag or ground
   std::string link = {};                   ///< that carries it; empty: the arm's end, or the base
-  bool has_pose = false;                   ///< false: where the camera can see it
+  bool has_pose = false;                   ///< false: placed where the camera can see it
   Pose<double> pose = {};                  ///< link_T_target, metres; of boards: their finder's
   int columns = 0;                         ///< inner corners of a checkerboard, or tags; 0: usual
   int rows = 0;                            ///< the same
@@ -39,27 +39,28 @@ struct SimulatedTarget {
   std::vector<Vector3<double>> leds = {};  ///< metres, in the link; empty: four
 };
 
-/// A simulated robot, its surroundings, and what to do with it.
+/// A simulated robot, its surroundings, and the poses to capture.
 struct SimulationPlan {
   SimulatedSetup setup;                 ///< makes a SimulatedRobot
-  SimulatedTarget target;               ///< what the camera looks at
+  SimulatedTarget target;               ///< in view of the camera
   std::string target_frame = {};        ///< of its points in samples
   std::string camera_type = {};         ///< camera3d or camera2d
   std::string chain_sensor = {};        ///< the sensor that holds the target
   std::string config = {};              ///< text of a first configuration: `kinecal init`
   ErrorSizes errors = {};               ///< of the true robot
   MeasurementNoise noise = {};          ///< of measured features and joints, for studies
-  ViewGoal goal = {};                   ///< what a useful view is
+  ViewGoal goal = {};                   ///< requirements on a view
   int poses = 30;                       ///< number of poses
-  std::vector<JointTarget> given = {};  ///< poses of a file, in place of generated ones
+  std::vector<JointTarget> given = {};  ///< poses from a file, instead of generated ones
 };
 
-/// Reads a scene, or takes the defaults for all of it.
+/// Reads a scene, or uses only defaults.
 /// @param path         of the scene; empty: only defaults
-/// @param target       leds, checkerboard, apriltag or ground; empty: what the scene says, or checkerboard
-/// @param seed         zero: what the scene says, or 1
+/// @param target       leds, checkerboard, apriltag or ground; empty: from the scene, or
+///                     checkerboard
+/// @param seed         zero: from the scene, or 1
 /// @param diagnostics  receives errors and warnings; with errors, the plan is incomplete
-/// @param config       whose camera and chain are simulated; nullptr: those of a first configuration
+/// @param config       camera and chain to simulate; nullptr: those of a first configuration
 /// @throws InputError  if a file cannot be read, or nothing can be calibrated with this target
 [[nodiscard]] SimulationPlan read_simulation(const Robot& robot, const std::string& path,
                                              const std::string& target, std::uint64_t seed,

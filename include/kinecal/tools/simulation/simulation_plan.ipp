@@ -16,12 +16,12 @@ namespace kinecal {
 
 namespace detail {
 
-/// Whether no joint moves two links against each other.
+/// True if no joint moves two links against each other.
 [[nodiscard]] inline bool is_rigid(const Robot& robot, const std::string& a, const std::string& b) {
   return make_chain(robot, a, b, {}).joints.empty();
 }
 
-/// Fills in the usual size of a board.
+/// Fills in the default size of a board.
 inline void complete(SimulatedTarget& target) {
   const bool has_tags = target.type == "apriltag";
   if (target.columns == 0) target.columns = has_tags ? 4 : 6;
@@ -29,7 +29,7 @@ inline void complete(SimulatedTarget& target) {
   if (target.size == 0.0) target.size = has_tags ? 0.04 : 0.025;
 }
 
-/// The answers to the questions of `kinecal init` that make this simulation.
+/// The answers for `kinecal init` that lead to this simulation.
 [[nodiscard]] inline InitAnswers answers_of(const Robot& robot, SimulationPlan& plan) {
   InitAnswers answers;
   std::string& camera = plan.setup.camera.frame;
@@ -71,7 +71,7 @@ inline void complete(SimulatedTarget& target) {
   return with_proposals(robot, answers);
 }
 
-/// Draws the errors of what a configuration calibrates.
+/// Draws the errors of the calibrated parameters.
 inline void draw_truth(const StepConfig& step, SimulationPlan& plan) {
   SeededRandom random(plan.setup.seed);
   const Robot& robot = plan.setup.robot;
@@ -86,7 +86,7 @@ inline void draw_truth(const StepConfig& step, SimulationPlan& plan) {
   }
 }
 
-/// The camera and the link with the target that a configuration has, where the scene has none.
+/// Uses the configuration's camera and link of the target, if the scene gives none.
 inline void take_models(const Config& config, SimulationPlan& plan) {
   const StepConfig& step = config.steps.back();
   for (const ModelConfig& model : step.models) {
@@ -102,7 +102,7 @@ inline void take_models(const Config& config, SimulationPlan& plan) {
   }
 }
 
-/// Takes over errors that the scene gives itself.
+/// Uses the errors given in the scene.
 inline void take_values(const ParameterTable& values, const std::string& path, SimulationPlan& plan,
                         Diagnostics& diagnostics) {
   ParameterTable& truth = plan.setup.truth;
@@ -125,7 +125,7 @@ inline void take_values(const ParameterTable& values, const std::string& path, S
   }
 }
 
-/// Where the target's own frame is, if it is calibrated: the truth has it, too.
+/// Adds the target's own frame to the truth, if it is calibrated.
 inline void add_target_frame(const StepConfig& step, SimulationPlan& plan) {
   for (const FreeFrameConfig& frame : step.free_frames) {
     if (frame.name != plan.target_frame || plan.setup.robot.has_joint(frame.name)) continue;
@@ -146,7 +146,7 @@ KINECAL_INLINE SimulationPlan read_simulation(const Robot& robot, const std::str
   SimulationPlan plan;
   plan.setup.robot = robot;
   plan.setup.camera.frame.clear();
-  ParameterTable given;  // errors that the scene gives itself
+  ParameterTable given;  // errors given in the scene
   if (!path.empty()) given = detail::read_scene(path, plan, diagnostics);
   detail::set_noise(plan);
   if (!target.empty()) plan.target.type = target;

@@ -1,4 +1,4 @@
-// Which models and which features of a target a study simulates, for pose_samples.ipp.
+// The models and target features that a study simulates, for pose_samples.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

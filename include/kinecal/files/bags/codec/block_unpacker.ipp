@@ -15,12 +15,12 @@
 
 namespace kinecal::detail {
 
-/// Unpacks the blocks of a bag, one after the other.  Many small bombs do as much harm as a large
-/// one, so what comes out of all blocks together is bounded by what went in.
+/// Unpacks the blocks of a bag, one after the other.  Many small decompression bombs do as much
+/// harm as a large one, so the total output is limited in proportion to the total input.
 class BlockUnpacker {
  public:
-  /// @return  what the block unpacks to, valid up to the next one; `packed` if it is not compressed
-  /// @throws BytesError  as unpack()
+  /// @return  the unpacked block, valid until the next one; `packed` if it is not compressed
+  /// @throws BytesError  like unpack()
   [[nodiscard]] Bytes operator()(Bytes packed, Compression compression,
                                  std::optional<std::uint64_t> size) {
     if (compression == Compression::none) {
@@ -40,11 +40,11 @@ class BlockUnpacker {
   std::uint64_t read_ = 0, written_ = 0;
 };
 
-/// In its compression mode MESSAGE, ROS 2 compresses each message with zstd.  Such messages are
-/// recognized by their first bytes, since CDR begins with a zero.
+/// In compression mode MESSAGE, ROS 2 compresses each message with zstd.  The first bytes identify
+/// such messages, because CDR begins with a zero.
 class MessageUnpacker {
  public:
-  /// @return  the message, valid up to the next one
+  /// @return  the message, valid until the next one
   /// @throws BytesError  if it is damaged, or if this kinecal was built without zstd
   [[nodiscard]] Bytes operator()(const BagTopic& topic, Bytes data) {
     if (topic.encoding != Encoding::cdr || !begins_with(data, kZstdMagic)) return data;

@@ -1,4 +1,4 @@
-// bz2, in which Fetch records its bags.
+// bz2, the compression of Fetch's bags.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -33,7 +33,7 @@ class UnpackBz2 {
     constexpr std::size_t kMost = std::numeric_limits<int>::max();
     in = in.first(std::min(in.size(), kMost));
     out = out.first(std::min(out.size(), kMost));
-    // bzlib only reads here; its declaration lacks the const.
+    // bzlib only reads here, but its declaration lacks the const.
     stream_.next_in = const_cast<char*>(reinterpret_cast<const char*>(in.data()));
     stream_.avail_in = static_cast<unsigned>(in.size());
     stream_.next_out = reinterpret_cast<char*>(out.data());
@@ -65,11 +65,11 @@ static_assert(Unpacker<UnpackBz2>);
 [[nodiscard]] inline std::vector<std::byte> pack_bz2(Bytes bytes) {
   std::vector<std::byte> packed(bytes.size() + bytes.size() / 100 + 600);  // bzlib's bound
   auto size = static_cast<unsigned>(packed.size());
-  // bzlib only reads its source; its declaration lacks the const.  It refuses a null pointer.
+  // bzlib only reads its source, but its declaration lacks the const.  It rejects a null pointer.
   char nothing = 0;
   char* source =
       bytes.empty() ? &nothing : const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
-  // A decompressor allocates whole blocks, however little is in them.
+  // A decompressor allocates whole blocks, however little they hold.
   const int block = static_cast<int>(std::clamp<std::size_t>(bytes.size() / 100'000 + 1, 1, 9));
   const int status = BZ2_bzBuffToBuffCompress(reinterpret_cast<char*>(packed.data()), &size, source,
                                               static_cast<unsigned>(bytes.size()), block, 0, 0);

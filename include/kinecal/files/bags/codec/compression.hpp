@@ -1,7 +1,7 @@
-// How blocks of bags are compressed: bz2 and lz4 in ROS 1, lz4 and zstd in MCAP, zstd in SQLite.
+// Compression of bag blocks: bz2 and lz4 in ROS 1, lz4 and zstd in MCAP, zstd in SQLite.
 //
-// The libraries are optional when kinecal is built: KINECAL_HAVE_BZ2, _LZ4 and _ZSTD say which were
-// found.  A block that needs another one is an error that names what to install.
+// The libraries are optional at build time: KINECAL_HAVE_BZ2, _LZ4 and _ZSTD tell which were found.
+// For a block that needs another one, the error names the package to install.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,13 +16,13 @@
 
 namespace kinecal {
 
-/// How the chunks of a bag are compressed.
+/// Compressions of the chunks of a bag.
 enum class Compression { none, bz2, lz4, zstd };
 
 /// The name of a compression in bags: "none", "bz2", "lz4" or "zstd".
 [[nodiscard]] std::string_view to_string(Compression compression);
 
-/// Whether this kinecal was built with the library that it needs.
+/// True if this build has the library for it.
 [[nodiscard]] bool is_available(Compression compression);
 
 namespace detail {
@@ -30,8 +30,8 @@ namespace detail {
 /// The compression with this name in bags; "", as in MCAP, stands for Compression::none.
 [[nodiscard]] std::optional<Compression> compression_named(std::string_view text);
 
-/// @param size  bytes that must come out, if the bag says how many
-/// @param out   holds them, and nothing else; its memory is used again
+/// @param size  expected number of output bytes, if the bag gives it
+/// @param out   receives only the output; reuses its memory
 /// @throws BytesError  "is compressed with lz4, and ...", a predicate without its subject: the
 ///                     library is missing, the bytes are damaged, or unpack to another size
 void unpack(Bytes packed, Compression compression, std::optional<std::uint64_t> size,

@@ -1,4 +1,4 @@
-// Chooses the library that packs and unpacks.
+// Chooses the library that packs or unpacks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

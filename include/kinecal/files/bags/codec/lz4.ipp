@@ -48,7 +48,7 @@ static_assert(Unpacker<UnpackLz4>);
 
 [[nodiscard]] inline std::vector<std::byte> pack_lz4(Bytes bytes) {
   LZ4F_preferences_t preferences = LZ4F_INIT_PREFERENCES;
-  // ROS 1 reads only such frames.
+  // ROS 1 reads only this kind of frame.
   preferences.frameInfo.blockMode = LZ4F_blockIndependent;
   preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
   std::vector<std::byte> packed(LZ4F_compressFrameBound(bytes.size(), &preferences));

@@ -1,7 +1,7 @@
 // Unpacks untrusted bytes in bounded memory.
 //
 // A few bytes may claim to hold a gigabyte, and decompression bombs really do.  So the output grows
-// while it is being filled, and never beyond what is plausible for the input.
+// as it fills, up to a plausible size for the input.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,13 +18,13 @@
 
 namespace kinecal::detail {
 
-/// What a decompressor did in one step.
+/// The result of one decompression step.
 struct UnpackStep {
   std::size_t read = 0, written = 0;
   bool ended = false;  ///< the compressed stream; another may follow
 };
 
-/// @throws BytesError  from step(), if the bytes are not what it decompresses
+/// @throws BytesError  from step(), if the bytes are invalid
 template <class U>
 concept Unpacker = requires(U u, Bytes in, std::span<std::byte> out) {
   { u.step(in, out) } -> std::same_as<UnpackStep>;
@@ -34,15 +34,15 @@ inline constexpr std::uint64_t kMostOfABlock = std::uint64_t{1} << 30;  ///< byt
 
 inline constexpr std::uint64_t kMostOfAMessage = kMostOfABlock / 2;  ///< bytes, when writing
 
-inline constexpr std::uint64_t kMostRatio = 256;  ///< of lz4; data of sensors reach a tenth of it
+inline constexpr std::uint64_t kMostRatio = 256;  ///< of lz4; sensor data reach a tenth of it
 
-/// Bytes that a block may unpack to: black images pack well, but not without limit.
+/// Largest plausible output of a block: black images pack well, but not without limit.
 [[nodiscard]] constexpr std::uint64_t most_unpacked(std::uint64_t packed) {
   constexpr std::uint64_t kAlways = std::uint64_t{1} << 25;
   return std::min(kMostOfABlock, std::max(kAlways, kMostRatio * std::min(packed, kMostOfABlock)));
 }
 
-/// Bytes that all blocks of a file may unpack to.
+/// Largest plausible output of all blocks of a file.
 [[nodiscard]] constexpr std::uint64_t most_unpacked_in_all(std::uint64_t packed) {
   constexpr std::uint64_t kMost = ~std::uint64_t{0} / kMostRatio;
   return std::max(kMostOfABlock, kMostRatio * std::min(packed, kMost));
@@ -55,8 +55,8 @@ inline void check_size(Bytes bytes, std::optional<std::uint64_t> size) {
                    " that it claims");
 }
 
-/// @param size  bytes that must come out, if it is known
-/// @param out   holds them, and nothing else; its memory is used again
+/// @param size  expected number of output bytes, if known
+/// @param out   receives only the output; reuses its memory
 /// @throws BytesError  "does not unpack to ...": a predicate without its subject
 template <Unpacker U>
 void unpack_with(U& unpacker, Bytes packed, std::optional<std::uint64_t> size,
@@ -70,7 +70,7 @@ void unpack_with(U& unpacker, Bytes packed, std::optional<std::uint64_t> size,
   const auto target = static_cast<std::size_t>(size.value_or(most));
   const auto grow = [&](std::size_t wanted) {
     const std::size_t next =
-        std::min(wanted, target + 1);  // one byte more shows that there are more
+        std::min(wanted, target + 1);  // one extra byte shows that there are more
     out.reserve(next);
     out.resize(next);
   };

@@ -24,9 +24,8 @@ inline constexpr bool kHaveZstd = true;
 
 class UnpackZstd {
  public:
-  /// @param packed  bytes in all.  They bound the window, the memory that zstd takes; so does
-  /// zstd's
-  ///                default limit.
+  /// @param packed  total bytes.  They bound the window, zstd's memory; so does zstd's default
+  ///                limit.
   explicit UnpackZstd(std::size_t packed) : context_(ZSTD_createDCtx()) {
     if (!context_) throw std::bad_alloc();
     constexpr int kMostLog = 27;

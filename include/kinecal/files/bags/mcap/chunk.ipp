@@ -1,4 +1,4 @@
-// The content of a chunk of an MCAP file, unpacked and checked, and the sums to check it.
+// Unpacks and checks a chunk of an MCAP file; its checksums.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,7 +22,7 @@ namespace kinecal::detail {
 }
 
 /// @param expected  the sum in the file; 0 if unknown
-/// @throws BytesError  if the bytes are not those that were written
+/// @throws BytesError  if the bytes do not match their checksum
 inline void check_mcap_sum(Bytes bytes, std::uint32_t expected, std::uint64_t place,
                            std::string_view what) {
   if (expected == 0) return;
@@ -34,8 +34,8 @@ inline void check_mcap_sum(Bytes bytes, std::uint32_t expected, std::uint64_t pl
 }
 
 /// The records of a chunk.
-/// @param unpack  holds them if they were compressed
-/// @throws BytesError  if they are damaged, or compressed in a way that this kinecal lacks
+/// @param unpack  receives them if they were compressed
+/// @throws BytesError  if they are damaged, or this build lacks their compression
 [[nodiscard]] inline Bytes unpack_mcap_chunk(const McapChunk& chunk, BlockUnpacker& unpack) {
   const std::optional<Compression> compression = compression_named(chunk.compression);
   if (!compression) {

@@ -1,6 +1,6 @@
-// The index at the end of an MCAP file, its summary: which channels its chunks hold.
+// The index at the end of an MCAP file, its summary: the channels in each chunk.
 //
-// It lets readers skip chunks and notice missing messages; everything can be read without it.
+// It lets readers skip chunks and notice missing messages; the file can be read without it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,14 +22,14 @@
 namespace kinecal::detail {
 
 struct McapIndex {
-  bool complete = false;  ///< the file has its end: its recording was not interrupted
+  bool complete = false;  ///< the file has an end: its recording was not interrupted
   std::map<std::uint64_t, McapChunkIndex> chunks;  ///< by their place
   std::optional<McapStatistics> statistics;
   McapTopics topics;
   std::string damage;  ///< why the summary is not used; empty if it is used or missing
 
-  /// Whether all channels and schemas are in the summary, so that chunks may be skipped.  Writers
-  /// may leave them out, and then a chunk can hold the only record of a channel or a schema.
+  /// True if all channels and schemas are in the summary, so that chunks may be skipped.  If a
+  /// writer left them out, a chunk may hold the only record of a channel or a schema.
   [[nodiscard]] bool knows_all_topics() const {
     return statistics && statistics->channels <= topics.channels() &&
            statistics->schemas <= topics.schemas();
@@ -66,7 +66,7 @@ inline void read_mcap_summary(Bytes summary, std::uint64_t place, McapIndex& ind
 }
 
 /// Reads the end of a file.
-/// @return  what is known without reading all of it; empty if the recording was interrupted
+/// @return  the index; empty if the recording was interrupted
 [[nodiscard]] inline McapIndex read_mcap_index(ByteFile& file) {
   constexpr std::uint64_t kMostOfASummary = std::uint64_t{1} << 26;  // of some 100 GB
   constexpr std::uint64_t kEnd = kMcapHeadBytes + kMcapFooterBytes + kMcapMagic.size();

@@ -1,7 +1,7 @@
 // The wanted messages of an MCAP file, one after the other.
 //
-// The file is walked from record to record.  If its index lists what a chunk holds and none of it
-// is wanted, the chunk is skipped unread.  An interrupted recording has no index: all is read.
+// Walks the file record by record.  If the index shows that nothing in a chunk is wanted, the chunk
+// is skipped unread.  An interrupted recording has no index, so everything is read.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -40,8 +40,8 @@ class McapMessages {
     file_.go_to(kMcapMagic.size());
   }
 
-  /// The next one, valid until the one after it; none at the end.
-  /// @throws BytesError  where the file is damaged
+  /// The next one, valid until the one after it; nullopt at the end.
+  /// @throws BytesError  if the file is damaged there
   [[nodiscard]] std::optional<BagMessage> next() {
     while (!ended_) {
       if (!in_chunk_) {
@@ -117,7 +117,7 @@ class McapMessages {
     }
   }
 
-  /// Whether this chunk holds no wanted messages according to the index.
+  /// True if this chunk holds no wanted messages according to the index.
   [[nodiscard]] bool can_be_skipped(std::uint64_t start, std::uint64_t length) {
     const auto it = index_.chunks.find(start);
     if (it == index_.chunks.end() || it->second.length != kMcapHeadBytes + length) return false;

@@ -1,4 +1,4 @@
-// Reads MCAP files, in which ROS 2 records by default: chunks of messages, plain, LZ4 or zstd.
+// Reads MCAP files, ROS 2's default format: chunks of messages, plain, LZ4 or zstd.
 //
 // One chunk at a time is in memory, packed and unpacked.  Check sums of chunks and of the index are
 // checked; that of the whole file is not, since it would require reading everything.
@@ -15,22 +15,22 @@
 
 namespace kinecal {
 
-/// Reads the wanted messages of a file, in its order.
+/// Reads the wanted messages of a file, in file order.
 /// @param in           seekable
-/// @param name         of the file, with which messages begin
-/// @param diagnostics  receives what is wrong with the file: at most one error, at which reading
-///                     ends, and as a warning that the recording was interrupted; then all whole
-///                     chunks are read.  Only what the reader's functions throw is thrown.
+/// @param name         of the file, for messages
+/// @param diagnostics  receives at most one error, which ends reading, and a warning if the
+///                     recording was interrupted; then all complete chunks are read.  Throws only
+///                     exceptions of the reader's functions.
 void read_mcap(std::istream& in, const std::string& name, const BagReader& reader,
                Diagnostics& diagnostics);
 
 /// The same for a file.
 /// @param path  of an .mcap file
-/// @param name  of the file, with which messages begin
+/// @param name  of the file, for messages
 void read_mcap(const std::string& path, const std::string& name, const BagReader& reader,
                Diagnostics& diagnostics);
 
-/// The same; messages begin with the path.
+/// The same, with the path as name.
 void read_mcap(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace kinecal

@@ -1,4 +1,4 @@
-// Hands over the messages of an MCAP file, and reports what is wrong with it.
+// Passes on the messages of an MCAP file, and reports errors in it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -31,7 +31,7 @@ KINECAL_INLINE void read_mcap(std::istream& in, const std::string& name, const B
       return std::nullopt;
     }
   };
-  // What the reader throws is not an error of the file.
+  // Exceptions of the reader's functions are not errors of the file.
   while (const std::optional<BagMessage> message = advance()) reader.handle(*message);
 }
 

@@ -1,8 +1,8 @@
-// What an MCAP file says about its topics, and which of them are wanted.
+// The topics of an MCAP file, and which of them are wanted.
 //
-// A topic is a channel, which says how its messages are encoded, and a schema, which says what they
-// are.  Both may stand in the file more than once, always with the same content.  At the first
-// message of a topic, the reader is asked whether it is wanted.
+// A topic is a channel, which defines the encoding of its messages, and a schema, which defines
+// their type.  Both may occur more than once, always with the same content.  At the first message
+// of a topic, the reader is asked whether it wants the topic.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,7 +30,7 @@ class McapTopics {
   };
 
   /// @param in  content of the record
-  /// @throws BytesError  if another one of its number has other content
+  /// @throws BytesError  if its number is used with other content
   void add_schema(const ByteReader& in) {
     const McapSchema record(in);
     const auto it = schemas_.find(record.id);
@@ -68,8 +68,8 @@ class McapTopics {
     return it == topics_.end() ? nullptr : &it->second;
   }
 
-  /// Whether the messages of a topic are wanted; asks the reader once.
-  /// @param in  its place is named by errors
+  /// True if the messages of a topic are wanted; asks the reader once.
+  /// @param in  its position appears in errors
   bool wants(Topic& topic, const BagReader& reader, const ByteReader& in) {
     if (topic.asked) return topic.wanted;
     topic.asked = true;
@@ -98,7 +98,7 @@ class McapTopics {
     return topic.wanted = reader.wants(topic.topic);
   }
 
-  /// A warning about topics that are not of ROS; empty if all are.
+  /// A warning about non-ROS topics; empty if there are none.
   [[nodiscard]] std::string foreign() const {
     if (foreign_ == 0) return "";
     return fmt::format("{} topic{} not in an encoding of ROS and left out: {}{}", foreign_,
@@ -112,7 +112,7 @@ class McapTopics {
   };
   KeptBytes kept_;
   std::map<std::uint16_t, Schema> schemas_;
-  std::map<std::uint16_t, Topic> topics_;  ///< they stay where they are
+  std::map<std::uint16_t, Topic> topics_;  ///< addresses are stable
   std::size_t foreign_ = 0;
   std::string first_foreign_;
 };

@@ -1,4 +1,4 @@
-// An MCAP file while it is being written: chunks with their indices, then the summary.
+// Writes an MCAP file: chunks with their indices, then the summary.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -76,7 +76,7 @@ class McapFile {
     const auto [summary, offsets] =
         options_.index ? summarize() : std::pair<std::string, std::string>{};
     const std::uint64_t offsets_start = options_.index ? place_ + summary.size() : 0;
-    McapContent end;  // of the summary, up to where its sum stands
+    McapContent end;  // of the summary, up to its checksum
     end.raw(summary).raw(offsets).number(static_cast<std::uint8_t>(McapOp::footer));
     end.number(kMcapFooterBytes).number(start).number(offsets_start);
     const std::uint32_t sum = options_.index ? mcap_sum(as_bytes(end.str())) : 0;
@@ -158,12 +158,12 @@ class McapFile {
     ++chunk_count_;
   }
 
-  /// As the file calls it.
+  /// The compression's name in the file.
   [[nodiscard]] std::string_view compression_name() const {
     return options_.compression == Compression::none ? "" : to_string(options_.compression);
   }
 
-  /// The records compressed; empty if they are written as they are.
+  /// The compressed records; empty if they are stored uncompressed.
   [[nodiscard]] std::string pack(const std::string& records) const {
     if (options_.compression == Compression::none) return {};
     const std::vector<std::byte> packed = detail::pack(as_bytes(records), options_.compression);

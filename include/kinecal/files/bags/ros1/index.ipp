@@ -1,6 +1,6 @@
-// The index of a ROS 1 bag: which chunks hold messages of which connections.
+// The index of a ROS 1 bag: the chunks that hold messages of each connection.
 //
-// It stands at the end of the file and is written last, so an interrupted recording has no index.
+// It is at the end of the file and written last, so an interrupted recording has no index.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -16,13 +16,13 @@
 
 namespace kinecal::detail {
 
-/// What the bag header, which is the first record, says about the index.
+/// What the bag header, the first record, says about the index.
 struct Ros1BagHeader {
   std::uint64_t index_place = 0;  ///< 0: the index has not been written
   std::uint32_t connections = 0, chunks = 0;
 };
 
-/// @throws BytesError  if the record is not a bag header, or says that the bag is encrypted
+/// @throws BytesError  if the record is not a bag header, or the bag is encrypted
 [[nodiscard]] inline Ros1BagHeader read_ros1_bag_header(ByteFile& file) {
   std::vector<std::byte> bytes;
   const Ros1Head head = read_ros1_head(file, bytes);
@@ -57,8 +57,8 @@ inline void add_ros1_chunk_info(const Ros1Fields& header, Bytes data, std::uint6
   }
 }
 
-/// Reads all of the index.
-/// @return  empty if the index is whole; otherwise what is wrong with it, and `chunks` is empty
+/// Reads the whole index.
+/// @return  empty if the index is complete; otherwise the error, and `chunks` is empty
 [[nodiscard]] inline std::string read_ros1_index(ByteFile& file, const Ros1BagHeader& header,
                                                  Ros1Topics& topics, Ros1ChunkInfos& chunks) {
   std::uint64_t connections = 0, infos = 0;

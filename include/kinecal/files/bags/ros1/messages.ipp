@@ -1,4 +1,4 @@
-// Hands over the wanted messages in the records of a ROS 1 bag, and reports what is wrong.
+// Passes on the wanted messages of a ROS 1 bag, and reports errors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@ namespace kinecal::detail {
 
 class Ros1Messages {
  public:
-  /// @param name  of the bag, with which messages begin
+  /// @param name  of the bag, for messages
   Ros1Messages(std::string name, const BagReader& reader, Diagnostics& diagnostics)
       : name_(std::move(name)), reader_(reader), diagnostics_(diagnostics), topics_(reader.wants) {}
 
@@ -29,9 +29,9 @@ class Ros1Messages {
   /// The data of a chunk: connections and messages, one after another.
   struct Records {
     Bytes bytes;
-    std::uint64_t place;   ///< of the first byte, as messages name it
-    std::string where;     ///< with which messages begin
-    bool is_whole = true;  ///< false if the file ends in it, which is reported elsewhere
+    std::uint64_t place;   ///< of the first byte, for messages
+    std::string where;     ///< beginning of messages
+    bool is_whole = true;  ///< false if the file ends in it; reported elsewhere
   };
 
   void records(const Records& all) {
@@ -64,7 +64,7 @@ class Ros1Messages {
     }
   }
 
-  /// @return  its topic, nullptr if the message is left out
+  /// @return  its topic; nullptr if the message is not wanted
   [[nodiscard]] const BagTopic* wanted(const Ros1Fields& message, const std::string& where) {
     try {
       return topics_.wanted(message);

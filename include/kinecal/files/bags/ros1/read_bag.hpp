@@ -13,15 +13,15 @@
 
 namespace kinecal {
 
-/// Reads the wanted messages in the order of the file, which is nearly that of recording.
+/// Reads the wanted messages in file order, nearly that of recording.
 /// @param in           seekable
-/// @param name         of the bag, with which messages begin
-/// @param diagnostics  receives every error with its byte.  Only what the reader's functions throw
-///                     is thrown.
+/// @param name         of the bag, for messages
+/// @param diagnostics  receives every error with its byte.  Throws only exceptions of the reader's
+///                     functions.
 void read_ros1_bag(std::istream& in, const std::string& name, const BagReader& reader,
                    Diagnostics& diagnostics);
 
-/// @param diagnostics  also receives that the file cannot be read
+/// @param diagnostics  also receives an error if the file cannot be read
 void read_ros1_bag(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace kinecal

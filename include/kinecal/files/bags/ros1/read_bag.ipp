@@ -1,7 +1,7 @@
-// Walks a ROS 1 bag from record to record.
+// Walks a ROS 1 bag record by record.
 //
-// If the index is whole, chunks without wanted messages are skipped unread.  Otherwise all chunks
-// are read: an interrupted recording has no index.
+// If the index is complete, chunks without wanted messages are skipped unread.  Otherwise all
+// chunks are read: an interrupted recording has no index.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -98,12 +98,12 @@ class Ros1BagReading {
     file_.go_to(next);
   }
 
-  /// Whether a place is in the index, which was found not to be whole.
+  /// True if a place is in the index, even if the index is incomplete.
   [[nodiscard]] bool is_in_index(std::uint64_t place) const {
     return header_.index_place > 0 && place >= header_.index_place;
   }
 
-  /// @throws BytesError  if no record begins here, or it does not end in the file
+  /// @throws BytesError  if no record begins here, or it ends beyond the file
   void record() {
     const Ros1Head head = read_ros1_head(file_, header_bytes_);
     const Ros1Op op = head.fields.op();
@@ -111,7 +111,7 @@ class Ros1BagReading {
       handle(op, head);
     } catch (const CutOffError&) {
       throw;
-    } catch (const BytesError& e) {  // it is known where the next one begins
+    } catch (const BytesError& e) {  // the position of the next one is known
       messages_.error(std::string(e.what()) + "; the record is left out");
       skip_ros1_data(file_, head);
     }
@@ -173,7 +173,7 @@ class Ros1BagReading {
     }
   }
 
-  /// The index of the chunk before it.  It may list what the chunk info does not.
+  /// The index of the previous chunk.  It may list more than the chunk info.
   void index(const Ros1Head& head) {
     skip_ros1_data(file_, head);
     if (!skipped_ || head.fields.number<std::uint32_t>("count") == 0) return;
@@ -222,7 +222,7 @@ class Ros1BagReading {
   Ros1BagHeader header_;
   Ros1ChunkInfos chunks_;
   bool has_index_ = false;
-  bool wrong_infos_ = false;              ///< which has been reported
+  bool wrong_infos_ = false;              ///< already reported
   std::optional<std::uint64_t> skipped_;  ///< place of the last chunk, if it was skipped
   bool is_in_open_chunk_ = false;         ///< compressed, so that its records cannot be read
   std::uint64_t end_ = 0;                 ///< of the walk

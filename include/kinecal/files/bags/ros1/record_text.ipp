@@ -13,7 +13,7 @@
 
 namespace kinecal::detail {
 
-/// Fields: a header, or the data of a connection.  Add them in alphabetical order, as rosbag does.
+/// Fields of a header, or the data of a connection.  Add them alphabetically, as rosbag does.
 class Ros1Text {
  public:
   Ros1Text& field(std::string_view name, std::string_view value) {

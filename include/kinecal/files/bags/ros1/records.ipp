@@ -1,11 +1,11 @@
 // The records of a ROS 1 bag, read from bytes or from a file.
 //
 //   record = header length (4), header, data length (4), data        lengths are little endian
-//   header = fields, each: length (4), name '=' value; the field `op` says what the record is
+//   header = fields, each: length (4), name '=' value; the field `op` gives the kind of record
 //
-// A bag is the magic text, the bag header, chunks, each followed by an index of its messages, and
-// the index of the bag: connections and chunk infos.  The data of a chunk are records, too:
-// connections and messages.
+// A bag is the magic text, the bag header, chunks, each with an index of its messages, and the
+// index of the bag: connections and chunk infos.  The data of a chunk are records, too: connections
+// and messages.
 // Source: wiki.ros.org/Bags/Format/2.0
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -45,7 +45,7 @@ class Ros1Fields {
   /// @param place  of the first byte in its file
   Ros1Fields(Bytes bytes, std::uint64_t place) : bytes_(bytes), place_(place) {}
 
-  /// @throws BytesError  if what stands before it is not a field
+  /// @throws BytesError  if something before it is not a field
   [[nodiscard]] std::optional<Bytes> find(std::string_view name) const {
     ByteReader reader(bytes_, std::endian::little, place_);
     while (!reader.at_end()) {
@@ -85,7 +85,7 @@ class Ros1Fields {
   [[nodiscard]] Ros1Op op() const { return Ros1Op{number<std::uint8_t>("op")}; }
 
  private:
-  /// Names the place of the header: a missing field has no place.
+  /// Reports the position of the header, because a missing field has none.
   [[noreturn]] void fail(const std::string& what) const {
     ByteReader(bytes_, std::endian::little, place_).fail(what + " in the header of this record");
   }
@@ -119,7 +119,7 @@ struct Ros1Record {
   return 1'000'000'000 * seconds + static_cast<std::int64_t>(both >> 32);
 }
 
-/// How a record of the file begins: its header, with the data still unread.
+/// The start of a record in the file: its header, with the data still unread.
 struct Ros1Head {
   std::uint64_t place = 0;
   Ros1Fields fields;
@@ -129,7 +129,7 @@ struct Ros1Head {
 
 /// The record that begins here, without its data.
 /// @param header  holds its fields
-/// @throws CutOffError  if it does not end in the file
+/// @throws CutOffError  if it ends beyond the file
 /// @throws BytesError   if no record begins here
 [[nodiscard]] inline Ros1Head read_ros1_head(ByteFile& file, std::vector<std::byte>& header) {
   constexpr std::uint32_t kMostOfAHeader = 1 << 20;  // real ones have some 100 bytes
@@ -151,8 +151,8 @@ struct Ros1Head {
   return head;
 }
 
-/// @param data  holds them
-/// @throws CutOffError  if they do not end in the file
+/// @param data  receives them
+/// @throws CutOffError  if they end beyond the file
 /// @throws BytesError   if there are more than a block may have
 [[nodiscard]] inline Bytes read_ros1_data(ByteFile& file, const Ros1Head& head,
                                           std::vector<std::byte>& data) {
@@ -164,8 +164,8 @@ struct Ros1Head {
   return file.read(head.data_size, data);
 }
 
-/// Goes to the record that follows, if there is one.
-/// @throws CutOffError  if the data do not end in the file
+/// Skips to the next record, if any.
+/// @throws CutOffError  if the data end beyond the file
 inline void skip_ros1_data(ByteFile& file, const Ros1Head& head) {
   if (head.data_size > file.size() - head.data_place) {
     throw CutOffError(at_byte(head.place) + "a record of " + byte_count(head.data_size) +

@@ -1,6 +1,6 @@
-// The connections of a ROS 1 bag: to which topic a message belongs, and whether it is wanted.
+// The connections of a ROS 1 bag: the topic of each message, and whether it is wanted.
 //
-// Several publishers of a topic are several connections; those with the same content are one topic.
+// Each publisher of a topic has its own connection; those with the same content form one topic.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace kinecal::detail {
 
-/// What a user's function threw.  It passes through the handlers that catch the errors of a bag.
+/// Wraps an exception of a user's function, so that it passes the handlers for errors of a bag.
 struct PassedOn {
   std::exception_ptr thrown;
 };
@@ -36,11 +36,11 @@ auto pass_on(const F& users) {
 
 class Ros1Topics {
  public:
-  /// @param wants  asked once for each topic
+  /// @param wants  called once per topic
   explicit Ros1Topics(const std::function<bool(const BagTopic&)>& wants) : wants_(wants) {}
 
-  /// Adds a connection record.  It stands in its chunk and in the index; the first one counts.
-  /// @throws BytesError  if it is not a connection, or another one has its number
+  /// Adds a connection record.  It occurs in its chunk and in the index; the first one counts.
+  /// @throws BytesError  if it is not a connection, or its number is taken
   /// @throws PassedOn    if the user's function throws
   void add(const Ros1Fields& header, Bytes data, std::uint64_t data_place) {
     const auto number = header.number<std::uint32_t>("conn");
@@ -64,8 +64,8 @@ class Ros1Topics {
     }
   }
 
-  /// @return  the topic of a message, nullptr if it is not wanted
-  /// @throws BytesError  if there is no such connection; once for each number
+  /// @return  the topic of a message; nullptr if it is not wanted
+  /// @throws BytesError  if there is no such connection; once per number
   [[nodiscard]] const BagTopic* wanted(const Ros1Fields& message) {
     const auto number = message.number<std::uint32_t>("conn");
     const auto [known, is_new] = connections_.try_emplace(number, nullptr);
@@ -76,7 +76,8 @@ class Ros1Topics {
     return known->second != nullptr && known->second->wanted ? &known->second->topic : nullptr;
   }
 
-  /// Whether to read the messages of a connection; also if it is unknown, which is an error then.
+  /// True if the messages of a connection must be read; also if it is unknown, which is then an
+  /// error.
   [[nodiscard]] bool may_be_wanted(std::uint32_t number) const {
     const auto known = connections_.find(number);
     return known == connections_.end() || (known->second != nullptr && known->second->wanted);
@@ -114,8 +115,7 @@ class Ros1Topics {
 
   const std::function<bool(const BagTopic&)>& wants_;
   KeptBytes kept_;
-  std::unordered_map<std::string, Asked>
-      topics_;  ///< they stay where they are while others are added
+  std::unordered_map<std::string, Asked> topics_;  ///< addresses are stable while others are added
   std::unordered_map<std::uint32_t, const Asked*> connections_;  ///< nullptr: unknown, and reported
 };
 

@@ -1,4 +1,4 @@
-// Writes a ROS 1 bag, version 2.0, which read_ros1_bag() and rosbag read.
+// Writes a ROS 1 bag, version 2.0, for read_ros1_bag() and rosbag.
 //
 //   std::ofstream out("samples.bag", std::ios::binary);
 //   Ros1BagWriter bag(out);
@@ -31,10 +31,10 @@ class Ros1BagWriter {
  public:
   static constexpr std::size_t kChunkBytes = std::size_t{768} << 10;  ///< as in rosbag
 
-  /// @param out          binary and seekable; the bag begins where it stands
-  /// @param compression  none, bz2 or lz4, which rosbag reads
-  /// @param chunk_bytes  of messages, after which a chunk ends
-  /// @throws std::invalid_argument  if the compression is another, or not available
+  /// @param out          binary and seekable; the bag begins at its position
+  /// @param compression  none, bz2 or lz4: rosbag reads these
+  /// @param chunk_bytes  size of messages after which a chunk ends
+  /// @throws std::invalid_argument  if the compression is none of these, or not available
   /// @throws std::runtime_error     if the stream cannot be written
   explicit Ros1BagWriter(std::ostream& out, Compression compression = Compression::none,
                          std::size_t chunk_bytes = kChunkBytes);
@@ -45,7 +45,7 @@ class Ros1BagWriter {
   Ros1BagWriter& operator=(Ros1BagWriter&&) noexcept;
 
   /// @param topic     with type, md5 and definition; the name as in ROS, with its leading slash
-  /// @param latching  whether the last message is sent to later subscribers
+  /// @param latching  true if the last message is sent to later subscribers
   /// @return          its number, for write()
   /// @throws std::invalid_argument  if the bag is closed
   [[nodiscard]] std::uint32_t add_topic(const BagTopic& topic, bool latching = false);
@@ -57,7 +57,7 @@ class Ros1BagWriter {
   /// @throws std::runtime_error     if the stream cannot be written
   void write(std::uint32_t topic, std::int64_t time, Bytes data);
 
-  /// Writes what is left, and the index.
+  /// Writes the rest, and the index.
   /// @throws std::runtime_error  if the stream cannot be written
   void close();
 

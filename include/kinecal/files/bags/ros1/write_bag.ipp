@@ -1,4 +1,4 @@
-// A ROS 1 bag while it is being written: chunks with their indices, then the index of the bag.
+// Writes a ROS 1 bag: chunks with their indices, then the index of the bag.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -60,8 +60,8 @@ class Db3Messages {
     row_.emplace(database_, "SELECT topic_id, timestamp, data FROM messages WHERE rowid = ?");
   }
 
-  /// The next one in the order of time, valid until the one after it; none at the end.
-  /// @throws BytesError  where the database is damaged
+  /// The next one in time order, valid until the one after it; nullopt at the end.
+  /// @throws BytesError  if the database is damaged there
   [[nodiscard]] std::optional<BagMessage> next() {
     if (!order_ || !order_->next()) return std::nullopt;
     const std::int64_t id = order_->number(0);
@@ -80,7 +80,7 @@ class Db3Messages {
 
  private:
   /// The data of the current row.
-  /// @throws BytesError  if the file is too small for all data: as when messages share a page
+  /// @throws BytesError  if the file is too small for all data: messages share a page
   [[nodiscard]] Bytes content(const BagTopic& topic) {
     const Bytes data = row_->bytes(2);
     read_ += data.size();
@@ -139,7 +139,7 @@ class Db3Messages {
     return topics;
   }
 
-  /// Texts of the types that have one, by their ROS 2 names.
+  /// Definitions of the types that have one, by their ROS 2 names.
   [[nodiscard]] std::map<std::string, std::string> read_definitions(KeptBytes& kept) const {
     std::map<std::string, std::string> definitions;
     const std::set<std::string> has = columns_of("message_definitions");
@@ -171,9 +171,9 @@ class Db3Messages {
   MessageUnpacker unpack_message_;
 };
 
-/// Hands over the wanted messages of a database, and reports what is wrong with it.
+/// Passes on the wanted messages of a database, and reports errors.
 /// @param open  opens it
-/// @param name  of the file, with which messages begin
+/// @param name  of the file, for messages
 inline void read_db3_database(const std::function<SqliteDatabase()>& open, const std::string& name,
                               const BagReader& reader, Diagnostics& diagnostics) {
   std::optional<SqliteDatabase> database;
@@ -190,7 +190,7 @@ inline void read_db3_database(const std::function<SqliteDatabase()>& open, const
       return std::nullopt;
     }
   };
-  // What the reader throws is not an error of the file.
+  // Exceptions of the reader's functions are not errors of the file.
   while (const std::optional<BagMessage> message = advance()) reader.handle(*message);
 }
 

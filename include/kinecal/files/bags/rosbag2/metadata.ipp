@@ -1,4 +1,4 @@
-// metadata.yaml of a ROS 2 bag lists the files of which it consists.
+// metadata.yaml of a ROS 2 bag, which lists the bag's files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -19,7 +19,7 @@ struct Ros2Metadata {
   std::string compression;         ///< "zstd", or empty
 };
 
-/// @throws InputError  "file:line: ..." if it cannot be read or is not such a file
+/// @throws InputError  "file:line: ..." if it cannot be read or is not a metadata.yaml
 [[nodiscard]] inline Ros2Metadata read_ros2_metadata(const std::string& path) {
   constexpr std::uint64_t kMost = 1 << 24;
   constexpr const char* kTop = "rosbag2_bagfile_information";

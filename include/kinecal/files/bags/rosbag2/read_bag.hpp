@@ -1,4 +1,4 @@
-// Reads a ROS 2 bag: a folder with metadata.yaml and the files that it lists, .db3 or .mcap.
+// Reads a ROS 2 bag: a folder with metadata.yaml and the .db3 or .mcap files that it lists.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,16 +9,16 @@
 
 namespace kinecal {
 
-/// Reads the wanted messages of a bag, file after file.  The reader is asked about topics file by
-/// file, too.
+/// Reads the wanted messages of a bag, file after file.  Asks the reader about topics for each file
+/// again.
 /// @param folder       with metadata.yaml
-/// @param diagnostics  receives what is wrong with the bag.  If a listed file is missing, nothing
-///                     is read.  Only what the reader's functions throw is thrown.
+/// @param diagnostics  receives errors in the bag.  If a listed file is missing, nothing is read.
+///                     Throws only exceptions of the reader's functions.
 void read_ros2_bag(const std::string& folder, const BagReader& reader, Diagnostics& diagnostics);
 
 namespace detail {
 
-/// Reads one file of a bag, .mcap, .db3 or either in zstd; its first bytes say which.
+/// Reads one file of a bag, .mcap, .db3 or either in zstd, identified by its first bytes.
 void read_ros2_bag_file(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace detail

@@ -64,8 +64,8 @@ KINECAL_INLINE void read_ros2_bag_file(const std::string& path, const BagReader&
                                                "it begins like neither");
 }
 
-/// Path of a listed file: in the folder, or relative to the folder above, as old versions of ROS 2
-/// list it.  A decompressed file comes before a compressed one.
+/// Path of a listed file: in the folder, or relative to its parent folder, as old versions of ROS 2
+/// list it.  Prefers a decompressed file to a compressed one.
 /// @return  empty if it does not exist
 [[nodiscard]] inline std::string find_ros2_bag_file(const std::filesystem::path& folder,
                                                     const std::string& listed) {
@@ -84,8 +84,8 @@ KINECAL_INLINE void read_ros2_bag_file(const std::string& path, const BagReader&
   return "";
 }
 
-/// The files of a folder without metadata.yaml, as people count them.  A compressed file and its
-/// decompressed copy are one file.
+/// The files of a folder without metadata.yaml, in natural order.  A compressed file and its
+/// decompressed copy count as one.
 [[nodiscard]] inline std::vector<std::string> list_ros2_bag_files(
     const std::filesystem::path& folder) {
   std::set<std::string, decltype(&naturally_before)> files(&naturally_before);
@@ -101,8 +101,8 @@ KINECAL_INLINE void read_ros2_bag_file(const std::string& path, const BagReader&
   return {files.begin(), files.end()};
 }
 
-/// The files of a bag as metadata.yaml lists them, or without it, as they are in the folder.
-/// @throws InputError  if there is a metadata.yaml and it cannot be used
+/// The files of a bag as listed in metadata.yaml or, without it, those in the folder.
+/// @throws InputError  if there is a metadata.yaml but it is unusable
 [[nodiscard]] inline std::vector<std::string> ros2_bag_files(const std::string& folder,
                                                              Diagnostics& diagnostics) {
   const std::string metadata_path = (std::filesystem::path(folder) / "metadata.yaml").string();

@@ -1,4 +1,4 @@
-// Reads .db3 files, the SQLite databases into which ROS 2 recorded by default before MCAP.
+// Reads .db3 files, the SQLite databases of ROS 2's default format before MCAP.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,16 +9,15 @@
 
 namespace kinecal {
 
-/// Reads the wanted messages of a file, in the order of time.
+/// Reads the wanted messages of a file, in time order.
 /// @param path         of a .db3 file
-/// @param name         of the file, with which messages begin
-/// @param diagnostics  receives what is wrong with the file, at most one error, at which reading
-///                     ends; also that this kinecal was built without SQLite.  Only what the
-///                     reader's functions throw is thrown.
+/// @param name         of the file, for messages
+/// @param diagnostics  receives at most one error, which ends reading; also if this build lacks
+///                     SQLite.  Throws only exceptions of the reader's functions.
 void read_db3(const std::string& path, const std::string& name, const BagReader& reader,
               Diagnostics& diagnostics);
 
-/// The same; messages begin with the path.
+/// The same, with the path as name.
 void read_db3(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace kinecal

@@ -21,7 +21,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// @throws BytesError  if the file cannot be opened or does not begin like a database
+/// @throws BytesError  if the file cannot be opened or is not a database
 inline void check_is_sqlite(const std::string& path) {
   std::ifstream in = open_bytes(path);
   ByteFile file(in);
@@ -31,7 +31,7 @@ inline void check_is_sqlite(const std::string& path) {
   if (!is_sqlite(first)) throw BytesError("is not an SQLite database: it does not begin as one");
 }
 
-/// Beside a database, SQLite keeps what it has not written into it yet.
+/// SQLite keeps unfinished changes in files beside the database.
 inline void warn_of_journals(const std::string& path, Diagnostics& diagnostics) {
   std::error_code missing;
   if (std::filesystem::file_size(path + "-wal", missing) > 0 && !missing) {

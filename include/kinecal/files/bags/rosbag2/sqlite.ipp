@@ -1,8 +1,8 @@
 // Reads untrusted SQLite databases; only with KINECAL_HAVE_SQLITE.
 //
-// The file is opened as read-only and immutable, so that nothing is locked or created beside it.
-// Only if a write-ahead log lies beside it, as after an interrupted recording, it is not immutable:
-// the newest messages are in that log.
+// Opens the file read-only and immutable, so that nothing is locked or created beside it.
+// Exception: a write-ahead log beside it, as after an interrupted recording, holds the newest
+// messages; then it is not immutable.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -25,7 +25,7 @@ namespace kinecal::detail {
 
 class SqliteDatabase {
  public:
-  /// @throws BytesError  if it cannot be opened; whether it is a database turns out later
+  /// @throws BytesError  if it cannot be opened; does not yet check that it is a database
   [[nodiscard]] static SqliteDatabase open(const std::string& path) {
     const std::uint64_t log = size_of(path + "-wal");
     return SqliteDatabase("file:" + escaped(path) + "?mode=ro" + (log > 0 ? "" : "&immutable=1"),
@@ -33,7 +33,7 @@ class SqliteDatabase {
   }
 
   /// @param uri   "file:...", as SQLite defines it
-  /// @param size  bytes of it: they bound what is read, and how long that takes
+  /// @param size  of it, bytes: limits what is read, and how long that takes
   SqliteDatabase(const std::string& uri, std::uint64_t size) : size_(size) {
     sqlite3* made = nullptr;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
@@ -44,11 +44,11 @@ class SqliteDatabase {
     sqlite3_db_config(made, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(made, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
     sqlite3_db_config(made, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
-    // A value larger than the file is computed, which only a malicious file does.
+    // Only a malicious file has a computed value larger than the file.
     constexpr std::uint64_t kLeast = 1 << 20;
     sqlite3_limit(made, SQLITE_LIMIT_LENGTH,
                   static_cast<int>(std::min(kMostOfABlock, size + kLeast)));
-    // A damaged tree that branches into itself has endless rows.
+    // A damaged tree with a cycle has endless rows.
     constexpr int kSteps = 10'000;
     steps_ = std::make_unique<std::uint64_t>((10 * kLeast + 64 * size) / kSteps);
     sqlite3_progress_handler(
@@ -60,7 +60,7 @@ class SqliteDatabase {
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
 
-  /// @throws BytesError  with what SQLite says
+  /// @throws BytesError  with SQLite's message
   [[noreturn]] void fail(int code) const {
     const char* text = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
     switch (code & 0xFF) {
@@ -121,14 +121,14 @@ class SqliteRows {
     if (code != SQLITE_OK) database_.fail(code);
   }
 
-  /// Runs the query again, with another value for its '?'.
+  /// Runs the query again with another value for its '?'.
   void bind(std::int64_t value) {
     sqlite3_reset(handle_.get());
     sqlite3_bind_int64(handle_.get(), 1, value);
   }
 
-  /// Goes to the next row, or to the first one.
-  /// @return  whether there is one
+  /// Goes to the next row, at first to the first one.
+  /// @return  false if there is none
   [[nodiscard]] bool next() {
     const int code = sqlite3_step(handle_.get());
     if (code == SQLITE_ROW) return true;

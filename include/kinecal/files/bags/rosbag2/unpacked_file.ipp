@@ -1,6 +1,6 @@
-// A file that ROS 2 compressed as a whole, in its compression mode FILE: "bag_0.db3.zstd".
+// A whole file compressed by ROS 2 in compression mode FILE: "bag_0.db3.zstd".
 //
-// It is unpacked into a temporary file, since readers of bags seek back and forth.
+// Unpacks it into a temporary file, because readers of bags seek back and forth.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -23,7 +23,7 @@ namespace kinecal::detail {
 
 #ifdef KINECAL_HAVE_ZSTD
 
-/// @param out  is not good() afterwards if it cannot take everything
+/// @param out  not good() afterwards if it cannot take everything
 /// @throws BytesError  a predicate without its subject: the file is damaged, or is a bomb
 inline void unpack_zstd(ByteFile& file, std::ostream& out) {
   constexpr std::uint64_t kPiece = 1 << 20;
