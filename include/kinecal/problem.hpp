@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinecal/problem/any_problem.hpp"
-#include "kinecal/problem/batch.hpp"
+#include "kinecal/problem/batches.hpp"
 #include "kinecal/problem/mounted_sensor.hpp"
+#include "kinecal/problem/sample_layout.hpp"
 #include "kinecal/problem/term.hpp"

@@ -168,7 +168,7 @@ constexpr LongSource kLongSources[] = {
     {"config/assemble.ipp", "from all of a configuration to problems, in one pass"},
     {"config/parameters_from_config.ipp", "every kind of parameter that a configuration names"},
     {"errors/error_block.hpp", "the concept: every kind of block, its inputs and its size"},
-    {"evaluation/block_rows.hpp", "one class template: from every kind of block to the one format of rows"},
+    {"evaluation/rows/block_rows.hpp", "one class template: from every kind of block to the one format of rows"},
     {"evaluation/block_term.hpp", "one class template: a term evaluates, sums and lays out its rows alike"},
     {"files/bags/mcap/messages.ipp", "one reader: records, chunks and index of a file"},
     {"files/bags/mcap/write_mcap.ipp", "one writer: records, chunks, index and summary of a file"},

@@ -5,6 +5,7 @@
 #include "kinecal/config/add_blocks.ipp"
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/config_free.ipp"
+#include "kinecal/config/few_samples.ipp"
 #include "kinecal/config/id_warnings.ipp"
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/sample_warnings.ipp"

@@ -3,12 +3,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/evaluator.ipp"
-#include "kinecal/evaluation/feature_wrenches.ipp"
-#include "kinecal/evaluation/local_sums.ipp"
-#include "kinecal/evaluation/point_wrenches.ipp"
 #include "kinecal/evaluation/basic_problem.hpp"
-#include "kinecal/evaluation/sensor_view.ipp"
+#include "kinecal/evaluation/evaluator.ipp"
+#include "kinecal/evaluation/sums/feature_wrenches.ipp"
+#include "kinecal/evaluation/sums/local_sums.ipp"
+#include "kinecal/evaluation/sums/point_wrenches.ipp"
+#include "kinecal/evaluation/views/sensor_view.ipp"
 
 namespace kinecal {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "kinecal/errors/difference.hpp"
-#include "kinecal/evaluation/block_rows.hpp"
+#include "kinecal/evaluation/rows/block_rows.hpp"
 #include "kinecal/evaluation/term_code.hpp"
 
 namespace kinecal::detail {

@@ -17,7 +17,7 @@
 
 #include "kinecal/errors/built_in_block.hpp"
 #include "kinecal/linkage.hpp"
-#include "kinecal/problem/batch.hpp"
+#include "kinecal/problem/sample_layout.hpp"
 #include "kinecal/problem/term.hpp"
 #include "kinecal/sensors/built_in_sensor.hpp"
 

@@ -47,21 +47,6 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
   priors_.push_back({name, prior, options});
 }
 
-KINECAL_INLINE void PriorTerm::evaluate(const ParameterTable& table, std::span<const double> values,
-                                        const FreeSet* free, TermResiduals& out) const {
-  out.resize(Prior::kRows, free != nullptr ? free->size() : -1);
-  const auto parameters = prior.parameters(table);
-  const auto scales = prior.scales();
-  for (std::size_t row = 0; row < parameters.size(); ++row) {
-    if (parameters[row] < 0) continue;
-    const auto r = static_cast<Eigen::Index>(row);
-    out.residual(r) =
-        scales[row] * (values[static_cast<std::size_t>(parameters[row])] - prior.mean[row]);
-    const int column = free != nullptr ? free->column(parameters[row]) : -1;
-    if (column >= 0) out.jacobian(r, column) = scales[row];
-  }
-}
-
 /// The own parameters of an error block; makes the block their owner.
 KINECAL_INLINE std::vector<int> AnyProblem::parameters_of_block(
     const std::string& name, std::span<const ParameterInfo> infos) {

@@ -12,6 +12,7 @@
 
 #include "kinecal/errors/loss.hpp"
 #include "kinecal/errors/prior.hpp"
+#include "kinecal/linkage.hpp"
 #include "kinecal/sensors/quantity.hpp"
 
 namespace kinecal {
@@ -97,3 +98,7 @@ struct PriorTerm {
 };
 
 }  // namespace kinecal
+
+#ifdef KINECAL_HEADER_ONLY
+#include "kinecal/problem/term.ipp"
+#endif

@@ -1,4 +1,4 @@
-#include "kinecal/evaluation/block_rows.hpp"
+#include "kinecal/evaluation/rows/block_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,30 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/evaluation/compiled_walk.hpp"
-#include "kinecal/evaluation/sensor_code.hpp"
-#include "kinecal/parameters/own_parameters.hpp"
-#include "kinecal/problem/mounted_sensor.hpp"
+#include "kinecal/evaluation/views/compiled_walk.hpp"
+#include "kinecal/evaluation/views/sensor_code.hpp"
+#include "kinecal/evaluation/views/sensor_state.hpp"
 
 namespace kinecal::detail {
-
-/// State of a sensor that all batches share: the corrections of its chains, its parameters and the
-/// columns of the Jacobian.
-struct SensorState {
-  std::vector<Corrections<double>> corrections;    ///< of each chain
-  std::vector<std::vector<JointIndices>> columns;  ///< of the joints of each chain
-  std::vector<TwistColumns> twist_columns;         ///< of each chain
-  std::vector<bool> models;                        ///< of each chain: some joint has a model
-  OwnParameters own;                               ///< of the sensor itself
-  bool placed;                                     ///< a block uses more of it than predictions
-
-  /// @param free  the columns of the Jacobian
-  SensorState(const MountedSensor& sensor, const FreeSet& free, bool is_placed);
-
-  /// Takes over new values.
-  /// @param values  of all parameters of the table
-  void set(const MountedSensor& sensor, std::span<const double> values);
-};
 
 /// How a problem evaluates a sensor in S.
 template <class S>

@@ -1,4 +1,4 @@
-#include "kinecal/problem/batch.hpp"
+#include "kinecal/problem/batches.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/evaluation/local_sums.hpp"
+#include "kinecal/evaluation/sums/local_sums.hpp"
 
 namespace kinecal::detail {
 

@@ -9,7 +9,7 @@
 
 #include "kinecal/errors/error_block.hpp"
 #include "kinecal/errors/plane_fit.hpp"
-#include "kinecal/evaluation/feature_rows.hpp"
+#include "kinecal/evaluation/rows/feature_rows.hpp"
 
 namespace kinecal::detail {
 

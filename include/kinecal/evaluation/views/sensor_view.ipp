@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/sensor_view.hpp"
+#include "kinecal/evaluation/views/sensor_view.hpp"
 
 namespace kinecal::detail {
 

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "kinecal/errors/error_block.hpp"
-#include "kinecal/evaluation/local_sums.hpp"
-#include "kinecal/evaluation/plane_rows.hpp"
+#include "kinecal/evaluation/rows/plane_rows.hpp"
+#include "kinecal/evaluation/sums/local_sums.hpp"
 #include "kinecal/problem/term.hpp"
 
 namespace kinecal::detail {

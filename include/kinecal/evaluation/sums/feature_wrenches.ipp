@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/feature_wrenches.hpp"
+#include "kinecal/evaluation/sums/feature_wrenches.hpp"
 
 namespace kinecal::detail {
 

@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/evaluation/feature_rows.hpp"
-#include "kinecal/evaluation/local_sums.hpp"
+#include "kinecal/evaluation/rows/feature_rows.hpp"
+#include "kinecal/evaluation/sums/local_sums.hpp"
 
 namespace kinecal::detail {
 

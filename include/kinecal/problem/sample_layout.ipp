@@ -1,8 +1,10 @@
-// Definitions of batch.hpp: a sample as a row of numbers.
+// Definitions of sample_layout.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/problem/batch.hpp"
+#include <algorithm>
+
+#include "kinecal/problem/sample_layout.hpp"
 
 namespace kinecal::detail {
 

@@ -7,7 +7,7 @@
 
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/parameters/free_parameters.hpp"
-#include "kinecal/problem/batch.hpp"
+#include "kinecal/problem/batches.hpp"
 
 namespace kinecal::detail {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/problem/batch.hpp"
+#include "kinecal/problem/batches.hpp"
 #include "kinecal/sensors/sensor.hpp"
 
 namespace kinecal::detail {

@@ -1,4 +1,4 @@
-#include "kinecal/evaluation/point_wrenches.hpp"
+#include "kinecal/evaluation/sums/point_wrenches.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/point_wrenches.hpp"
+#include "kinecal/evaluation/sums/point_wrenches.hpp"
 
 namespace kinecal::detail {
 

@@ -1,27 +1,10 @@
-// Computed once for all scalars: the columns of sensors, and runs of features on the same chains.
+// Definitions of term_views.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/evaluation/feature_rows.hpp"
+#include "kinecal/evaluation/views/term_views.hpp"
 
 namespace kinecal::detail {
-
-KINECAL_INLINE SensorState::SensorState(const MountedSensor& sensor, const FreeSet& free,
-                                        bool is_placed)
-    : corrections(sensor.chains().size()), own(sensor.parameters(), free), placed(is_placed) {
-  for (std::size_t c = 0; c < sensor.chains().size(); ++c) {
-    columns.push_back(columns_of(sensor.chain_parameters()[c], free));
-    twist_columns.push_back(kinecal::twist_columns(sensor.chains()[c], columns.back()));
-    models.push_back(have_models(sensor.chain_parameters()[c]));
-  }
-}
-
-KINECAL_INLINE void SensorState::set(const MountedSensor& sensor, std::span<const double> values) {
-  for (std::size_t c = 0; c < corrections.size(); ++c) {
-    set_corrections(sensor.chain_parameters()[c], values, corrections[c]);
-  }
-  own.set(sensor.parameters(), values);
-}
 
 KINECAL_INLINE std::vector<FeatureRun> feature_runs(const Term& term, const SampleLayout& layout,
                                                     std::span<const SensorState> sensors,

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/evaluation/sensor_view.hpp"
+#include "kinecal/evaluation/views/term_views.hpp"
 #include "kinecal/problem/term.hpp"
 
 namespace kinecal::detail {
@@ -52,50 +52,6 @@ struct FeatureRows {
   }
 };
 
-/// The largest number of sensors of an error block.
-inline constexpr std::size_t kMostBodies = 4;
-/// The bodies of a feature, one per sensor of the error block: the chain that ends there.
-using BodyChains = std::array<std::size_t, kMostBodies>;
-
-/// Consecutive features of a layout on the same chains.
-struct FeatureRun {
-  std::size_t first = 0;  ///< index of the first feature
-  std::size_t end = 0;    ///< index after the last one
-  BodyChains chains{};    ///< of each sensor
-  /// Columns of the whole Jacobian that affect them, in this order: parameters of the sensors and
-  /// of the block, rotational twists of each body, translational twists of each body.  A parameter
-  /// that moves several bodies occurs several times.
-  std::vector<int> columns;
-};
-
-/// The runs of a term's features in the samples of a layout.
-/// @param sensors  of the problem
-/// @param own      parameters of the block itself
-[[nodiscard]] std::vector<FeatureRun> feature_runs(const Term& term, const SampleLayout& layout,
-                                                   std::span<const SensorState> sensors,
-                                                   const OwnParameters& own);
-
-/// A term, its sensors as they see a batch, and its own parameters.
-template <class S>
-struct TermViews {
-  const Term* term = nullptr;                               ///< weight and names
-  std::array<const SensorView<S>*, kMostBodies> sensors{};  ///< of the term, in its order
-  const OwnParameters* own = nullptr;                       ///< of the block itself
-  std::span<const FeatureRun> runs;                         ///< of the features, in their order
-  BatchTerm<S> numbers = {};                                ///< its further inputs in the batch
-
-  [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
-
-  /// Number of features that are compared.
-  [[nodiscard]] std::size_t features() const { return runs.back().end; }
-  /// Number of free parameters of sensors and block that affect a feature.
-  [[nodiscard]] std::size_t num_own() const {
-    std::size_t n = own->free.size();
-    for (std::size_t s = 0; s < term->sensors.size(); ++s) n += sensors[s]->own().free.size();
-    return n;
-  }
-};
-
 /// Writes the derivatives of a feature, column after column: by_own, and by_body xi for all twists.
 /// @param out  (M x columns), column-major
 template <class S, int M, int Bodies, class Twists>
@@ -123,7 +79,3 @@ void write_columns(const FeatureRows<S, M, Bodies>& rows, const Twists& twists, 
 }
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/evaluation/feature_rows.ipp"
-#endif

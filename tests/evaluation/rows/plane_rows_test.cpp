@@ -1,4 +1,4 @@
-#include "kinecal/evaluation/plane_rows.hpp"
+#include "kinecal/evaluation/rows/plane_rows.hpp"
 
 #include <gtest/gtest.h>
 

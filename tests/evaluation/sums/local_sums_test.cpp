@@ -1,4 +1,4 @@
-#include "kinecal/evaluation/local_sums.hpp"
+#include "kinecal/evaluation/sums/local_sums.hpp"
 
 #include <gtest/gtest.h>
 

@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/evaluation/local_sums.hpp"
+#include "kinecal/evaluation/sums/local_sums.hpp"
 #include "kinecal/kinematics/twist_walker.hpp"
 
 namespace kinecal::detail {

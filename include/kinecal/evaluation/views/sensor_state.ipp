@@ -1,0 +1,26 @@
+// Definitions of sensor_state.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinecal/evaluation/views/sensor_state.hpp"
+
+namespace kinecal::detail {
+
+KINECAL_INLINE SensorState::SensorState(const MountedSensor& sensor, const FreeSet& free,
+                                        bool is_placed)
+    : corrections(sensor.chains().size()), own(sensor.parameters(), free), placed(is_placed) {
+  for (std::size_t c = 0; c < sensor.chains().size(); ++c) {
+    columns.push_back(columns_of(sensor.chain_parameters()[c], free));
+    twist_columns.push_back(kinecal::twist_columns(sensor.chains()[c], columns.back()));
+    models.push_back(have_models(sensor.chain_parameters()[c]));
+  }
+}
+
+KINECAL_INLINE void SensorState::set(const MountedSensor& sensor, std::span<const double> values) {
+  for (std::size_t c = 0; c < corrections.size(); ++c) {
+    set_corrections(sensor.chain_parameters()[c], values, corrections[c]);
+  }
+  own.set(sensor.parameters(), values);
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,141 @@
+// The samples of a problem: added as rows of numbers, counted, and left out.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <map>
+
+#include "kinecal/problem/any_problem.hpp"
+#include "kinecal/problem/term_applies.ipp"
+#include "kinecal/samples/paired_features.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+inline void check_positions(const Sample& sample) {
+  const std::size_t names = sample.joint_names.size(), positions = sample.joint_positions.size();
+  if (names == positions) return;
+  throw SampleError("it has " + std::to_string(names) + " joint names, but positions of " +
+                    std::to_string(positions));
+}
+
+/// Features that terms compare in a sample, by index of the term.
+using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
+
+/// Packs the inputs of the applicable terms.
+[[nodiscard]] inline SampleRow row_of(const std::vector<Term>& terms,
+                                      const ComparedFeatures& compared, const Sample& sample,
+                                      const Observed& observed) {
+  const auto term = [&](int t) -> const Term& { return terms[static_cast<std::size_t>(t)]; };
+  std::vector<bool> used(observed.size(), false);  // the others are not evaluated
+  for (const auto& [t, features] : compared) {
+    for (const int s : term(t).sensors) used[static_cast<std::size_t>(s)] = true;
+  }
+  SampleRow row;
+  for (std::size_t s = 0; s < used.size(); ++s) row.add_sensor(used[s] ? &*observed[s] : nullptr);
+  for (const auto& [t, features] : compared) {
+    row.add_term(t, precisions_of(term(t), observed), conditions_of(term(t), sample));
+  }
+  return row;
+}
+
+[[nodiscard]] inline bool has_term(const SampleLayout& layout, int term) {
+  return std::any_of(layout.terms.begin(), layout.terms.end(),
+                     [term](const TermLayout& place) { return place.term == term; });
+}
+
+}  // namespace detail
+
+KINECAL_INLINE std::optional<Sample> AnyProblem::paired(const Sample& sample) const {
+  if (!has_ids(sample)) return std::nullopt;
+  std::vector<ComparedSensors> blocks;
+  for (const Term& term : terms_) {
+    ComparedSensors& block = blocks.emplace_back();
+    for (const int s : term.sensors) block.names.push_back(sensor(s).mount().name);
+    block.paired = term.pairs_features();
+  }
+  return pair_features(sample, blocks);
+}
+
+KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
+  std::optional<Sample> in_order;
+  detail::Observed observed(sensors_.size());
+  detail::ComparedFeatures compared;
+  detail::SampleRow row;
+  try {
+    detail::check_positions(sample);
+    in_order = paired(sample);
+    for (std::size_t s = 0; s < sensors_.size(); ++s) {
+      const Observation* observation =
+          (in_order ? *in_order : sample).observation(sensors_[s].mount().name);
+      if (observation == nullptr || observation->features.empty()) continue;
+      observed[s] = sensors_[s].numbers(sample, *observation);
+    }
+    for (int t = 0; t < num_terms(); ++t) {
+      auto features = detail::compared_features(term(t), sensors_, sample, observed);
+      if (!features.empty()) compared.emplace(t, std::move(features));
+    }
+    row = detail::row_of(terms_, compared, sample, observed);
+  } catch (const SampleError& e) {
+    throw SampleError(sample.source + ": " + e.what());
+  }
+  AddedSample added{sample.source};
+  for (const auto& [t, features] : compared) {
+    added.residuals += static_cast<int>(features.size()) * term(t).feature_size;
+    const std::string& first = sensor(term(t).sensors.front()).mount().name;
+    const Observation* recorded = sample.observation(first);
+    auto labels = detail::labels_of(term(t), features, *recorded,
+                                    in_order ? *in_order->observation(first) : *recorded);
+    if (!labels.empty()) added.labels.emplace(t, std::move(labels));
+  }
+  auto& [layout, of_layout] =
+      *layouts_.try_emplace(std::move(row.layout), OfLayout{layouts_.size()}).first;
+  add_to_batch(of_layout.index, layout, row.numbers);
+  ++of_layout.samples;
+  residuals_ += added.residuals;
+  samples_.push_back(std::move(added));
+}
+
+KINECAL_INLINE void AnyProblem::exclude(const std::set<int>& samples) {
+  std::vector<AddedSample> kept;
+  std::vector<int> numbers;  // the new one of each sample
+  for (int i = 0; i < num_samples(); ++i) {
+    const bool stays = !samples.contains(i);
+    numbers.push_back(stays ? static_cast<int>(kept.size()) : -1);
+    AddedSample& sample = samples_[static_cast<std::size_t>(i)];
+    if (stays) {
+      kept.push_back(std::move(sample));
+    } else {
+      residuals_ -= sample.residuals;
+    }
+  }
+  samples_ = std::move(kept);
+  const std::vector<int> left = renumber_in_batches(numbers);
+  for (auto& [layout, of_layout] : layouts_) of_layout.samples = left[of_layout.index];
+}
+
+KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdiff_t i) const {
+  const auto& all = samples_[static_cast<std::size_t>(sample)].labels;
+  const auto labels = all.find(term);
+  if (labels == all.end()) return {static_cast<int>(i)};
+  return labels->second.at(static_cast<std::size_t>(i));
+}
+
+KINECAL_INLINE int AnyProblem::samples_of(int term) const {
+  int n = 0;
+  for (const auto& [layout, of_layout] : layouts_) {
+    if (detail::has_term(layout, term)) n += of_layout.samples;
+  }
+  return n;
+}
+
+KINECAL_INLINE int AnyProblem::shared_samples(int term) const {
+  int n = 0;
+  for (const auto& [layout, of_layout] : layouts_) {
+    if (layout.terms.size() > 1 && detail::has_term(layout, term)) n += of_layout.samples;
+  }
+  return n;
+}
+
+}  // namespace kinecal
