@@ -14,15 +14,13 @@
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/natural_order.hpp"
 #include "kinecal/files/urdf/urdf_text.ipp"
 #include "kinecal/kinematics/chain.hpp"
 
 namespace kinecal::detail {
 
-/// The characters that C++ allows in a name: ASCII, independent of the locale.
-[[nodiscard]] constexpr bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
+/// The letters that C++ allows in a name: ASCII, independent of the locale.
 [[nodiscard]] constexpr bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
