@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <map>
 #include <set>
 
 #include "support/paths.hpp"
@@ -104,6 +106,65 @@ TEST_F(RobotProgram, FetchsCrateSolvesWhatItsConfigurationSays) {
   for (const char* file : {"calibrated.urdf", "depth_camera.yaml", "rgb_camera.yaml"}) {
     SCOPED_TRACE(file);
     expect_same_text(read("crate/" + std::string(file)), read("configured/" + std::string(file)));
+  }
+}
+
+/// One joint of every tenth sample is elsewhere than it says.
+/// @returns  their numbers, from 1
+std::set<int> ruin(const fs::path& file) {
+  std::vector<YAML::Node> samples = YAML::LoadAllFromFile(file.string());
+  std::set<int> ruined;
+  std::ofstream out(file);
+  out.precision(17);
+  int number = 0;
+  for (YAML::Node& sample : samples) {
+    if (++number % 10 == 4) {
+      YAML::Node position = sample["joint_states"]["position"][2];
+      position = position.as<double>() + 0.05;
+      ruined.insert(number);
+    }
+    out << sample << "\n---\n";
+  }
+  return ruined;
+}
+
+/// The numbers of the samples that a result left out.
+std::set<int> left_out(const YAML::Node& report) {
+  std::set<int> numbers;
+  for (const YAML::Node& sample : report["left_out"]) numbers.insert(sample["number"].as<int>());
+  return numbers;
+}
+
+TEST_F(RobotProgram, PandasCrateNamesTheRuinedSamplesAsTheProgramDoes) {
+  const std::string panda =
+      (fs::path(test::calibrate_fetch_program()).parent_path() / "calibrate_panda").string();
+  ASSERT_EQ(run(panda + " --write-samples drawn.yaml").code, 0);
+  const std::set<int> ruined = ruin(folder_ / "drawn.yaml");
+  ASSERT_EQ(ruined.size(), 10u);
+  const test::Outcome crate = run(panda + " --samples drawn.yaml --output crate");
+  ASSERT_EQ(crate.code, 0) << crate.out << crate.err;
+  const test::Outcome configured =
+      run(test::kinecal_program() + " calibrate --urdf " + kRobots + "panda/panda.urdf --config " +
+          kRobots + "panda/calibrate.yaml --samples drawn.yaml --output configured");
+  ASSERT_EQ(configured.code, 0) << configured.out << configured.err;
+  EXPECT_EQ(left_out(report("crate")), ruined);
+  EXPECT_EQ(left_out(report("configured")), ruined);
+  EXPECT_EQ(report("crate")["verdict"].as<std::string>(),
+            report("configured")["verdict"].as<std::string>());
+  const auto parameters_of = [](const YAML::Node& report) {
+    std::map<std::string, std::pair<double, double>> all;
+    for (const YAML::Node& p : report["parameters"]) {
+      all[p["name"].as<std::string>()] = {p["value"].as<double>(),
+                                          p["sigma"].as<double>()};
+    }
+    return all;
+  };
+  const auto expected = parameters_of(report("configured")), found = parameters_of(report("crate"));
+  ASSERT_EQ(found.size(), expected.size());
+  for (const auto& [name, of] : expected) {
+    ASSERT_TRUE(found.contains(name)) << name;
+    EXPECT_NEAR(found.at(name).first, of.first, tolerance(of.first)) << name;
+    EXPECT_NEAR(found.at(name).second, of.second, 1e-6 * of.second) << name;
   }
 }
 

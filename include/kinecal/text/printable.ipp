@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -52,7 +50,9 @@ KINECAL_INLINE std::string printable(std::string_view text) {
     const char first = text.front();
     const std::size_t length = first == '\n' || first == '\t' ? 1 : detail::printable_bytes(text);
     if (length == 0) {
-      shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(first));
+      constexpr std::string_view kDigits = "0123456789abcdef";
+      const auto byte = static_cast<unsigned char>(first);
+      shown += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 15U]};
       text.remove_prefix(1);
     } else {
       shown += text.substr(0, length);
