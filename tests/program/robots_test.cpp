@@ -131,7 +131,7 @@ std::set<int> ruin(const fs::path& file) {
 /// The numbers of the samples that a result left out.
 std::set<int> left_out(const YAML::Node& report) {
   std::set<int> numbers;
-  for (const YAML::Node& sample : report["left_out"]) numbers.insert(sample["number"].as<int>());
+  for (const YAML::Node& sample : report["left_out"]) numbers.insert(sample["sample"].as<int>());
   return numbers;
 }
 
