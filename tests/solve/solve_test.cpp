@@ -174,7 +174,7 @@ TEST(Solve, ABoundThatIsNotReachedChangesNothing) {
 
 /// Errors of a centimetre are outliers for a block of a tenth of a millimetre, unless they say so.
 TEST(Solve, ALossJudgesAFeatureByItsOwnSigma) {
-  constexpr double kSigma = 1e-4;
+  static constexpr double kSigma = 1e-4;
   std::vector<Sample> samples = noisy_samples(20, 0.01);
   const auto solved_with_tukey = [](const std::vector<Sample>& given) {
     Problem problem = test::scene_problem();

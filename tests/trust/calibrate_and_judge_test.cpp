@@ -10,6 +10,7 @@
 #include "support/noisy_scene.hpp"
 #include "support/oracle.hpp"
 #include "support/static_robot.hpp"
+#include "support/unknown_poses.hpp"
 
 namespace kinecal {
 namespace {
