@@ -157,9 +157,9 @@ int calibrate(const CalibrateOptions& options) {
   end_progress_line();
   Findings& findings = fitted.findings;
   const CalibrationResult& result = findings.result;
-  judge_causes({input.config, input.robot, input.urdf_text, input.urdf, fitted.samples,
-                fitted.calibration},
-               findings);
+  judge_causes(
+      {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
+      findings);
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   write_reports(options, input, fitted);

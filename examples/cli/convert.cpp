@@ -1,7 +1,6 @@
 // kinecal convert: samples and poses from one format to another.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/files/recordings/convert.hpp"
-#include "kinecal/text/counted.hpp"
 
 #include <fmt/core.h>
 
@@ -18,6 +17,7 @@
 #include "kinecal/files/recordings/write_recording.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
+#include "kinecal/text/counted.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 

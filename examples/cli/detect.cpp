@@ -1,6 +1,5 @@
 // kinecal detect: samples from photographs with a table of joint positions, and from recordings.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/text/counted.hpp"
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -21,6 +20,7 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
@@ -58,7 +58,8 @@ void check_links(const DetectOptions& options, const Robot& robot, Diagnostics& 
 }
 
 /// Errors of joints of the photographs that the robot does not have.
-void check_joints(const DetectOptions& options, const DetectionInput& task, Diagnostics& diagnostics) {
+void check_joints(const DetectOptions& options, const DetectionInput& task,
+                  Diagnostics& diagnostics) {
   if (task.images.empty() || !task.robot) return;
   std::vector<std::string> joints;
   for (const Joint& joint : task.robot->joints()) joints.push_back(joint.name);
@@ -254,7 +255,8 @@ int detect(const DetectOptions& options) {
   }
   write(options, samples);
   fmt::print("wrote {}: {} of {}: {}; {} refused{}\n", options.output, found.used, seen,
-             counted(found.features, "feature"), count - found.used, printable(count_of_targets(samples)));
+             counted(found.features, "feature"), count - found.used,
+             printable(count_of_targets(samples)));
   if (!options.sheet.empty()) fmt::print("wrote {}\n", options.sheet);
   return kDone;
 }

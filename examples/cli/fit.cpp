@@ -36,8 +36,7 @@ Fit fit(const Input& input, Calibration calibration, const CalibrateOptions& opt
   Fit fitted{std::move(calibration), {}, {}};
   JudgedResult judged = calibrate_and_judge(fitted.calibration, input.samples, procedure);
   fitted.samples = used_samples(judged, input.samples);
-  fitted.findings =
-      findings_of(input.robot, fitted.calibration, std::move(judged), fitted.samples);
+  fitted.findings = findings_of(input.robot, fitted.calibration, std::move(judged), fitted.samples);
   fitted.findings.images = images_of(input.config);
   return fitted;
 }

@@ -135,7 +135,8 @@ int calibrate(const RobotExample& example, const Options& options) {
     cli::write(*folder, cli::output_files(example.robot, urdf, calibration, findings, used));
   }
   if (!simulation) return kGood;
-  if (is_as_good_as_the_truth(hold_out(example, *simulation, options, findings.result))) return kGood;
+  if (is_as_good_as_the_truth(hold_out(example, *simulation, options, findings.result)))
+    return kGood;
   fmt::print(
       stderr,
       "error: samples that were held out show more than noise; calibrate with more of them?\n");

@@ -154,8 +154,7 @@ TEST_F(RobotProgram, PandasCrateNamesTheRuinedSamplesAsTheProgramDoes) {
   const auto parameters_of = [](const YAML::Node& report) {
     std::map<std::string, std::pair<double, double>> all;
     for (const YAML::Node& p : report["parameters"]) {
-      all[p["name"].as<std::string>()] = {p["value"].as<double>(),
-                                          p["sigma"].as<double>()};
+      all[p["name"].as<std::string>()] = {p["value"].as<double>(), p["sigma"].as<double>()};
     }
     return all;
   };

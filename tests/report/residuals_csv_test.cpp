@@ -22,7 +22,8 @@ TEST(ResidualsCsv, HasARowForEachFeatureWithItsDistance) {
   test::NoisyScene scene(12);
   scene.solve();
   const Findings findings =
-      findings_of(test::mobile_manipulator(), scene.calibration, judge_result(scene.calibration, scene.result, scene.samples), scene.samples);
+      findings_of(test::mobile_manipulator(), scene.calibration,
+                  judge_result(scene.calibration, scene.result, scene.samples), scene.samples);
   std::istringstream text(residuals_csv(scene.calibration, findings));
   std::string line;
   std::getline(text, line);
@@ -57,7 +58,8 @@ TEST(ResidualsCsv, NumbersFeaturesAsTheSampleListsThemAndGivesTheirIds) {
   seen[0].features.erase(seen[0].features.begin());
   scene.solve();
   const Findings findings =
-      findings_of(test::mobile_manipulator(), scene.calibration, judge_result(scene.calibration, scene.result, scene.samples), scene.samples);
+      findings_of(test::mobile_manipulator(), scene.calibration,
+                  judge_result(scene.calibration, scene.result, scene.samples), scene.samples);
   std::istringstream text(residuals_csv(scene.calibration, findings));
   std::string line;
   std::getline(text, line);

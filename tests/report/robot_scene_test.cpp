@@ -190,7 +190,8 @@ TEST(RobotScene, FeaturesHaveTheErrorOfTheResult) {
   test::NoisyScene noisy(8);
   noisy.solve();
   const Findings findings =
-      findings_of(test::mobile_manipulator(), noisy.calibration, judge_result(noisy.calibration, noisy.result, noisy.samples), noisy.samples);
+      findings_of(test::mobile_manipulator(), noisy.calibration,
+                  judge_result(noisy.calibration, noisy.result, noisy.samples), noisy.samples);
   const RobotScene scene = robot_scene(noisy.calibration, findings, noisy.samples);
   double squares = 0.0;
   int features = 0;
@@ -212,7 +213,8 @@ TEST(RobotScene, OfManySamplesBadOnesAreKeptAndOthersEvenly) {
   noisy.samples[33].observations[0].features[1].point.x() += 0.05;
   noisy.solve();
   const Findings findings =
-      findings_of(test::mobile_manipulator(), noisy.calibration, judge_result(noisy.calibration, noisy.result, noisy.samples), noisy.samples);
+      findings_of(test::mobile_manipulator(), noisy.calibration,
+                  judge_result(noisy.calibration, noisy.result, noisy.samples), noisy.samples);
   const RobotScene scene =
       robot_scene(noisy.calibration, findings, noisy.samples, {.samples = 10, .features = 30});
   ASSERT_THAT(scene.samples, SizeIs(10));
@@ -243,7 +245,8 @@ TEST(RobotScene, OfManyFeaturesTheWorstAreKept) {
   }
   noisy.solve();
   const Findings findings =
-      findings_of(test::mobile_manipulator(), noisy.calibration, judge_result(noisy.calibration, noisy.result, noisy.samples), noisy.samples);
+      findings_of(test::mobile_manipulator(), noisy.calibration,
+                  judge_result(noisy.calibration, noisy.result, noisy.samples), noisy.samples);
   const RobotScene all = robot_scene(noisy.calibration, findings, noisy.samples);
   EXPECT_THAT(all.thinned, IsEmpty());
   const RobotScene few =

@@ -17,7 +17,8 @@ std::pair<std::string, std::string> report(const test::Simulated& simulated,
   solving.random_starts = starts;
   CalibrationResult result = calibrate(calibration, {}, solving);
   for (StepResult& step : result.steps) step.seconds = 0.0;
-  const Findings found = findings_of(simulated.robot, calibration, judge_result(calibration, std::move(result), samples), samples);
+  const Findings found = findings_of(
+      simulated.robot, calibration, judge_result(calibration, std::move(result), samples), samples);
   EXPECT_EQ(found.judgement.verdict, Grade::good) << summary_text(found);
   return {json_report(found), summary_text(found)};
 }

@@ -152,7 +152,9 @@ class SceneMcap : public testing::Test {
 
   void SetUp() override {
     noisy_.solve();
-    findings_ = findings_of(test::mobile_manipulator(), noisy_.calibration, judge_result(noisy_.calibration, noisy_.result, noisy_.samples), noisy_.samples);
+    findings_ = findings_of(test::mobile_manipulator(), noisy_.calibration,
+                            judge_result(noisy_.calibration, noisy_.result, noisy_.samples),
+                            noisy_.samples);
     scene_ = robot_scene(noisy_.calibration, findings_, noisy_.samples);
   }
   [[nodiscard]] std::string file() const {

@@ -93,7 +93,8 @@ TEST(SimulatedCamera, StructuredLightMeasuresInSteps) {
   for (int u = 0; u < 640; ++u) {
     for (int v = 0; v < 480; ++v) picture.depth(u, v) = 2.0F + 1e-5F * static_cast<float>(u);
   }
-  const std::vector<double> seen = depths(photograph(camera, SimulatedLens(camera), picture, random));
+  const std::vector<double> seen =
+      depths(photograph(camera, SimulatedLens(camera), picture, random));
   const std::set<double> steps(seen.begin(), seen.end());
   EXPECT_LE(steps.size(), 2U);
   const double step = 2.0 * 2.0 * 0.125 / (554.25 * 0.075);  // dz = z^2 / (f b) dd

@@ -24,8 +24,8 @@ inline std::string why_no_bridge_server() {
     if (std::system("command -v npm node flock > /dev/null") != 0) {
       return std::string("node and npm are not installed");
     }
-    const std::string call = source_folder() + "/tests/robots/server/install.sh " + folder +
-                             " > " + folder + ".log 2>&1";
+    const std::string call = source_folder() + "/tests/robots/server/install.sh " + folder + " > " +
+                             folder + ".log 2>&1";
     return std::system(call.c_str()) == 0
                ? std::string()
                : "npm cannot install the server's packages: see " + folder + ".log";

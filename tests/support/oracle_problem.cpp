@@ -149,7 +149,8 @@ std::vector<double> OracleProblem::factors(const Term& term, const Views& views)
       if (term.of_pixels && view == views[0]) continue;
       if (const auto sigma = view->seen->features[i].sigma) variance += std::pow(*sigma, 2);
     }
-    if (there) all.push_back(variance > 0.0 ? term.options.sigma.value_or(1.0) / std::sqrt(variance) : 1.0);
+    if (there)
+      all.push_back(variance > 0.0 ? term.options.sigma.value_or(1.0) / std::sqrt(variance) : 1.0);
   }
   return all;
 }

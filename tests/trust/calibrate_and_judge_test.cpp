@@ -15,10 +15,10 @@
 namespace kinecal {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using test::NoisyScene;
 using test::StaticRobot;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 /// A calibration of the scene.  A sample of these is ruined.
 Calibration calibration_of(const NoisyScene& scene) {
@@ -151,8 +151,7 @@ TEST(CalibrateAndJudge, GivesACrateValuesWithTheirDeviationsAndTheVerdict) {
       const Vector3<double> p(0.1 * i, 0.05, 0.02 * i * i);
       const Vector3<double> noise(chance.normal(), chance.normal(), chance.normal());
       sample.observations[0].features.push_back({"tip", p});
-      sample.observations[1].features.push_back(
-          {"base", Vector3<double>(tip(p) + kNoise * noise)});
+      sample.observations[1].features.push_back({"base", Vector3<double>(tip(p) + kNoise * noise)});
     }
   }
   samples[11].joint_positions[2] += 0.3;

@@ -28,8 +28,7 @@ class CaptureCauses : public testing::Test {
     values_ = scene_.values();
   }
   [[nodiscard]] std::string cause(const Sample& sample) const {
-    return capture_cause(*scene_.problem({}), test::NoisyScene::span(values_),
-                         noise_, sample);
+    return capture_cause(*scene_.problem({}), test::NoisyScene::span(values_), noise_, sample);
   }
   /// The causes of all other samples after each has been spoilt.
   [[nodiscard]] std::vector<std::string> causes(const Spoil& spoil) const {

@@ -112,8 +112,7 @@ Problem hand_eye(int samples) {
 /// At exact samples the weighted Jacobian is that of stack().
 TEST(Observability, WeighsAFeatureByItsOwnSigma) {
   Problem problem = test::scene_problem();
-  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"},
-                    {.sigma = 0.01});
+  problem.add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {.sigma = 0.01});
   const std::vector<double> truth = test::random_values(problem.table(), 0.01, 6);
   std::vector<Sample> samples = test::exact_samples(problem, truth, 6);
   for (Sample& sample : samples) {

@@ -23,9 +23,7 @@ using Camera = Camera3d<"camera", To<"head_camera_rgb_optical_frame">>;
 
 /// Samples of the LEDs do not show the floor.
 struct OnFloor : Block<"ground_plane", PointToPlane, "camera"> {
-  OnFloor() {
-    options.exclusive = true;
-  }
+  OnFloor() { options.exclusive = true; }
 };
 
 using HandEye =

@@ -33,7 +33,7 @@ struct ImageOptions {
 
 [[nodiscard]] inline ImageOptions image_options(std::span<const Sample> samples,
                                                 const std::string& camera,
-                                               const SensorEntry& entry) {
+                                                const SensorEntry& entry) {
   const std::shared_ptr<const AnySensor> as_raw = entry.make(ImageKind::raw),
                                          as_rectified = entry.make(ImageKind::rectified);
   ImageOptions options;
@@ -121,7 +121,8 @@ KINECAL_INLINE void choose_images(Config& config, const Robot& robot,
         if (model.name == camera.name && given == ImageKind::automatic) given = model.image;
       }
     }
-    const detail::ImageOptions options = detail::image_options(samples, camera.name, *registry().sensor(camera.type));
+    const detail::ImageOptions options =
+        detail::image_options(samples, camera.name, *registry().sensor(camera.type));
     if (given != ImageKind::automatic) {
       detail::set_image(config, camera.name, given);
     } else if (options.seen) {

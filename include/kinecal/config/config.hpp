@@ -85,9 +85,9 @@ struct BlockConfig {
   std::optional<bool> exclusive = {};
   std::string ground;  ///< camera3d_to_ground: only samples with an observation of this sensor
   std::optional<double> sigma =
-      {};  ///< standard deviation, units of the residual; empty: not given
-  LossConfig loss;           ///< of each feature
-  SourceLocation place;      ///< where the file defines it
+      {};                ///< standard deviation, units of the residual; empty: not given
+  LossConfig loss;       ///< of each feature
+  SourceLocation place;  ///< where the file defines it
 };
 
 /// One optimization.  Each step starts from the result of the step before it.

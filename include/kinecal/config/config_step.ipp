@@ -53,8 +53,8 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   const SourceLocation place = map.find("image")->place;
   const SensorEntry* entry = registry().sensor(model.type);
   if (entry != nullptr && !entry->has_image) {
-    map.error(place, "image is a key of " + types_with_image() + ", but the type is '" +
-                         model.type + "'");
+    map.error(place,
+              "image is a key of " + types_with_image() + ", but the type is '" + model.type + "'");
   }
   if (*image == "raw") return ImageKind::raw;
   if (*image == "rectified") return ImageKind::rectified;

@@ -104,8 +104,8 @@ struct FewSamples {
 
 /// A few samples of each kind: those with observations of the same sensors.
 /// @param problem  that takes all of them
-[[nodiscard]] inline FewSamples few_samples(
-    const AnyProblem& problem, std::span<const Sample> samples) {
+[[nodiscard]] inline FewSamples few_samples(const AnyProblem& problem,
+                                            std::span<const Sample> samples) {
   constexpr std::size_t kOfEachKind = 12;
   std::map<std::set<std::string>, std::vector<std::size_t>> kinds;
   for (std::size_t i = 0; i < samples.size(); ++i) {

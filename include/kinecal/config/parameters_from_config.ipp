@@ -14,7 +14,8 @@ namespace kinecal::detail {
 KINECAL_INLINE const SensorEntry& sensor_entry(const ModelConfig& model) {
   const SensorEntry* entry = registry().sensor(model.type);
   if (entry != nullptr) return *entry;
-  const std::vector<SensorEntry>& all = registry().sensors();  // any camera: for names of parameters
+  const std::vector<SensorEntry>& all =
+      registry().sensors();  // any camera: for names of parameters
   return *std::find_if(all.begin(), all.end(),
                        [](const SensorEntry& one) { return measures_depth(*one.sensor); });
 }

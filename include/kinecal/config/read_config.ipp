@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/config/config_dialects.ipp"
 #include "kinecal/config/read_config.hpp"
+#include "kinecal/files/yaml/yaml_document.hpp"
 
 namespace kinecal {
 

@@ -27,8 +27,8 @@ namespace detail {
 /// @throws std::invalid_argument  if the name is taken
 template <Sensor M>
 void register_sensor(const M& model) {
-  registry().add(detail::sensor_entry_of(
-      model, [](AnyProblem& problem, const M& sensor, const Mount& mount) {
+  registry().add(
+      detail::sensor_entry_of(model, [](AnyProblem& problem, const M& sensor, const Mount& mount) {
         detail::problem_of_program(problem).add_sensor(sensor, mount);
       }));
 }

@@ -84,7 +84,8 @@ class Crate {
   [[nodiscard]] ParameterTable table(std::span<const Sample> samples) const {
     ParameterTable table;
     IfRight<Sensors>::for_each([&]<class P>(std::type_identity<P>) {
-      add_sensor_parameters(table, *detail::behind_interface(typename P::Model{}), P::mount(), samples);
+      add_sensor_parameters(table, *detail::behind_interface(typename P::Model{}), P::mount(),
+                            samples);
     });
     IfRight<Blocks>::for_each([&]<class P>(std::type_identity<P>) {
       add_parameters(table, P::kName, parameters_of(std::get<P>(blocks_).error));

@@ -31,9 +31,9 @@ struct ObservationLayout {
 
 /// Offsets of a term's inputs in a row, besides the observations of its sensors.
 struct TermLayout {
-  int term = 0;                   ///< its index in the problem
+  int term = 0;                      ///< its index in the problem
   std::size_t precisions = kAbsent;  ///< first number, or kAbsent if no feature has its own sigma
-  std::size_t conditions = 0;     ///< first number
+  std::size_t conditions = 0;        ///< first number
 
   auto operator<=>(const TermLayout&) const = default;  // NOLINT(modernize-use-nullptr)
 };

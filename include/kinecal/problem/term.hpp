@@ -68,9 +68,9 @@ inline constexpr std::size_t kMostOwn = 32;
 
 /// A term of the cost: an error block with the sensors that it compares.
 struct Term {
-  std::string name;                           ///< of the error block
-  TermOptions options = {};                   ///< sigma, loss, names
-  double sigma = 1.0;   ///< the stated one, or an estimate: standard deviation of a residual
+  std::string name;          ///< of the error block
+  TermOptions options = {};  ///< sigma, loss, names
+  double sigma = 1.0;        ///< the stated one, or an estimate: standard deviation of a residual
   double weight = 1.0;  ///< scale / sigma; that of a feature with a sigma: scale / Feature::sigma
   std::vector<int> sensors = {};              ///< indices in the problem of those that are compared
   std::vector<int> parameters = {};           ///< table indices of the block's own parameters

@@ -16,7 +16,7 @@ namespace kinecal {
 
 /// What is reported of a calibration.
 struct Findings : JudgedResult {
-  std::string robot = {};                            ///< its name
+  std::string robot = {};                          ///< its name
   std::map<std::string, std::string> images = {};  ///< "raw" or "rectified", where it was chosen,
                                                    ///< by camera
   RecordedPoses poses = {};                        ///< of the samples that were used

@@ -121,10 +121,11 @@ class SensorOfType final : public AnySensor {
   [[nodiscard]] Vector3<double> place(const Vector3<double>& measured,
                                       std::span<const double> settings,
                                       std::span<const double> own) const override {
-    [[maybe_unused]] const Measurement<M, double> m{
-        .point = measured, .settings = array_of<kSettingsOf<M>>(settings)};
+    [[maybe_unused]] const Measurement<M, double> m{.point = measured,
+                                                    .settings = array_of<kSettingsOf<M>>(settings)};
     if constexpr (PlacesOne<M, Quantity::point>) return model_.place(m, values(settings, own));
-    if constexpr (PlacesOne<M, Quantity::ray>) return model_.place(m, values(settings, own)).direction;
+    if constexpr (PlacesOne<M, Quantity::ray>)
+      return model_.place(m, values(settings, own)).direction;
     return measured;
   }
   [[nodiscard]] Eigen::Vector2d predict(const Vector3<double>& p, std::span<const double> settings,

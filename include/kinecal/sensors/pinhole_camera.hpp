@@ -50,7 +50,8 @@ struct PinholeCamera {
 
   /// Its camera_info with corrected intrinsics.
   /// @param v  (4) fx fy cx cy: relative corrections
-  [[nodiscard]] CameraInfo calibrated(const CameraInfo& info, const std::array<double, 4>& v) const {
+  [[nodiscard]] CameraInfo calibrated(const CameraInfo& info,
+                                      const std::array<double, 4>& v) const {
     const bool raw = is_raw(info, image) || intrinsics_of(info, true) == intrinsics_of(info, false);
     return calibrated_camera_info(info, v[0], v[1], v[2], v[3],
                                   raw ? ImageKind::raw : ImageKind::rectified);

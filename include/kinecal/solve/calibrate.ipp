@@ -24,7 +24,8 @@ KINECAL_INLINE void add_step(StepResult step, const FreeSet& free, CalibrationRe
   result.steps.push_back(std::move(step));
 }
 
-KINECAL_INLINE void merge_statistics(std::vector<BlockStatistics>& all, std::vector<BlockStatistics> more) {
+KINECAL_INLINE void merge_statistics(std::vector<BlockStatistics>& all,
+                                     std::vector<BlockStatistics> more) {
   for (BlockStatistics& block : more) {
     const auto same = std::find_if(all.begin(), all.end(),
                                    [&](const auto& known) { return known.name == block.name; });

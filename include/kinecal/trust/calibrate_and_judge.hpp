@@ -52,12 +52,12 @@ struct JudgedResult {
 
 /// How calibrate_and_judge() works.
 struct ProcedureOptions {
-  SolveOptions solving = {};            ///< of all steps
-  int folds = 5;                        ///< of held-out errors; 0: as many as samples; 1: none
-  bool keep_outliers = false;           ///< no sample is left out
-  std::map<int, std::string> exclude;   ///< samples to leave out, from 0, and why
+  SolveOptions solving = {};             ///< of all steps
+  int folds = 5;                         ///< of held-out errors; 0: as many as samples; 1: none
+  bool keep_outliers = false;            ///< no sample is left out
+  std::map<int, std::string> exclude;    ///< samples to leave out, from 0, and why
   std::vector<std::string> doubts = {};  ///< about the input, as sentences: reasons of the verdict
-  Progress progress = {};               ///< called in each iteration
+  Progress progress = {};                ///< called in each iteration
 };
 
 /// Calibrates and judges.

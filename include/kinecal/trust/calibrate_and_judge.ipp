@@ -35,15 +35,15 @@ class Procedure {
           !options_.keep_outliers && judged.result.converged && !judged.assessments.empty();
       return usable ? &judged.assessments.back() : nullptr;
     };
-    JudgedResult judged = fit_without_ruined(
-        [&] { return fit(); }, last,
-        [&](const JudgedResult& of, const std::vector<CaptureError>& ruined) {
-          std::map<int, std::string> why;
-          for (const CaptureError& error : ruined) {
-            why[error.sample] = capture_text(error, of.assessments.back());
-          }
-          leave_out(why);
-        });
+    JudgedResult judged =
+        fit_without_ruined([&] { return fit(); }, last,
+                           [&](const JudgedResult& of, const std::vector<CaptureError>& ruined) {
+                             std::map<int, std::string> why;
+                             for (const CaptureError& error : ruined) {
+                               why[error.sample] = capture_text(error, of.assessments.back());
+                             }
+                             leave_out(why);
+                           });
     judge_left_out(static_cast<int>(std::ssize(left_out_) - excluded),
                    static_cast<int>(std::ssize(all_) - excluded), judged.judgement);
     judged.numbers = numbers_;
@@ -77,9 +77,8 @@ class Procedure {
     AssessOptions assessing;
     assessing.meter = options_.solving.meter;
     assessing.folds = options_.folds > 0 ? options_.folds : static_cast<int>(used_.size());
-    return judge_result(calibration_,
-                        calibrate(calibration_, options_.progress, options_.solving), used_,
-                        assessing, options_.doubts);
+    return judge_result(calibration_, calibrate(calibration_, options_.progress, options_.solving),
+                        used_, assessing, options_.doubts);
   }
 
   /// Fits, and fits again with the noise of each block that has no sigma in its place, until it stays.

@@ -121,8 +121,7 @@ inline void add_turns(const Sample& sample, std::size_t observation,
 
 }  // namespace detail
 
-KINECAL_INLINE std::string capture_cause(const AnyProblem& problem,
-                                         std::span<const double> values,
+KINECAL_INLINE std::string capture_cause(const AnyProblem& problem, std::span<const double> values,
                                          const std::vector<BlockNoise>& noise,
                                          const Sample& sample) {
   const detail::CaptureTrials trials(problem, values, noise);

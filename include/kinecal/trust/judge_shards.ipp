@@ -89,8 +89,9 @@ class ShardProcedure {
           result.converged ? result.table.values() : calibration_.first.table.values();
       return std::vector<double>(values.begin(), values.end());
     };
-    const Shards shards{nullptr, std::max(1, static_cast<int>(calibration_.names.size())), 0, 0, {},
-                        exchange(prefix)};
+    const Shards shards{nullptr, std::max(1, static_cast<int>(calibration_.names.size())),
+                        0,       0,
+                        {},      exchange(prefix)};
     return numbers_of_shards(shards, "start", of_first).front();
   }
 

@@ -52,8 +52,7 @@ KINECAL_INLINE std::optional<NextMove> OnlineCalibration::next_move(double step)
       ->evaluate(
           known.values, true,
           [&](int term, int sample, const TermResiduals& of_term) {
-            rows[static_cast<std::size_t>(sample)].append(of_term,
-                                                          trials->term(term).weight);
+            rows[static_cast<std::size_t>(sample)].append(of_term, trials->term(term).weight);
           },
           Linearization::error_free);
   OnlineState now;

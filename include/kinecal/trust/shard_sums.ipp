@@ -154,8 +154,7 @@ inline void add_features(const Term& term, const TermResiduals& rows, ShardSums&
     const auto [rho, slope] = loss(r.squaredNorm());
     const Eigen::MatrixXd information = slope * j.transpose() * j;
     block.information += information;
-    sums.hessian +=
-        information + 2.0 * curvature_of(loss, r.squaredNorm()) * g * g.transpose();
+    sums.hessian += information + 2.0 * curvature_of(loss, r.squaredNorm()) * g * g.transpose();
     score += slope * g;
     sums.cost += 0.5 * rho;
     block.figures(BlockSums::features) += 1.0;

@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/config/capture/capture_config.hpp"
 #include "kinecal/config/capture/finder_settings.ipp"
 #include "kinecal/config/read_config.hpp"
+#include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/linkage.hpp"
 

@@ -71,7 +71,7 @@ class SessionFollower {
   Robot robot_;
   std::string frame_;
   std::unique_ptr<AnyProblem> problem_;  ///< of the last step, without samples
-  std::vector<Sample> samples_;  ///< all of the session that suit the configuration
+  std::vector<Sample> samples_;          ///< all of the session that suit the configuration
   std::optional<OnlineCalibration> online_;
   std::optional<std::pair<FrameOnRobot, FrameOnRobot>> frames_;
   int misfits_ = 0;  ///< samples in a row that do not fit

@@ -88,8 +88,8 @@ inline void check_depth_points(const RecordedPoints& recorded, std::span<const S
             "sensor '{}' has a point {:.4g} m away, which its driver made of a depth of "
             "{:.4g} m by z_offset_mm {:.6g} and z_scaling {:.6g} of ext_camera_info; one of "
             "them is wrong",
-            recorded.model.name, recorded.points[i].z(), pixels.back().z(), 1e3 * seen.camera->z_offset,
-            seen.camera->z_scaling));
+            recorded.model.name, recorded.points[i].z(), pixels.back().z(),
+            1e3 * seen.camera->z_offset, seen.camera->z_scaling));
     return;
   }
   const CameraInfo* camera = sized_camera(recorded, samples);

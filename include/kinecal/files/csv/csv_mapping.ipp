@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "kinecal/files/yaml/yaml_document.hpp"
-#include "kinecal/files/yaml/config_map.ipp"
 #include "kinecal/files/csv/csv_mapping.hpp"
 #include "kinecal/files/csv/csv_observation.ipp"
+#include "kinecal/files/yaml/config_map.ipp"
+#include "kinecal/files/yaml/yaml_document.hpp"
 
 namespace kinecal {
 

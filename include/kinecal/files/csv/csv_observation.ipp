@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "kinecal/files/yaml/config_map.ipp"
 #include "kinecal/files/csv/csv_mapping.hpp"
 #include "kinecal/files/samples/feature_id_parameters.ipp"
+#include "kinecal/files/yaml/config_map.ipp"
 
 namespace kinecal::detail {
 

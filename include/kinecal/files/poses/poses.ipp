@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/files/poses/poses.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/yaml/config_map.ipp"
+#include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/linkage.hpp"
 

@@ -16,7 +16,8 @@ namespace kinecal {
 namespace detail {
 
 /// Frame of a camera's features; empty if there are none.
-[[nodiscard]] inline std::string camera_frame(const std::string& camera, const std::vector<Sample>& samples) {
+[[nodiscard]] inline std::string camera_frame(const std::string& camera,
+                                              const std::vector<Sample>& samples) {
   for (const Sample& sample : samples) {
     const Observation* seen = sample.observation(camera);
     if (seen != nullptr && !seen->features.empty()) return seen->features.front().frame;
@@ -25,19 +26,21 @@ namespace detail {
 }
 
 /// The first of these that the robot has; empty if there is none.
-[[nodiscard]] inline std::string link_among(const Robot& robot, const std::string& wanted, const std::string& other) {
+[[nodiscard]] inline std::string link_among(const Robot& robot, const std::string& wanted,
+                                            const std::string& other) {
   if (!wanted.empty()) return wanted;
   return robot.has_link(other) ? other : "";
 }
 
-[[nodiscard]] inline std::string alike_text(const CaptureFinder& finder, const CheckerboardSettings& board) {
+[[nodiscard]] inline std::string alike_text(const CaptureFinder& finder,
+                                            const CheckerboardSettings& board) {
   return fmt::format("finder '{}': a board of {}x{} corners looks the same when it is turned",
                      finder.name, board.points_x, board.points_y);
 }
 
 /// What was turned, in words.
-inline void report_turns(const CaptureFinder& finder, const Flips& flips, const std::vector<Sample>& samples,
-            Diagnostics& diagnostics) {
+inline void report_turns(const CaptureFinder& finder, const Flips& flips,
+                         const std::vector<Sample>& samples, Diagnostics& diagnostics) {
   constexpr int kQuarter = 90;  // degrees
   std::string turned, doubtful;
   std::size_t count = 0;
@@ -66,8 +69,9 @@ inline void report_turns(const CaptureFinder& finder, const Flips& flips, const 
 
 }  // namespace detail
 
-KINECAL_INLINE void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<Robot>& robot,
-                 const BoardLinks& links, std::vector<Sample>& samples, Diagnostics& diagnostics) {
+KINECAL_INLINE void turn_boards(const std::vector<CaptureFinder>& finders,
+                                const std::optional<Robot>& robot, const BoardLinks& links,
+                                std::vector<Sample>& samples, Diagnostics& diagnostics) {
   constexpr int kFullTurn = 4;  // quarters
   for (const CaptureFinder& finder : finders) {
     const auto* board = std::get_if<CheckerboardSettings>(&finder.settings);
@@ -75,7 +79,8 @@ KINECAL_INLINE void turn_boards(const std::vector<CaptureFinder>& finders, const
     std::string in, link;
     if (robot) {
       in = detail::link_among(*robot, links.board, board->target.frame);
-      link = detail::link_among(*robot, links.camera, detail::camera_frame(board->target.camera_sensor, samples));
+      link = detail::link_among(*robot, links.camera,
+                                detail::camera_frame(board->target.camera_sensor, samples));
     }
     if (in.empty() || link.empty()) {
       diagnostics.warning(

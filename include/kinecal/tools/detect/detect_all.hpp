@@ -15,11 +15,11 @@ namespace kinecal {
 
 /// What is looked at, and by what.
 struct DetectionInput {
-  CaptureConfig config;                         ///< its finders
-  std::optional<Robot> robot = {};              ///< where regions and boards are
-  std::optional<CameraInfo> camera = {};        ///< of the photographs
-  std::string frame = {};                       ///< of their camera
-  std::vector<PosedImage> images = {};          ///< photographs
+  CaptureConfig config;                   ///< its finders
+  std::optional<Robot> robot = {};        ///< where regions and boards are
+  std::optional<CameraInfo> camera = {};  ///< of the photographs
+  std::string frame = {};                 ///< of their camera
+  std::vector<PosedImage> images = {};    ///< photographs
   std::vector<RecordedViews> recordings = {};
   BoardLinks links = {};
 };
@@ -33,10 +33,10 @@ struct DetectionOptions {
 
 /// What was found.
 struct DetectedSamples {
-  std::vector<Look> looks;        ///< at each photograph and standstill, without their samples
-  std::vector<Sample> samples;    ///< in the order of the looks
-  std::size_t used = 0;           ///< looks that gave samples
-  std::size_t features = 0;       ///< in all of them
+  std::vector<Look> looks;      ///< at each photograph and standstill, without their samples
+  std::vector<Sample> samples;  ///< in the order of the looks
+  std::size_t used = 0;         ///< looks that gave samples
+  std::size_t features = 0;     ///< in all of them
 };
 
 /// The finders of a configuration.
@@ -47,8 +47,7 @@ struct DetectedSamples {
 /// Looks at everything.
 /// @param diagnostics  receives what was turned as notes; a warning if that cannot be decided
 [[nodiscard]] DetectedSamples detect_all(const DetectionInput& input,
-                                         const DetectionOptions& options,
-                                         Diagnostics& diagnostics);
+                                         const DetectionOptions& options, Diagnostics& diagnostics);
 
 }  // namespace kinecal
 

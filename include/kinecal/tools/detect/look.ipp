@@ -64,8 +64,9 @@ inline void join_observations(std::vector<Sample>& all, std::vector<Sample> more
 }
 
 /// The picture of a view; of none, a gray one.
-[[nodiscard]] inline Thumbnail view_picture(const std::optional<View>& view, std::vector<Mark> marks, const std::string& name,
-                  const std::string& reasons) {
+[[nodiscard]] inline Thumbnail view_picture(const std::optional<View>& view,
+                                            std::vector<Mark> marks, const std::string& name,
+                                            const std::string& reasons) {
   constexpr std::uint8_t kGray = 200;
   if (view && !view->image.empty()) return thumbnail(view->image, std::move(marks), name, reasons);
   return thumbnail(GrayImage(kThumbnailWidth, kThumbnailWidth * 3 / 4, kGray), {}, name, reasons);
@@ -73,8 +74,9 @@ inline void join_observations(std::vector<Sample>& all, std::vector<Sample> more
 
 /// Looks at all views of one moment; the joints are those of the first.
 /// @param source  of the samples, for messages
-[[nodiscard]] inline Look look_once(std::vector<RecordedView> views, const CameraFinders& finders, const std::string& source,
-          const std::string& name, bool thumbnails) {
+[[nodiscard]] inline Look look_once(std::vector<RecordedView> views, const CameraFinders& finders,
+                                    const std::string& source, const std::string& name,
+                                    bool thumbnails) {
   Look all;
   all.source = name;
   const std::string title = std::filesystem::path(name).filename().string();
@@ -107,8 +109,8 @@ inline void join_observations(std::vector<Sample>& all, std::vector<Sample> more
 }  // namespace detail
 
 KINECAL_INLINE std::vector<Look> look_at(const std::vector<PosedImage>& images,
-                          const std::optional<CameraInfo>& camera, const std::string& frame,
-                          const LookOptions& options) {
+                                         const std::optional<CameraInfo>& camera,
+                                         const std::string& frame, const LookOptions& options) {
   const int count = static_cast<int>(images.size());
   detail::ThreadFinders finders(options, 1, [](std::size_t) { return 0; });
   std::mutex metering;
@@ -124,17 +126,19 @@ KINECAL_INLINE std::vector<Look> look_at(const std::vector<PosedImage>& images,
       const std::string name = image.path + ": ";
       view.refusal = text.starts_with(name) ? text.substr(name.size()) : text;
     }
-    looks[static_cast<std::size_t>(i)] =
-        detail::look_once({std::move(view)}, finders.of(thread), image.source, image.path, options.thumbnails);
+    looks[static_cast<std::size_t>(i)] = detail::look_once(
+        {std::move(view)}, finders.of(thread), image.source, image.path, options.thumbnails);
     const std::scoped_lock lock(metering);
     if (options.meter) options.meter(static_cast<double>(++done) / count, "detecting");
   });
   return looks;
 }
 
-KINECAL_INLINE std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& options) {
+KINECAL_INLINE std::vector<Look> look_at(const RecordedViews& recording,
+                                         const LookOptions& options) {
   const std::size_t cameras = recording.cameras().size();
-  detail::ThreadFinders finders(options, cameras, [&](std::size_t f) { return recording.camera_of(f); });
+  detail::ThreadFinders finders(options, cameras,
+                                [&](std::size_t f) { return recording.camera_of(f); });
   std::vector<Look> looks(recording.standstills());
   std::vector<RecordedStandstill> batch;  // those in memory
   std::size_t bytes = 0;                  // of their messages
@@ -143,8 +147,9 @@ KINECAL_INLINE std::vector<Look> look_at(const RecordedViews& recording, const L
       RecordedStandstill& standstill = batch[static_cast<std::size_t>(i)];
       std::vector<RecordedView> views;
       for (std::size_t c = 0; c < cameras; ++c) views.push_back(recording.view(standstill, c));
-      looks[standstill.number] = detail::look_once(std::move(views), finders.of(thread), standstill.source,
-                                      standstill.source, options.thumbnails);
+      looks[standstill.number] =
+          detail::look_once(std::move(views), finders.of(thread), standstill.source,
+                            standstill.source, options.thumbnails);
       standstill.views.clear();
     });
     batch.clear();

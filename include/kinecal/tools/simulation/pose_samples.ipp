@@ -106,9 +106,7 @@ class PoseSampling {
     return nominal_.pose(a, b, at_rest());
   }
 
-  [[nodiscard]] Eigen::Vector2d pixel(const Vector3<double>& p) const {
-    return lens_.project(p);
-  }
+  [[nodiscard]] Eigen::Vector2d pixel(const Vector3<double>& p) const { return lens_.project(p); }
 
   [[nodiscard]] std::string view_fault(const Vector3<double>& p) const {
     const SimulatedCamera& camera = plan_.setup.camera;

@@ -32,8 +32,8 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/poses/poses.hpp"
-#include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/files/yaml/config_map.ipp"
+#include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/tools/simulation/scene_errors.ipp"
 
