@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kinecal/config/few_samples.ipp"
+#include "kinecal/sensors/built_in_sensor.hpp"
 #include "support/unknown_poses.hpp"
 
 namespace kinecal {
@@ -182,7 +184,7 @@ TEST(UnknownFrames, RectifiedPixelsLieOnTheSameLineOfSight) {
     return PinholeCamera{}.place(pixel, std::array<double, 4>{}).direction;
   };
   Observation rectified = seen;
-  detail::rectify(rectified);
+  detail::rectify(rectified, *camera_of(*seen.camera));
   EXPECT_GT((rectified.features[0].point - seen.features[0].point).norm(), 1.0);
   EXPECT_TRUE(ray(rectified).isApprox(ray(seen), 1e-12));
 }

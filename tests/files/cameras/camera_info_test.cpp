@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/sensors/camera_image.hpp"
+
 namespace kinecal {
 namespace {
 
