@@ -24,8 +24,7 @@
 #include <emmintrin.h>
 #endif
 
-/// Inlines everything a function calls: many small calls, once per batch.  Off with g++'s
-/// sanitizers.
+/// Inlines all that a function calls, many small ones per batch.  Off with g++'s sanitizers.
 #if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)
 #define KINECAL_FLATTEN [[gnu::flatten]]
 #else
