@@ -69,8 +69,8 @@ KINECAL_INLINE std::string chart_style() {
 
 namespace detail {
 
-/// The style with the colours of a light page in place of variables, which most programs for drawings
-/// do not know.
+/// The style with the colours of a light page instead of variables, which most drawing programs do
+/// not support.
 [[nodiscard]] inline std::string style_without_variables() {
   const std::string style = chart_style();
   std::string plain;

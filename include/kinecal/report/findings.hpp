@@ -1,4 +1,4 @@
-// All that is reported of a calibration: the result, what it is worth, what was left out.
+// The findings of a calibration: the result, its quality, and the samples left out.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -44,16 +44,16 @@ template <class T>
 /// "; likely cause: ...", or nothing.
 /// @param sample  by number in the problem
 [[nodiscard]] std::string cause_text(const Findings& findings, int sample);
-/// "not determined", "hardly determined", "not significant" or nothing.
+/// "not determined", "hardly determined", "not significant", or empty.
 [[nodiscard]] std::string note_on(const Parameter& parameter, double deviation);
 
 }  // namespace detail
 
-/// The report for people, in this order: verdict, fit, parameters, what cannot be determined, the worst
-/// samples, what to do next.  Distances in millimetres or pixels, angles in degrees.
+/// The report as text, in this order: verdict, fit, parameters, what cannot be determined, the
+/// worst samples, what to do next.  Distances in millimetres or pixels, angles in degrees.
 [[nodiscard]] std::string findings_text(const Findings& findings);
 
-/// The same, then what each step did and how long it took.
+/// The same, followed by what each step did and how long it took.
 [[nodiscard]] inline std::string summary_text(const Findings& findings) {
   return findings_text(findings) + "\n" + step_lines(findings.result);
 }

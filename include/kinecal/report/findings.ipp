@@ -1,4 +1,4 @@
-// Writing the report for people.
+// Writes the report as text.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,7 +1,7 @@
 // The report as one HTML file that opens anywhere: verdict, errors, parameters, the robot in 3-D.
 //
-// Nothing is fetched: style and script are in the file, and its content security policy allows nothing
-// else.  Every text of a user's file is escaped.  The same data give the same bytes.
+// The file loads nothing: it contains style and script, and its content security policy forbids
+// anything else.  All text from user files is escaped.  The same data give the same bytes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -31,24 +31,24 @@ struct HtmlPage {
 
 namespace detail {
 
-/// Plain text as HTML: escaped; what is not UTF-8, or not allowed in HTML, is replaced.
+/// Plain text as escaped HTML; replaces what is not UTF-8, or not allowed in HTML.
 [[nodiscard]] std::string html_text(std::string_view text);
 
-/// The same of lines, which stay lines: for <pre>.
+/// The same for lines that stay lines: for <pre>.
 [[nodiscard]] std::string html_lines(std::string_view text);
 
-/// The same of lines that become paragraphs.
+/// The same for lines that become paragraphs.
 [[nodiscard]] std::string html_paragraphs(std::string_view text);
 
 /// A chart with its caption.
 [[nodiscard]] std::string html_figure(const Chart& chart);
 
 /// A table; cells are plain text, the first row is the header.
-/// @param columns  what is in each column: 't' short text, 'l' long text, 'n' a number
+/// @param columns  the kind of each column: 't' short text, 'l' long text, 'n' a number
 [[nodiscard]] std::string html_table(const std::vector<std::vector<std::string>>& rows,
                                      std::string_view columns);
 
-/// The files that were read, and the command that repeats it.
+/// The input files, and the command that repeats the run.
 /// @param version  "kinecal 0.2.0"
 [[nodiscard]] std::string html_inputs(const std::vector<InputFile>& inputs,
                                       const std::string& version, const std::string& command);

@@ -19,13 +19,13 @@ namespace detail {
 
 inline constexpr std::size_t kMostOfTitle = 120;  ///< characters
 
-/// "'sha256-...'", as a content security policy names a text.
+/// "'sha256-...'", the form of a text in a content security policy.
 [[nodiscard]] inline std::string policy_source(std::string_view text) {
   const auto digest = sha256(text);
   return "'sha256-" + base64(std::string(digest.begin(), digest.end())) + "'";
 }
 
-/// The 3-D view, with a sentence for readers without script.
+/// The 3-D view, with a sentence for browsers without script.
 [[nodiscard]] inline std::string view_figure() {
   return "<figure id=\"view3d\" class=\"view3d\"><canvas aria-label=\"The robot in 3-D, before and "
          "after the calibration\"></canvas><div class=\"controls\"></div>"

@@ -25,7 +25,7 @@ KINECAL_INLINE std::string html_figure(const Chart& chart) {
                      html_text(chart.title), chart.svg, html_text(chart.caption));
 }
 
-/// What a table stands in: it scrolls by itself, also with the keyboard.
+/// Wraps a table so that it scrolls separately, also with the keyboard.
 [[nodiscard]] inline std::string scroll_region(const std::string& name) {
   return fmt::format(R"(<div class="scroll" tabindex="0" role="region" aria-label="{}">)",
                      html_text(name));
@@ -48,7 +48,7 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
   return html + "</tbody></table></div>\n";
 }
 
-/// The section of the page in which a chart stands: its own, if the page has it.
+/// The page section for a chart: its own, if the page has it.
 [[nodiscard]] inline std::string_view section_of(const Chart& chart) {
   if (chart.section == "residuals") return "samples";
   if (chart.section == "workspace") return "robot";
@@ -56,7 +56,7 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
   return has_own ? std::string_view(chart.section) : "errors";
 }
 
-/// A section: its figures, then its charts; empty without any.
+/// A section: its figures, then its charts; empty if there are none.
 [[nodiscard]] inline std::string section(std::string_view id, std::string_view title,
                                          const std::string& figures,
                                          const std::vector<Chart>& charts) {
@@ -70,15 +70,15 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
   return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, title, html);
 }
 
-/// How a grade is called as a class.
+/// The CSS class of a grade.
 [[nodiscard]] inline std::string_view class_of(Grade grade) {
   return grade == Grade::good ? "good" : grade == Grade::use_with_care ? "care" : "bad";
 }
 
-/// Significant changes, those first that matter most: against the deviation that is of use.
+/// Significant changes, most important first: relative to the useful deviation.
 [[nodiscard]] inline std::vector<const ReportedParameter*> largest_changes(const ReportData& data) {
   std::vector<const ReportedParameter*> all;
-  std::set<std::string> unknown;  // a pose that nobody knew is not corrected
+  std::set<std::string> unknown;  // an unknown pose is not corrected
   for (const StepResult& step : data.steps) {
     unknown.insert(step.starts.frames.begin(), step.starts.frames.end());
   }
@@ -138,7 +138,7 @@ KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>
   }
   std::string html = "<div><h3>Fit, before and after</h3><ul>" + items + "</ul>";
   if (data.pose) {
-    constexpr double kKnown = 0.35;  // radians; of a point the orientation means nothing
+    constexpr double kKnown = 0.35;  // radians; the orientation of a point is meaningless
     html += fmt::format(
         "<p><code>{}</code> in <code>{}</code> is known to <strong>{}</strong>{}</p>",
         html_text(data.pose->frame), html_text(data.pose->in), reading(data.pose->position, "m"),

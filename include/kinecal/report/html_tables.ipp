@@ -118,7 +118,7 @@ namespace kinecal::detail {
   return html;
 }
 
-/// What was read, how to repeat it, the report as text.
+/// The inputs, the command that repeats the run, and the report as text.
 [[nodiscard]] inline std::string inputs_section(const ReportData& data) {
   return fmt::format(
       "<section id=\"inputs\"><h2>Inputs</h2>\n{}"

@@ -10,10 +10,10 @@
 namespace kinecal {
 
 /// The whole report.  Costs are 1/2 sum of squares; rms is per residual component; mean, median and
-/// max are of the features' norms.  Units are metres, radians and pixels; `sigma` of a parameter is one
-/// standard deviation, null if it is not determined.  `covariance` is of all parameters, row by row of
-/// the lower triangle, zero along the combinations of `undetermined`; `poses` are joint positions.
-/// Source: schema/report.schema.json beside this header has all of it
+/// max are of the features' norms.  Units are metres, radians and pixels; `sigma` of a parameter is
+/// one standard deviation, null if undetermined.  `covariance` is of all parameters, the lower
+/// triangle row by row, zero along the combinations of `undetermined`; `poses` are joint positions.
+/// Source: schema/report.schema.json beside this header documents every key
 [[nodiscard]] std::string json_report(const Findings& findings);
 
 }  // namespace kinecal

@@ -1,4 +1,4 @@
-// What verify and compare need of a report: the covariance, what was not determined, the poses.
+// The parts of a report for verify and compare: covariance, undetermined combinations, poses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,8 +18,8 @@ namespace kinecal {
 
 namespace detail {
 
-/// The parameters of all steps with their covariance; those of an earlier step that a later one frees
-/// again are those of the later one.
+/// The parameters of all steps with their covariance; if several steps free a parameter, the last
+/// one counts.
 [[nodiscard]] inline CalibratedState state_of_steps(const std::vector<Assessment>& assessments) {
   CalibratedState state;
   std::vector<std::pair<const Assessment*, Eigen::Index>> columns;

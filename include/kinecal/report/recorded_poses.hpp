@@ -1,4 +1,4 @@
-// The joint positions at which a calibration was recorded: compact enough for its report.
+// The joint positions at which a calibration was recorded, compact enough for its report.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace kinecal {
 
-/// Joint positions of samples, for comparing calibrations at poses that were used.
+/// Joint positions of samples, for comparing calibrations at these poses.
 struct RecordedPoses {
-  std::vector<std::string> joints;             ///< those of the chains of all sensors
-  std::vector<std::vector<double>> positions;  ///< radians or metres, of each joint
+  std::vector<std::string> joints;             ///< of the chains of all sensors
+  std::vector<std::vector<double>> positions;  ///< radians or metres, for each joint
 };
 
-/// The poses of samples that have all joints; evenly chosen if there are more than 100.
+/// The poses of samples with all joints; an even selection if there are more than 100.
 [[nodiscard]] RecordedPoses recorded_poses(const Calibration& calibration,
                                            std::span<const Sample> samples);
 

@@ -1,6 +1,6 @@
-// What the HTML report and its charts show, as plain numbers and text.
+// The content of the HTML report and its charts, as plain numbers and text.
 //
-// Charts are drawn from this alone, so they are the same for a calibration, a comparison and a study.
+// Charts are drawn only from this, so a calibration, a comparison and a study share them.
 // Units: metres, radians, pixels; charts convert to millimetres, degrees and per cent.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -21,7 +21,7 @@
 
 namespace kinecal {
 
-/// A file that a calibration read.
+/// An input file of a calibration.
 struct InputFile {
   std::string role;         ///< "URDF", "configuration", "samples", "camera"
   std::string name;         ///< path, as the user gave it
@@ -51,11 +51,11 @@ struct ReportedBlock {
   std::string unit;          ///< of the residual: "m", "px" or "1"
   bool is_plane = false;     ///< it compares with a plane: the error varies over the floor
   int components = 1;        ///< residuals of a feature
-  double sigma = 0.0;        ///< estimated noise of a component; 0: not known
+  double sigma = 0.0;        ///< estimated noise of a component; 0: unknown
   double sigma_given = 0.0;  ///< of the configuration; 0: none
   double rms_before = 0.0;   ///< root of the mean squared distance of features
   double rms_after = 0.0;    ///< the same at the result
-  std::optional<double> held_out = {};  ///< the same of samples that were held out
+  std::optional<double> held_out = {};  ///< the same for held-out samples
   std::array<double, 2> image = {
       0.0, 0.0};  ///< width and height of the camera's image, pixels; 0: unknown
   std::vector<ReportedFeature> features = {};  ///< in the order of samples
@@ -66,8 +66,8 @@ struct ReportedSample {
   int number = 0;         ///< from 1, in the order of the files
   std::string source;     ///< source location
   bool bad = false;       ///< it does not fit the others
-  bool left_out = false;  ///< the fit does not use it
-  std::string why;        ///< what is wrong with it, and the likely cause; may be empty
+  bool left_out = false;  ///< not used by the fit
+  std::string why;        ///< its fault and the likely cause; may be empty
   double times = 0.0;     ///< distance of its worst feature in standard deviations of the noise
 };
 
@@ -81,15 +81,15 @@ struct ReportedParameter {
       note;  ///< "", "not significant", "not determined", "hardly determined", "at its bound"
 };
 
-/// All that a report shows.
+/// The content of a report.
 struct ReportData {
   std::string robot;  ///< its name
   Grade verdict = Grade::good;
-  std::vector<std::string> reasons;  ///< for the verdict, the gravest first
+  std::vector<std::string> reasons;  ///< for the verdict, worst first
   std::string version;               ///< "kinecal 0.2.0"
-  std::string command;               ///< that repeats it
+  std::string command;               ///< repeats the run
   std::string date;                  ///< "2026-11-23"; of the calibration
-  std::string recorded;              ///< when samples were recorded; empty: not known
+  std::string recorded;              ///< when samples were recorded; empty: unknown
   std::vector<InputFile> inputs;
   std::vector<StepResult> steps;  ///< with the cost of each iteration
   std::vector<ReportedBlock> blocks;
@@ -97,22 +97,23 @@ struct ReportData {
   std::vector<ReportedParameter> parameters;
   std::vector<std::string> correlated;           ///< names: rows and columns of the matrix below
   std::vector<std::vector<double>> correlation;  ///< (correlated x correlated), -1 to 1
-  /// Combinations that no residual depends on: parameter names and factors.
+  /// Combinations that affect no residual: parameter names and factors.
   std::vector<std::vector<std::pair<std::string, double>>> unobservable;
   std::vector<std::string> hold;        ///< parameters to hold so that all others are observable
   int rank = 0;                         ///< number of combinations that are observable
-  std::optional<PoseUncertainty> pose;  ///< of what the first error block compares
+  std::optional<PoseUncertainty> pose;  ///< of the frames that the first error block compares
   std::vector<KnownPoint> workspace;    ///< of the origin of that pose, over the robot's workspace
   std::string summary;                  ///< the report as text
 };
 
-/// Gathers what a report shows of a calibration, but its inputs, date and command.
+/// Collects the content of a calibration's report, except its inputs, date and command.
 /// @param calibration  the one that was solved, with its samples
 /// @param samples      those of its problems, in their order
 [[nodiscard]] ReportData report_data(const Calibration& calibration, const Findings& findings,
                                      std::span<const Sample> samples);
 
-/// Adds where the features of planes are in the base, of those that a scene of the same calibration has.
+/// Adds the positions of planes' features in the base, for those in a scene of the same
+/// calibration.
 void add_points(const RobotScene& scene, ReportData& data);
 
 }  // namespace kinecal

@@ -16,7 +16,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// The error blocks of all steps that ran; of one in several steps, that of the last.
+/// The error blocks of all steps that ran; if a block is in several steps, the last one counts.
 [[nodiscard]] inline std::vector<ReportedBlock> reported_blocks(const Calibration& calibration,
                                                                 const Findings& findings,
                                                                 std::span<const Sample> samples) {
@@ -35,7 +35,7 @@ namespace detail {
   return blocks;
 }
 
-/// Samples by number in the problem, then those that were left out.
+/// Samples by number in the problem, then those left out.
 [[nodiscard]] inline std::vector<ReportedSample> reported_samples(const Findings& findings) {
   std::vector<ReportedSample> all;
   for (std::size_t i = 0; i < findings.sources.size(); ++i) {
@@ -79,7 +79,7 @@ namespace detail {
   return all;
 }
 
-/// Correlations of the parameters of all steps that are determined.
+/// Correlations of the determined parameters of all steps.
 inline void add_correlations(const Findings& findings, ReportData& data) {
   const CalibratedState state = state_of_steps(findings.assessments);
   std::vector<Eigen::Index> known;

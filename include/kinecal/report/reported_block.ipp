@@ -30,7 +30,7 @@ namespace kinecal::detail {
   return place < seen.features.size() ? &seen.features[place] : nullptr;
 }
 
-/// Where the cameras of a block saw a feature.
+/// Adds where the cameras of a block saw a feature.
 inline void add_sight(const AnyProblem& problem, const Term& term, const Sample& sample,
                       ReportedFeature& reported, ReportedBlock& block) {
   for (const int s : term.sensors) {
@@ -131,7 +131,7 @@ inline void add_sight(const AnyProblem& problem, const Term& term, const Sample&
   return blocks;
 }
 
-/// The day on which the first sample was recorded, "2026-11-23"; empty if nobody recorded it.
+/// The day on which the first sample was recorded, "2026-11-23"; empty if unknown.
 [[nodiscard]] inline std::string recorded_on(std::span<const Sample> samples) {
   std::optional<std::chrono::nanoseconds> first;
   for (const Sample& sample : samples) {

@@ -26,10 +26,10 @@ struct CsvResidual {
   FeatureLabel feature;
   std::string unit;
   double distance = 0.0;         ///< norm of the residual
-  std::vector<double> residual;  ///< as long as the error block has it
+  std::vector<double> residual;  ///< as many components as the error block has
 };
 
-/// As many cells in each row as in the header.
+/// Pads each row to the number of cells in the header.
 [[nodiscard]] inline std::string csv_text(const std::vector<CsvResidual>& rows) {
   const bool ids = std::any_of(rows.begin(), rows.end(),
                                [](const auto& row) { return row.feature.id.has_value(); });

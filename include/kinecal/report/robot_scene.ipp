@@ -18,7 +18,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// The problem that was solved last; nullptr if there is none.
+/// The problem solved last; nullptr if there is none.
 [[nodiscard]] inline const CalibrationStep* last_step(const Calibration& calibration,
                                                       const CalibrationResult& result) {
   if (calibration.steps.empty()) return nullptr;
@@ -26,7 +26,7 @@ namespace detail {
   return &calibration.steps[std::min(ran, calibration.steps.size()) - 1];
 }
 
-/// Indices of the samples to show, ascending: bad ones, the worst ones, others evenly.
+/// Indices of the samples to show, ascending: bad ones, worst ones, others evenly.
 [[nodiscard]] inline std::vector<std::size_t> shown_samples(const Findings& findings,
                                                             std::size_t all, std::size_t most) {
   std::vector<std::size_t> chosen;
@@ -56,7 +56,7 @@ namespace detail {
   return chosen;
 }
 
-/// Number, source location, joint positions and what is wrong, without features.
+/// Number, source location, joint positions and fault, without features.
 [[nodiscard]] inline SceneSample scene_sample(const RobotScene& scene, const Findings& findings,
                                               const Sample& sample, std::size_t i) {
   SceneSample shown{

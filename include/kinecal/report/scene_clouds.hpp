@@ -1,4 +1,4 @@
-// The clouds of a scene's samples: what the camera saw, on the robot as it is believed to stand.
+// Point clouds of a scene's samples: the camera's view, at the believed pose of the robot.
 // Source: Fetch paper, figures 2 and 3.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -11,8 +11,8 @@
 
 namespace kinecal {
 
-/// Adds the clouds that recordings have of the samples of a scene, thinned: 60 000 points in all, 300 to
-/// 5000 in a sample.  A cloud in a frame that is no link of the scene is left out.
+/// Adds the recorded clouds of a scene's samples, thinned to 60 000 points in all, 300 to 5000 per
+/// sample.  Skips a cloud in a frame that is not a link of the scene.
 /// @param files  of the samples, in any format
 void add_clouds(const std::vector<std::string>& files, RobotScene& scene);
 

@@ -13,7 +13,7 @@
 
 namespace kinecal::detail {
 
-inline constexpr int kEntityDigits = 7;  ///< 0.1 micrometres: differences are looked at
+inline constexpr int kEntityDigits = 7;  ///< 0.1 micrometres: people look at differences
 
 using SceneColor = std::array<double, 4>;
 
@@ -58,7 +58,7 @@ inline constexpr SceneColor kBad = {0.9, 0.15, 0.15, 1.0};        ///< of a samp
   return {{"sec", nanoseconds / kSecond}, {"nsec", nanoseconds % kSecond}};
 }
 
-/// What is drawn in one frame.
+/// The shapes drawn in one frame.
 class SceneEntity {
  public:
   SceneEntity(std::string id, std::string frame) : id_(std::move(id)), frame_(std::move(frame)) {}
@@ -68,7 +68,7 @@ class SceneEntity {
            triangles_.empty() && texts_.empty();
   }
 
-  /// @param color  in place of its own, if it is not null
+  /// @param color  replaces its own color unless null
   void add(const SceneVisual& of, const std::vector<Mesh>& meshes, const SceneColor* color) {
     const Visual& visual = of.visual;
     const Json pose = entity_pose(visual.link_T_visual),

@@ -31,7 +31,7 @@ using SceneResiduals = std::map<std::pair<int, int>, std::vector<double>>;
   return all;
 }
 
-/// Points of blocks that compare with a plane: their feet are found when all points are known.
+/// Points of blocks that compare with a plane: their feet are computed once all points are known.
 [[nodiscard]] inline bool is_point_to_plane(const Term& term) {
   return term.options.type == PointToPlane::kType;
 }
@@ -42,7 +42,7 @@ using SceneResiduals = std::map<std::pair<int, int>, std::vector<double>>;
          term.options.type == PointToSphere::kType;
 }
 
-/// The most features of a sample: the worst quarter, others evenly.
+/// Limits the features of a sample: the worst quarter, others evenly.
 inline std::size_t thin_features(std::vector<SceneFeature>& features, std::size_t most) {
   const std::size_t all = features.size();
   if (all <= most) return all;

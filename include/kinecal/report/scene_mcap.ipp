@@ -34,11 +34,11 @@ class SceneMessages {
     for (int j = above_of(above, root_); j >= 0; j = above_of(above, root_)) {
       up_.push_back(j);
       root_ = scene.joints[static_cast<std::size_t>(j)].parent;
-      if (up_.size() > scene.joints.size()) break;  // no tree
+      if (up_.size() > scene.joints.size()) break;  // not a tree
     }
   }
 
-  /// When a sample was recorded, nanoseconds.
+  /// Recording time of a sample, nanoseconds.
   [[nodiscard]] std::int64_t time(std::size_t sample) const { return times_[sample]; }
 
   [[nodiscard]] std::string transforms(std::size_t sample) const {
@@ -154,7 +154,7 @@ class SceneMessages {
 
   const RobotScene& scene_;
   std::vector<std::int64_t> times_;  ///< of each sample
-  int root_ = 0;                     ///< the link above all
+  int root_ = 0;                     ///< the topmost link
   std::vector<int> up_;              ///< joints from the base to it
 };
 

@@ -1,4 +1,4 @@
-// What the links of a scene look like: the visuals of the URDF with their meshes.
+// The appearance of a scene's links: the visuals of the URDF with their meshes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace kinecal {
 
-/// How much all meshes of a scene may hold together; above it, they are thinned.
+/// Limit on all meshes of a scene together; beyond it, they are simplified.
 struct MeshBudget {
   std::size_t triangles = 60000;
   std::size_t bytes = 900000;  ///< of vertices and triangles; base64 adds a third
 };
 
-/// Adds visuals to the links of a scene, and reads their meshes.  Those that cannot be drawn are left
-/// out with a warning.
+/// Adds visuals to the links of a scene, and reads their meshes.  Skips those that cannot be drawn,
+/// with a warning.
 /// @param name  of the URDF in warnings
 void add_visuals(std::span<const Visual> visuals, const MeshPlaces& places, const std::string& name,
                  RobotScene& scene, Diagnostics& diagnostics, const MeshBudget& budget = {});

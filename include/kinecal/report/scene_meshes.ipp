@@ -74,7 +74,7 @@ class SceneMeshes {
   return {triangles, 4 * numbers};
 }
 
-/// Thins all meshes in proportion, so that they fit.
+/// Simplifies all meshes in proportion, so that they fit.
 inline void thin_meshes(const MeshBudget& budget, std::vector<Mesh>& meshes) {
   constexpr std::size_t kLeast = 100;  // triangles: a link stays recognizable
   const std::vector<Mesh> whole = meshes;

@@ -1,4 +1,4 @@
-// What was measured and what was predicted, as two points: of each kind of error block.
+// Measured and predicted points for each kind of error block.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -13,15 +13,15 @@
 
 namespace kinecal::detail {
 
-/// Where a feature is in the base: a point, or a line of sight if the sensor observes pixels.
+/// A feature in the base: a point, or a line of sight if the sensor observes pixels.
 struct PlacedFeature {
-  Vector3<double> point;                             ///< (3) metres; of a ray its direction
+  Vector3<double> point;                             ///< (3) metres; for a ray, its direction
   Vector3<double> origin = Vector3<double>::Zero();  ///< (3) of the sensor, metres
   Vector3<double> axis = Vector3<double>::UnitZ();   ///< (3) of a camera: forward
-  bool seen = true;                                  ///< the feature is a number
+  bool seen = true;                                  ///< the feature is not NaN
 };
 
-/// A pair of points; nullopt if one of them is not a number.
+/// A pair of points; nullopt if one of them is NaN.
 [[nodiscard]] inline std::optional<ScenePair> scene_pair(const Vector3<double>& measured,
                                                          const Vector3<double>& predicted) {
   if (!measured.allFinite() || !predicted.allFinite()) return std::nullopt;
@@ -29,7 +29,7 @@ struct PlacedFeature {
   return ScenePair{numbers(measured), numbers(predicted)};
 }
 
-/// A point, and that of a line of sight at its depth; nullopt behind the camera.
+/// A point, and the point of a line of sight at its depth; nullopt behind the camera.
 [[nodiscard]] inline std::optional<ScenePair> pair_at_depth(const PlacedFeature& predicted,
                                                             const PlacedFeature& ray) {
   const double depth = ray.axis.dot(predicted.point - ray.origin);
@@ -49,14 +49,14 @@ struct PlacedFeature {
   return scene_pair(a.origin + u * along_a, b.origin + v * along_b);
 }
 
-/// The point at a distance from another one, in the direction of the point that was measured.
+/// The point at a distance from another one, towards the measured point.
 [[nodiscard]] inline std::optional<ScenePair> pair_at_distance(const Vector3<double>& measured,
                                                                const Vector3<double>& from,
                                                                double distance) {
   return scene_pair(measured, from + (measured - from).normalized() * distance);
 }
 
-/// The plane through points; nullopt if they determine none.
+/// The plane through points; nullopt if they do not determine one.
 [[nodiscard]] inline std::optional<Plane<double>> plane_through(
     const std::vector<Vector3<double>>& points) {
   if (points.size() < 3) return std::nullopt;
@@ -90,10 +90,11 @@ struct PlacedFeature {
   return pairs;
 }
 
-/// The normal of a plane of which only distances of points are known: r = n . p + d.
+/// The normal of a plane when only distances of points are known: r = n . p + d.
 ///
-/// In the frame of the points' own axes, the two components along their extent are a linear fit.  Points
-/// near a plane say little about the third; the length of n gives it, and its sign is the one that fits.
+/// In the principal axes of the points, the two components along their extent follow from a linear
+/// fit.  Points near a plane hardly determine the third; the length of n gives it, with the sign
+/// that fits.
 class PlaneOfDistances {
  public:
   void add(const Vector3<double>& p, double r) {
@@ -114,8 +115,8 @@ class PlaneOfDistances {
       scatter += q * q.transpose();
       moment += q * (distances_[i] - mean);
     }
-    // The minimum of |q . n - r|^2 over n perpendicular to `across`: a term holds what is along it at
-    // zero.
+    // The minimum of |q . n - r|^2 over n perpendicular to `across`: a term holds what is along it
+    // at zero.
     const Matrix3<double> out = across * across.transpose(), in = Matrix3<double>::Identity() - out;
     const Matrix3<double> held = in * scatter * in + out * scatter.trace();
     const Vector3<double> along = held.inverse() * (in * moment);

@@ -32,7 +32,7 @@ template <class Numbers>
   return json;
 }
 
-/// Numbers of four bytes, least significant byte first, as base64.
+/// Four-byte numbers, little-endian, as base64.
 template <class T>
 [[nodiscard]] std::string base64_of(const std::vector<T>& numbers) {
   static_assert(sizeof(T) == 4, "base64_of() writes float and uint32_t");

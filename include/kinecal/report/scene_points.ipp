@@ -1,4 +1,4 @@
-// What the sensors of a sample observed and what was predicted, as points in the base.
+// The observed and predicted features of a sample as points in the base.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -35,9 +35,9 @@ class ScenePoints {
     }
   }
 
-  /// What a term compares in a sample, by feature; nullopt where it is undefined, nothing if its kind
-  /// cannot be drawn.
-  /// @param sample  as AnyProblem::paired()
+  /// The pairs that a term compares in a sample, by feature; nullopt where undefined, empty if its
+  /// kind cannot be drawn.
+  /// @param sample  from AnyProblem::paired()
   [[nodiscard]] std::vector<std::optional<ScenePair>> pairs(const Term& term,
                                                             const Sample& sample) const {
     using enum Quantity;
@@ -98,7 +98,7 @@ class ScenePoints {
     return places && *places != Quantity::reading;
   }
 
-  /// A point that is compared with a sphere, or with a plane whose foot is found later.
+  /// A point compared with a sphere, or with a plane whose foot is computed later.
   [[nodiscard]] std::optional<ScenePair> alone(const Term& term, const Vector3<double>& p) const {
     if (term.options.type != PointToSphere::kType) return scene_pair(p, p);
     const auto v = own<4>(term.parameters);

@@ -24,7 +24,7 @@ class SceneRobot {
     for (const Joint& joint : problem.robot().joints()) add_joint(joint);
   }
 
-  /// Adds the frames beyond a link that features of the samples are in.
+  /// Adds the frames beyond a link that contain features of the samples.
   void add_frames(std::span<const Sample> samples) {
     std::set<std::pair<std::string, std::string>> known;
     for (const Sample& sample : samples) {
@@ -32,7 +32,7 @@ class SceneRobot {
         const Observation* seen =
             sensor.sensor().in_own_frame() ? nullptr : sample.observation(sensor.mount().name);
         if (seen == nullptr) continue;
-        const std::string* last = nullptr;  // most features are in the frame of the one before
+        const std::string* last = nullptr;  // most features have the frame of the previous one
         for (const Feature& feature : seen->features) {
           if (last != nullptr && *last == feature.frame) continue;
           last = &feature.frame;
@@ -150,7 +150,7 @@ class SceneRobot {
                         .fy = corrected(1),
                         .cx = corrected(2),
                         .cy = corrected(3)};
-      if (!(shown.width > 0.0)) shown.width = 2.0 * shown.cx;  // nobody recorded it
+      if (!(shown.width > 0.0)) shown.width = 2.0 * shown.cx;  // not recorded
       if (!(shown.height > 0.0)) shown.height = 2.0 * shown.cy;
       scene_.cameras.push_back(std::move(shown));
       return true;

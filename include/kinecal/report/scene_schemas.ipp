@@ -1,4 +1,5 @@
-// JSON schemas of the messages that viewers draw: foxglove.FrameTransforms and foxglove.SceneUpdate.
+// JSON schemas of the messages that viewers draw: foxglove.FrameTransforms and
+// foxglove.SceneUpdate.
 // Source: the schemas of Foxglove, by their names of fields.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

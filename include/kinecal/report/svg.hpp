@@ -1,4 +1,4 @@
-// Writing a chart as SVG: marks, texts, axes, with one title and one description for screen readers.
+// Draws a chart as SVG: marks, texts, axes, with one title and one description for screen readers.
 //
 // Colours are classes only (chart_style.hpp), so a chart is light or dark as its page is.  Coordinates
 // are those of the viewBox, y downwards.  That is why it is written by hand: the SVG of plotting libraries, and
@@ -17,15 +17,15 @@
 
 namespace kinecal::detail {
 
-/// Width of every chart: on a phone a text of 13 is then one of 10.
+/// Width of every chart: on a phone, size 13 then appears as 10.
 inline constexpr double kChartWidth = 480.0;
-/// Of texts, and of those of the classes "small" and "tick".
+/// Font sizes: normal, and those of the classes "small" and "tick".
 inline constexpr double kFontSize = 13.0, kSmallFont = 12.0;
 
-/// Coordinates of a place in a chart.
+/// A place in a chart: x, y.
 using Place = std::array<double, 2>;
 
-/// Where a text stands beside its place.
+/// The position of a text relative to its place.
 enum class Anchor { start, middle, end };
 
 /// The part of a chart between its axes.
@@ -33,10 +33,10 @@ struct PlotArea {
   double left = 46.0, top = 24.0, right = kChartWidth - 10.0, bottom = 260.0;
 };
 
-/// A chart that is being drawn.
+/// A chart while it is drawn.
 class Drawing {
  public:
-  /// @param name    data-chart of the svg, and the beginning of its ids
+  /// @param name    data-chart of the svg, and prefix of its ids
   /// @param title   plain text
   Drawing(std::string name, std::string_view title, double height, double width = kChartWidth);
 
@@ -45,23 +45,23 @@ class Drawing {
                  std::string_view title = {});
   void circle(Place center, double radius, const char* classes, int sample = 0,
               std::string_view title = {});
-  /// A line through places; a new piece begins where a place is not finite.
+  /// A line through places; places that are not finite interrupt it.
   void curve(std::span<const Place> places, const char* classes);
   /// A filled shape.
   void area(std::span<const Place> places, const char* classes);
-  /// Anything that a path can be.
+  /// Any SVG path.
   /// @param sample  number of the sample that a click selects; 0: none
   void path(std::string_view data, const char* classes, int sample = 0,
             std::string_view title = {});
-  /// @param title  shown when pointed at, such as the full name; empty: none
+  /// @param title  tooltip, such as the full name; empty: none
   void text(Place place, std::string_view text, const char* classes = "",
             Anchor anchor = Anchor::start, std::string_view title = {}, double turned = 0.0);
-  /// A name that is shortened to a width, with the full name as its title.
+  /// A name shortened to a width, with the full name as tooltip.
   void name(Place place, std::string_view name, double width, const char* classes = "",
             Anchor anchor = Anchor::start, double turned = 0.0);
   void open_group(const char* classes);
   void close_group();
-  /// Hatching, once in a chart; shapes of class "hatched" that come after are filled with it.
+  /// Defines the hatching, once per chart; later shapes of class "hatched" use it.
   void hatching(Place corner, double width, double height, std::string_view title);
 
   /// Grid, ticks and names of both axes; the name of y is above the axis.

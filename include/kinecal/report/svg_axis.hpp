@@ -1,4 +1,4 @@
-// An axis of a chart: from values to coordinates, and where its ticks are.
+// An axis of a chart: maps values to coordinates, and places ticks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,16 +18,16 @@ struct Tick {
 /// x = from + (to - from) (f(v) - f(low)) / (f(high) - f(low)), where f is v or log10 v.
 class Axis {
  public:
-  /// Ends at round values that include `low` and `high`.  Values that are equal or not finite get a
-  /// range around them.
+  /// Ends at round values that include `low` and `high`.  Equal or non-finite values get a range
+  /// around them.
   /// @param from, to  coordinates of the ends; to < from on axes that point up
   [[nodiscard]] static Axis linear(double low, double high, double from, double to);
   /// The same without rounding the ends.
   [[nodiscard]] static Axis exact(double low, double high, double from, double to);
-  /// The same in logarithms, at least one decade.  What is not positive is replaced.
+  /// The same for logarithms, at least one decade.  Replaces values that are not positive.
   [[nodiscard]] static Axis logarithmic(double low, double high, double from, double to);
 
-  /// Coordinate of a value; values beyond the ends are at the ends, also zero on a logarithmic axis.
+  /// Coordinate of a value; values beyond an end are at that end, also zero on a logarithmic axis.
   [[nodiscard]] double at(double value) const;
   /// Value at a coordinate.
   [[nodiscard]] double value(double coordinate) const;
@@ -47,7 +47,7 @@ class Axis {
   bool logarithmic_;
 };
 
-/// A round step, 1, 2 or 5 times a power of ten, of which about `most` fit into a range.
+/// A round step, 1, 2 or 5 times a power of ten, that fits about `most` times into a range.
 [[nodiscard]] double round_step(double range, int most);
 
 }  // namespace kinecal::detail

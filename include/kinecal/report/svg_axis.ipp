@@ -24,7 +24,7 @@ KINECAL_INLINE double round_step(double range, int most) {
   return 10.0 * decade;
 }
 
-/// A range that is finite and not empty.
+/// A finite range that is not empty.
 [[nodiscard]] inline std::pair<double, double> usable_range(double low, double high) {
   constexpr double kMost = 1e100;
   if (!std::isfinite(low)) low = std::isfinite(high) ? high : 0.0;

@@ -1,4 +1,4 @@
-// Characters of UTF-8, and which of them a chart shows.
+// Characters of UTF-8, and which of them a chart may show.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,7 +11,7 @@ namespace kinecal::detail {
 
 inline constexpr char32_t kNoCharacter = 0xFFFD;
 
-/// Whether XML may contain a character and a reader sees it where it stands.
+/// True if XML may contain a character and readers see it in its place.
 [[nodiscard]] inline bool is_shown(char32_t c) {
   const bool control = c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0xFFFE || c == 0xFFFF;
   const bool turns =
@@ -19,7 +19,7 @@ inline constexpr char32_t kNoCharacter = 0xFFFD;
   return !control && !turns && c != 0x2028 && c != 0x2029;
 }
 
-/// The character that begins at a place, which is moved behind it.
+/// The character at a position; moves the position past it.
 [[nodiscard]] inline char32_t next_character(std::string_view text, std::size_t& at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(at++);
@@ -42,7 +42,7 @@ inline constexpr char32_t kNoCharacter = 0xFFFD;
   return c;
 }
 
-/// Lines ends and tabs become spaces; what must not be shown becomes U+FFFD.
+/// Line ends and tabs become spaces; characters that must not be shown become U+FFFD.
 [[nodiscard]] inline std::vector<char32_t> characters_of(std::string_view text) {
   std::vector<char32_t> characters;
   for (std::size_t at = 0; at < text.size();) {

@@ -10,7 +10,7 @@
 
 namespace kinecal::detail {
 
-/// What stands before a legend's text.
+/// The symbol before a legend's text.
 enum class Swatch { square, line, dot, ring };
 
 /// An entry of a legend.
@@ -20,7 +20,7 @@ struct LegendEntry {
   std::string text;
 };
 
-/// Draws a legend in lines from a chart's left to its right edge.
+/// Draws a legend in lines as wide as the chart.
 /// @param top  of its first line
 /// @returns    the bottom of its last line
 double draw_legend(Drawing& drawing, const std::vector<LegendEntry>& entries, double top,

@@ -48,7 +48,7 @@ KINECAL_INLINE std::string svg_escaped(std::string_view text) {
 }
 
 KINECAL_INLINE std::string shortened(std::string_view name, std::size_t most) {
-  const std::size_t bytes = 4 * most;  // that surely hold so many characters
+  const std::size_t bytes = 4 * most;  // surely enough bytes for this many characters
   const bool is_long = name.size() > 2 * bytes + 16;
   std::vector<char32_t> all = characters_of(is_long ? name.substr(0, bytes) : name);
   if (is_long) {

@@ -1,4 +1,4 @@
-// The report as text, for people: tables in millimetres, degrees and pixels.
+// The report as text: tables in millimetres, degrees and pixels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,14 +12,14 @@
 
 namespace kinecal {
 
-/// A table.  Columns are as wide as their widest cell; the first ones are aligned to the left, the
-/// others to the right.
+/// A table.  Columns are as wide as their widest cell; the first ones are left-aligned, the others
+/// right-aligned.
 class TextTable {
  public:
   /// The cells of a row.
   using Row = std::vector<std::string>;
 
-  /// @param left_columns  number of columns aligned to the left
+  /// @param left_columns  number of left-aligned columns
   explicit TextTable(Row header, std::size_t left_columns = 1)
       : rows_{std::move(header)}, left_columns_(left_columns) {}
 
@@ -34,13 +34,13 @@ class TextTable {
   std::size_t left_columns_;
 };
 
-/// A residual in the unit that people read: millimetres for "m"; "-" if it is not defined, as behind a
+/// A residual in its displayed unit: millimetres for "m"; "-" if it is undefined, as behind a
 /// camera.
 [[nodiscard]] std::string in_reading_unit(double value, const std::string& unit);
 /// The name of that unit; "-" for a residual without unit.
 [[nodiscard]] std::string reading_unit(const std::string& unit);
 
-/// What a design effect means for the +-; empty if it is one.
+/// The effect of a design effect on the +-; empty if it is one.
 [[nodiscard]] std::string design_effect_note(double effect);
 
 /// Two lines for each step: what it did and why it stopped.
@@ -50,15 +50,15 @@ class TextTable {
 /// "solving 0.0006 s (4 iterations, 1.2 million samples a second, x86-64-v4)".
 [[nodiscard]] std::string solving_text(const CalibrationResult& result);
 
-/// The combinations of parameters that a step's samples leave unobservable, one per line, and the
-/// parameters to hold so that none is left; empty if all are observable.
+/// The unobservable parameter combinations of a step, one per line, and the parameters to hold so
+/// that none remain; empty if all are observable.
 [[nodiscard]] std::string observability_text(const std::string& step,
                                              const Observability& observability,
                                              const ParameterTable& table);
 
 namespace detail {
 
-/// A value in the unit that people read, and the unit: degrees for "rad", mm for "m", % for "1".
+/// A value in its displayed unit, and the unit: degrees for "rad", mm for "m", % for "1".
 [[nodiscard]] std::pair<std::string, std::string> for_people(double value, const std::string& unit);
 
 }  // namespace detail

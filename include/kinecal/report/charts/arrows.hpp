@@ -1,4 +1,4 @@
-// Arrows in an image: how long they are drawn, and where they end.
+// Arrows in an image: their scale, and where they end.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,15 +11,15 @@
 
 namespace kinecal::detail {
 
-/// From pixels of the image to the chart, and how much longer arrows are drawn.
+/// From image pixels to the chart, with the enlargement of arrows.
 struct ImageScale {
   Place corner = {0.0, 0.0};  ///< of the image in the chart
   Place low = {0.0, 0.0};     ///< of the image, pixels
   Place high = {1.0, 1.0};    ///< its other corner
   double pixel = 1.0;         ///< length of a pixel in the chart
-  double times = 1.0;         ///< arrows are longer by this
+  double times = 1.0;         ///< enlargement of arrows
 
-  /// The end of an arrow, which stays in the image but for a few pixels.
+  /// The end of an arrow; clipped to the image, give or take a few pixels.
   [[nodiscard]] Place end_of(const ReportedFeature& feature) const {
     const auto [x, y] = *feature.pixel;
     const auto within = [&](double v, std::size_t i) {
@@ -34,12 +34,12 @@ struct ImageScale {
   }
 };
 
-/// A round factor with which nearly all arrows are at most a sixteenth of the chart.
+/// A round factor that keeps nearly all arrows within a sixteenth of the chart.
 /// @param sorted  lengths of the residuals, pixels, ascending
 /// @param pixel   length of a pixel in the chart
 [[nodiscard]] double arrow_times(const std::vector<double>& sorted, double pixel);
 
-/// Appends an arrow to a path; one that is too short for a head has none.
+/// Appends an arrow to a path; a very short one has no head.
 void append_arrow(std::string& path, Place from, Place to);
 
 }  // namespace kinecal::detail

@@ -1,4 +1,4 @@
-// A chart of a report, and what all charts share: units, names, and which marks are drawn of many.
+// A chart of a report, and what all charts share: units, names, and the selection of marks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,16 +17,16 @@ struct Chart {
   std::string section;  ///< of the report: "errors", "residuals", "parameters", "convergence", ...
   std::string name;     ///< data-chart of the svg and name of its file: "samples-hand_eye"
   std::string title;    ///< plain text
-  std::string caption;  ///< a sentence or two on how to read it, plain text; may be empty
+  std::string caption;  ///< how to read it, a sentence or two, plain text; may be empty
   std::string svg;      ///< "<svg ...>...</svg>"; needs chart_style()
 };
 
 namespace detail {
 
-/// Most marks of a chart; of more, the worst and an even choice of the others are drawn.
+/// Most marks in a chart; beyond that, the worst and an even selection of the others are drawn.
 inline constexpr std::size_t kMostMarks = 2000;
 
-/// Factor to the unit for people: 1000 for "m", 180/pi for "rad", 1 for others.
+/// Factor to the displayed unit: 1000 for "m", 180/pi for "rad", 1 for others.
 [[nodiscard]] double people_factor(const std::string& unit);
 /// "mm", "°" or "px"; empty for "1".
 [[nodiscard]] std::string people_unit(const std::string& unit);
@@ -37,10 +37,10 @@ inline constexpr std::size_t kMostMarks = 2000;
 
 /// Units of residuals, in the order of the blocks.
 [[nodiscard]] std::vector<std::string> units_of(const ReportData& data);
-/// "errors-mm"; the name alone if there is no unit.
+/// "errors-mm"; only the name if there is no unit.
 [[nodiscard]] std::string name_with_unit(const char* name, const std::string& unit);
 
-/// For each block a name for charts and files; all differ.
+/// A unique name of each block, for charts and files.
 [[nodiscard]] std::vector<std::string> block_slugs(const ReportData& data);
 
 /// Number of a feature's sample, from 1, in the order of the files.
@@ -52,16 +52,16 @@ inline constexpr std::size_t kMostMarks = 2000;
 [[nodiscard]] std::string feature_text(const ReportData& data, const ReportedBlock& block,
                                        const ReportedFeature& feature);
 
-/// Which of many marks to draw, in their order: the worst ones and an even choice of the others.
-/// @param sizes  the larger the worse; what is not finite is left out
+/// Selects marks to draw, in order: the worst ones and an even selection of the others.
+/// @param sizes  larger is worse; skips values that are not finite
 [[nodiscard]] std::vector<std::size_t> chosen_marks(std::span<const double> sizes,
                                                     std::size_t most = kMostMarks);
-/// " 2000 of 200 000 features are shown, the worst among them.", or nothing if all are.
+/// " 2000 of 200 000 features are shown, the worst among them.", or empty if all are.
 [[nodiscard]] std::string chosen_text(std::size_t shown, std::size_t all, const char* what);
 
-/// The finite ones, in ascending order.
+/// The finite values, ascending.
 [[nodiscard]] std::vector<double> sorted_finite(std::span<const double> values);
-/// Quantile of sorted values, interpolated; NaN of none.
+/// Quantile of sorted values, interpolated; NaN if there are none.
 /// @param share  0 to 1
 [[nodiscard]] double quantile(std::span<const double> sorted, double share);
 

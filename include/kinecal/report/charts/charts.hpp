@@ -8,8 +8,8 @@
 
 namespace kinecal {
 
-/// All charts that the data allow, in reading order; those of a section are together.  The same data
-/// give the same bytes.
+/// All charts that the data allow, in reading order, grouped by section.  The same data give the
+/// same bytes.
 [[nodiscard]] std::vector<Chart> charts(const ReportData& data);
 
 }  // namespace kinecal

@@ -29,7 +29,7 @@ namespace detail {
   return Axis::logarithmic(0.7 * low, 1.4 * high, bottom, top);
 }
 
-/// A curve for each run of a step; a cost that rises begins another run.
+/// A curve for each run of a step; a rising cost starts another run.
 /// @param first  number of the step's first iteration on the axis
 inline void draw_runs(Drawing& drawing, const StepResult& step, double first, const Axis& x,
                       const Axis& y) {

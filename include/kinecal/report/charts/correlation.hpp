@@ -1,4 +1,4 @@
-// Which parameters depend on one another.
+// A chart of the correlations between parameters.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace kinecal {
 
-/// The lower triangle of the correlation matrix, in the order of the data.  Of more than 60 parameters,
-/// those with the largest correlations.
+/// The lower triangle of the correlation matrix, in the order of the data.  Of more than 60
+/// parameters, those with the largest correlations.
 [[nodiscard]] std::vector<Chart> correlation_charts(const ReportData& data);
 
 }  // namespace kinecal

@@ -18,7 +18,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Correlation of two parameters; NaN if the matrix does not have it.
+/// Correlation of two parameters; NaN if the matrix lacks it.
 [[nodiscard]] inline double correlation_of(const ReportData& data, std::size_t i, std::size_t j) {
   const bool has = i < data.correlation.size() && j < data.correlation[i].size();
   return has ? data.correlation[i][j] : std::numeric_limits<double>::quiet_NaN();
@@ -46,7 +46,7 @@ namespace detail {
   return chosen;
 }
 
-/// Class of a value from -1 to 1; empty if it is too small to be drawn.
+/// CSS class of a value from -1 to 1; empty if it is too small to draw.
 [[nodiscard]] inline std::string correlation_class(double value) {
   const double size = std::abs(value);
   if (!(size >= 0.1)) return "";

@@ -10,7 +10,7 @@
 
 namespace kinecal::detail {
 
-/// Places along an axis at which a density is drawn.
+/// Number of places along an axis at which a density is drawn.
 inline constexpr int kDensityBins = 120;
 
 /// Density of values over an axis, in equal steps along it; sums to one.

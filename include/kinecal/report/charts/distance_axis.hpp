@@ -1,4 +1,4 @@
-// The axes of distances and of samples, and what noise makes one expect.
+// The axes of distances and of samples, and the distances expected from noise.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,11 +9,11 @@
 
 namespace kinecal::detail {
 
-/// Distances of a block's features at the result, in the unit for people; some may not be finite.
+/// Distances of a block's features at the result, in the displayed unit; some may not be finite.
 [[nodiscard]] std::vector<double> distances_of(const ReportedBlock& block);
 
-/// An axis for these distances: linear from zero, or logarithmic if some are so far off that all others
-/// would lie flat on it.
+/// An axis for these distances: linear from zero, or logarithmic if some are so far off that all
+/// others would be flat.
 /// @param sorted  finite distances, ascending
 [[nodiscard]] Axis distance_axis(const ReportedBlock& block, const std::vector<double>& sorted,
                                  double bottom, double top);
@@ -22,8 +22,8 @@ namespace kinecal::detail {
 [[nodiscard]] Axis samples_axis(const ReportData& data, const ReportedBlock& block,
                                 const PlotArea& area);
 
-/// Lines at once and three times the distance that noise makes one expect.
-/// @returns  of which of them: others are beyond the axis
+/// Lines at one and three times the distance expected from noise.
+/// @returns  the factors of the lines drawn; others are beyond the axis
 std::vector<double> draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,
                                      const ReportedBlock& block);
 

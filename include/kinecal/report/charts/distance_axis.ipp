@@ -25,7 +25,7 @@ KINECAL_INLINE Axis distance_axis(const ReportedBlock& block, const std::vector<
   const double noise = factor * expected_distance(block, std::max(0.0, block.sigma));
   const double most = std::max(sorted.empty() ? 0.0 : sorted.back(), 1.1 * noise);
   const double median = quantile(sorted, 0.5);
-  constexpr double kFarOff = 15.0;  // the others would lie flat on the axis
+  constexpr double kFarOff = 15.0;  // the others would be flat
   if (median > 0.0 && most > kFarOff * median) {
     const double least = std::max(quantile(sorted, 0.02), 1e-2 * median);
     return Axis::logarithmic(0.8 * least, 1.2 * most, bottom, top);

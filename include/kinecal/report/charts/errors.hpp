@@ -9,8 +9,8 @@
 namespace kinecal {
 
 /// Distributions of the features' distances at the initial values and at the result, on one
-/// logarithmic axis for all blocks of one unit.  Lines: distance that the noise, estimated and given,
-/// makes one expect, sigma sqrt(components).  Samples that were left out are not in them.
+/// logarithmic axis for all blocks of the same unit.  Lines: distances expected from the noise,
+/// estimated and given, sigma sqrt(components).  Samples left out are not included.
 [[nodiscard]] std::vector<Chart> error_charts(const ReportData& data);
 
 }  // namespace kinecal

@@ -1,4 +1,4 @@
-// Residuals of features: which of a board's corners or of a gripper's LEDs fits worse than others.
+// Residuals by feature: which corner of a board or LED of a gripper fits worse than others.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace kinecal {
 
-/// For each block with several features: a box from quartile to quartile with the median for each
-/// place or id, and dots.  Of more than 48 features, those with the largest medians.
+/// For each block with several features: for each place or id, a box from quartile to quartile with
+/// the median, and dots.  Of more than 48 features, those with the largest medians.
 [[nodiscard]] std::vector<Chart> feature_charts(const ReportData& data);
 
 }  // namespace kinecal

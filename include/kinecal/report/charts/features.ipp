@@ -29,7 +29,7 @@ struct FeatureBox {
 inline constexpr std::size_t kMostBoxes = 48;
 
 /// By place or id, those with the largest medians if there are too many.
-/// @param all  how many there are
+/// @param all  out: their total number
 [[nodiscard]] inline std::vector<FeatureBox> feature_boxes(const ReportedBlock& block,
                                                            const std::vector<double>& distances,
                                                            std::size_t& all) {
@@ -70,7 +70,7 @@ inline void draw_box(Drawing& drawing, const FeatureBox& box, double at, double 
                   box.sorted.size()));
 }
 
-/// Dots of a box, spread over its width by the order in which they were recorded.
+/// Dots of a box, spread over its width in recording order.
 inline void draw_strip(Drawing& drawing, const ReportData& data, const ReportedBlock& block,
                        const FeatureBox& box, const std::vector<double>& distances, double at,
                        double width, const Axis& y, std::size_t most) {
@@ -115,7 +115,7 @@ inline void draw_strip(Drawing& drawing, const ReportData& data, const ReportedB
   draw_noise_lines(drawing, area, y, block);
   const double step = (area.right - area.left) / static_cast<double>(boxes.size());
   const double width = std::min(44.0, 0.7 * step);
-  const std::size_t every = 1 + static_cast<std::size_t>(26.0 / step);  // labels that have room
+  const std::size_t every = 1 + static_cast<std::size_t>(26.0 / step);  // labels that fit
   std::size_t shown = 0, drawn = 0;
   for (const FeatureBox& box : boxes) {
     const double at = area.left + step * (static_cast<double>(shown) + 0.5);

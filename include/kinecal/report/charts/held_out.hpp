@@ -1,4 +1,4 @@
-// How samples fit that were held out of the calibration.
+// How well held-out samples fit.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace kinecal {
 
-/// Bars for each block: root of the mean squared distance before, of the samples in the fit, and of
-/// samples held out of it.
+/// Bars for each block: root mean square distance before, of the samples in the fit, and of samples
+/// held out of it.
 [[nodiscard]] std::vector<Chart> held_out_charts(const ReportData& data);
 
 }  // namespace kinecal

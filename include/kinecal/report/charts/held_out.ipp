@@ -22,7 +22,7 @@ struct ErrorBar {
   double value;
 };
 
-/// Those of a block that have a figure.
+/// The bars of a block that have a figure.
 [[nodiscard]] inline std::vector<ErrorBar> error_bars(const ReportedBlock& block) {
   const double factor = people_factor(block.unit);
   std::vector<ErrorBar> bars = {{"before", "before", factor * block.rms_before},

@@ -1,4 +1,4 @@
-// Which features of an error block were seen in an image, and the image's frame.
+// The features of an error block in an image, and the image's frame.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,7 +12,7 @@ namespace kinecal::detail {
 /// Corners of an image, pixels.
 struct ImageFrame {
   Place low = {0.0, 0.0}, high = {1.0, 1.0};
-  bool is_known = false;  ///< else it is what the features cover
+  bool is_known = false;  ///< else the range of the features
 };
 
 /// Features with a finite pixel and two finite residuals in pixels, of samples in the fit.

@@ -13,7 +13,7 @@ KINECAL_INLINE std::vector<const ReportedFeature*> features_in_image(const Repor
                                                                      const ReportedBlock& block) {
   std::vector<const ReportedFeature*> features;
   if (block.unit != "px") return features;
-  constexpr double kMost = 1e6;  // pixels; beyond that it is no image
+  constexpr double kMost = 1e6;  // pixels; larger images are implausible
   for (const ReportedFeature& feature : block.features) {
     if (!feature.pixel || feature.residual.size() < 2) continue;
     const auto [x, y] = *feature.pixel;

@@ -9,10 +9,10 @@
 
 namespace kinecal {
 
-/// For each unit, degrees, millimetres, per cent and pixels: what was added to each parameter, with 1.96
-/// standard deviations to either side.  Parameters that are not significant are faint; those that are
-/// not determined have a hatched row.  What is beyond the axis ends in an arrow.
-/// @param change  what the numbers are, as a caption begins
+/// For each unit, degrees, millimetres, per cent and pixels: the change of each parameter, with
+/// 1.96 standard deviations to either side.  Insignificant parameters are faint; undetermined ones
+/// have a hatched row.  Bars beyond the axis end in an arrow.
+/// @param change  the meaning of the numbers, as the start of a caption
 [[nodiscard]] std::vector<Chart> parameter_charts(
     const ReportData& data, const std::string& change = "What the calibration added");
 

@@ -19,18 +19,18 @@ namespace detail {
 
 inline constexpr double kInterval = 1.96;  // standard deviations: 95 %
 
-/// A parameter in the unit for people.
+/// A parameter in the displayed unit.
 struct ForestRow {
   const ReportedParameter* parameter = nullptr;
   double change = 0.0;  ///< value minus initial value
-  double half = 0.0;    ///< of its interval; 0: not known
+  double half = 0.0;    ///< of its interval; 0: unknown
   bool determined = true, significant = true;
 
-  /// The farther end of its interval from zero.
+  /// The end of its interval farther from zero.
   [[nodiscard]] double reach() const { return std::abs(change) + half; }
 };
 
-/// Factor and name of the unit in which parameters are read.
+/// Factor and name of a parameter's displayed unit.
 [[nodiscard]] inline std::pair<double, std::string> parameter_unit(const std::string& unit) {
   if (unit == "1") return {100.0, "%"};
   return {people_factor(unit), people_unit(unit)};
@@ -65,7 +65,7 @@ struct ForestRow {
   return fmt::format("{} ± {:.{}f}{}", value, row.half, digits, behind);
 }
 
-/// Symmetric about zero.  A few parameters that are far beyond all others end at its edge.
+/// Symmetric about zero.  A few parameters far beyond all others end at its edge.
 [[nodiscard]] inline Axis forest_axis(const std::vector<ForestRow>& rows, double from, double to) {
   std::vector<double> reaches;
   for (const ForestRow& row : rows) {

@@ -1,4 +1,4 @@
-// Residuals in a camera's image, where lens errors show as a pattern.
+// Residuals in a camera's image; lens errors show as a pattern.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace kinecal {
 
-/// For each block in pixels: an arrow for each feature from where it was seen towards where the result
-/// predicts it, enlarged by a factor that the legend states.
+/// For each block in pixels: an arrow for each feature, from the observed pixel towards the
+/// predicted one, enlarged by the factor in the legend.
 [[nodiscard]] std::vector<Chart> pixel_charts(const ReportData& data);
 
 }  // namespace kinecal

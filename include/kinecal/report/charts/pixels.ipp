@@ -35,8 +35,8 @@ inline void draw_arrows(Drawing& drawing, const ReportData& data,
   }
 }
 
-/// Mean residuals in cells of the image, where arrows of single features hide the pattern.
-/// @returns  whether there are any
+/// Mean residuals in cells of the image; arrows of single features would hide the pattern.
+/// @returns  true if there are any
 inline bool draw_mean_arrows(Drawing& drawing, const std::vector<const ReportedFeature*>& features,
                              const ReportData& data, const ImageFrame& frame,
                              const ImageScale& scale) {
@@ -72,7 +72,7 @@ inline bool draw_mean_arrows(Drawing& drawing, const std::vector<const ReportedF
   return !path.empty();
 }
 
-/// An arrow of a round length in pixels, and what arrows mean.
+/// An arrow of a round length in pixels, with the meaning of arrows.
 inline void draw_arrow_key(Drawing& drawing, const ImageScale& scale, bool has_means) {
   constexpr double kLongest = 50.0, kTop = 12.0;
   const double longest = kLongest / (scale.pixel * scale.times);

@@ -8,7 +8,7 @@
 
 namespace kinecal {
 
-/// For each block that compares with a plane: the error at each point, from above.
+/// For each block that compares with a plane: the error at each point, seen from above.
 [[nodiscard]] std::vector<Chart> plane_charts(const ReportData& data);
 
 }  // namespace kinecal

@@ -16,7 +16,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// Where a feature lies on the floor, metres, and its error in the unit for people.
+/// The place of a feature on the floor, metres, and its error in the displayed unit.
 struct FloorPoint {
   std::array<double, 2> place{};
   double error = 0.0;
@@ -39,7 +39,7 @@ struct FloorPoint {
   return points;
 }
 
-/// Class of an error; `most` and more has the strongest colour.
+/// CSS class of an error; `most` and larger errors have the strongest colour.
 [[nodiscard]] inline std::string error_class(double error, double most) {
   const double share = std::abs(error) / most;
   if (share < 0.1) return "none";

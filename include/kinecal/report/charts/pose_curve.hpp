@@ -1,4 +1,4 @@
-// How accuracy grows with the number of poses: of a plan, before anything is measured.
+// Expected accuracy over the number of poses: for planning, before anything is measured.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace kinecal {
 
-/// What a number of poses gives.
+/// The accuracy with some number of poses.
 struct PoseAccuracy {
   int poses = 0;
   double position = 0.0;  ///< expected standard deviation, metres; infinite: not determined
@@ -17,18 +17,18 @@ struct PoseAccuracy {
 
 /// Accuracy by number of poses.
 struct PoseCurve {
-  std::vector<PoseAccuracy> selected;  ///< the poses that are best together, by their number
+  std::vector<PoseAccuracy> selected;  ///< the best set of poses, by their number
   std::vector<PoseAccuracy> random;    ///< median of random sets, by their number
-  double wanted = 0.0;                 ///< accuracy that is asked for, metres
-  std::optional<int> knee;  ///< poses after which more improve it little; none within the curve
-  /// The least set that gives what is asked for; none: not reached.
+  double wanted = 0.0;                 ///< requested accuracy, metres
+  std::optional<int> knee;             ///< poses beyond which more improve it little, if any
+  /// The smallest set that gives the requested accuracy; nullopt: not reached.
   std::optional<PoseAccuracy> enough;
-  /// Error that calibrations leave without noise, metres; zero: too little to say so.
+  /// Error that calibrations leave even without noise, metres; zero: negligible.
   double remaining = 0.0;
-  int have = 0;  ///< poses that exist: numbers are of those in addition, and begin at zero
+  int have = 0;  ///< existing poses: then numbers count additional ones, from zero
 };
 
-/// Position over number of poses, logarithmic, with what is asked for and the knee.
+/// Position error over the number of poses, logarithmic, with the requested accuracy and the knee.
 [[nodiscard]] Chart pose_curve_chart(const PoseCurve& curve);
 
 }  // namespace kinecal

@@ -26,7 +26,7 @@ namespace detail {
   return poses_text(point.poses) + ": " + with_unit(point.position, "m");
 }
 
-/// Positions in millimetres, from less than the best one; at most so many times as much.
+/// Positions in millimetres, from less than the best one; limited to a multiple of it.
 [[nodiscard]] inline Axis accuracy_axis(const PoseCurve& curve, double bottom, double top) {
   constexpr double kSpan = 300.0, kNear = 10.0;
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
@@ -46,7 +46,7 @@ namespace detail {
   return Axis::logarithmic(0.85 * low, 1.2 * high, bottom, top);
 }
 
-/// A line with dots; what is beyond the axis interrupts it.
+/// A line with dots; values beyond the axis interrupt it.
 inline void draw_accuracies(Drawing& drawing, const std::vector<PoseAccuracy>& points,
                             const Axis& x, const Axis& y, const char* line, const char* dots) {
   std::vector<Place> places;
@@ -63,7 +63,7 @@ inline void draw_accuracies(Drawing& drawing, const std::vector<PoseAccuracy>& p
   }
 }
 
-/// The knee as a line from the axis upwards, named at its end, where a falling curve is not.
+/// The knee as a vertical line, labelled at its top, clear of the falling curve.
 inline void draw_knee(Drawing& drawing, int knee, const PlotArea& area, const Axis& x) {
   const double at = x.at(knee);
   const bool is_far = at > 0.5 * (area.left + area.right);
@@ -146,7 +146,7 @@ KINECAL_INLINE Chart pose_curve_chart(const PoseCurve& curve) {
   }
   if (!curve.enough) chart.caption += " What is asked for is not reached.";
   const std::vector<detail::LegendEntry> entries = detail::pose_curve_legend(curve);
-  detail::Drawing measured("", "", 0.0);  // to know how high the legend is
+  detail::Drawing measured("", "", 0.0);  // to measure the height of the legend
   const double top = detail::draw_legend(measured, entries, 0.0) + 26.0;
   const detail::PlotArea area{48.0, top, detail::kChartWidth - 12.0, top + 224.0};
   detail::Drawing drawing(chart.name, chart.title, area.bottom + 40.0);

@@ -16,7 +16,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// A line with dots; what is not finite interrupts it.
+/// A line with dots; values that are not finite interrupt it.
 inline void draw_spreads(Drawing& drawing, const std::vector<PositionSpread>& points,
                          double PositionSpread::*value, const Axis& x, const Axis& y,
                          const char* line, const char* dots) {
@@ -35,7 +35,7 @@ inline void draw_spreads(Drawing& drawing, const std::vector<PositionSpread>& po
   }
 }
 
-/// Ticks at the numbers of poses; one that is too close to that before has no label.
+/// Ticks at the numbers of poses; one too close to the previous one has no label.
 inline void draw_pose_ticks(Drawing& drawing, const std::vector<PositionSpread>& points,
                             const PlotArea& area, const Axis& x) {
   constexpr double kApart = 28.0;

@@ -40,7 +40,7 @@ struct RadialPoints {
 }
 
 /// One of the two parts.
-/// @returns  how many dots are drawn
+/// @returns  the number of dots drawn
 inline std::size_t draw_part(Drawing& drawing, const std::vector<ScatterPoint>& points, double top,
                              double bottom, const char* name, bool names_x) {
   const PlotArea area{46.0, top, kChartWidth - 12.0, bottom};

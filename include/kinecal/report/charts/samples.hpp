@@ -8,9 +8,9 @@
 
 namespace kinecal {
 
-/// For each block: distance of each feature over the number of its sample.  The worst feature of a
-/// sample stands out, samples that do not fit are red, those left out grey.  Marks have data-sample,
-/// the sample's number.  Lines: once and three times the distance that noise makes one expect.
+/// For each block: distance of each feature over its sample's number.  The worst feature of a
+/// sample stands out; samples that do not fit are red, those left out grey.  Marks have
+/// data-sample, the sample's number.  Lines: one and three times the distance expected from noise.
 [[nodiscard]] std::vector<Chart> sample_charts(const ReportData& data);
 
 }  // namespace kinecal

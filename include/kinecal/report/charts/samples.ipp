@@ -19,7 +19,7 @@ namespace kinecal {
 
 namespace detail {
 
-/// The worst feature of a sample, as it is drawn.
+/// The drawn mark of a sample's worst feature.
 struct WorstMark {
   std::size_t feature = 0;  ///< index into the block's
   double distance = 0.0;
@@ -28,7 +28,7 @@ struct WorstMark {
 /// Paths of dots, one for each sample, by its number.
 using Dots = std::map<int, std::string>;
 
-/// What is drawn of a block's samples; each list of dots is one group of the svg.
+/// The marks of a block's samples; each list of dots is one group of the svg.
 struct SampleMarks {
   Dots others, worst, bad, left_out;
   std::map<int, WorstMark> worst_of;  ///< by number
@@ -44,7 +44,7 @@ struct SampleMarks {
     WorstMark& worst = marks.worst_of.try_emplace(number, WorstMark{i, distances[i]}).first->second;
     if (distances[i] > worst.distance) worst = {i, distances[i]};
   }
-  constexpr std::size_t kFew = 400;  // of more samples, most dots would be dark
+  constexpr std::size_t kFew = 400;  // with more samples, most dots would be dark
   const double dark =
       marks.worst_of.size() <= kFew ? 0.0 : quantile(sorted_finite(distances), 0.998);
   for (const std::size_t i : chosen) {
@@ -67,14 +67,14 @@ inline void draw_dots(Drawing& drawing, const ReportData& data, const ReportedBl
   drawing.open_group(classes);
   for (const auto& [number, path] : dots) {
     const std::size_t worst = marks.worst_of.at(number).feature;
-    const bool titled = &dots != &marks.others;  // else the title is on the worst one
+    const bool titled = &dots != &marks.others;  // otherwise the worst one has the title
     drawing.path(path, "", number,
                  titled ? feature_text(data, block, block.features[worst]) : std::string());
   }
   drawing.close_group();
 }
 
-/// Numbers beside the three worst samples, unless one would hide another.
+/// Numbers beside the three worst samples, unless one would cover another.
 inline void number_worst(Drawing& drawing, const SampleMarks& marks, const Axis& x, const Axis& y) {
   std::vector<std::pair<int, WorstMark>> order(marks.worst_of.begin(), marks.worst_of.end());
   std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
@@ -96,7 +96,7 @@ inline void number_worst(Drawing& drawing, const SampleMarks& marks, const Axis&
   }
 }
 
-/// Crosses at the top for samples that were left out and of which the block has no feature.
+/// Crosses at the top for samples left out that have no feature in the block.
 inline void draw_left_out(Drawing& drawing, const ReportData& data, const SampleMarks& marks,
                           const Axis& x, double top) {
   Dots crosses;
@@ -139,7 +139,7 @@ inline void draw_left_out(Drawing& drawing, const ReportData& data, const Sample
   return legend;
 }
 
-/// What the lines are that draw_noise_lines() has drawn.
+/// The meaning of the lines drawn by draw_noise_lines().
 [[nodiscard]] inline std::string noise_lines_text(const std::vector<double>& times) {
   if (times.empty()) return "";
   if (times.size() > 1) return " Lines: what noise makes one expect, and three times that.";

@@ -1,4 +1,4 @@
-// Points over an axis with their running median, and maps of which both axes have one scale.
+// Points over an axis with their running median; maps with the same scale on both axes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,14 +18,14 @@ struct ScatterPoint {
   int sample = 0;
 };
 
-/// Medians of x and y in groups of equally many neighbours along x; none of less than ten points.
+/// Medians of x and y in equal groups of neighbours along x; empty for less than ten points.
 [[nodiscard]] std::vector<Place> running_median(std::vector<ScatterPoint> points);
 
-/// Zero is in the middle.  Values beyond two and a half times what 95 % are below are drawn at the edge.
+/// Zero is in the middle.  Values beyond 2.5 times the 95 % quantile are drawn at the edge.
 [[nodiscard]] Axis signed_axis(const std::vector<ScatterPoint>& points, double bottom, double top);
 
 /// Dots, thinned, and the running median of all.
-/// @returns  how many are drawn
+/// @returns  the number of dots drawn
 std::size_t draw_scatter(Drawing& drawing, const std::vector<ScatterPoint>& points, const Axis& x,
                          const Axis& y);
 
@@ -35,7 +35,7 @@ struct MapAxes {
   PlotArea area;
 };
 
-/// Axes of one scale for what lies within these limits.
+/// Axes of equal scale that include these limits.
 /// @param low, high  (2) limits
 /// @param top        of the map in the chart
 [[nodiscard]] MapAxes map_axes(std::array<double, 2> low, std::array<double, 2> high, double top,

@@ -75,7 +75,7 @@ KINECAL_INLINE MapAxes map_axes(std::array<double, 2> low, std::array<double, 2>
   const double height =
       std::clamp(width * (high[1] - low[1]) / (high[0] - low[0]), 0.3 * width, most_height);
   area.bottom = top + height;
-  // One scale: the axis that has room to spare is extended.
+  // Equal scale: extends the axis with room to spare.
   const double scale = std::max((high[0] - low[0]) / width, (high[1] - low[1]) / height);
   const auto extended = [&](int i, double size) {
     const double middle = 0.5 * (low[i] + high[i]), half = 0.5 * scale * size;

@@ -21,13 +21,13 @@ namespace detail {
   return std::isfinite(ratio) && ratio > 0.0;
 }
 
-/// The ratio of a series; NaN if it has none.
+/// The ratio of a series; NaN if there is none.
 [[nodiscard]] inline double ratio_of(const SpreadSeries& series, std::size_t parameter) {
   const bool has = parameter < series.ratios.size() && is_ratio(series.ratios[parameter]);
   return has ? series.ratios[parameter] : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Which parameters are drawn, in their order: of many, those farthest from one.
+/// The parameters to draw, in order: of many, those farthest from one.
 [[nodiscard]] inline std::vector<std::size_t> spread_rows(const SpreadRatios& ratios) {
   constexpr std::size_t kMost = 60;
   std::vector<double> sizes(ratios.parameters.size(), 0.0);
@@ -101,7 +101,7 @@ inline void draw_spread_row(Drawing& drawing, const SpreadRatios& ratios, std::s
   }
 }
 
-/// The axis, what chance allows, and one.
+/// The axis, the range of chance, and the line at one.
 inline void draw_ratio_axis(Drawing& drawing, const SpreadRatios& ratios, const PlotArea& area,
                             const Axis& x) {
   if (!ratios.series.empty() && ratios.series[0].freedom > 0) {
@@ -147,7 +147,7 @@ KINECAL_INLINE Chart spread_chart(const SpreadRatios& ratios) {
   }
   const std::vector<detail::LegendEntry> entries = detail::spread_legend(ratios);
   constexpr double kRow = 20.0, kLeft = 186.0, kFigures = 44.0;
-  detail::Drawing measured("", "", 0.0);  // to know how high the legend is
+  detail::Drawing measured("", "", 0.0);  // to measure the height of the legend
   const double top = detail::draw_legend(measured, entries, 0.0) + 6.0;
   const detail::PlotArea area{kLeft, top, detail::kChartWidth - kFigures,
                               top + 6.0 + kRow * static_cast<double>(rows.size())};

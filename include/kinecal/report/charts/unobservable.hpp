@@ -1,4 +1,4 @@
-// Combinations of parameters that no sample shows.
+// Unobservable parameter combinations.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace kinecal {
 
-/// Combinations of parameters that change no residual: a bar with its sign for each factor.
+/// Combinations of parameters that change no residual: a signed bar for each factor.
 [[nodiscard]] std::vector<Chart> unobservable_charts(const ReportData& data);
 
 }  // namespace kinecal

@@ -21,7 +21,7 @@ using NamedCombination = std::vector<std::pair<std::string, double>>;
 inline constexpr std::size_t kMostCombinations = 12, kMostFactors = 8;
 inline constexpr double kCombinationTitle = 26.0, kFactorRow = 20.0;
 
-/// Lines that a combination needs; one says how many factors are left out.
+/// Lines that a combination needs; one gives the number of omitted factors.
 [[nodiscard]] inline std::size_t factor_rows(const NamedCombination& combination) {
   return std::min(combination.size(), kMostFactors + 1);
 }
@@ -41,7 +41,7 @@ inline void draw_factor(Drawing& drawing, const std::pair<std::string, double>& 
                Anchor::end);
 }
 
-/// @returns  the combination in words
+/// @returns  the combination as text
 inline std::string draw_combination(Drawing& drawing, const NamedCombination& combination,
                                     std::size_t number, double top) {
   double largest = 0.0;

@@ -1,4 +1,4 @@
-// How well the position in question is known over the workspace.
+// Uncertainty of a position over the workspace.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

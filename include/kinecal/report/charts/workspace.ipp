@@ -36,7 +36,7 @@ struct KnownSpace {
   }
 };
 
-/// The base is within the limits, so that people see where the robot is.
+/// The limits include the base, so that people see where the robot is.
 [[nodiscard]] inline KnownSpace known_space(const ReportData& data) {
   KnownSpace space;
   constexpr double kFarthest = 1e4;  // metres
@@ -56,7 +56,7 @@ struct KnownSpace {
   return space;
 }
 
-/// One view: of points behind one another, the one that is known worst.
+/// One view: of points behind one another, draws the most uncertain one.
 /// @param up  which coordinate points up in the chart; x points right
 inline void draw_view(Drawing& drawing, const KnownSpace& space, const MapAxes& map, std::size_t up,
                       const char* name) {
