@@ -1,8 +1,8 @@
-// Your own error block, with parameters of its own: a ball bar in a socket nobody has measured.
+// Your own error block with its own parameters: a ball bar in a socket at an unknown position.
 //
-// One end of the bar turns in a socket on the table; the gripper holds the other end.  So the tip is
-// on a sphere, and joint positions are all that is recorded.  Socket and length are known to a
-// centimetre only: they are free, too.  You write the struct BallBar; the library differentiates it.
+// One end of the bar turns in a socket on the table; the gripper holds the other end.  So the tip
+// is on a sphere, and joint positions are all you record.  Socket and length are known only to a
+// centimetre, so they are free, too.  You write the struct BallBar; the library differentiates it.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 

@@ -1,7 +1,7 @@
-// Your own sensor: a draw-wire encoder with a scale and a zero of its own.
+// Your own sensor: a draw-wire encoder with its own scale and zero.
 //
 // A wire runs from a drum on the table to the gripper.  The encoder reads how much wire is out; the
-// true length is reading (1 + scale) + zero.  The sensor says so; jets differentiate it.
+// true length is reading (1 + scale) + zero.  The sensor computes this; jets differentiate it.
 // Its unit test, with kinecal/testing.hpp:  EXPECT_EQ(check_sensor(DrawWire{}), kLawsHold);
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>

@@ -1,9 +1,9 @@
 // Composing crates: two calibrations together determine what neither does alone.
 //
-// LEDs in the gripper determine how head and arm are placed relative to each other, but not how
-// both lean on the base.  The floor determines how the camera is placed on the base, but not
-// whether the head or the torso leans.  A crate of both crates has the parameters of each, once,
-// and determines them all.
+// LEDs in the gripper determine the pose of head and arm relative to each other, but not the tilt
+// of both against the base.  The floor determines the camera's pose on the base, but not whether
+// the head or the torso is tilted.  A crate of both crates has the parameters of each, once, and
+// determines them all.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 

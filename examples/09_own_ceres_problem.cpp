@@ -1,8 +1,8 @@
 // Forward kinematics inside your own Ceres problem.
 //
-// A telescoping ball bar reads the distance from a ball on the table to the gripper.  Where the ball
-// is, nobody knows.  forward_kinematics() takes any scalar, so ceres::AutoDiffCostFunction
-// differentiates it: your residuals, parameter blocks and options of Ceres stay as they are.
+// A telescoping ball bar reads the distance from a ball on the table to the gripper.  The position
+// of the ball is unknown.  forward_kinematics() takes any scalar, so ceres::AutoDiffCostFunction
+// differentiates it: your residuals, parameter blocks and Ceres options stay as they are.
 // SPDX-License-Identifier: Apache-2.0
 #include <ceres/ceres.h>
 

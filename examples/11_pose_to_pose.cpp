@@ -1,7 +1,7 @@
-// Poses, not points: motion capture follows a rigid body on the gripper.
+// Poses, not points: motion capture tracks a rigid body on the gripper.
 //
-// The system reports position and orientation of the body in its own frame.  Nobody knows where the
-// system stands or how the body is mounted: both are virtual frames, which the samples determine.
+// The system reports position and orientation of the body in its own frame.  The pose of the system
+// and the mount of the body are unknown: both are virtual frames, which the samples determine.
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdio>
@@ -66,7 +66,8 @@ int main() {
 
   const CrateResult<Tracked> result = calibrate(Tracked(), samples);
 
-  // Residuals are in units of the noise, so 1 RMS remains of each component, less what the parameters fit.
+  // Residuals are in units of the noise, so 1 RMS remains of each component, less what the
+  // parameters fit.
   const BlockStatistics& fit = result.blocks.front();
   const double components = 6.0 * fit.count;
   const double noise = std::sqrt(1.0 - static_cast<double>(result.calibrated.size()) / components);

@@ -2,7 +2,7 @@
 //
 // A string is tied to a hook at the robot's base and to the gripper.  A bead is glued to it
 // somewhere, and the depth camera sees the bead.  Hook, bead and gripper are on one line, and the
-// bead divides it in a ratio that nobody has measured: a parameter of the block.
+// bead divides it in an unknown ratio: a parameter of the block.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
@@ -15,7 +15,7 @@ namespace {
 using namespace kinecal;
 using namespace kinecal::examples;
 
-/// Where the bead is, less where hook and gripper say that it is; metres.
+/// Measured position of the bead minus the one expected from hook and gripper; metres.
 struct BeadOnString {
   static constexpr const char *kType = "bead_on_string", *kUnit = "m";
   static constexpr std::array kParameters = {ParameterInfo{"ratio", "1", 0.5, 0.0, 1.0}};

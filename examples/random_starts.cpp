@@ -4,7 +4,7 @@
 //
 // Each of COUNT random robots has an arm of 5 to 8 joints and a pan-tilt head with an RGB-D camera,
 // its own true errors, and 50 noisy samples of four LEDs.  It is calibrated twice: from the truth,
-// and from a start as a technician aligns by eye, 4 degrees off in every joint and 3 cm and 5
+// and from a robot aligned by eye, 4 degrees off in every joint and 3 cm and 5
 // degrees off in every frame, with the camera as its driver reports it.  Both must end at the same
 // cost.  (Not at the same parameters: the cost is flat along unobservable combinations.)
 // SPDX-License-Identifier: Apache-2.0

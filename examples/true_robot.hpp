@@ -1,4 +1,4 @@
-// The true robot (study/true_robot.hpp) and the true camera of a simulation, which differ from URDF
+// The true robot (study/true_robot.hpp) and the true camera of a simulation; they differ from URDF
 // and driver.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

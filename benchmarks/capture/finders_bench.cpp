@@ -1,4 +1,5 @@
-// What finders cost in 640 x 480 pixels, on one thread.  Control: a plain sum over the same pixels.
+// The cost of finders in 640 x 480 pixels, on one thread.  Control: a plain sum over the same
+// pixels.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 

@@ -13,7 +13,7 @@
 
 namespace kinecal::bench {
 
-/// A method computes something else than the others.
+/// A method computes a different result from the others.
 struct Disagreement : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,4 +1,4 @@
-// What changes the time of the normal equations: blocks through jets, losses, features, threads.
+// Variations of the normal equations' time: blocks through jets, losses, features, threads.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

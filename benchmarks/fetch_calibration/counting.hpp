@@ -1,4 +1,4 @@
-// A number that counts operations: in place of double in our templates, it counts their
+// A number that counts operations: used instead of double in our templates, it counts their
 // floating-point operations.
 //
 //   const Operations done = operations_of([&] { walk(chain, motions, corrections, walker); });

@@ -1,4 +1,4 @@
-// Simulated samples in place of recorded ones: a robot with errors looks at LEDs in its gripper.
+// Simulated samples instead of recorded ones: a robot with errors looks at LEDs in its gripper.
 //
 // The poses are random within the joint limits; in each the camera sees all four LEDs.  Walk and
 // camera model use known true values.  Measured points have noise of 1 mm.

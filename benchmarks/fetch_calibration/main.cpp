@@ -1,5 +1,5 @@
-// The headline: the time to evaluate and solve the calibration of a Fetch, by each method, on one
-// thread, and as a share of the processor's peak.
+// The main benchmark: the time to evaluate and solve the calibration of a Fetch, by each method, on
+// one thread, and as a fraction of the processor's peak.
 //
 //   fetch_calibration_bench [--json FILE] [--quick] [--samples N]
 //

@@ -1,4 +1,4 @@
-// What drawing all charts of a report costs, and how large they are.
+// The cost of drawing all charts of a report, and their size.
 // Control: formatting each feature once, as a table would.
 //
 //   charts_bench [REPETITIONS]     10 by default; the least time is printed

@@ -1,4 +1,4 @@
-// What the program says of itself in other formats: a manual page, completion for shells.
+// The program's description in other formats: a manual page, completion for shells.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

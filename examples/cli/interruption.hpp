@@ -1,11 +1,11 @@
-// Ctrl-C: a command ends in order instead of being killed.
+// Ctrl-C: a command shuts down cleanly instead of being killed.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 namespace kinecal::cli {
 
-/// While one lives, the first Ctrl-C asks the command to end, and ends waiting for a line of the
-/// standard input; a second one ends the program.
+/// While one exists, the first Ctrl-C asks the command to end, and stops waiting for a line of
+/// standard input; the second one ends the program.
 class Interruption {
  public:
   Interruption();
@@ -13,7 +13,7 @@ class Interruption {
   Interruption& operator=(const Interruption&) = delete;
   ~Interruption();
 
-  /// True once the command was asked to end, also after this object's life.
+  /// True once the command was asked to end, even after this object's lifetime.
   [[nodiscard]] static bool is_asked();
 };
 

@@ -1,4 +1,4 @@
-// The one file that a command writes.
+// The single output file of a command.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,10 +12,10 @@ namespace kinecal::cli {
 /// @throws OutputError  if not
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
-/// The same of a picture, which is PNG.
+/// The same for a picture, which is PNG.
 void check_picture(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
-/// The same of a page, which is HTML.
+/// The same for a page, which is HTML.
 void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
 /// The folder of an output.

@@ -1,4 +1,4 @@
-// What a plan found, as a page with a chart.
+// The result of a plan as a page with a chart.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,12 +9,12 @@
 
 namespace kinecal::cli {
 
-/// What a plan found.
+/// The result of a plan.
 struct PlanFindings {
-  bool reached = false;  ///< the accuracy that is asked for
+  bool reached = false;  ///< true if the requested accuracy is reached
   std::string title;     ///< "14 poses give 0.497 mm"
-  std::string about;     ///< whose position, and the sentences of what was found
-  std::string lost;      ///< what no number of poses determines
+  std::string about;     ///< whose position, and the findings as sentences
+  std::string lost;      ///< parameter combinations that no number of poses determines
   PoseCurve curve;
 };
 

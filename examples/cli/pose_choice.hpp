@@ -1,4 +1,4 @@
-// Poses to choose from, and what a calibration with some of them will be worth.
+// Candidate poses, and the expected accuracy of a calibration with some of them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -39,7 +39,8 @@ void drop_poses_of_have(StudyInput& input, double least_distance);
 /// metres; infinite if they determine less than all poses do.
 [[nodiscard]] double expected_position(const PoseChoice& choice, const std::vector<int>& chosen);
 
-/// What may remain so that a spread becomes no more than a tenth worse than what is asked for, metres.
+/// What may remain so that a spread becomes no more than a tenth worse than what is asked for,
+/// metres.
 [[nodiscard]] double tolerated_error(double spread, double wanted);
 
 /// "0.497 mm", "not determined".
@@ -48,8 +49,8 @@ void drop_poses_of_have(StudyInput& input, double least_distance);
 /// Median of expected_position() of random sets, metres.
 [[nodiscard]] double random_position(const PoseChoice& choice, int count);
 
-/// The least number of poses with which the median of random sets is as good, and that median; one more
-/// than all if there is none.
+/// The least number of poses with which the median of random sets is as good, and that median; one
+/// more than all if there is none.
 [[nodiscard]] int random_poses_for(const PoseChoice& choice, double position);
 
 /// Seconds of a session with poses in this order: moves, and what each stop takes.

@@ -1,10 +1,10 @@
-// Processes that share one task: what mpirun, srun and others tell each of them.
+// Processes that share one task, as reported by mpirun, srun and others.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 namespace kinecal::cli {
 
-/// The place of this process among those that were started together.
+/// The place of this process among those started together.
 struct ProcessGroup {
   int rank = 0;  ///< from 0
   int size = 1;  ///< number of processes

@@ -1,4 +1,4 @@
-// A line on the terminal that says how far a long task is, and how long it still takes.
+// A terminal line with the progress of a long task and its remaining time.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace kinecal::cli {
 
-/// What the line says: "reading s.yaml: 40 %, 3 s left".
-/// @param fraction  that is done, from 0 to 1
+/// The text of the line: "reading s.yaml: 40 %, 3 s left".
+/// @param fraction  finished, from 0 to 1
 /// @param seconds   since the task began
 [[nodiscard]] std::string progress_text(double fraction, const std::string& what, double seconds);
 
-/// The line.  It is overwritten ten times a second and erased at the end; without a terminal as the
-/// standard error stream nothing is printed.
+/// The line.  Overwritten ten times a second and erased at the end; prints nothing if standard
+/// error is not a terminal.
 class ProgressLine {
  public:
   ProgressLine();

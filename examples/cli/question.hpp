@@ -8,7 +8,7 @@
 
 namespace kinecal::cli {
 
-/// A possible answer, and a line that explains it.
+/// A possible answer, with a one-line explanation.
 struct Choice {
   std::string answer, says;
 };
@@ -29,8 +29,8 @@ using WhyNot = std::function<std::string(const std::string& answer)>;
 [[nodiscard]] bool on_a_terminal();
 
 /// Asks until the answer is good.  Without a terminal, takes the only choice.
-/// @throws InputError  without a terminal, if there is not exactly one choice; if the input ends; or
-///                     if there is no choice and the answer is empty
+/// @throws InputError  without a terminal, if there is not exactly one choice; if the input ends;
+///                     or if there is no choice and the answer is empty
 [[nodiscard]] std::string ask(const Question& question, const WhyNot& why_not);
 
 /// The given answer, or else the typed one; without a terminal, the first choice.

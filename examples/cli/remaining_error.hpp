@@ -1,4 +1,4 @@
-// What a calibration leaves of a robot's error even where nothing is measured wrongly, and why.
+// The error that a calibration leaves even with exact measurements, and its cause.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,12 +9,13 @@
 
 namespace kinecal::cli {
 
-/// What calibrations of drawn robots leave of the pose that is judged, if nothing is measured wrongly.
+/// The remaining error of the judged pose after calibrations of simulated robots with exact
+/// measurements.
 struct RemainingError {
-  int robots = 0;                   ///< that were calibrated; 0: none could be simulated
+  int robots = 0;                   ///< calibrated ones; 0: none could be simulated
   double position = 0.0;            ///< RMS of the robots, metres
-  std::vector<std::string> priors;  ///< without which it is gone; none if that does not help
-  std::vector<std::string> held;  ///< parameters that are held, but simulated elsewhere: the cause
+  std::vector<std::string> priors;  ///< without them it is gone; empty if that does not help
+  std::vector<std::string> held;    ///< held parameters with simulated errors: the cause
 };
 
 /// Calibrates drawn robots without noise.

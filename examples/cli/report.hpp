@@ -14,7 +14,7 @@ namespace kinecal::cli {
 /// True for the name of a page: it ends in .html or .htm.
 [[nodiscard]] bool is_page(const std::string& file);
 
-/// What a study or plan read, and the command that repeats it: a section of its page.
+/// The inputs of a study or plan, and the command that repeats it: a section of its page.
 [[nodiscard]] std::string study_inputs(const StudyInput& input);
 
 /// Checks that no report would replace an input of the calibration.

@@ -1,4 +1,4 @@
-// Pictures of a calibration: the robot, its samples, and what was measured.
+// Pictures of a calibration: the robot, its samples, and the measured points.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace kinecal::cli {
 
-/// The scene of a calibration, with the meshes that were found; prints warnings about the others.
-/// @param mesh_paths  where packages may be, beside the environment and the URDF's folder
+/// The scene of a calibration, with the meshes found; prints warnings about the others.
+/// @param mesh_paths  further folders of packages, besides the environment and the URDF's folder
 [[nodiscard]] RobotScene scene_of(const Input& input, const Fit& fitted,
                                   const std::vector<std::string>& mesh_paths,
                                   const SceneLimits& limits = {});

@@ -1,4 +1,4 @@
-// Numbers of shards in a folder where processes meet, and which a later run finds again.
+// Numbers of shards in a folder that processes share and a later run reuses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,8 +17,8 @@ struct Interrupted {};
 /// Another process has written the result, and removed the folder.
 struct SharedWorkIsDone {};
 
-/// A file for each shard and each set of numbers.  Process r of n computes every n-th shard from r on, and waits
-/// for the others'.
+/// A file for each shard and each set of numbers.  Process r of n computes every n-th shard from r
+/// on, and waits for the others'.
 class ShardFolder {
  public:
   /// @param identity  of the input: numbers of another input are never taken for these

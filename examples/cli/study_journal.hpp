@@ -1,5 +1,5 @@
-// The trials of a study on disk: each is there as soon as it is done, so nothing is lost, and whoever
-// runs the same study again goes on where it ended.
+// The trials of a study on disk.  Each is stored when it is done, so nothing is lost, and running
+// the same study again continues it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

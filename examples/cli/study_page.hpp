@@ -1,4 +1,4 @@
-// What a study found, as a page with charts.
+// The results of a study as a page with charts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

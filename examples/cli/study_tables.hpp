@@ -1,4 +1,4 @@
-// The tables of a study, for people and for programs.
+// The tables of a study, as text and for programs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,11 +12,11 @@
 
 namespace kinecal::cli {
 
-/// What a study found.
+/// The results of a study.
 struct StudyResult {
   std::vector<StudyGroup> groups;                ///< by robot, then by number of poses
-  std::vector<double> before;                    ///< error of each robot by the URDF, metres
-  std::size_t jobs = 0;                          ///< that were to be done
+  std::vector<double> before;                    ///< error of each robot with its URDF, metres
+  std::size_t jobs = 0;                          ///< planned jobs
   std::size_t done = 0;                          ///< that are done
   double limit = 0.0;                            ///< of the mean re-projection error
   double solves_per_second = 0.0;                ///< and core

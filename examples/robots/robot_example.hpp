@@ -1,4 +1,4 @@
-// A robot's crate for simulation and program: names and functions in place of types.
+// A robot's crate for simulation and program: names and functions instead of types.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -8,8 +8,8 @@
 //   a tracker and a chain    the same points, measured in the frame of the chain that does not move
 //   a camera and a plane     a grid of pixels, those that show the plane
 //
-// A random pose within the joint limits is changed, one joint at a time, until the eye sees the
-// target; from there it wanders among poses in which it does.  The simulation does not know the
+// Starting from a random pose within the joint limits, one joint at a time is changed until the eye
+// sees the target; from there it continues among such poses.  The simulation does not know the
 // robot's body: arms may pass through it, or in front of a camera.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

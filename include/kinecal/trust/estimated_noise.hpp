@@ -1,4 +1,4 @@
-// Noise in place of a sigma that nobody gave.
+// Estimates the noise of error blocks without a sigma.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
