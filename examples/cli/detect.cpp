@@ -165,7 +165,7 @@ void print_refusals(const std::vector<Look>& looks) {
     for (const std::string& refused : look.refused) ++refusals[refused];
   }
   for (const Look& look : looks) {
-    if (look.found && !look.compared) ++single;
+    if (look.features > 0 && !look.compared) ++single;
     for (const std::string& refused : look.refused) {
       const std::size_t others = std::exchange(refusals[refused], 0);
       if (others == 0) continue;

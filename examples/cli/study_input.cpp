@@ -153,10 +153,7 @@ StudyFit fit_study(const StudyInput& input, const Config& config, std::span<cons
   const auto leave_out = [&](const CalibrationResult&, const std::vector<CaptureError>& ruined) {
     std::set<int> left;
     for (const CaptureError& error : ruined) left.insert(error.sample);
-    for (CalibrationStep& step : calibration.steps) step.exclude(left);
-    for (auto sample = left.rbegin(); sample != left.rend(); ++sample) {
-      samples.erase(samples.begin() + *sample);
-    }
+    exclude(calibration, left, samples);
     fit.left_out += static_cast<int>(left.size());
   };
   const CalibrationResult result = fit_without_ruined(once, last, leave_out);

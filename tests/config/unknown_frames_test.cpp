@@ -184,7 +184,7 @@ TEST(UnknownFrames, RectifiedPixelsLieOnTheSameLineOfSight) {
     return PinholeCamera{}.place(pixel, std::array<double, 4>{}).direction;
   };
   Observation rectified = seen;
-  detail::rectify(rectified, *camera_of(*seen.camera));
+  detail::rectify(rectified, *any_sensor(PinholeCamera{}));
   EXPECT_GT((rectified.features[0].point - seen.features[0].point).norm(), 1.0);
   EXPECT_TRUE(ray(rectified).isApprox(ray(seen), 1e-12));
 }

@@ -60,7 +60,6 @@ TEST(LeftOutSamples, AreAsIfTheyHadNeverBeenAdded) {
   const NoisyScene scene(1);
   std::vector<Sample> samples = unlike_samples(40);
   const std::unique_ptr<AnyProblem> problem = scene.problem(samples);
-  std::vector<int> numbers(samples.size());
   for (const std::set<int>& left_out : {std::set<int>{0, 1, 7, 39}, {}, {35}, {2, 3, 4, 5, 6, 8}}) {
     problem->exclude(left_out);
     for (auto i = left_out.rbegin(); i != left_out.rend(); ++i) samples.erase(samples.begin() + *i);

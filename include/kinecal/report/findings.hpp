@@ -30,17 +30,6 @@ struct Findings : JudgedResult {
 
 namespace detail {
 
-/// The last assessment's entry for an error block; nullptr if there is none.
-template <class T>
-[[nodiscard]] const T* of_block(const std::vector<Assessment>& assessments,
-                                std::vector<T> Assessment::*list, const std::string& name) {
-  for (auto a = assessments.rbegin(); a != assessments.rend(); ++a) {
-    for (const T& item : (*a).*list) {
-      if (item.block == name) return &item;
-    }
-  }
-  return nullptr;
-}
 /// "; likely cause: ...", or nothing.
 /// @param sample  by number in the problem
 [[nodiscard]] std::string cause_text(const Findings& findings, int sample);

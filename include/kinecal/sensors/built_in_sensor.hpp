@@ -18,11 +18,6 @@ using BuiltInSensor = std::variant<ChainPoint, DepthCamera, PinholeCamera, Chain
 /// A built-in sensor behind the common interface.
 [[nodiscard]] std::shared_ptr<const AnySensor> any_built_in(const BuiltInSensor& sensor);
 
-/// The camera that takes images: a lens without depth.
-/// @param info   selects the lens by its distortion
-[[nodiscard]] std::shared_ptr<const AnySensor> camera_of(const CameraInfo& info,
-                                                         ImageKind image = ImageKind::automatic);
-
 namespace detail {
 /// True for a type of a variant.
 template <class T, class Variant>

@@ -10,8 +10,4 @@ KINECAL_INLINE std::shared_ptr<const AnySensor> any_built_in(const BuiltInSensor
   return std::visit([](const auto& model) { return any_sensor(model); }, sensor);
 }
 
-KINECAL_INLINE std::shared_ptr<const AnySensor> camera_of(const CameraInfo&, ImageKind image) {
-  return any_sensor(PinholeCamera{image});
-}
-
 }  // namespace kinecal

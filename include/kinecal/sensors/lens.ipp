@@ -8,7 +8,7 @@
 namespace kinecal {
 
 KINECAL_INLINE Lens::Lens(const CameraInfo& info, ImageKind image, std::span<const double> errors)
-    : camera_(camera_of(info, image)),
+    : camera_(any_built_in(PinholeCamera{image})),
       settings_(camera_->settings({"camera", {}, info})),
       errors_(camera_->parameters().size(), 0.0) {
   std::copy_n(errors.begin(), std::min(errors.size(), errors_.size()), errors_.begin());

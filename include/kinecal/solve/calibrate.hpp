@@ -42,6 +42,12 @@ struct Calibration {
   std::vector<CalibrationStep> steps;  ///< in the order in which they are solved
 };
 
+/// Leaves samples out of all steps.
+/// @param samples  their numbers in the problems
+/// @param list     the samples of the problems, of which they are erased
+/// @throws std::invalid_argument  as CalibrationStep::exclude()
+void exclude(Calibration& calibration, const std::set<int>& samples, std::vector<Sample>& list);
+
 /// The result of a calibration.
 struct CalibrationResult {
   bool converged = false;               ///< every step converged

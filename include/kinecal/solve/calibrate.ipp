@@ -88,6 +88,12 @@ KINECAL_INLINE void CalibrationStep::exclude(const std::set<int>& samples) {
   if (excerpt->num_residuals() == 0) excerpt.reset();
 }
 
+KINECAL_INLINE void exclude(Calibration& calibration, const std::set<int>& samples,
+                            std::vector<Sample>& list) {
+  for (CalibrationStep& step : calibration.steps) step.exclude(samples);
+  for (auto i = samples.rbegin(); i != samples.rend(); ++i) list.erase(list.begin() + *i);
+}
+
 KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const Progress& progress,
                                            const SolveOptions& solving) {
   CalibrationResult result;

@@ -68,6 +68,22 @@ struct AssessOptions {
                                 std::span<const double> values, std::span<const Sample> samples,
                                 const AssessOptions& options = {});
 
+namespace detail {
+
+/// The last assessment's entry for an error block; nullptr if there is none.
+template <class T>
+[[nodiscard]] const T* of_block(const std::vector<Assessment>& assessments,
+                                std::vector<T> Assessment::*list, const std::string& name) {
+  for (auto a = assessments.rbegin(); a != assessments.rend(); ++a) {
+    for (const T& item : (*a).*list) {
+      if (item.block == name) return &item;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace detail
+
 }  // namespace kinecal
 
 #ifdef KINECAL_HEADER_ONLY

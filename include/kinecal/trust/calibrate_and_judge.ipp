@@ -66,11 +66,8 @@ class Procedure {
       left_out_.push_back({numbers_[s], used_[s].source, why});
       left.insert(sample);
     }
-    for (CalibrationStep& step : calibration_.steps) step.exclude(left);
-    for (auto sample = left.rbegin(); sample != left.rend(); ++sample) {
-      numbers_.erase(numbers_.begin() + *sample);
-      used_.erase(used_.begin() + *sample);
-    }
+    exclude(calibration_, left, used_);
+    for (auto i = left.rbegin(); i != left.rend(); ++i) numbers_.erase(numbers_.begin() + *i);
   }
 
   [[nodiscard]] JudgedResult fit_once() const {
@@ -84,12 +81,7 @@ class Procedure {
   /// Fits, and fits again with the noise of each block that has no sigma in its place, until it stays.
   [[nodiscard]] JudgedResult fit() {
     noise_.reset(calibration_);
-    JudgedResult judged = fit_once();
-    for (int round = 0; round < kMostNoiseRounds && judged.result.converged; ++round) {
-      if (!noise_.update(calibration_, judged.assessments)) break;
-      judged = fit_once();
-    }
-    return judged;
+    return noise_.settle(calibration_, [&] { return fit_once(); });
   }
 
   /// Adds likely causes to the samples that were left out as ruined, and to those that are still bad.

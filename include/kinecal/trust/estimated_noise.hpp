@@ -15,18 +15,31 @@ class EstimatedNoise {
  public:
   explicit EstimatedNoise(const Calibration& calibration);
 
-  /// Sets the noise that residuals show as sigmas, unless each stays within 1 % of its sigma.
-  /// @param calibration  the one that was given to the constructor
-  /// @param assessments  of its steps
-  /// @returns  whether sigmas have changed, so that it should be solved again
-  [[nodiscard]] bool update(Calibration& calibration,
-                            const std::vector<Assessment>& assessments) const;
+  /// Fits, and fits again with the noise that residuals show as sigmas, until they stay.
+  /// @param fit  takes nothing, gives a JudgedResult of the calibration
+  template <class Fit>
+  [[nodiscard]] auto settle(Calibration& calibration, const Fit& fit) const {
+    constexpr int kRounds = 10;
+    auto judged = fit();
+    for (int round = 0; round < kRounds && judged.result.converged; ++round) {
+      if (!update(calibration, judged.assessments)) break;
+      judged = fit();
+    }
+    return judged;
+  }
   /// Forgets the estimates: each sigma is one.
   void reset(Calibration& calibration) const;
   /// The current sigmas.
   [[nodiscard]] std::vector<double> sigmas(const Calibration& calibration) const;
 
  private:
+  /// Sets the noise that residuals show as sigmas, unless each stays within 1 % of its sigma.
+  /// @param calibration  the one that was given to the constructor
+  /// @param assessments  of its steps
+  /// @returns  whether sigmas have changed, so that it should be solved again
+  [[nodiscard]] bool update(Calibration& calibration,
+                            const std::vector<Assessment>& assessments) const;
+
   /// An error block of a step.
   struct Estimated {
     std::size_t step = 0;
@@ -34,9 +47,6 @@ class EstimatedNoise {
   };
   std::vector<Estimated> blocks_;
 };
-
-/// How often sigmas are estimated at most.
-inline constexpr int kMostNoiseRounds = 10;
 
 }  // namespace kinecal
 

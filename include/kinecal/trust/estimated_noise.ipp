@@ -8,21 +8,6 @@
 
 namespace kinecal {
 
-namespace detail {
-
-/// The noise of an error block in the last step that has it; nullptr if none has.
-[[nodiscard]] inline const BlockNoise* noise_of_block(const std::vector<Assessment>& assessments,
-                                                      const std::string& name) {
-  for (auto step = assessments.rbegin(); step != assessments.rend(); ++step) {
-    for (const BlockNoise& noise : step->noise) {
-      if (noise.block == name) return &noise;
-    }
-  }
-  return nullptr;
-}
-
-}  // namespace detail
-
 KINECAL_INLINE EstimatedNoise::EstimatedNoise(const Calibration& calibration) {
   for (std::size_t s = 0; s < calibration.steps.size(); ++s) {
     const AnyProblem& problem = *calibration.steps[s].problem;
@@ -43,7 +28,7 @@ KINECAL_INLINE bool EstimatedNoise::update(Calibration& calibration,
   bool changed = false;
   for (const Estimated& block : blocks_) {
     const Term& term = calibration.steps[block.step].problem->term(block.term);
-    const BlockNoise* noise = detail::noise_of_block(assessments, term.name);
+    const BlockNoise* noise = detail::of_block(assessments, &Assessment::noise, term.name);
     if (noise == nullptr || !(noise->robust > 0.0)) continue;
     constexpr double kStays = 0.01;
     const double before = term.sigma;

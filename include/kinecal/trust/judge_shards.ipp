@@ -24,12 +24,7 @@ class ShardProcedure {
       : calibration_(calibration), options_(options), noise_(calibration.first) {}
 
   [[nodiscard]] JudgedResult run() {
-    JudgedResult judged = fit();
-    for (int round = 0; round < kMostNoiseRounds && judged.result.converged; ++round) {
-      if (!noise_.update(calibration_.first, judged.assessments)) break;
-      set_sigmas();
-      judged = fit();
-    }
+    JudgedResult judged = noise_.settle(calibration_.first, [&] { return fit(); });
     judged.sources.resize(static_cast<std::size_t>(calibration_.num_samples));
     judged.numbers.resize(judged.sources.size());
     std::iota(judged.numbers.begin(), judged.numbers.end(), 1);
@@ -61,19 +56,15 @@ class ShardProcedure {
     }
   }
 
-  /// A step's problem with the samples of a shard.  Few samples are kept in memory.
+  /// A step's problem with the samples of a shard: the first is that of the calibration.  Few samples
+  /// are kept in memory.
   [[nodiscard]] std::shared_ptr<const AnyProblem> problem(std::size_t s, int shard) {
     constexpr int kKept = 100000;  // samples
+    if (shard == 0) return {std::shared_ptr<const AnyProblem>(), step(s).problem.get()};
     const auto known = problems_.find({s, shard});
     if (known != problems_.end()) return known->second;
     std::shared_ptr<AnyProblem> made = step(s).problem->without_samples();
-    const auto add = [&](const Sample& sample) { made->add_sample(sample); };
-    if (shard == 0) {
-      std::for_each(calibration_.samples.begin(), calibration_.samples.end(), add);
-    } else {
-      const std::vector<Sample> samples = calibration_.read(shard);
-      std::for_each(samples.begin(), samples.end(), add);
-    }
+    for (const Sample& sample : calibration_.read(shard)) made->add_sample(sample);
     int kept = made->num_samples();
     for (const auto& [key, one] : problems_) kept += one->num_samples();
     if (kept <= kKept) problems_[{s, shard}] = made;
@@ -96,6 +87,7 @@ class ShardProcedure {
   }
 
   [[nodiscard]] JudgedResult fit() {
+    set_sigmas();
     std::string prefix = "step";
     for (const double sigma : noise_.sigmas(calibration_.first)) {
       char exact[40];

@@ -43,7 +43,6 @@ KINECAL_INLINE DetectedSamples detect_all(const DetectionInput& input,
     for (Look& look : looks) {
       found.features += look.features;
       found.used += look.samples.empty() ? 0 : 1;
-      look.found = !look.samples.empty();
       std::move(look.samples.begin(), look.samples.end(), std::back_inserter(found.samples));
       look.samples.clear();
       found.looks.push_back(std::move(look));

@@ -31,7 +31,6 @@ struct LookOptions {
 struct Look {
   std::string source;           ///< "images/0001.png", "drive.bag at 12.300 s"
   std::vector<Sample> samples;  ///< none if nothing was found
-  bool found = false;           ///< samples were found, also if they are kept elsewhere
   std::size_t features = 0;
   std::vector<std::string>
       refused;  ///< views that were not looked at, and finders, with their reasons
