@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/capture/session.hpp"
+#include "kinecal/capture/capture_pose.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "kinecal/trust/online.hpp"
