@@ -38,6 +38,17 @@ TEST(Problem, NamesTheNearestSensorForAMisspeltOne) {
             "no sensor 'camra'; did you mean 'camera'?");
 }
 
+TEST(Problem, TakesTypeAndUnitOfABlockUnlessOthersAreGiven) {
+  Problem problem = test::scene_problem();
+  const int first = problem.num_terms();
+  problem.add_block("pixels", PointToPixel{}, {"arm", "eye"});
+  problem.add_block("named", PointToPixel{}, {"arm", "eye"}, {.type = "mine", .unit = "1"});
+  EXPECT_EQ(problem.term(first).options.unit, "px");
+  EXPECT_EQ(problem.term(first).options.type, PointToPixel::kType);
+  EXPECT_EQ(problem.term(first + 1).options.unit, "1");
+  EXPECT_EQ(problem.term(first + 1).options.type, "mine");
+}
+
 TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
   Problem problem = test::scene_problem();
   EXPECT_THAT(

@@ -57,16 +57,8 @@ struct Block {
   /// Names of the sensors, in the order of the block's arguments.
   static constexpr std::array<std::string_view, sizeof...(Sensors)> kSensorNames = {Sensors...};
 
-  B error = {};                             ///< the error block
-  TermOptions options = default_options();  ///< sigma, loss, names
-
- private:
-  [[nodiscard]] static TermOptions default_options() {
-    TermOptions options;
-    if constexpr (requires { B::kType; }) options.type = B::kType;
-    if constexpr (requires { B::kUnit; }) options.unit = B::kUnit;
-    return options;
-  }
+  B error = {};              ///< the error block
+  TermOptions options = {};  ///< sigma, loss, names
 };
 
 /// A prior on a joint's offset, a frame's correction or a single parameter ("camera_fx"): see

@@ -74,8 +74,16 @@ class BasicProblem final : public AnyProblem {
   template <class B>
   void add_block_of_type(const std::string& name, const B& block,
                          const std::vector<std::string>& sensors, const TermOptions& options) {
+    TermOptions complete = options;
+    if constexpr (requires { B::kType; }) {
+      if (complete.type.empty()) complete.type = B::kType;
+    }
+    if constexpr (requires { B::kUnit; }) {
+      if (complete.unit.empty()) complete.unit = B::kUnit;
+    }
+    if (complete.unit.empty()) complete.unit = "m";
     add_term({.name = name,
-              .options = options,
+              .options = std::move(complete),
               .quantities = kQuantities<B>,
               .conditions = kConditionsOfBlock<B>,
               .feature_size = kResiduals<B>},

@@ -45,6 +45,7 @@ KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& 
                                 " is given, but '" + prior.param + "' has no such parameter");
   }
   priors_.push_back({name, prior, options});
+  if (options.unit.empty()) priors_.back().options.unit = "1";
 }
 
 /// The own parameters of an error block; makes the block their owner.

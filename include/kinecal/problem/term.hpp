@@ -28,8 +28,10 @@ struct TermOptions {
   /// Use only samples with an observation of this sensor, too; empty: all samples.  It need not be a
   /// sensor of the problem, and does not count for `exclusive`: "ground" marks samples of the floor.
   std::string beside = {};
-  std::string type = {};   ///< for reports: "chain3d_to_chain3d"
-  std::string unit = "m";  ///< of the unweighted residual, for reports: "m", "px" or "1"
+  std::string type =
+      {};  ///< for reports: "chain3d_to_chain3d"; empty: the block's kType, if it has one
+  std::string unit = {};  ///< of the unweighted residual, for reports: "m", "px" or "1"; empty: the
+                          ///< block's kUnit, or metres
 
   /// Factor of the residual by what was stated.
   [[nodiscard]] double weight() const { return scale / sigma.value_or(1.0); }
