@@ -1,5 +1,6 @@
 # `cpack` in a build tree makes kinecal_<version>_<architecture>.deb: programs, libraries, headers
-# and what you need to build against them.
+# and what you need to build against them; and, if there is MPI, kinecal-mpi_<version>_<architecture>.deb:
+# the plug-in for processes of mpirun, so that the program does not depend on MPI.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "kinecal developers")
 set(CPACK_PACKAGE_CONTACT "kinecal developers <kinecal@example.org>")
@@ -28,4 +29,16 @@ set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "cmake (>= 3.25), g++ (>= 4:12)")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
   ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/kinecal)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_DEBIAN_KINECAL_PACKAGE_NAME kinecal)
+set(CPACK_DEBIAN_MPI_PACKAGE_NAME kinecal-mpi)
+set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION}), openmpi-bin")
+set(CPACK_DEBIAN_MPI_PACKAGE_RECOMMENDS "")
+set(CPACK_DEBIAN_MPI_DESCRIPTION "one calibration or study in several processes of mpirun")
 include(CPack)
+cpack_add_component_group(kinecal)
+cpack_add_component_group(mpi)
+cpack_add_component(Unspecified GROUP kinecal)
+cpack_add_component(headers GROUP kinecal)
+cpack_add_component(plugin GROUP mpi)

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
+#include "checkpoints.hpp"
 #include "commands.hpp"
 #include "fit.hpp"
 #include "input.hpp"
@@ -21,13 +24,12 @@
 #include "kinecal/text/counted.hpp"
 #include "kinecal/trust/judge_shards.hpp"
 #include "output.hpp"
-#include "process_group.hpp"
-#include "shard_folder.hpp"
+#include "processes.hpp"
 
 namespace kinecal::cli {
 namespace {
 
-constexpr const char* kSums = "sums";  ///< folder of what processes exchange, in that of the result
+constexpr const char* kSums = "sums";  ///< folder of checkpoints, in that of the result
 
 /// What is known of all files before the work begins.
 struct LogContent {
@@ -59,14 +61,44 @@ std::string ends_of(const std::filesystem::path& path) {
   return text;
 }
 
+/// Each file once.
+void check_files_differ(const std::vector<std::string>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      std::error_code missing;
+      if (!std::filesystem::equivalent(files[i], files[k], missing)) continue;
+      throw InputError(files[i] + ": is given twice, so its samples would count twice");
+    }
+  }
+}
+
+/// Numbers behind one another: how many, then these.
+void append(const std::vector<double>& numbers, std::string& bytes) {
+  const auto count = static_cast<double>(numbers.size());
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+}
+/// The first of them, which it removes.
+std::vector<double> take(std::string_view& bytes) {
+  double count = 0.0;
+  std::memcpy(&count, bytes.data(), sizeof count);
+  std::vector<double> numbers(static_cast<std::size_t>(count));
+  if (!numbers.empty()) {
+    std::memcpy(numbers.data(), bytes.data() + sizeof count, numbers.size() * sizeof(double));
+  }
+  bytes.remove_prefix((numbers.size() + 1) * sizeof(double));
+  return numbers;
+}
+
 /// One run of one process.
 class LogRun {
  public:
-  LogRun(const ResultOptions& options, const ProcessGroup& group)
-      : options_(options), group_(group), first_(read(0)) {
-    if (group_.rank == 0) print_or_throw(first_.diagnostics);
-    if (!first_.diagnostics.errors.empty()) throw InputError(first_.diagnostics.errors.back());
-    folder_.emplace(std::filesystem::path(options.output) / kSums, identity(), files(), group_);
+  LogRun(const ResultOptions& options, const Processes& processes)
+      : options_(options), processes_(processes) {
+    processes_.alike([&] { read_first(); });
+    const std::string identity = identity_of_input();
+    processes_.require_same(identity, "{one} reads other input files than {first}");
+    checkpoints_.emplace(std::filesystem::path(options.output) / kSums, identity);
     content_ = check_files();
   }
 
@@ -80,7 +112,7 @@ class LogRun {
                                content_.free,
                                [&](int file) { return samples_of(file); },
                                [&](const std::string& what, const NumbersOfShard& numbers_of) {
-                                 return folder_->exchange(what, numbers_of);
+                                 return exchange(what, numbers_of);
                                }};
     ProcedureOptions procedure;
     procedure.solving.threads = options_.threads;
@@ -108,6 +140,43 @@ class LogRun {
   [[nodiscard]] int files() const { return static_cast<int>(options_.samples.size()); }
   [[nodiscard]] int steps() const { return static_cast<int>(first_.config.steps.size()); }
 
+  void read_first() {
+    check_files_differ(options_.samples);
+    check_results(options_);
+    first_ = read(0);
+    print_or_throw(first_.diagnostics);
+  }
+
+  /// Numbers of all files: this process computes those of every so manieth, unless they are on disk.
+  /// All are the same in each process, so each of them comes to the same result by itself.
+  [[nodiscard]] std::vector<std::vector<double>> exchange(const std::string& what,
+                                                          const NumbersOfShard& numbers_of) const {
+    processes_.require_same(sha256_text(what),
+                            "{one} is at other values than {first}: their processors or libraries "
+                            "differ, so they cannot share one calibration");
+    std::string own;
+    for (int file = processes_.rank(); file < files(); file += processes_.size()) {
+      if (Interruption::is_asked()) {
+        throw Interrupted(options_.output + ": run the same command again to go on");
+      }
+      std::optional<std::vector<double>> numbers = checkpoints_->find(what, file);
+      if (!numbers) {
+        numbers = numbers_of(file);
+        checkpoints_->keep(what, file, *numbers);
+      }
+      append(*numbers, own);
+    }
+    std::vector<std::vector<double>> all(options_.samples.size());
+    const std::vector<std::string> gathered = processes_.gather(own);
+    for (std::size_t rank = 0; rank < gathered.size(); ++rank) {
+      std::string_view rest = gathered[rank];
+      for (std::size_t file = rank; file < all.size(); file += gathered.size()) {
+        all[file] = take(rest);
+      }
+    }
+    return all;
+  }
+
   /// A file with all that is checked of it.
   [[nodiscard]] Input read(int file) const {
     InputOptions one = options_;
@@ -118,7 +187,7 @@ class LogRun {
   }
 
   /// What makes sums those of this calibration.
-  [[nodiscard]] std::string identity() const {
+  [[nodiscard]] std::string identity_of_input() const {
     std::string text = KINECAL_VERSION + first_.urdf_text + first_.config_text;
     for (const std::vector<std::string>* list : {&options_.cameras, &options_.hold}) {
       for (const std::string& item : *list) text += '\n' + item;
@@ -162,7 +231,7 @@ class LogRun {
   }
 
   [[nodiscard]] LogContent check_files() const {
-    const auto all = folder_->exchange("files", [&](int file) { return numbers_of_file(file); });
+    const auto all = exchange("files", [&](int file) { return numbers_of_file(file); });
     LogContent content;
     const int size = first_.calibration.table.size();
     for (const std::vector<double>& of : all) {
@@ -207,24 +276,13 @@ class LogRun {
   }
 
   const ResultOptions& options_;
-  ProcessGroup group_;
+  const Processes& processes_;
   Input first_;
-  std::optional<ShardFolder> folder_;
+  std::optional<Checkpoints> checkpoints_;
   LogContent content_;
 };
 
-/// Each file once.
-void check_files_differ(const std::vector<std::string>& files) {
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      std::error_code missing;
-      if (!std::filesystem::equivalent(files[i], files[k], missing)) continue;
-      throw InputError(files[i] + ": is given twice, so its samples would count twice");
-    }
-  }
-}
-
-/// Removes what processes exchanged, and the folder of the result if nothing else is in it.
+/// Removes the checkpoints, and the folder of the result if nothing else is in it.
 void forget(const std::string& output) {
   std::error_code ignored;
   std::filesystem::remove_all(std::filesystem::path(output) / kSums, ignored);
@@ -254,21 +312,14 @@ int report(const ResultOptions& options, const LogRun& run, const Findings& find
   return kDone;
 }
 
-}  // namespace
-
-int calibrate_log(const ResultOptions& options) {
-  const ProcessGroup group = process_group();
-  if (options.output.empty()) throw InputError("--output is required");
-  check_files_differ(options.samples);
-  // Without a file it has nothing to do, and might begin when the others have ended.
-  if (group.rank > 0 && group.rank >= std::ssize(options.samples)) return kDone;
-  check_results(options);
+/// The calibration of one process, or of several.
+int calibrate_log_in(const Processes& processes, const ResultOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Interruption interruption;
   try {
-    LogRun run(options, group);
+    LogRun run(options, processes);
     const Findings findings = run.calibrate();
-    if (group.rank > 0) return findings.judgement.verdict == Grade::do_not_use ? kNotUsable : kDone;
+    if (processes.rank() > 0) return kDone;
     const int code = report(options, run, findings);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     fmt::print("{} of {}, {:.3f} s: {}\n",
@@ -276,15 +327,18 @@ int calibrate_log(const ResultOptions& options) {
                counted(options.samples.size(), "file"), taken.count(),
                solving_text(findings.result));
     return code;
-  } catch (const SharedWorkIsDone&) {
-    return kDone;  // the first process has all that it needs
   } catch (const InputError&) {
-    if (group.size == 1) forget(options.output);  // else others may go on when it is mended
+    if (processes.size() == 1) forget(options.output);  // else what others have finished stays
     throw;
-  } catch (const Interrupted&) {
-    fmt::print(stderr, "{}: run the same command again to go on\n", options.output);
-    return kInterrupted;
   }
+}
+
+}  // namespace
+
+int calibrate_log(const ResultOptions& options) {
+  if (options.output.empty()) throw InputError("--output is required");
+  const Processes processes;
+  return processes.run([&] { return calibrate_log_in(processes, options); });
 }
 
 }  // namespace kinecal::cli

@@ -18,7 +18,7 @@
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
-#include "process_group.hpp"
+#include "processes.hpp"
 #include "progress.hpp"
 #include "study_input.hpp"
 #include "study_journal.hpp"
@@ -71,25 +71,26 @@ std::vector<StudyJob> jobs_of(const StudyOptions& options, const std::vector<int
   return jobs;
 }
 
-/// Runs the jobs of this process that are not done, on several threads.
+/// Runs the jobs of this process, but those that were done before, on several threads.
 class StudyRun {
  public:
   StudyRun(const StudyOptions& options, const StudyInput& input, const std::vector<int>& poses,
-           const ProcessGroup& group, StudyTrials done, StudyJournal* journal)
+           const Processes& processes, StudyTrials done, StudyJournal* journal)
       : options_(options),
         input_(input),
         poses_(poses),
-        group_(group),
-        trials_(std::move(done)),
+        processes_(processes),
+        done_(std::move(done)),
         journal_(journal) {}
 
   void run() {
-    const int cores =
-        group_.size > 1 ? 1 : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int cores = processes_.size() > 1
+                          ? 1
+                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const int threads = options_.threads > 0 ? options_.threads : cores;
-    const int workers_in_all = threads * group_.size;
+    const int workers_in_all = threads * processes_.size();
     slices_ = options_.robots < workers_in_all ? workers_in_all : 1;
-    meter_ = line_.meter();
+    if (processes_.rank() == 0) meter_ = line_.meter();
     std::vector<std::thread> workers;
     for (int i = 1; i < threads; ++i) workers.emplace_back([this] { work(); });
     work();
@@ -97,12 +98,13 @@ class StudyRun {
     if (error_) std::rethrow_exception(error_);
   }
 
+  /// The trials of this process's jobs.
   [[nodiscard]] const StudyTrials& trials() const { return trials_; }
 
  private:
   void work() {
     while (!Interruption::is_asked() && !failed_) {
-      const int item = group_.rank + group_.size * next_++;
+      const int item = processes_.rank() + processes_.size() * next_++;
       if (item / slices_ >= options_.robots) return;
       try {
         study(item / slices_, item % slices_);
@@ -122,24 +124,23 @@ class StudyRun {
          i += static_cast<std::size_t>(slices_)) {
       const StudyJob& job = jobs[i];
       if (Interruption::is_asked() || failed_) return;
-      if (is_done(job)) continue;
-      if (!robot) robot = study_robot(input_.setup, number);
-      const StudyTrial trial = run_study_job(input_.setup, *robot, job);
-      if (journal_ != nullptr) journal_->add(trial);
+      const auto done = done_.find(job);
+      std::optional<StudyTrial> trial;
+      if (done != done_.end()) trial = done->second;
+      if (!trial) {
+        if (!robot) robot = study_robot(input_.setup, number);
+        trial = run_study_job(input_.setup, *robot, job);
+        if (journal_ != nullptr) journal_->add(*trial);
+      }
       const std::lock_guard lock(mutex_);
-      trials_[job] = trial;
+      trials_[job] = *std::move(trial);
       show();
     }
   }
 
-  [[nodiscard]] bool is_done(const StudyJob& job) {
-    const std::lock_guard lock(mutex_);
-    return trials_.contains(job);
-  }
-
   void show() {
     const double all = static_cast<double>(options_.robots) * static_cast<double>(poses_.size()) *
-                       options_.repeats / group_.size;
+                       options_.repeats / processes_.size();
     if (meter_) {
       meter_(std::min(1.0, static_cast<double>(trials_.size()) / all), "calibrating");
     }
@@ -148,7 +149,8 @@ class StudyRun {
   const StudyOptions& options_;
   const StudyInput& input_;
   const std::vector<int>& poses_;
-  ProcessGroup group_;
+  const Processes& processes_;
+  const StudyTrials done_;  ///< in an earlier run
   StudyTrials trials_;
   StudyJournal* journal_;
   ProgressLine line_;
@@ -159,6 +161,16 @@ class StudyRun {
   std::atomic<bool> failed_ = false;
   std::exception_ptr error_;
 };
+
+/// The trials of all processes, in the first of them.
+StudyTrials trials_of_all(const Processes& processes, const StudyTrials& own) {
+  if (processes.size() == 1) return own;
+  std::string lines;
+  for (const auto& [job, trial] : own) lines += journal_line(trial);
+  StudyTrials all;
+  for (const std::string& of_one : processes.gather_in_first(lines)) read_journal(of_one, all);
+  return all;
+}
 
 std::size_t number_of_jobs(const StudyOptions& options, const std::vector<int>& poses) {
   return static_cast<std::size_t>(options.robots) * poses.size() *
@@ -238,13 +250,7 @@ void report(const StudyOptions& options, const StudyInput& input, const std::vec
   StudyJournal::remove(options.output);
 }
 
-void check_options(const StudyOptions& options, const ProcessGroup& group) {
-  if (group.size > 1 && (options.output.empty() || options.force)) {
-    throw InputError(options.force
-                         ? "--force: several processes cannot replace a study; remove its "
-                           "folder before"
-                         : "--output is required for several processes: they meet there");
-  }
+void check_options(const StudyOptions& options) {
   if (!options.report.empty()) {
     std::vector<std::string> inputs = {options.urdf, options.config, options.pose_file,
                                        options.scene};
@@ -260,36 +266,56 @@ void check_options(const StudyOptions& options, const ProcessGroup& group) {
 
 }  // namespace
 
-int study(const StudyOptions& options) {
-  const ProcessGroup group = process_group();
-  check_options(options, group);
-  const int most =
-      options.poses.empty() ? 100 : *std::max_element(options.poses.begin(), options.poses.end());
-  const std::unique_ptr<StudyInput> input = read_study(options, most);
-  if (options.ruined >= 0.0) input->setup.ruined = options.ruined;
-  input->setup.free_targets = options.free_targets;
-  input->keep_ruined = !(input->setup.ruined > 0.0);
-  const std::vector<int> poses = poses_of_study(options, input->samples.size());
+namespace {
+
+/// The study of one process, or of several.
+int study_in(const Processes& processes, const StudyOptions& options) {
+  std::unique_ptr<StudyInput> input;
+  std::vector<int> poses;
   std::optional<OutputFolder> output;
+  processes.alike([&] {
+    check_options(options);
+    const int most =
+        options.poses.empty() ? 100 : *std::max_element(options.poses.begin(), options.poses.end());
+    input = read_study(options, most);
+    if (options.ruined >= 0.0) input->setup.ruined = options.ruined;
+    input->setup.free_targets = options.free_targets;
+    input->keep_ruined = !(input->setup.ruined > 0.0);
+    poses = poses_of_study(options, input->samples.size());
+    if (options.output.empty()) return;
+    output.emplace(options.output);
+    if (options.force && processes.rank() == 0) StudyJournal::remove(options.output);
+  });
+  const std::string identity_of_study = identity(options, *input, poses);
+  processes.require_same(identity_of_study, "{one} reads other input files than {first}");
   std::optional<StudyJournal> journal;
   StudyTrials done;
-  if (!options.output.empty()) {
-    output.emplace(options.output);
-    if (options.force) StudyJournal::remove(options.output);
-    journal.emplace(options.output, identity(options, *input, poses), group.rank);
+  if (output) {
+    journal.emplace(options.output, identity_of_study, processes.rank());
     done = journal->read();
-    if (!done.empty()) fmt::print(stderr, "note: {} calibrations were done before\n", done.size());
+  }
+  if (!done.empty() && processes.rank() == 0) {
+    fmt::print(stderr, "note: {} calibrations were done before\n", done.size());
   }
   const Interruption interruption;
-  StudyRun run(options, *input, poses, group, std::move(done), journal ? &*journal : nullptr);
+  StudyRun run(options, *input, poses, processes, std::move(done), journal ? &*journal : nullptr);
   run.run();
-  const StudyTrials trials = journal ? journal->read() : run.trials();
-  const bool is_last = trials.size() == number_of_jobs(options, poses);
-  // Of several processes, the one that finds all trials done writes the tables.
-  if (group.size == 1 || is_last) {
+  if (Interruption::is_asked() && processes.size() > 1) {
+    throw Interrupted(output ? options.output + ": run the same command again to go on"
+                             : "stopped");
+  }
+  const StudyTrials trials = trials_of_all(processes, run.trials());
+  if (processes.rank() == 0) {
     report(options, *input, poses, trials, output ? &*output : nullptr);
   }
   return Interruption::is_asked() ? kInterrupted : kDone;
+}
+
+}  // namespace
+
+int study(const StudyOptions& options) {
+  const Processes processes;
+  return processes.run([&] { return study_in(processes, options); });
 }
 
 }  // namespace kinecal::cli

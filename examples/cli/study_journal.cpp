@@ -11,6 +11,7 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/text_file.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -61,6 +62,17 @@ std::optional<StudyTrial> trial_of(const std::string& line) {
 
 }  // namespace
 
+std::string journal_line(const StudyTrial& trial) {
+  return fmt::format("{},{},end\n", trial.seconds, trial_line(trial));
+}
+
+void read_journal(const std::string& text, StudyTrials& trials) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (const auto trial = trial_of(line)) trials[trial->job] = *trial;
+  }
+}
+
 std::string trial_line(const StudyTrial& trial) {
   std::string line = fmt::format(
       "{},{},{},{},{},{},{},{},{},{},{},{}", trial.job.robot, trial.job.poses, trial.job.repeat,
@@ -102,17 +114,14 @@ StudyJournal::StudyJournal(std::filesystem::path folder, std::string identity, i
 StudyTrials StudyJournal::read() const {
   StudyTrials trials;
   for (const std::filesystem::path& path : journals_in(folder_)) {
-    std::ifstream file(path);
-    for (std::string line; std::getline(file, line);) {
-      if (const auto trial = trial_of(line)) trials[trial->job] = *trial;
-    }
+    read_journal(detail::read_text_file(path.string()), trials);
   }
   return trials;
 }
 
 void StudyJournal::add(const StudyTrial& trial) {
   const std::lock_guard lock(mutex_);
-  file_ << fmt::format("{},", trial.seconds) << trial_line(trial) << ",end\n" << std::flush;
+  file_ << journal_line(trial) << std::flush;
   if (!file_) throw OutputError(own_.string() + ": cannot be written");
 }
 

@@ -42,6 +42,11 @@ class StudyJournal {
   std::mutex mutex_;
 };
 
+/// A trial as a line of a journal.
+[[nodiscard]] std::string journal_line(const StudyTrial& trial);
+/// Adds the trials of a journal's lines, but one that was cut off.
+void read_journal(const std::string& text, StudyTrials& trials);
+
 /// A trial as a line of a table: its numbers to the last bit, without times.
 [[nodiscard]] std::string trial_line(const StudyTrial& trial);
 /// The names of the columns of that line.

@@ -8,6 +8,7 @@
 
 #include "kinecal/files/poses/poses.hpp"
 #include "support/paths.hpp"
+#include "support/processes.hpp"
 #include "support/run_program.hpp"
 
 namespace kinecal {
@@ -148,23 +149,42 @@ TEST_F(Study, GoesOnWhereItWasKilled) {
 }
 
 TEST_F(Study, SeveralProcessesShareAStudy) {
+  KINECAL_REQUIRE_MPIRUN();
   const std::string what = "--robots 2 --repeat 4 --poses 12 ";
   ASSERT_EQ(call("study", what + "-o one").code, 0);
-  // As mpirun starts them.
-  std::string all;
-  for (const char* rank : {"0", "1", "2"}) {
-    all += "OMPI_COMM_WORLD_SIZE=3 OMPI_COMM_WORLD_RANK=" + std::string(rank) + " " +
-           test::kinecal_program() + " study --urdf " + kFetchFolder + "fetch.urdf --target leds " +
-           what + "-o three & ";
+  const auto in_processes = [&](int count, const std::string& options) {
+    return run(test::in_processes(count, test::kinecal_program() + " study --urdf " + kFetchFolder +
+                                             "fetch.urdf --target leds " + what + options));
+  };
+  for (const int count : {2, 4}) {
+    const std::string folder = "of" + std::to_string(count);
+    const test::Outcome shared = in_processes(count, "-o " + folder);
+    EXPECT_EQ(shared.code, 0) << shared.err;
+    EXPECT_EQ(shared.err, "");
+    EXPECT_EQ(read("one/trials.csv"), read(folder + "/trials.csv"));
+    EXPECT_EQ(read("one/study.json"), read(folder + "/study.json"));
+    EXPECT_THAT(shared.out, HasSubstr(read("one/study.txt")));
   }
-  EXPECT_EQ(run("(" + all + "wait)").code, 0);
-  EXPECT_EQ(read("one/trials.csv"), read("three/trials.csv"));
-  EXPECT_EQ(read("one/study.json"), read("three/study.json"));
-  const test::Outcome alone =
-      run("OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=2 " + test::kinecal_program() +
-          " study --urdf " + kFetchFolder + "fetch.urdf -o x");
-  EXPECT_EQ(alone.code, 1);
-  EXPECT_THAT(alone.err, HasSubstr("OMPI_COMM_WORLD_RANK is 2"));
+  EXPECT_EQ(in_processes(2, "-o of2 --force").code, 0);
+  EXPECT_EQ(read("one/trials.csv"), read("of2/trials.csv"));
+  EXPECT_THAT(in_processes(2, "").out, HasSubstr(read("one/study.txt"))) << "without files";
+  const test::Outcome again = in_processes(2, "-o of2");
+  EXPECT_EQ(again.code, 1);
+  EXPECT_THAT(again.err, HasSubstr("of2: has a study already"));
+}
+
+TEST_F(Study, ProcessesGoOnWhereOneWasKilled) {
+  KINECAL_REQUIRE_MPIRUN();
+  const std::string what = "--robots 2 --repeat 20 --poses 12 ";
+  ASSERT_EQ(call("study", what + "-o whole").code, 0);
+  EXPECT_EQ(call_until(7, SIGKILL, what + "--threads 1 -o part").code, -1) << "not killed";
+  const test::Outcome rest =
+      run(test::in_processes(3, test::kinecal_program() + " study --urdf " + kFetchFolder +
+                                    "fetch.urdf --target leds " + what + "-o part"));
+  EXPECT_EQ(rest.code, 0) << rest.err;
+  EXPECT_THAT(rest.err, ContainsRegex("^note: [0-9]+ calibrations were done before\n$"));
+  EXPECT_EQ(read("part/trials.csv"), read("whole/trials.csv"));
+  EXPECT_EQ(read("part/study.json"), read("whole/study.json"));
 }
 
 TEST_F(Study, AJournalOfAnotherStudyIsRefusedAndALineThatWasCutOffIsIgnored) {

@@ -23,6 +23,9 @@ namespace kinecal::test {
 [[nodiscard]] std::string calibrate_fetch_program();
 [[nodiscard]] std::string generate_samples_program();
 
+/// mpirun; empty where the build has found no MPI.
+[[nodiscard]] std::string mpirun();
+
 /// The program of examples/ that adds its own error block.
 [[nodiscard]] std::string own_program();
 

@@ -20,6 +20,10 @@ std::string generate_samples_program() {
   return KINECAL_GENERATE_SAMPLES;
 }
 
+std::string mpirun() {
+  return KINECAL_MPIRUN;
+}
+
 std::string own_program() {
   return KINECAL_OWN_PROGRAM;
 }

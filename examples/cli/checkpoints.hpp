@@ -1,0 +1,32 @@
+// Numbers of shards on disk: what is finished is not computed again.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinecal::cli {
+
+/// A folder with a file for each shard and each set of numbers.
+class Checkpoints {
+ public:
+  /// @param identity  of the input: numbers of another input are never taken for these
+  /// @throws OutputError  if the folder cannot be made
+  Checkpoints(std::filesystem::path folder, std::string identity);
+
+  /// Numbers of a shard; nullopt if there are none, or only a part of them.
+  [[nodiscard]] std::optional<std::vector<double>> find(const std::string& what, int shard) const;
+
+  /// @throws OutputError  if they cannot be written
+  void keep(const std::string& what, int shard, const std::vector<double>& numbers) const;
+
+ private:
+  [[nodiscard]] std::filesystem::path file_of(const std::string& what, int shard) const;
+
+  std::filesystem::path folder_;
+  std::string identity_;
+};
+
+}  // namespace kinecal::cli
