@@ -16,6 +16,7 @@ using namespace kinecal::examples;
 
 /// Distance of a point to a sphere, metres.
 struct BallBar {
+  static constexpr const char* kUnit = "m";
   static constexpr std::array kParameters = {ParameterInfo{"x", "m"}, ParameterInfo{"y", "m"},
                                              ParameterInfo{"z", "m"}, ParameterInfo{"length", "m"}};
   template <class S>

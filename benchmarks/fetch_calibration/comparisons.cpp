@@ -12,6 +12,7 @@ namespace {
 
 /// PointToPoint as a user would write it.
 struct WrittenByAUser {
+  static constexpr const char* kUnit = "m";
   template <class S>
   Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
     return p_a - p_b;
@@ -20,6 +21,7 @@ struct WrittenByAUser {
 
 /// The distance as an angle at the base, so that jets compute the derivatives.
 struct OfTheView {
+  static constexpr const char* kUnit = "m";
   template <class S>
   Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
     using std::sqrt;

@@ -8,6 +8,7 @@ namespace kinecal {
 namespace {
 
 struct Height {
+  static constexpr const char* kUnit = "m";
   template <class S>
   Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p_base) const {
     return Eigen::Matrix<S, 1, 1>(p_base.z());
@@ -28,6 +29,7 @@ struct NoCall {};
 
 /// Own parameters and conditions after the features, also for a scalar that is not templated.
 struct HeightOfWarmFloor {
+  static constexpr const char* kUnit = "m";
   static constexpr std::array kParameters = {ParameterInfo{"height", "m"}};
   static constexpr std::array kConditions = {"temperature", "load"};  // words of any kind
   template <class S, class Q>

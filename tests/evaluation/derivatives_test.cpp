@@ -9,6 +9,7 @@ namespace {
 
 /// Distance to a sphere: a block as a user would write one.
 struct PointToSphere {
+  static constexpr const char* kUnit = "m";
   Vector3<double> center{0.5, 0.1, 1.0};
   double radius = 0.3;
   template <class S>

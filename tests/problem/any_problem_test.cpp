@@ -49,6 +49,24 @@ TEST(Problem, TakesTypeAndUnitOfABlockUnlessOthersAreGiven) {
   EXPECT_EQ(problem.term(first + 1).options.type, "mine");
 }
 
+/// A block that does not say what its residual is measured in.
+struct WithoutUnit {
+  template <class S>
+  Vector3<S> operator()(const Vector3<S>& p) const {
+    return p;
+  }
+};
+
+TEST(Problem, AsksForTheUnitOfABlock) {
+  Problem problem = test::scene_problem();
+  EXPECT_THAT(
+      message_of<std::invalid_argument>([&] { problem.add_block("b", WithoutUnit{}, {"camera"}); }),
+      HasSubstr("error block 'b': its residual has no unit; write in it, for metres: static "
+                "constexpr const char* kUnit = \"m\";"));
+  problem.add_block("b", WithoutUnit{}, {"camera"}, {.unit = "m"});
+  EXPECT_EQ(problem.term(problem.num_terms() - 1).options.type, "b");
+}
+
 TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
   Problem problem = test::scene_problem();
   EXPECT_THAT(
@@ -66,6 +84,7 @@ TEST(Problem, RefusesTheWrongNumberOrKindOfSensors) {
 
 /// A block of 27 parameters of its own.
 struct Many {
+  static constexpr const char* kUnit = "m";
   static constexpr std::array<ParameterInfo, 27> kParameters = [] {
     std::array<ParameterInfo, 27> all;
     all.fill({"p"});

@@ -426,6 +426,7 @@ TEST(Solve, AStepThatPutsAPointBehindTheCameraIsRefusedAndNotTakenForTheMinimum)
 
 /// The derivatives have the wrong sign: every step raises the cost.
 struct WrongWay {
+  static constexpr const char* kUnit = "m";
   static constexpr const char* kType = "wrong_way";
   template <class S>
   Vector3<S> operator()(const Vector3<S>& p) const {

@@ -8,6 +8,7 @@ namespace kinecal::test {
 
 /// PointToPoint as a user would write it.
 struct UnknownDifference {
+  static constexpr const char* kUnit = "m";
   template <class S>
   [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
     return {p_a.x() - p_b.x(), p_a.y() - p_b.y(), p_a.z() - p_b.z()};
@@ -17,6 +18,7 @@ struct UnknownDifference {
 /// PointToPoint with a piece that is never used: it is not detected as a difference, so jets
 /// compute its derivatives.
 struct HiddenDifference {
+  static constexpr const char* kUnit = "m";
   template <class S>
   [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_a, const Vector3<S>& p_b) const {
     const S x = p_a.x() - p_b.x();
@@ -26,6 +28,7 @@ struct HiddenDifference {
 
 /// One residual of two points: their distance minus the expected one.
 struct Distance {
+  static constexpr const char* kUnit = "m";
   double expected = 0.2;
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 1, 1> operator()(const Vector3<S>& p_a,
@@ -38,6 +41,7 @@ struct Distance {
 
 /// Five nonlinear residuals of two points.
 struct FiveOfTwo {
+  static constexpr const char* kUnit = "m";
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 5, 1> operator()(const Vector3<S>& p_a,
                                                   const Vector3<S>& p_b) const {

@@ -22,6 +22,7 @@ struct DrawWire {
 
 /// Distance of a point to the drum, less the length of the wire.
 struct WireLength {
+  static constexpr const char* kUnit = "m";
   using Inputs = Takes<Quantity::point, Quantity::reading>;
 
   template <class S>
@@ -35,6 +36,7 @@ struct WireLength {
 
 /// Three points on one line, the middle one at an unknown part of the way.
 struct BetweenPoints {
+  static constexpr const char* kUnit = "m";
   static constexpr std::array kParameters = {ParameterInfo{"part", "1", 0.5}};
 
   template <class S>
@@ -48,6 +50,7 @@ struct BetweenPoints {
 
 /// The pixels of one camera with a constant error: a block of pixels with parameters of its own.
 struct ShiftedPixel {
+  static constexpr const char* kUnit = "px";
   static constexpr std::array kParameters = {ParameterInfo{"u", "px"}, ParameterInfo{"v", "px"}};
 
   template <class S>
@@ -79,6 +82,7 @@ struct ThermalBar {
 
 /// The pixels of a camera whose lens drifts with the temperature by a known amount.
 struct WarmPixel {
+  static constexpr const char* kUnit = "px";
   static constexpr std::array<std::string_view, 1> kConditions = {"temperature"};
 
   template <class S, class Q>
@@ -91,6 +95,7 @@ struct WarmPixel {
 
 /// Two parallel walls whose distance grows with the temperature; the same on either side.
 struct WarmGap {
+  static constexpr const char* kUnit = "m";
   static constexpr std::array kParameters = {ParameterInfo{"gap", "m", 0.4}};
   static constexpr std::array<std::string_view, 1> kConditions = {"temperature"};
 

@@ -2,9 +2,11 @@
 //
 // A block takes a feature of each of its sensors, transformed to the base, and returns its
 // residual.  Jets differentiate the block; twists propagate the derivative to joints and frames.
-// So a new error block is a struct with one templated call operator and nothing else:
+// So a new error block is a struct with the unit of its residual ("m", "px" or "1") and one templated call
+// operator:
 //
 //   struct PointToSphere {
+//     static constexpr const char* kUnit = "m";
 //     Vector3<double> center;
 //     double radius;
 //     template <class S>

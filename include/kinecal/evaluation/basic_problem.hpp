@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <stdexcept>
+
 #include "kinecal/evaluation/block_term.hpp"
 #include "kinecal/evaluation/evaluator.hpp"
 #include "kinecal/problem/any_problem.hpp"
@@ -81,7 +83,12 @@ class BasicProblem final : public AnyProblem {
     if constexpr (requires { B::kUnit; }) {
       if (complete.unit.empty()) complete.unit = B::kUnit;
     }
-    if (complete.unit.empty()) complete.unit = "m";
+    if (complete.type.empty()) complete.type = name;
+    if (complete.unit.empty()) {
+      throw std::invalid_argument(
+          "error block '" + name + "': its residual has no unit; write in it, for " +
+          "metres: static constexpr const char* kUnit = \"m\";  (or \"px\", \"1\")");
+    }
     add_term({.name = name,
               .options = std::move(complete),
               .quantities = kQuantities<B>,

@@ -29,9 +29,9 @@ struct TermOptions {
   /// sensor of the problem, and does not count for `exclusive`: "ground" marks samples of the floor.
   std::string beside = {};
   std::string type =
-      {};  ///< for reports: "chain3d_to_chain3d"; empty: the block's kType, if it has one
+      {};  ///< for reports: "chain3d_to_chain3d"; empty: the block's kType, or its name
   std::string unit = {};  ///< of the unweighted residual, for reports: "m", "px" or "1"; empty: the
-                          ///< block's kUnit, or metres
+                          ///< block's kUnit
 
   /// Factor of the residual by what was stated.
   [[nodiscard]] double weight() const { return scale / sigma.value_or(1.0); }

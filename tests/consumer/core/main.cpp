@@ -7,6 +7,7 @@
 
 /// The floor is at z = 0.
 struct Height {
+  static constexpr const char* kUnit = "m";
   template <class S>
   Eigen::Matrix<S, 1, 1> operator()(const kinecal::Vector3<S>& p_base) const {
     return Eigen::Matrix<S, 1, 1>(p_base.z());
