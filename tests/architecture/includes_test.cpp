@@ -31,9 +31,9 @@ struct Include {
   std::string target;
 };
 
-/// Headers, and the definitions of headers (.ipp).
+/// Headers, and their definitions (.cpp, .ipp).
 bool is_source(const fs::path& file) {
-  return file.extension() == ".hpp" || file.extension() == ".ipp";
+  return file.extension() == ".hpp" || file.extension() == ".ipp" || file.extension() == ".cpp";
 }
 
 int lines_of(const std::string& text) {
@@ -156,7 +156,40 @@ TEST(Architecture, WhatNoHeaderDeclaresIsInDetail) {
   EXPECT_GT(insides, 30);
 }
 
-/// A header or .ipp of more lines than the rule allows, and why.
+/// Above solve/, `x.cpp` beside `x.hpp` defines; an .ipp is a piece without a header, for a .cpp.
+TEST(Architecture, HeaderOnlyEndsWithSolve) {
+  int units = 0;
+  for (const auto& file : fs::recursive_directory_iterator(kHeaders)) {
+    if (!is_source(file.path()) || file.path().parent_path() == kHeaders) continue;
+    const bool is_unit = file.path().extension() == ".cpp";
+    if (rank(folder_of(file.path())) <= rank("solve")) {
+      EXPECT_FALSE(is_unit) << file.path()
+                            << " is missing where every source compiles what it includes";
+      continue;
+    }
+    units += is_unit;
+    fs::path header = file.path();
+    const bool has_header = fs::exists(header.replace_extension(".hpp"));
+    EXPECT_EQ(has_header, file.path().extension() != ".ipp") << file.path();
+    EXPECT_THAT(text_of(file.path()),
+                testing::Not(testing::ContainsRegex("KINECAL_(HEADER_ONLY|INLINE)")))
+        << file.path();
+  }
+  EXPECT_GT(units, 200);
+}
+
+TEST(Architecture, AUnitIncludesItsHeaderFirst) {
+  std::string before;
+  for (const auto& [source, target] : all_includes()) {
+    if (source.extension() == ".cpp" && source.string() != before) {
+      fs::path header = fs::relative(source, kHeaders.parent_path());
+      EXPECT_EQ(target, header.replace_extension(".hpp").string()) << source;
+    }
+    before = source.string();
+  }
+}
+
+/// A source of more lines than the rule allows, and why.
 struct LongSource {
   const char *file, *reason;
 };
