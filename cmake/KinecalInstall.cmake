@@ -9,8 +9,11 @@ install(EXPORT kinecal-headers NAMESPACE kinecal:: DESTINATION ${package_dir} CO
 foreach(component core capture solve io kinecal)
   install(EXPORT kinecal-${component} NAMESPACE kinecal:: DESTINATION ${package_dir})
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/kinecal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        COMPONENT headers FILES_MATCHING PATTERN "*.ipp")
+foreach(folder IN LISTS KINECAL_CORE_FOLDERS ITEMS solve)  # what KINECAL_HEADER_ONLY includes
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/kinecal/${folder}
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kinecal COMPONENT headers
+          FILES_MATCHING PATTERN "*.ipp")
+endforeach()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/kinecalConfig.cmake.in
   ${PROJECT_BINARY_DIR}/kinecalConfig.cmake INSTALL_DESTINATION ${package_dir})
 # Not ARCH_INDEPENDENT: the headers are, but the libraries and programs are of one architecture.

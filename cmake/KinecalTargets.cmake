@@ -6,7 +6,7 @@
 #                                                    nlohmann-json, libcrypto; optional libraries:
 #                                                    KinecalOptional.cmake
 #   kinecal::kinecal  all of them
-#   kinecal::headers  no library: every source compiles what it includes
+#   kinecal::headers  core and solve without their libraries: every source compiles what it includes
 include(GNUInstallDirs)
 
 set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that fetches kinecal links them as well
@@ -68,13 +68,13 @@ endfunction()
 # kinecal_add_library(<name> FOLDERS <folder>... LINK <target>... [UNIT <count>] [OPTIMIZE <flag>]
 #                     [PRIVATE_LINK <target>...] [ALONE <file>...])
 #
-# FOLDERS       of include/kinecal: their headers, and the .ipp beside a header of the same name, which
-#               are compiled once
+# FOLDERS       of include/kinecal: their headers, their .cpp, and the .ipp beside a header of the same
+#               name, which are compiled once; with KINECAL_HEADER_ONLY, .ipp are not compiled here
 # ALONE         of these folders: .ipp that are units of their own with KINECAL_UNITY, too
 # UNIT          so many sources are one translation unit with KINECAL_UNITY
 # OPTIMIZE      in place of Release's -O3
 # LINK          what the headers include
-# PRIVATE_LINK  what only the .ipp files include
+# PRIVATE_LINK  what only the definitions include
 function(kinecal_add_library name)
   cmake_parse_arguments(ARG "" "UNIT;OPTIMIZE" "FOLDERS;LINK;PRIVATE_LINK;ALONE" ${ARGN})
   set(target kinecal_${name})
@@ -85,22 +85,21 @@ function(kinecal_add_library name)
   foreach(folder IN LISTS ARG_FOLDERS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${include}/${folder}/*.hpp)
     list(APPEND headers ${found} ${include}/${folder}.hpp)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${include}/${folder}/*.cpp)
+    list(APPEND units ${sources})
     file(GLOB_RECURSE definitions CONFIGURE_DEPENDS ${include}/${folder}/*.ipp)
     foreach(file IN LISTS definitions)
       cmake_path(REPLACE_EXTENSION file hpp OUTPUT_VARIABLE header)
-      if(EXISTS ${header})
+      if(EXISTS ${header} AND NOT KINECAL_HEADER_ONLY)
         list(APPEND units ${file})
       endif()
     endforeach()
   endforeach()
 
-  if(KINECAL_HEADER_ONLY OR NOT units)
+  if(NOT units)
     set(scope INTERFACE)
     add_library(${target} INTERFACE)
     target_link_libraries(${target} INTERFACE ${ARG_LINK} ${ARG_PRIVATE_LINK})
-    if(KINECAL_HEADER_ONLY)
-      target_compile_definitions(${target} INTERFACE KINECAL_HEADER_ONLY)
-    endif()
   else()
     set(scope PUBLIC)
     list(TRANSFORM ARG_ALONE PREPEND ${include}/)
@@ -141,10 +140,11 @@ target_compile_features(kinecal_headers INTERFACE cxx_std_20)
 target_compile_definitions(kinecal_headers INTERFACE KINECAL_HEADER_ONLY)
 target_link_libraries(kinecal_headers INTERFACE Eigen3::Eigen Threads::Threads)
 
+set(KINECAL_CORE_FOLDERS text geometry kinematics parameters samples sensors errors problem evaluation
+                         crate testing)
 kinecal_add_library(core UNIT 16
   ALONE evaluation/problem.ipp  # all blocks and sensors: it takes longest
-  FOLDERS text geometry kinematics parameters samples sensors errors problem evaluation crate testing core
-          linkage
+  FOLDERS ${KINECAL_CORE_FOLDERS} core linkage
   LINK Eigen3::Eigen Threads::Threads)
 kinecal_add_library(capture UNIT 30
   FOLDERS capture
@@ -160,15 +160,16 @@ kinecal_add_library(io UNIT 33 OPTIMIZE -O2
                OpenSSL::Crypto Boost::headers)
 include(KinecalOptional)
 include(KinecalPage)
-if(NOT KINECAL_HEADER_ONLY)
-  # What links the libraries is compiled and linked as they are.
-  target_compile_options(kinecal_core PUBLIC $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)
-  # g++'s address sanitizer changes how Eigen allocates.
-  target_compile_options(kinecal_core INTERFACE
-    $<$<AND:$<BOOL:${KINECAL_SANITIZE}>,$<CXX_COMPILER_ID:GNU>>:-fsanitize=address>)
-  target_link_options(kinecal_core INTERFACE
-    $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined>)
+if(KINECAL_HEADER_ONLY)
+  target_compile_definitions(kinecal_core INTERFACE KINECAL_HEADER_ONLY)
 endif()
+# What links the libraries is compiled and linked as they are.
+target_compile_options(kinecal_core INTERFACE $<$<BOOL:${KINECAL_NATIVE}>:-march=native>)
+# g++'s address sanitizer changes how Eigen allocates.
+target_compile_options(kinecal_core INTERFACE
+  $<$<AND:$<BOOL:${KINECAL_SANITIZE}>,$<CXX_COMPILER_ID:GNU>>:-fsanitize=address>)
+target_link_options(kinecal_core INTERFACE
+  $<$<BOOL:${KINECAL_SANITIZE}>:-fsanitize=address,undefined>)
 kinecal_add_library(kinecal
   FOLDERS kinecal
   LINK kinecal_io)

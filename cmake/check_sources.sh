@@ -12,10 +12,11 @@ else
   before=$(git rev-list -n 1 --before="$(($(git log -1 --format=%ct) - 86400))" HEAD)
   chosen=""
   for file in $(git diff --name-only --diff-filter=d "${before:-$(git rev-list --max-parents=0 HEAD)}" HEAD -- \
-                  'include/*.hpp' 'include/*.ipp' 'examples/cli/*.cpp'); do
+                  'include/*.hpp' 'include/*.ipp' 'include/*.cpp' 'examples/cli/*.cpp'); do
     case $file in
       *.hpp) object="verify_interface_header_sets.dir/.*$(echo "${file#include/}" | sed 's/\./[.]/g')" ;;
       *.ipp) object="/$(echo "${file#include/}" | tr /. __)[.]cpp" ;;
+      include/*.cpp) object="/${file%.cpp}[.]cpp" ;;
       *) object="/$(basename "$file" .cpp)[.]cpp" ;;
     esac
     chosen="$chosen $(echo "$objects" | grep -E "$object" || true)"

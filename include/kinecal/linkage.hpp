@@ -1,8 +1,8 @@
 // Where a definition that needs no template is compiled, and for which processor.
 //
-// A header `x.hpp` declares; `x.ipp` beside it defines, each function marked KINECAL_INLINE.  By
-// default the libraries kinecal::core, kinecal::solve and kinecal::io compile each .ipp once.  With
-// KINECAL_HEADER_ONLY defined, every source compiles what it includes and no library is needed.
+// A header `x.hpp` declares; beside it `x.cpp` defines, or in text/ to solve/ `x.ipp`, each function
+// marked KINECAL_INLINE.  The libraries compile each once.  With KINECAL_HEADER_ONLY defined, every source
+// compiles what it includes of text/ to solve/, and needs libraries only for the other folders.
 //
 // What is evaluated in packets differs between instruction sets, in width and in alignment.  So
 // packets live in an inline namespace that bears the name of the instruction set, and every source

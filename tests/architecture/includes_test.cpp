@@ -31,9 +31,9 @@ struct Include {
   std::string target;
 };
 
-/// Headers, and the definitions of headers (.ipp).
+/// Headers, and their definitions (.cpp, .ipp).
 bool is_source(const fs::path& file) {
-  return file.extension() == ".hpp" || file.extension() == ".ipp";
+  return file.extension() == ".hpp" || file.extension() == ".ipp" || file.extension() == ".cpp";
 }
 
 int lines_of(const std::string& text) {
@@ -156,7 +156,40 @@ TEST(Architecture, WhatNoHeaderDeclaresIsInDetail) {
   EXPECT_GT(insides, 30);
 }
 
-/// A header or .ipp of more lines than the rule allows, and why.
+/// Above solve/, `x.cpp` beside `x.hpp` defines; an .ipp is a piece without a header, for a .cpp.
+TEST(Architecture, HeaderOnlyEndsWithSolve) {
+  int units = 0;
+  for (const auto& file : fs::recursive_directory_iterator(kHeaders)) {
+    if (!is_source(file.path()) || file.path().parent_path() == kHeaders) continue;
+    const bool is_unit = file.path().extension() == ".cpp";
+    if (rank(folder_of(file.path())) <= rank("solve")) {
+      EXPECT_FALSE(is_unit) << file.path()
+                            << " is missing where every source compiles what it includes";
+      continue;
+    }
+    units += is_unit;
+    fs::path header = file.path();
+    const bool has_header = fs::exists(header.replace_extension(".hpp"));
+    EXPECT_EQ(has_header, file.path().extension() != ".ipp") << file.path();
+    EXPECT_THAT(text_of(file.path()),
+                testing::Not(testing::ContainsRegex("KINECAL_(HEADER_ONLY|INLINE)")))
+        << file.path();
+  }
+  EXPECT_GT(units, 200);
+}
+
+TEST(Architecture, AUnitIncludesItsHeaderFirst) {
+  std::string before;
+  for (const auto& [source, target] : all_includes()) {
+    if (source.extension() == ".cpp" && source.string() != before) {
+      fs::path header = fs::relative(source, kHeaders.parent_path());
+      EXPECT_EQ(target, header.replace_extension(".hpp").string()) << source;
+    }
+    before = source.string();
+  }
+}
+
+/// A source of more lines than the rule allows, and why.
 struct LongSource {
   const char *file, *reason;
 };
@@ -165,18 +198,18 @@ constexpr int kMostLines = 200, kMostLinesOfAnException = 300;
 
 /// Sorted by name; what has become short enough is removed from here.
 constexpr LongSource kLongSources[] = {
-    {"config/assemble.ipp", "from all of a configuration to problems, in one pass"},
-    {"config/parameters_from_config.ipp", "every kind of parameter that a configuration names"},
+    {"config/assemble.cpp", "from all of a configuration to problems, in one pass"},
+    {"config/parameters_from_config.cpp", "every kind of parameter that a configuration names"},
     {"errors/error_block.hpp", "the concept: every kind of block, its inputs and its size"},
     {"evaluation/block_term.hpp",
      "one class template: a term evaluates, sums and lays out its rows alike"},
     {"evaluation/rows/block_rows.hpp",
      "one class template: from every kind of block to the one format of rows"},
     {"files/bags/mcap/messages.ipp", "one reader: records, chunks and index of a file"},
-    {"files/bags/mcap/write_mcap.ipp", "one writer: records, chunks, index and summary of a file"},
-    {"files/bags/ros1/read_bag.ipp", "one reader: records, chunks and index of a bag"},
-    {"files/csv/read_csv_samples.ipp", "from rows to samples, with a message for each mistake"},
-    {"files/messages/definition.ipp", "the grammar of .msg files and its parser"},
+    {"files/bags/mcap/write_mcap.cpp", "one writer: records, chunks, index and summary of a file"},
+    {"files/bags/ros1/read_bag.cpp", "one reader: records, chunks and index of a bag"},
+    {"files/csv/read_csv_samples.cpp", "from rows to samples, with a message for each mistake"},
+    {"files/messages/definition.cpp", "the grammar of .msg files and its parser"},
     {"files/samples/sample_schema.ipp", "one table: every key of a sample"},
     {"files/yaml/config_map.ipp", "one class: a map of a configuration, its types and its errors"},
     {"geometry/jet.hpp", "one scalar with all its operators and functions"},

@@ -29,6 +29,17 @@ if(MODE STREQUAL headers)
   execute_process(COMMAND ${configure} -DCOMPONENTS=headers COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${WORK}/core/core COMMAND_ERROR_IS_FATAL ANY)
+
+  # Solving needs Ceres, and no library of kinecal.
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${WORK}/consumer/headers -B ${WORK}/headers ${options}
+                          -DCMAKE_PREFIX_PATH=${prefix} COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/headers COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${WORK}/headers/headers COMMAND_ERROR_IS_FATAL ANY)
+  file(GLOB_RECURSE installed ${prefix}/*.cpp ${prefix}/include/kinecal/trust/*.ipp)
+  list(FILTER installed INCLUDE REGEX "/include/")
+  if(installed)
+    message(FATAL_ERROR "only the libraries are compiled of these, but they are installed: ${installed}")
+  endif()
   return()
 endif()
 

@@ -70,7 +70,3 @@ class AprilTagFinder {
 static_assert(Finder<AprilTagFinder>);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/april_tag_finder.ipp"
-#endif

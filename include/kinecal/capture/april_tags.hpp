@@ -43,7 +43,3 @@ class TagReader {
 };
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/april_tags.ipp"
-#endif

@@ -48,7 +48,3 @@ Flips resolve_flips(std::span<Sample> samples, const CheckerboardSettings& board
                                                    std::span<const Sample> samples);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/board_flips.ipp"
-#endif

@@ -37,7 +37,3 @@ void order_corners(const GrayImage& image, int columns, int rows,
                                            const std::vector<Eigen::Vector2d>& corners);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/board_order.ipp"
-#endif

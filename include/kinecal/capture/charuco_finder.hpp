@@ -47,7 +47,3 @@ class CharucoFinder {
 static_assert(Finder<CharucoFinder>);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/charuco_finder.ipp"
-#endif

@@ -46,7 +46,3 @@ class CheckerboardFinder {
 static_assert(Finder<CheckerboardFinder>);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/checkerboard_finder.ipp"
-#endif

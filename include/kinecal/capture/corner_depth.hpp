@@ -24,7 +24,3 @@ namespace kinecal {
                                                       const Eigen::Vector2d& pixel, double reach);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/corner_depth.ipp"
-#endif

@@ -45,7 +45,3 @@ struct GridEdges {
 void paint_over(const CornerGrid& grid, GrayImage& image);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/grid_corners.ipp"
-#endif

@@ -38,7 +38,3 @@ namespace kinecal {
                                                     const std::vector<Vector3<double>>& in_b);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/homography.ipp"
-#endif

@@ -63,7 +63,3 @@ using PointCloud = Image<Vector3<float>>;
 [[nodiscard]] PointCloud points_of(const DepthImage& depth, const CameraInfo& camera);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/image.ipp"
-#endif

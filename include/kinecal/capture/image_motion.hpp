@@ -3,7 +3,6 @@
 #pragma once
 
 #include "kinecal/capture/image.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -37,7 +36,3 @@ class ImageMotion {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/image_motion.ipp"
-#endif

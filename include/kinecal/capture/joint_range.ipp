@@ -1,4 +1,4 @@
-// Random positions of joints, for robot_body.ipp and view_search.ipp.
+// Random positions of joints, for robot_body.cpp and view_search.ipp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

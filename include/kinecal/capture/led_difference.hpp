@@ -19,7 +19,6 @@
 
 #include "kinecal/capture/image.hpp"
 #include "kinecal/capture/image_motion.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -59,7 +58,3 @@ class LedDifference {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/led_difference.ipp"
-#endif

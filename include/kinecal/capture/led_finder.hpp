@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "kinecal/capture/region.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -54,7 +53,3 @@ struct PlacedLed {
                                                          std::vector<PlacedLed>& placed);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/led_finder.ipp"
-#endif

@@ -9,7 +9,6 @@
 
 #include "kinecal/capture/led_difference.hpp"
 #include "kinecal/capture/led_finder.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -54,7 +53,3 @@ class LedSearch {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/led_search.ipp"
-#endif

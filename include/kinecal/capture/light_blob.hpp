@@ -4,7 +4,6 @@
 
 #include "kinecal/capture/image.hpp"
 #include "kinecal/capture/image_motion.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -29,7 +28,3 @@ struct LightBlob {
 [[nodiscard]] LightBlob light_blob(const Image<float>& light, const LightPixel& peak);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/light_blob.ipp"
-#endif

@@ -55,7 +55,3 @@ struct Marker {
                                                const std::string& dictionary);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/opencv_corners.ipp"
-#endif

@@ -10,7 +10,6 @@
 #include "kinecal/capture/plane_search.hpp"
 #include "kinecal/capture/region.hpp"
 #include "kinecal/capture/robot_interface.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -45,7 +44,3 @@ static_assert(Finder<PlaneFinder>);
                                           std::vector<Mark>& marks);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/plane_finder.ipp"
-#endif

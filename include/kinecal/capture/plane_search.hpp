@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "kinecal/capture/random_planes.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -33,7 +32,3 @@ struct FoundPlane {
                                     const PlaneSearch& search);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/plane_search.ipp"
-#endif

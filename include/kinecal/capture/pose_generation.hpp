@@ -17,7 +17,6 @@
 
 #include "kinecal/capture/robot_interface.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/sensors/pinhole_camera.hpp"
 
 namespace kinecal {
@@ -54,7 +53,3 @@ struct ViewGoal {
                                                           int count, std::uint64_t seed = 1);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/pose_generation.ipp"
-#endif

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "kinecal/geometry/rotation.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/sensors/quantity.hpp"
 
 namespace kinecal {
@@ -62,7 +61,3 @@ struct ScoredPlane {
     bool on_it = true);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/random_planes.ipp"
-#endif

@@ -10,7 +10,6 @@
 
 #include "kinecal/capture/view.hpp"
 #include "kinecal/geometry/pose.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -56,7 +55,3 @@ struct RegionPoints {
                                           std::vector<Mark>& marks);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/region.ipp"
-#endif

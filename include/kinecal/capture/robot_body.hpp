@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -85,7 +84,3 @@ class RobotBody {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/robot_body.ipp"
-#endif

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "kinecal/capture/plane_finder.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -26,7 +25,3 @@ struct RobotFinder {
 static_assert(Finder<RobotFinder>);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/robot_finder.ipp"
-#endif

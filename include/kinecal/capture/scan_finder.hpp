@@ -10,7 +10,6 @@
 
 #include "kinecal/capture/region.hpp"
 #include "kinecal/capture/robot_interface.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -31,7 +30,3 @@ struct ScanFinder {
 static_assert(Finder<ScanFinder>);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/scan_finder.ipp"
-#endif

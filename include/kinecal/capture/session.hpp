@@ -170,7 +170,3 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
 }
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/session.ipp"
-#endif

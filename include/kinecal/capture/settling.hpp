@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "kinecal/capture/robot_interface.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -110,7 +109,3 @@ MeasuredJoints settle_joints(A& arm, const JointTarget& target, Stamp after,
 }
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/settling.ipp"
-#endif

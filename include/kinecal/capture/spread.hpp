@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "kinecal/geometry/rotation.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -23,7 +22,3 @@ namespace kinecal {
                                               std::size_t count);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/spread.ipp"
-#endif

@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "kinecal/capture/view.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -24,7 +23,3 @@ namespace kinecal {
                                                            int radius = 12);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/surface_point.ipp"
-#endif

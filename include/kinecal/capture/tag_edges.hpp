@@ -15,7 +15,3 @@ namespace kinecal::detail {
 void refine_tag(const GrayImage& image, double cell, std::array<Eigen::Vector2d, 4>& corners);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/tag_edges.ipp"
-#endif

@@ -62,7 +62,3 @@ namespace detail {
 void check_target(const TargetSettings& settings);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/target.ipp"
-#endif

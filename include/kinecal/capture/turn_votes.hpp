@@ -22,7 +22,3 @@ struct AgreedTurns {
                                        const std::vector<Matrix3<double>>& boards, int step);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/turn_votes.ipp"
-#endif

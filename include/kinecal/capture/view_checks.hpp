@@ -5,7 +5,6 @@
 #include <string>
 
 #include "kinecal/capture/view.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -28,7 +27,3 @@ namespace kinecal {
 [[nodiscard]] std::string image_and_depth_problem(const View& view);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/capture/view_checks.ipp"
-#endif

@@ -1,4 +1,4 @@
-// Distance of a pose from a good view of a target, for pose_generation.ipp.
+// Distance of a pose from a good view of a target, for pose_generation.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -8,7 +8,6 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
@@ -19,7 +18,3 @@ namespace kinecal {
                                    std::span<const Sample> samples, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/assemble.ipp"
-#endif

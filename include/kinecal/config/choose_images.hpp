@@ -19,7 +19,6 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -33,7 +32,3 @@ void choose_images(Config& config, const Robot& robot, std::span<const Sample> s
                    Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/choose_images.ipp"
-#endif

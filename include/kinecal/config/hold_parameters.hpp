@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "kinecal/config/config.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -17,7 +16,3 @@ void hold_parameters(Config& config, const std::vector<std::string>& names,
                      Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/hold_parameters.ipp"
-#endif

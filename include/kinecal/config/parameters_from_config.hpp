@@ -12,7 +12,6 @@
 #include "kinecal/config/registry.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/samples/sample.hpp"
 
@@ -46,7 +45,3 @@ namespace kinecal::detail {
                                                                       const ParameterTable& table);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/parameters_from_config.ipp"
-#endif

@@ -11,7 +11,6 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/yaml/yaml_node.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -28,7 +27,3 @@ namespace kinecal {
                                   Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/read_config.ipp"
-#endif

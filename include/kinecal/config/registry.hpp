@@ -112,7 +112,3 @@ class Registry {
 [[nodiscard]] Registry& registry();
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/registry.ipp"
-#endif

@@ -8,8 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal {
 
 /// The SHA-256 of some bytes.
@@ -28,7 +26,3 @@ namespace kinecal {
 [[nodiscard]] std::optional<std::string> from_base64(std::string text);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/checksum.ipp"
-#endif

@@ -15,7 +15,3 @@ namespace kinecal::detail {
 [[nodiscard]] std::string read_text_file(const std::string& path);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/text_file.ipp"
-#endif

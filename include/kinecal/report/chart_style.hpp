@@ -5,8 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal {
 
 /// CSS rules for everything in an svg of class "chart".  Colours are the page's variables --before,
@@ -20,7 +18,3 @@ namespace kinecal {
 [[nodiscard]] std::string stand_alone(std::string_view svg);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/chart_style.ipp"
-#endif

@@ -48,7 +48,3 @@ namespace detail {
 }
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/findings.ipp"
-#endif

@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/charts/charts.hpp"
 #include "kinecal/report/report_data.hpp"
 
@@ -56,7 +55,3 @@ namespace detail {
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/html.ipp"
-#endif

@@ -16,11 +16,11 @@
 
 namespace kinecal::detail {
 
-KINECAL_INLINE std::string html_text(std::string_view text) {
+std::string html_text(std::string_view text) {
   return svg_escaped(text);
 }
 
-KINECAL_INLINE std::string html_figure(const Chart& chart) {
+std::string html_figure(const Chart& chart) {
   return fmt::format("<figure><h3>{}</h3>{}<figcaption>{}</figcaption></figure>\n",
                      html_text(chart.title), chart.svg, html_text(chart.caption));
 }
@@ -31,8 +31,8 @@ KINECAL_INLINE std::string html_figure(const Chart& chart) {
                      html_text(name));
 }
 
-KINECAL_INLINE std::string html_table(const std::vector<std::vector<std::string>>& rows,
-                                      std::string_view columns) {
+std::string html_table(const std::vector<std::vector<std::string>>& rows,
+                       std::string_view columns) {
   std::string html = scroll_region(rows.front().front() + " table") + "<table class=\"numbers\">";
   for (std::size_t r = 0; r < rows.size(); ++r) {
     html += r == 0 ? "<thead><tr>" : "<tr>";

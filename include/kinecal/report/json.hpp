@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/findings.hpp"
 
 namespace kinecal {
@@ -17,7 +16,3 @@ namespace kinecal {
 [[nodiscard]] std::string json_report(const Findings& findings);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/json.ipp"
-#endif

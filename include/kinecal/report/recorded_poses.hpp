@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
@@ -22,7 +21,3 @@ struct RecordedPoses {
                                            std::span<const Sample> samples);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/recorded_poses.ipp"
-#endif

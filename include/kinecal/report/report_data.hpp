@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/robot_scene.hpp"
 #include "kinecal/trust/workspace_map.hpp"
@@ -117,7 +116,3 @@ struct ReportData {
 void add_points(const RobotScene& scene, ReportData& data);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/report_data.ipp"
-#endif

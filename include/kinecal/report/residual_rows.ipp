@@ -1,4 +1,4 @@
-// Rows of the table of residuals as text, for residuals_csv.ipp.
+// Rows of the table of residuals as text, for residuals_csv.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -16,7 +16,6 @@
 #include "kinecal/files/meshes/mesh.hpp"
 #include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/kinematics/joint_model.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/findings.hpp"
 
 namespace kinecal {
@@ -126,7 +125,3 @@ struct SceneLimits {
                                            bool corrected);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/robot_scene.ipp"
-#endif

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/robot_scene.hpp"
 
 namespace kinecal {
@@ -17,7 +16,3 @@ namespace kinecal {
 void add_clouds(const std::vector<std::string>& files, RobotScene& scene);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/scene_clouds.ipp"
-#endif

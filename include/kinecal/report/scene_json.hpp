@@ -28,7 +28,6 @@
 
 #include <string>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/robot_scene.hpp"
 
 namespace kinecal {
@@ -38,7 +37,3 @@ namespace kinecal {
 [[nodiscard]] std::string scene_json(const RobotScene& scene);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/scene_json.ipp"
-#endif

@@ -15,7 +15,6 @@
 #include <iosfwd>
 
 #include "kinecal/files/bags/codec/compression.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/robot_scene.hpp"
 
 namespace kinecal {
@@ -24,7 +23,3 @@ namespace kinecal {
 void write_scene(const RobotScene& scene, std::ostream& out, Compression compression);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/scene_mcap.ipp"
-#endif

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "kinecal/files/meshes/find_mesh.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/robot_scene.hpp"
 
 namespace kinecal {
@@ -24,7 +23,3 @@ void add_visuals(std::span<const Visual> visuals, const MeshPlaces& places, cons
                  RobotScene& scene, Diagnostics& diagnostics, const MeshBudget& budget = {});
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/scene_meshes.ipp"
-#endif

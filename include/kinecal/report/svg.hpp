@@ -12,7 +12,6 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/svg_axis.hpp"
 
 namespace kinecal::detail {
@@ -88,7 +87,3 @@ class Drawing {
 void append_dot(std::string& data, Place place);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/svg.ipp"
-#endif

@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal::detail {
 
 /// A tick.  Those between decades of a logarithmic axis may have no label.
@@ -51,7 +49,3 @@ class Axis {
 [[nodiscard]] double round_step(double range, int most);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/svg_axis.ipp"
-#endif

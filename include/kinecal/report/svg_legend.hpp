@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/svg.hpp"
 
 namespace kinecal::detail {
@@ -27,7 +26,3 @@ double draw_legend(Drawing& drawing, const std::vector<LegendEntry>& entries, do
                    double left = 2.0, double right = kChartWidth - 4.0);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/svg_legend.ipp"
-#endif

@@ -6,8 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal::detail {
 
 /// A text between tags or in an attribute of XML.  Bytes that are not UTF-8, control characters and
@@ -36,7 +34,3 @@ void append_coordinate(std::string& text, double value);
 [[nodiscard]] std::string count_text(std::size_t number);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/svg_text.ipp"
-#endif

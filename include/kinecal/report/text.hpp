@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/observability.hpp"
 
@@ -64,7 +63,3 @@ namespace detail {
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/text.ipp"
-#endif

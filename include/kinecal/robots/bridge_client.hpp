@@ -98,7 +98,3 @@ class BridgeClient {
 };
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/robots/bridge_client.ipp"
-#endif

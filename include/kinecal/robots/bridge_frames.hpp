@@ -89,7 +89,3 @@ struct BinaryFrame {
                                      std::string_view encoding, Bytes request);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/robots/bridge_frames.ipp"
-#endif

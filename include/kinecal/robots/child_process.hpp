@@ -56,7 +56,3 @@ class ChildProcess {
 };
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/robots/child_process.ipp"
-#endif

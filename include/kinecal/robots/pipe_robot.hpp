@@ -63,7 +63,3 @@ class PipeRobot {
 static_assert(Arm<PipeRobot> && Camera<PipeRobot> && Lamp<PipeRobot>);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/robots/pipe_robot.ipp"
-#endif

@@ -64,7 +64,3 @@ class RosAction {
 };
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/robots/ros_action.ipp"
-#endif

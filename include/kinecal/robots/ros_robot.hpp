@@ -137,7 +137,3 @@ class RosLamp {
 static_assert(Lamp<RosLamp>);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/robots/ros_robot.ipp"
-#endif

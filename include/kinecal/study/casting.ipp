@@ -1,4 +1,4 @@
-// Casts rays through the pixels of an image, for render.ipp.
+// Casts rays through the pixels of an image, for render.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

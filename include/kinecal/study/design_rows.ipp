@@ -1,4 +1,4 @@
-// Derivatives of samples' rows by each measurement error, for sample_design.ipp.
+// Derivatives of samples' rows by each measurement error, for sample_design.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

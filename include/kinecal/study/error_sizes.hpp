@@ -5,7 +5,6 @@
 #include <string>
 
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -26,7 +25,3 @@ struct ErrorSizes {
                                 const ErrorSizes& sizes);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/error_sizes.ipp"
-#endif

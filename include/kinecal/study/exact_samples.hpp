@@ -17,7 +17,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
@@ -42,7 +41,3 @@ using MakeProblem = std::function<std::unique_ptr<AnyProblem>()>;
                                                 std::span<const Sample> samples);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/exact_samples.ipp"
-#endif

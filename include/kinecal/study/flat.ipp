@@ -1,4 +1,4 @@
-// Patches in the camera's frame, for render.ipp.
+// Patches in the camera's frame, for render.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -1,5 +1,5 @@
 // The difference between a calibration's result and that of the linearized problem, for
-// repeatability.ipp.
+// repeatability.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/study/seeded_random.hpp"
 
@@ -59,7 +58,3 @@ struct FeatureChange {
                                 const MeasurementNoise& noise, SeededRandom& random);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/measurement_noise.ipp"
-#endif

@@ -8,8 +8,6 @@
 
 #include <vector>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal {
 
 /// Positions of the same joints in each pose, radians or metres.
@@ -28,7 +26,3 @@ using JointPlaces = std::vector<std::vector<double>>;
                                             const std::vector<double>& speeds);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/motion_order.ipp"
-#endif

@@ -1,4 +1,4 @@
-// The criterion of a set of poses, for select_poses.ipp.
+// The criterion of a set of poses, for select_poses.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

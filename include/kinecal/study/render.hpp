@@ -37,7 +37,3 @@ class Renderer {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/render.ipp"
-#endif

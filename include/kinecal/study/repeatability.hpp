@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/study/error_sizes.hpp"
 #include "kinecal/study/exact_samples.hpp"
 #include "kinecal/study/measurement_noise.hpp"
@@ -104,7 +103,3 @@ struct StudyTrial {
 [[nodiscard]] double error_before(const StudySetup& setup, std::span<const double> truth);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/repeatability.ipp"
-#endif

@@ -1,4 +1,4 @@
-// State of a simulated robot over time, for simulated_robot.ipp.
+// State of a simulated robot over time, for simulated_robot.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/study/exact_samples.hpp"
 #include "kinecal/study/measurement_noise.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
@@ -74,7 +73,3 @@ struct ExpectedUncertainty {
                                        const PlainMatrix& goal);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/sample_design.ipp"
-#endif

@@ -82,7 +82,3 @@ void add_leds(Scene& scene, const std::string& link, const std::vector<Vector3<d
 void add_ground(Scene& scene, double height = 0.0, double albedo = 0.35);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/scene.ipp"
-#endif

@@ -23,7 +23,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
 
 namespace kinecal {
@@ -81,7 +80,3 @@ struct RandomSets {
                                      PoseCriterion criterion, std::uint64_t seed = 1);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/select_poses.ipp"
-#endif

@@ -72,7 +72,3 @@ struct Picture {
                               const Picture& picture, SeededRandom& random);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/simulated_camera.ipp"
-#endif

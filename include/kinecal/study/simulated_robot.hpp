@@ -120,7 +120,3 @@ class SimulatedRobot {
 static_assert(Arm<SimulatedRobot> && Camera<SimulatedRobot> && Lamp<SimulatedRobot>);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/simulated_robot.ipp"
-#endif

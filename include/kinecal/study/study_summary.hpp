@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/study/repeatability.hpp"
 #include "kinecal/study/sample_design.hpp"
 
@@ -63,7 +62,3 @@ void predict(const StudySetup& setup, const StudyRobot& robot, std::span<const S
                                      const PlainMatrix& goal);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/study_summary.ipp"
-#endif

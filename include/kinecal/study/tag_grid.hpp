@@ -6,7 +6,6 @@
 #pragma once
 
 #include "kinecal/capture/image.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -19,7 +18,3 @@ inline constexpr int kTagGap = 2;   ///< width of gaps and of the margin in the 
 [[nodiscard]] GrayImage tag_grid_picture(int columns, int rows);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/study/tag_grid.ipp"
-#endif

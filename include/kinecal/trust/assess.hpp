@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/held_out.hpp"
@@ -85,7 +84,3 @@ template <class T>
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/assess.ipp"
-#endif

@@ -13,7 +13,6 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/shards.hpp"
 #include "kinecal/trust/assess.hpp"
 
@@ -37,7 +36,3 @@ struct ShardAssessment {
                                             std::span<const Sample> samples);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/assess_shards.ipp"
-#endif

@@ -21,7 +21,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/judge.hpp"
@@ -87,7 +86,3 @@ struct ProcedureOptions {
 [[nodiscard]] std::string capture_text(const CaptureError& error, const Assessment& assessment);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/calibrate_and_judge.ipp"
-#endif

@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/trust/noise.hpp"
@@ -33,7 +32,3 @@ namespace kinecal {
                                         const std::vector<BlockNoise>& noise, const Sample& sample);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/capture_causes.ipp"
-#endif

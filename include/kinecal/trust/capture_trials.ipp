@@ -92,7 +92,7 @@ class CaptureTrials {
   template <class LabelOf>
   static void add(const Term& term, const BlockNoise& noise, const TermResiduals& residuals,
                   const LabelOf& label, TrialRows& to, std::vector<double>& rows) {
-    constexpr double kRounding = 1e-9;  // of exact data, as in captures.ipp
+    constexpr double kRounding = 1e-9;  // of exact data, as in captures.cpp
     const double sigma = std::max(noise.robust > 0.0 ? noise.robust : noise.sigma,
                                   kRounding * std::max(noise.unit_sigma, 1e-3));
     const int size = term.feature_size;

@@ -40,7 +40,3 @@ struct CaptureError {
                                                        const LinearFit& fit);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/captures.ipp"
-#endif

@@ -6,7 +6,6 @@
 #include <span>
 #include <utility>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 
@@ -20,7 +19,3 @@ namespace kinecal {
     const AnyProblem& problem, std::span<const Sample> samples);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/compared_frames.ipp"
-#endif

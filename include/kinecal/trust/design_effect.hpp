@@ -21,7 +21,3 @@ namespace kinecal {
 [[nodiscard]] double design_effect(const AnyProblem& problem, const LinearFit& fit);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/design_effect.ipp"
-#endif

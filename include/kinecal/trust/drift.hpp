@@ -21,7 +21,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/trust/assess.hpp"
 
@@ -91,7 +90,3 @@ struct DriftOptions {
                                 const DriftOptions& options = {});
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/drift.ipp"
-#endif

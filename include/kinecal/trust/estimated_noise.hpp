@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/trust/assess.hpp"
 
 namespace kinecal {
@@ -49,7 +48,3 @@ class EstimatedNoise {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/estimated_noise.ipp"
-#endif

@@ -3,8 +3,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal {
 
 /// Probability that F, a ratio of mean squares, is larger than f.
@@ -19,7 +17,3 @@ namespace kinecal {
 [[nodiscard]] double chi_square_exceeded(double freedom, double probability);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/f_distribution.ipp"
-#endif

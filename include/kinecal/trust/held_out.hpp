@@ -40,7 +40,3 @@ struct HeldOutError {
                                                         const ProgressMeter& meter = {});
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/held_out.ipp"
-#endif

@@ -74,7 +74,3 @@ void judge_left_out(int left_out, int samples, Judgement& judgement);
 [[nodiscard]] bool fits_badly(const Assessment& step);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/judge.ipp"
-#endif

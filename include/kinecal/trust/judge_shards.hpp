@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/shards.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 
@@ -36,7 +35,3 @@ struct ShardedCalibration {
                                                const ProcedureOptions& options = {});
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/judge_shards.ipp"
-#endif

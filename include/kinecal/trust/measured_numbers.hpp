@@ -10,7 +10,6 @@
 
 #include <span>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 
 namespace kinecal {
@@ -20,7 +19,3 @@ namespace kinecal {
 [[nodiscard]] int measured_numbers(const AnyProblem& problem, std::span<const double> values);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/measured_numbers.ipp"
-#endif

@@ -61,7 +61,3 @@ namespace detail {
 [[nodiscard]] double robust_sigma(std::vector<double> distances, int components);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/noise.ipp"
-#endif

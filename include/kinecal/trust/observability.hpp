@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/solve/spectrum.hpp"
 
@@ -48,7 +47,3 @@ namespace detail {
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/observability.ipp"
-#endif

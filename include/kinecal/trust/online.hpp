@@ -27,7 +27,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 
@@ -91,7 +90,3 @@ class OnlineCalibration {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/online.ipp"
-#endif

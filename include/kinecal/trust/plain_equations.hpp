@@ -4,7 +4,6 @@
 
 #include <span>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
 
@@ -21,7 +20,3 @@ struct PlainEquations {
                                              std::span<const double> values);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/plain_equations.ipp"
-#endif

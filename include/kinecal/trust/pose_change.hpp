@@ -32,7 +32,3 @@ struct PoseChange {
                                      const FrameOnRobot& in);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/pose_change.ipp"
-#endif

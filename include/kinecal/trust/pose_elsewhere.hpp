@@ -14,7 +14,6 @@
 
 #include <span>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/trust/assess.hpp"
 
 namespace kinecal {
@@ -35,7 +34,3 @@ namespace kinecal {
                                             const FrameOnRobot& frame, const FrameOnRobot& in);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/pose_elsewhere.ipp"
-#endif

@@ -68,7 +68,3 @@ struct PoseUncertainty {
                                         const FrameOnRobot& in);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/pose_uncertainty.ipp"
-#endif

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/uncertainty.hpp"
@@ -37,7 +36,3 @@ struct PriorPull {
                                                  const Uncertainty& known);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/prior_pulls.ipp"
-#endif

@@ -30,7 +30,3 @@ struct RecordingChange {
                                                               const LinearFit& fit);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/recording_change.ipp"
-#endif

@@ -35,7 +35,3 @@ template <class Fit, class Last, class LeaveOut>
 }
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/ruined.ipp"
-#endif

@@ -59,7 +59,3 @@ struct Correlation {
                                                          double limit = 0.9);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/uncertainty.ipp"
-#endif

@@ -6,7 +6,6 @@
 
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/trust/uncertainty.hpp"
 
@@ -30,7 +29,3 @@ struct WeakParameters {
                                              const Uncertainty& known);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/weak_parameters.ipp"
-#endif

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/trust/assess.hpp"
 
 namespace kinecal {
@@ -32,7 +31,3 @@ struct KnownPoint {
                                                     std::span<const double> values, int poses);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/trust/workspace_map.ipp"
-#endif

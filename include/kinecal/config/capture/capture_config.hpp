@@ -66,7 +66,3 @@ struct CaptureConfig {
 [[nodiscard]] FinderSettings on_robot(const CaptureFinder& finder, const Robot& robot);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/capture/capture_config.ipp"
-#endif

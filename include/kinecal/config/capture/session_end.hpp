@@ -16,7 +16,6 @@
 #include <string>
 
 #include "kinecal/config/capture/session_follower.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/trust/assess.hpp"
 #include "kinecal/trust/judge.hpp"
 
@@ -41,7 +40,3 @@ struct SessionResult {
                                     std::span<const Sample> ahead);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/capture/session_end.ipp"
-#endif

@@ -91,7 +91,3 @@ struct Accuracy {
 [[nodiscard]] Accuracy parse_accuracy(const std::string& text);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/capture/session_follower.ipp"
-#endif

@@ -7,7 +7,6 @@
 
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
 
 namespace kinecal {
@@ -22,7 +21,3 @@ void check_offsets(const CalibrationInput& input, const ParameterTable& calibrat
                    Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/check_offsets.ipp"
-#endif

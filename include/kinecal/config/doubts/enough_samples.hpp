@@ -7,7 +7,6 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal::detail {
@@ -23,7 +22,3 @@ void check_dropped_observations(const Config& config, std::span<const Sample> sa
                                 Diagnostics& diagnostics);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/enough_samples.ipp"
-#endif

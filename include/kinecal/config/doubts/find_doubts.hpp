@@ -12,7 +12,6 @@
 #include "kinecal/config/doubts/rising.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
@@ -36,7 +35,3 @@ struct CalibrationInput {
 void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/find_doubts.ipp"
-#endif

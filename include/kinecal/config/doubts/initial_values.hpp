@@ -4,7 +4,6 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal::detail {
 
@@ -13,7 +12,3 @@ namespace kinecal::detail {
 void check_initial_values(const Config& config, Diagnostics& diagnostics);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/initial_values.ipp"
-#endif

@@ -12,7 +12,6 @@
 
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal::detail {
 
@@ -29,7 +28,3 @@ void check_still_joints(const Config& config, std::span<const UsedJoint> joints,
                         Diagnostics& diagnostics);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/joint_positions.ipp"
-#endif

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "kinecal/config/doubts/find_doubts.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 
 namespace kinecal {
@@ -15,7 +14,3 @@ namespace kinecal {
 void judge_causes(const CalibrationInput& input, JudgedResult& judged);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/judge_causes.ipp"
-#endif

@@ -13,7 +13,6 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/solve/calibrate.hpp"
 
 namespace kinecal {
@@ -41,7 +40,3 @@ using Calibrator = std::function<CalibrationResult(const Calibration&)>;
                                                     const ParameterTable& solution);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/likely_causes.ipp"
-#endif

@@ -26,7 +26,7 @@ namespace kinecal::detail {
   return *at;
 }
 
-KINECAL_INLINE double spread_of(std::span<const Vector3<double>> points) {
+double spread_of(std::span<const Vector3<double>> points) {
   if (points.empty()) return 0.0;
   Vector3<double> center;
   std::vector<double> numbers(points.size());
@@ -121,8 +121,8 @@ inline void compare_spreads(const RecordedPoints& fixed, const RecordedPoints& a
   }
 }
 
-KINECAL_INLINE void check_spreads(const Config& config, const Robot& robot,
-                                  std::span<const Sample> samples, Diagnostics& diagnostics) {
+void check_spreads(const Config& config, const Robot& robot, std::span<const Sample> samples,
+                   Diagnostics& diagnostics) {
   const std::vector<RecordedPoints> all = recorded_points(config, robot, samples);
   std::set<std::pair<const RecordedPoints*, const RecordedPoints*>> compared;
   for (const StepConfig& step : config.steps) {

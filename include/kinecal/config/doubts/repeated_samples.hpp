@@ -7,7 +7,6 @@
 
 #include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal::detail {
 
@@ -20,7 +19,3 @@ std::size_t check_repeated_samples(const Config& config, std::span<const UsedJoi
                                    std::span<const Sample> samples, Diagnostics& diagnostics);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/repeated_samples.ipp"
-#endif

@@ -15,7 +15,6 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -47,7 +46,3 @@ void check_rising(const Config& config, const Robot& robot, const std::string& t
 
 }  // namespace detail
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/rising.ipp"
-#endif

@@ -16,7 +16,6 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/chain.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
@@ -54,7 +53,3 @@ void check_spreads(const Config& config, const Robot& robot, std::span<const Sam
                    Diagnostics& diagnostics);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/sensor_points.ipp"
-#endif

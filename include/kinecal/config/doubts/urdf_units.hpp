@@ -7,7 +7,6 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal::detail {
 
@@ -19,7 +18,3 @@ void check_urdf_units(const Config& config, const Robot& robot, const std::strin
                       const std::string& name_for_messages, Diagnostics& diagnostics);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/urdf_units.ipp"
-#endif

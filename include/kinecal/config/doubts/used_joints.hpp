@@ -10,7 +10,6 @@
 
 #include "kinecal/config/config.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal::detail {
@@ -45,7 +44,3 @@ struct UsedJoint {
                                                  std::span<const Sample> samples);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/used_joints.ipp"
-#endif

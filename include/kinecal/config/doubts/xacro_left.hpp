@@ -5,7 +5,6 @@
 #include <string>
 
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal::detail {
 
@@ -21,7 +20,3 @@ void check_xacro(const std::string& text, const std::string& name_for_messages,
 [[nodiscard]] std::string xacro_command(const std::string& file);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/config/doubts/xacro_left.ipp"
-#endif

@@ -61,7 +61,3 @@ struct BagReader {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/bag.ipp"
-#endif

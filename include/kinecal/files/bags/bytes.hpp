@@ -102,7 +102,3 @@ void append_number(std::string& bytes, T number) {
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/bytes.ipp"
-#endif

@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -21,7 +20,3 @@ namespace kinecal {
 [[nodiscard]] std::string to_camera_message_yaml(const CameraInfo& camera);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/cameras/camera_info.ipp"
-#endif

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -26,7 +25,3 @@ namespace kinecal {
                                               Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/cameras/read_camera_file.ipp"
-#endif

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -20,7 +19,3 @@ void set_camera(std::vector<Sample>& samples, const std::string& argument,
                 Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/cameras/set_camera.ipp"
-#endif

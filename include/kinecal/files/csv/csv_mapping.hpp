@@ -33,7 +33,6 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/geometry/rotation.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -91,7 +90,3 @@ struct CsvMapping {
 [[nodiscard]] CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/csv/csv_mapping.ipp"
-#endif

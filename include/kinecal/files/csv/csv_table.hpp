@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal::detail {
 
@@ -27,7 +26,3 @@ struct CsvRow {
                                            const std::string& file, Diagnostics& diagnostics);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/csv/csv_table.ipp"
-#endif

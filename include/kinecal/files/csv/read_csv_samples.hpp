@@ -11,7 +11,6 @@
 
 #include "kinecal/files/csv/csv_mapping.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -32,7 +31,3 @@ namespace kinecal {
                                                    Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/csv/read_csv_samples.ipp"
-#endif

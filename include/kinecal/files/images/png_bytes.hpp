@@ -6,7 +6,6 @@
 #include <string>
 
 #include "kinecal/capture/image.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal::detail {
 
@@ -28,7 +27,3 @@ struct Rgb {
 [[nodiscard]] std::string png_bytes(const Image<Rgb>& image);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/images/png_bytes.ipp"
-#endif

@@ -10,7 +10,6 @@
 
 #include "kinecal/capture/image.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -36,7 +35,3 @@ inline constexpr int kMostPixels = 100'000'000;
 [[nodiscard]] DepthImage decode_depth(std::string_view bytes, const std::string& name);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/images/read_image.ipp"
-#endif

@@ -7,8 +7,6 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal::detail {
 
 using Json = nlohmann::ordered_json;
@@ -27,7 +25,3 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json rounded(double value, int digits);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/json/json_text.ipp"
-#endif

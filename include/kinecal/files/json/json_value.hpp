@@ -18,7 +18,7 @@ struct JsonError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A value of a JSON text.  Only json_value.ipp sees the library that parses it.
+/// A value of a JSON text.  Only json_value.cpp sees the library that parses it.
 class JsonValue {
  public:
   /// @throws JsonError  if the text is not JSON
@@ -70,7 +70,3 @@ class JsonValue {
 };
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/json/json_value.ipp"
-#endif

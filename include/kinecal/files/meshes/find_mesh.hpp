@@ -11,8 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal {
 
 /// A mesh that cannot be drawn; the reason, without its name.
@@ -40,7 +38,3 @@ struct MeshPlaces {
 [[nodiscard]] std::filesystem::path find_mesh(const std::string& name, const MeshPlaces& places);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/meshes/find_mesh.ipp"
-#endif

@@ -15,7 +15,6 @@
 
 #include "kinecal/files/meshes/find_mesh.hpp"
 #include "kinecal/files/meshes/mesh.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -47,7 +46,3 @@ namespace detail {
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/meshes/read_mesh.ipp"
-#endif

@@ -34,7 +34,7 @@ inline constexpr std::size_t kNoField = 1 << 20;
   return rows.at(row, byte).number<float>();
 }
 
-KINECAL_INLINE void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage& image) {
+void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage& image) {
   const std::size_t x = point_field(cloud, "x"), y = point_field(cloud, "y"),
                     z = point_field(cloud, "z");
   const std::size_t rgb = std::min(point_field(cloud, "rgb"), point_field(cloud, "rgba"));

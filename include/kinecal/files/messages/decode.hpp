@@ -16,7 +16,3 @@ namespace kinecal::detail {
                                    Bytes data);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/messages/decode.ipp"
-#endif

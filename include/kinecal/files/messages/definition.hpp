@@ -75,7 +75,3 @@ inline constexpr std::size_t kMostOfADefinition = std::size_t{1} << 20;
 [[nodiscard]] MessageDefinition parse_definition(const std::string& type, std::string_view text);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/messages/definition.ipp"
-#endif

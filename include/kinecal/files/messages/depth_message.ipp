@@ -49,7 +49,7 @@ namespace kinecal::detail {
   return depth;
 }
 
-KINECAL_INLINE DepthImage depth_image(const MessageFields& message) {
+DepthImage depth_image(const MessageFields& message) {
   if (const auto file = compressed(message)) {
     return compressed_depth(*file, text_at(message, "format"));
   }
@@ -73,7 +73,7 @@ KINECAL_INLINE DepthImage depth_image(const MessageFields& message) {
   return depth;
 }
 
-KINECAL_INLINE bool is_depth(std::string_view encoding) {
+bool is_depth(std::string_view encoding) {
   return encoding.starts_with("16UC1") || encoding.starts_with("32FC1");
 }
 

@@ -20,7 +20,3 @@ namespace kinecal::detail {
                                             const MessageDefinition& definition, Encoding encoding);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/messages/encode.ipp"
-#endif

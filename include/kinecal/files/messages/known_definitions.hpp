@@ -17,7 +17,3 @@ namespace kinecal::detail {
 [[nodiscard]] std::string known_md5(const std::string& type);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/messages/known_definitions.ipp"
-#endif

@@ -49,7 +49,3 @@ struct MessageValue : std::variant<std::int64_t, std::uint64_t, double, std::str
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/messages/value.ipp"
-#endif

@@ -8,7 +8,6 @@
 
 #include "kinecal/capture/image.hpp"
 #include "kinecal/files/messages/value.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal::detail {
 
@@ -31,7 +30,3 @@ void read_cloud(const MessageFields& cloud, PointCloud& points, GrayImage& image
 [[nodiscard]] bool is_depth(std::string_view encoding);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/messages/view_message.ipp"
-#endif

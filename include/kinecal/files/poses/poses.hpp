@@ -30,7 +30,3 @@ namespace kinecal {
 void write_poses_yaml(std::ostream& out, const std::vector<CapturePose>& poses);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/poses/poses.ipp"
-#endif

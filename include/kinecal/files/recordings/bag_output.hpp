@@ -49,7 +49,3 @@ class BagOutput {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/recordings/bag_output.ipp"
-#endif

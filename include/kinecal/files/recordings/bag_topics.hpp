@@ -36,7 +36,3 @@ struct TopicContent {
                                                    Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/recordings/bag_topics.ipp"
-#endif

@@ -31,7 +31,3 @@ void write_samples(BagOutput& to, const std::vector<Sample>& samples);
 void write_urdf(BagOutput& to, const std::string& urdf);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/recordings/convert.ipp"
-#endif

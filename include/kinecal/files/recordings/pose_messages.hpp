@@ -20,7 +20,3 @@ namespace kinecal {
 void write_poses(BagOutput& to, const std::vector<CapturePose>& poses);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/recordings/pose_messages.ipp"
-#endif

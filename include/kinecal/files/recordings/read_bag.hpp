@@ -25,7 +25,3 @@ enum class RecordingFormat { yaml, ros1_bag, mcap, sqlite, ros2_bag, zstd };
 void read_bag(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/recordings/read_bag.ipp"
-#endif

@@ -27,7 +27,3 @@ struct Recording {
                                        unsigned threads = 0, const ProgressMeter& meter = {});
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/recordings/read_recording.ipp"
-#endif

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal {
 
 /// Some points of a cloud.
@@ -28,7 +26,3 @@ struct RecordedCloud {
                                                                std::size_t most);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/recordings/recorded_clouds.ipp"
-#endif

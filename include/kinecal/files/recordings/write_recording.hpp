@@ -24,7 +24,3 @@ void write_recording(const std::string& path, const std::vector<Sample>& samples
                      const std::string& urdf = {});
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/recordings/write_recording.ipp"
-#endif

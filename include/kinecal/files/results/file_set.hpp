@@ -42,7 +42,3 @@ class OutputFolder {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/results/file_set.ipp"
-#endif

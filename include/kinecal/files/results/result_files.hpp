@@ -57,7 +57,3 @@ struct ResultFileOptions {
                                                    const ResultFileOptions& options);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/results/result_files.ipp"
-#endif

@@ -38,7 +38,3 @@ namespace kinecal {
                                                         Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/samples/read_samples.ipp"
-#endif

@@ -18,7 +18,3 @@ namespace kinecal {
 void write_samples(std::ostream& out, const std::vector<Sample>& samples);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/samples/write_samples.ipp"
-#endif

@@ -46,7 +46,3 @@ enum class OffsetStyle { rising, origin };
                                      OffsetStyle style);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/urdf/patch_urdf.ipp"
-#endif

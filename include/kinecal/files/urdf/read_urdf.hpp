@@ -24,7 +24,3 @@ namespace kinecal {
 [[nodiscard]] Robot read_urdf(const std::string& path);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/urdf/read_urdf.ipp"
-#endif

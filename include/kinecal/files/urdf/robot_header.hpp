@@ -17,7 +17,3 @@ namespace kinecal {
 [[nodiscard]] std::string robot_header(const std::string& path, const std::string& name_space = "");
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/urdf/robot_header.ipp"
-#endif

@@ -17,7 +17,3 @@ namespace kinecal {
                                                             const std::string& name_for_messages);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/urdf/velocity_limits.ipp"
-#endif

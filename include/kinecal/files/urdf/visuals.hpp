@@ -8,7 +8,6 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/geometry/pose.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -42,7 +41,3 @@ struct Visual {
                                           Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/urdf/visuals.ipp"
-#endif

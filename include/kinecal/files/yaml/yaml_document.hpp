@@ -6,7 +6,6 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/yaml/yaml_node.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -25,7 +24,3 @@ namespace detail {
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/yaml/yaml_document.ipp"
-#endif

@@ -8,8 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal::detail {
 
 /// A value of a YAML document; owns all values below it.  An alias is a copy.
@@ -47,7 +45,3 @@ inline constexpr std::size_t kMostYamlBytes = std::size_t{1} << 27;
 [[nodiscard]] std::vector<YamlNode> parse_yaml(std::string_view text, const std::string& path);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/yaml/yaml_node.ipp"
-#endif

@@ -7,8 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "kinecal/linkage.hpp"
-
 namespace kinecal {
 
 /// The value of a number: decimal, nan, inf, .nan or .inf, each with or without a sign.
@@ -43,7 +41,3 @@ namespace detail {
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/yaml/yaml_text.ipp"
-#endif

@@ -43,7 +43,3 @@ struct ImageScale {
 void append_arrow(std::string& path, Place from, Place to);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/arrows.ipp"
-#endif

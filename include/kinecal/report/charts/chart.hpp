@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/report_data.hpp"
 
 namespace kinecal {
@@ -71,7 +70,3 @@ inline constexpr std::size_t kMostMarks = 2000;
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/chart.ipp"
-#endif

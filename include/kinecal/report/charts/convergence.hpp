@@ -17,7 +17,3 @@ namespace kinecal {
 [[nodiscard]] std::vector<Chart> start_charts(const ReportData& data);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/convergence.ipp"
-#endif

@@ -5,7 +5,6 @@
 #include <array>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/report/svg.hpp"
 
 namespace kinecal::detail {
@@ -27,7 +26,3 @@ void draw_density(Drawing& drawing, const std::array<double, kDensityBins>& dens
                   bool is_before);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/density.ipp"
-#endif

@@ -28,7 +28,3 @@ std::vector<double> draw_noise_lines(Drawing& drawing, const PlotArea& area, con
                                      const ReportedBlock& block);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/distance_axis.ipp"
-#endif

@@ -14,7 +14,3 @@ namespace kinecal {
 [[nodiscard]] std::vector<Chart> error_charts(const ReportData& data);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/errors.ipp"
-#endif

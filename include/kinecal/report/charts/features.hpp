@@ -13,7 +13,3 @@ namespace kinecal {
 [[nodiscard]] std::vector<Chart> feature_charts(const ReportData& data);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/features.ipp"
-#endif

@@ -24,7 +24,3 @@ struct ImageFrame {
                                      const std::vector<const ReportedFeature*>& features);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/image_place.ipp"
-#endif

@@ -17,7 +17,3 @@ namespace kinecal {
     const ReportData& data, const std::string& change = "What the calibration added");
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/parameters.ipp"
-#endif

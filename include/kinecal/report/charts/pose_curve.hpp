@@ -32,7 +32,3 @@ struct PoseCurve {
 [[nodiscard]] Chart pose_curve_chart(const PoseCurve& curve);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/pose_curve.ipp"
-#endif

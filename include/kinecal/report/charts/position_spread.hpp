@@ -21,7 +21,3 @@ struct PositionSpread {
 [[nodiscard]] Chart position_spread_chart(const std::vector<PositionSpread>& points);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/position_spread.ipp"
-#endif

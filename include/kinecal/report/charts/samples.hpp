@@ -14,7 +14,3 @@ namespace kinecal {
 [[nodiscard]] std::vector<Chart> sample_charts(const ReportData& data);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/samples.ipp"
-#endif

@@ -42,7 +42,3 @@ struct MapAxes {
                                double most_height);
 
 }  // namespace kinecal::detail
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/scatter.ipp"
-#endif

@@ -33,7 +33,3 @@ struct SpreadRatios {
 [[nodiscard]] Chart spread_chart(const SpreadRatios& ratios);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/spread.ipp"
-#endif

@@ -12,7 +12,3 @@ namespace kinecal {
 [[nodiscard]] std::vector<Chart> unobservable_charts(const ReportData& data);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/unobservable.ipp"
-#endif

@@ -12,7 +12,3 @@ namespace kinecal {
 [[nodiscard]] std::vector<Chart> workspace_charts(const ReportData& data);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/report/charts/workspace.ipp"
-#endif

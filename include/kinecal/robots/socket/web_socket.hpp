@@ -62,7 +62,3 @@ class WebSocket {
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/robots/socket/web_socket.ipp"
-#endif

@@ -8,7 +8,6 @@
 
 #include "kinecal/config/capture/capture_config.hpp"
 #include "kinecal/kinematics/robot.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/sample.hpp"
 
 namespace kinecal {
@@ -25,7 +24,3 @@ void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<
                  const BoardLinks& links, std::vector<Sample>& samples, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/board_turns.ipp"
-#endif

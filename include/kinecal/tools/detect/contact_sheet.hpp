@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "kinecal/capture/view.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -31,7 +30,3 @@ inline constexpr int kThumbnailWidth = 320;
 [[nodiscard]] std::string contact_sheet(const std::vector<Thumbnail>& thumbnails);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/contact_sheet.ipp"
-#endif

@@ -9,7 +9,6 @@
 
 #include "kinecal/capture/view.hpp"
 #include "kinecal/config/capture/capture_config.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -39,7 +38,3 @@ struct Detection {
                                const std::string& source);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/detect.ipp"
-#endif

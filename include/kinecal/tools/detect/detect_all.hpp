@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/tools/detect/board_turns.hpp"
 #include "kinecal/tools/detect/look.hpp"
 
@@ -50,7 +49,3 @@ struct DetectedSamples {
                                          const DetectionOptions& options, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/detect_all.ipp"
-#endif

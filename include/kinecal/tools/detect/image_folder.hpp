@@ -13,7 +13,6 @@
 
 #include "kinecal/capture/view.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -47,7 +46,3 @@ struct PosedImage {
                              const std::string& frame);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/image_folder.ipp"
-#endif

@@ -9,7 +9,6 @@
 
 #include "kinecal/capture/settling.hpp"
 #include "kinecal/capture/view.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -56,7 +55,3 @@ struct JointTrack {
 
 }  // namespace detail
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/joint_track.ipp"
-#endif

@@ -13,7 +13,6 @@
 
 #include "kinecal/capture/settling.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/tools/detect/joint_track.hpp"
 
 namespace kinecal {
@@ -63,7 +62,3 @@ class JointTracks {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/joint_tracks.ipp"
-#endif

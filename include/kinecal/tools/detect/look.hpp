@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"
@@ -49,7 +48,3 @@ struct Look {
 [[nodiscard]] std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& options);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/look.ipp"
-#endif

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
 #include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/tools/detect/joint_tracks.hpp"
 #include "kinecal/tools/detect/view_topics.hpp"
@@ -92,7 +91,3 @@ class RecordedViews {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/recorded_views.ipp"
-#endif

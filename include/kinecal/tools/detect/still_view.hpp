@@ -6,7 +6,6 @@
 #include <string>
 
 #include "kinecal/capture/view.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -25,7 +24,3 @@ struct StillView {
 [[nodiscard]] double sharpness(const GrayImage& image);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/still_view.ipp"
-#endif

@@ -11,7 +11,6 @@
 
 #include "kinecal/config/capture/capture_config.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 
 namespace kinecal {
 
@@ -47,7 +46,3 @@ struct ViewWishes {
                                                     Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/detect/view_topics.ipp"
-#endif

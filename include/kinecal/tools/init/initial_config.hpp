@@ -33,7 +33,3 @@ void check_init_camera_name(const std::string& option, const std::string& name,
 [[nodiscard]] std::string initial_config(const Robot& robot, const InitAnswers& given);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/init/initial_config.ipp"
-#endif

@@ -37,7 +37,3 @@ namespace kinecal {
 [[nodiscard]] InitAnswers with_proposals(const Robot& robot, InitAnswers answers);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/init/robot_parts.ipp"
-#endif

@@ -46,7 +46,3 @@ std::string restore_installed(const std::filesystem::path& folder, const std::st
                                          const std::string& launch, const LaunchNames& names);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/install/install.ipp"
-#endif

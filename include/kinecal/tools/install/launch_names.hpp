@@ -42,7 +42,3 @@ inline constexpr std::array kAll = {kDate,         kRobot,     kDepthOffset,
 [[nodiscard]] LaunchNames launch_names(const std::vector<std::string>& given);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/install/launch_names.ipp"
-#endif

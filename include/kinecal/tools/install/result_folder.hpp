@@ -46,7 +46,3 @@ struct ResultFolder {
 [[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& folder);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/install/result_folder.ipp"
-#endif

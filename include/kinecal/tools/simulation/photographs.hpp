@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "kinecal/files/results/output_file.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
 
 namespace kinecal {
@@ -42,7 +41,3 @@ struct PhotographFiles {
                                                const std::function<void(std::size_t)>& progress);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/simulation/photographs.ipp"
-#endif

@@ -1,4 +1,4 @@
-// Places the target of a simulation, for simulation_plan.ipp.
+// Places the target of a simulation, for simulation_plan.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

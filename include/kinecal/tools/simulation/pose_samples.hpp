@@ -9,7 +9,6 @@
 
 #include "kinecal/capture/capture_pose.hpp"
 #include "kinecal/config/config.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
 
 namespace kinecal {
@@ -33,7 +32,3 @@ struct PoseSamples {
                                        const std::vector<CapturePose>& poses);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/simulation/pose_samples.ipp"
-#endif

@@ -1,4 +1,4 @@
-// Reads the keys of a scene file, for simulation_plan.ipp.
+// Reads the keys of a scene file, for simulation_plan.cpp.
 //
 //   seed: 1                         same seed: same robot, noise and faults
 //   camera:

@@ -20,7 +20,6 @@
 #include "kinecal/capture/pose_generation.hpp"
 #include "kinecal/config/config.hpp"
 #include "kinecal/files/diagnostics.hpp"
-#include "kinecal/linkage.hpp"
 #include "kinecal/study/error_sizes.hpp"
 #include "kinecal/study/measurement_noise.hpp"
 #include "kinecal/study/simulated_robot.hpp"
@@ -72,7 +71,3 @@ struct SimulationPlan {
 [[nodiscard]] std::vector<JointTarget> poses_of(const SimulationPlan& plan);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/tools/simulation/simulation_plan.ipp"
-#endif

@@ -1,4 +1,4 @@
-// The models and target features that a study simulates, for pose_samples.ipp.
+// The models and target features that a study simulates, for pose_samples.cpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

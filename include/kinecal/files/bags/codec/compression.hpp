@@ -46,7 +46,3 @@ void unpack(Bytes packed, Compression compression, std::optional<std::uint64_t> 
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/codec/compression.ipp"
-#endif

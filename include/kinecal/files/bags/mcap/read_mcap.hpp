@@ -34,7 +34,3 @@ void read_mcap(const std::string& path, const std::string& name, const BagReader
 void read_mcap(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/mcap/read_mcap.ipp"
-#endif

@@ -62,7 +62,3 @@ class McapWriter {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/mcap/write_mcap.ipp"
-#endif

@@ -25,7 +25,3 @@ void read_ros1_bag(std::istream& in, const std::string& name, const BagReader& r
 void read_ros1_bag(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/ros1/read_bag.ipp"
-#endif

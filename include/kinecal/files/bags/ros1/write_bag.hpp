@@ -66,7 +66,3 @@ class Ros1BagWriter {
 };
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/ros1/write_bag.ipp"
-#endif

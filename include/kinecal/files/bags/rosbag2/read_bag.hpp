@@ -24,7 +24,3 @@ void read_ros2_bag_file(const std::string& path, const BagReader& reader, Diagno
 }  // namespace detail
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/rosbag2/read_bag.ipp"
-#endif

@@ -21,7 +21,3 @@ void read_db3(const std::string& path, const std::string& name, const BagReader&
 void read_db3(const std::string& path, const BagReader& reader, Diagnostics& diagnostics);
 
 }  // namespace kinecal
-
-#ifdef KINECAL_HEADER_ONLY
-#include "kinecal/files/bags/rosbag2/read_db3.ipp"
-#endif

@@ -1,0 +1,169 @@
+// Definitions of april_tag_finder.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/capture/april_tag_finder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "kinecal/capture/april_tags.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Corner k of a tag on the target, counter-clockwise from its bottom left.
+[[nodiscard]] Vector3<double> tag_corner(const PlacedTag& tag, int k) {
+  const double half = tag.size / 2.0;
+  return tag.centre + Vector3<double>(k == 1 || k == 2 ? half : -half, k >= 2 ? half : -half, 0.0);
+}
+
+/// The tags of a target, in the order of their ids.
+[[nodiscard]] std::vector<PlacedTag> all_tags(const AprilTagSettings& s) {
+  std::vector<PlacedTag> tags = s.tags;
+  const double pitch = s.size * (1.0 + s.spacing);
+  for (int row = 0; row < s.rows; ++row) {
+    for (int column = 0; column < s.columns; ++column) {
+      tags.push_back({s.first_id + row * s.columns + column,
+                      s.size,
+                      {column * pitch + s.size / 2.0, row * pitch + s.size / 2.0, 0.0}});
+    }
+  }
+  std::sort(tags.begin(), tags.end(),
+            [](const PlacedTag& a, const PlacedTag& b) { return a.id < b.id; });
+  return tags;
+}
+
+void check_tags(const AprilTagSettings& s, const std::vector<PlacedTag>& tags) {
+  if (tags.empty()) {
+    throw std::invalid_argument("a target of AprilTags needs columns and rows of a grid, or tags");
+  }
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    const std::string name = "AprilTag " + std::to_string(tags[i].id);
+    if (!(tags[i].size > 0.0) || tags[i].id < 0) {
+      throw std::invalid_argument(name + " has a size of " + std::to_string(tags[i].size) +
+                                  " m: sizes must be positive, ids not negative");
+    }
+    if (i > 0 && tags[i].id == tags[i - 1].id) {
+      throw std::invalid_argument(name + " is on the target twice");
+    }
+  }
+  if (!(s.spacing >= 0.0) || !(s.min_side > 0.0) || !(s.decimate >= 1.0) || s.min_tags < 1 ||
+      s.border < 1 || s.border > 4 || s.max_wrong_bits < 0 || s.max_wrong_bits > 2) {
+    throw std::invalid_argument(
+        "AprilTags: spacing >= 0, min_side > 0, decimate >= 1, min_tags >= 1, border 1 to 4 and "
+        "max_wrong_bits 0 to 2 are possible");
+  }
+}
+
+/// The usable tags in an image.
+struct TagsSeen {
+  std::vector<TargetCorner> corners;
+  std::vector<EdgeMeasure> edges[2];
+  int tags = 0;
+  int small = 0;
+  int outside = 0;       ///< at the image's border
+  double largest = 0.0;  ///< side of a small one, pixels
+  int twice = -1;        ///< id
+};
+
+[[nodiscard]] double shortest_side(const SeenTag& tag) {
+  double least = (tag.corners[0] - tag.corners[3]).norm();
+  for (std::size_t k = 0; k < 3; ++k) {
+    least = std::min(least, (tag.corners[k + 1] - tag.corners[k]).norm());
+  }
+  return least;
+}
+
+/// Adds the corners and edges of one tag.
+void add_tag(const GrayImage& image, const PlacedTag& placed, const SeenTag& tag, double cells,
+             TagsSeen& seen) {
+  const double side = shortest_side(tag);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector2d &a = tag.corners[k], &b = tag.corners[(k + 1) % 4];
+    const int number = static_cast<int>(k);
+    seen.corners.push_back(
+        {4 * tag.id + number, a, tag_corner(placed, number), std::max(2.0, 0.15 * side)});
+    const auto edge = measure_edge(image, a, b, std::max(1.5, 0.9 * side / cells));
+    if (edge) seen.edges[k % 2].push_back(*edge);
+  }
+  ++seen.tags;
+}
+
+[[nodiscard]] TagsSeen tags_seen(const GrayImage& image, const std::vector<SeenTag>& found,
+                                 const std::vector<PlacedTag>& tags, double cells,
+                                 double min_side) {
+  TagsSeen seen;
+  std::vector<int> ids;
+  for (const SeenTag& tag : found) {
+    const auto placed =
+        std::find_if(tags.begin(), tags.end(), [&](const PlacedTag& t) { return t.id == tag.id; });
+    if (placed == tags.end()) continue;
+    if (std::find(ids.begin(), ids.end(), tag.id) != ids.end()) seen.twice = tag.id;
+    ids.push_back(tag.id);
+    const double side = shortest_side(tag);
+    const bool inside = std::all_of(tag.corners.begin(), tag.corners.end(), [&](const auto& c) {
+      return c.x() >= 2.0 && c.y() >= 2.0 && c.x() <= image.width - 3.0 &&
+             c.y() <= image.height - 3.0;
+    });
+    if (!inside) {
+      ++seen.outside;
+    } else if (side < min_side) {
+      ++seen.small;
+      seen.largest = std::max(seen.largest, side);
+    } else {
+      add_tag(image, *placed, tag, cells, seen);
+    }
+  }
+  return seen;
+}
+
+}  // namespace
+}  // namespace detail
+
+struct AprilTagFinder::Detector {
+  detail::TagReader reader;
+};
+
+AprilTagFinder::AprilTagFinder(AprilTagSettings settings)
+    : settings_(std::move(settings)),
+      tags_(detail::all_tags(settings_)),
+      detector_(nullptr, [](Detector* d) { delete d; }) {
+  detail::check_tags(settings_, tags_);
+  check_target(settings_.target);
+  detector_.reset(new Detector{detail::TagReader(settings_.family, settings_.border,
+                                                 settings_.max_wrong_bits, settings_.decimate)});
+}
+
+Found AprilTagFinder::find(const View& view) const {
+  if (const auto fault = detail::april_tag_fault(); !fault.empty()) return refused(fault);
+  if (const auto fault = view_fault(view, settings_.target.corners); !fault.empty()) {
+    return refused(fault);
+  }
+  detail::TagsSeen seen = detail::tags_seen(view.image, detector_->reader.read(view.image), tags_,
+                                            detector_->reader.cells(), settings_.min_side);
+  std::vector<Mark> marks = marks_of(seen.corners);
+  if (seen.twice >= 0) {
+    return refused("tag " + std::to_string(seen.twice) + " is seen twice: which is meant?", marks);
+  }
+  if (seen.tags < settings_.min_tags) {
+    std::string why = std::to_string(seen.tags) + " of " + std::to_string(tags_.size()) +
+                      " tags are seen, at least " + std::to_string(settings_.min_tags) + " must be";
+    if (seen.small > 0) {
+      why += "; " + std::to_string(seen.small) + " are too small: sides of at most " +
+             detail::one_digit(seen.largest) + " pixels, " + detail::one_digit(settings_.min_side) +
+             " are needed";
+    }
+    if (seen.outside > 0) why += "; " + std::to_string(seen.outside) + " are at the border";
+    return refused(why, marks);
+  }
+  if (const auto fault = edge_fault(seen.edges, settings_.target.quality); !fault.empty()) {
+    return refused("the tags are " + fault, marks);
+  }
+  return observed(view, settings_.target, std::move(seen.corners));
+}
+
+}  // namespace kinecal

@@ -1,0 +1,265 @@
+// Assembles problems from a configuration and reports every error at its line.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/assemble.hpp"
+
+#include "kinecal/config/add_blocks.ipp"
+#include "kinecal/config/config_free.ipp"
+#include "kinecal/config/few_samples.ipp"
+#include "kinecal/config/id_warnings.ipp"
+#include "kinecal/config/parameters_from_config.hpp"
+#include "kinecal/config/sample_warnings.ipp"
+#include "kinecal/config/unknown_frames.ipp"
+#include "kinecal/evaluation/any_evaluator.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// @returns  indices of those that were added
+std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> samples,
+                             Diagnostics& diagnostics) {
+  constexpr std::size_t kReported = 5;  // the first few show what is wrong
+  std::size_t refused = 0;
+  std::vector<int> added;
+  for (const Sample& sample : samples) {
+    try {
+      problem.add_sample(sample);
+      added.push_back(static_cast<int>(&sample - samples.data()));
+    } catch (const SampleError& e) {
+      if (++refused <= kReported) diagnostics.errors.emplace_back(e.what());
+    }
+  }
+  if (refused > kReported) {
+    diagnostics.errors.push_back(fmt::format("{} more sample{} errors like these",
+                                             refused - kReported,
+                                             refused - kReported == 1 ? " has" : "s have"));
+  }
+  return added;
+}
+
+/// The error if no sample has an observation of a block's ground; else empty.
+[[nodiscard]] std::string missing_ground(const BlockConfig& block,
+                                         std::span<const Sample> samples) {
+  if (block.ground.empty()) return {};
+  std::set<std::string> recorded;
+  for (const Sample& sample : samples) {
+    for (const Observation& observation : sample.observations) recorded.insert(observation.sensor);
+  }
+  if (recorded.contains(block.ground)) return {};
+  return fmt::format("; none has a sensor '{}', which its key 'ground' names{}", block.ground,
+                     did_you_mean(block.ground, recorded));
+}
+
+/// Reports terms without samples, and plane blocks that also use the samples of another block.
+void check_terms(const StepConfig& step, const AnyProblem& problem, std::span<const Sample> samples,
+                 Diagnostics& diagnostics) {
+  int total = 0;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const Term& term = problem.term(t);
+    const auto block = std::find_if(step.error_blocks.begin(), step.error_blocks.end(),
+                                    [&](const BlockConfig& b) { return b.name == term.name; });
+    const int count = problem.samples_of(t);
+    total += count;
+    warn_of_disjoint_ids(term, *block, samples, diagnostics);
+    warn_of_one_sided_ids(term, *block, samples, diagnostics);
+    if (count == 0) {
+      diagnostics.warning(block->place, fmt::format("error block '{}': no sample has usable "
+                                                    "features of all its sensors{}",
+                                                    term.name, missing_ground(*block, samples)));
+    } else if (const int paired = problem.shared_samples(t); block->type == "chain3d_to_plane" &&
+                                                             block->ground.empty() && paired > 0 &&
+                                                             paired < count) {
+      diagnostics.warning(
+          block->place,
+          fmt::format(
+              "error block '{0}' also takes the {1} samples in which other sensors observe "
+              "something together with '{2}'; write 'samples: exclusive' in it to leave them "
+              "out",
+              term.name, paired, block->models.front()));
+    } else if (is_exclusive_by_default(*block, step, samples)) {
+      diagnostics.warning(
+          block->place,
+          fmt::format("error block '{}' takes only the samples in which '{}' observes alone; write "
+                      "'samples: all' in it to take the others, too",
+                      term.name, block->models.front()));
+    }
+  }
+  if (total == 0) {
+    diagnostics.error(step.place, fmt::format("step '{}': no sample has usable features for any of "
+                                              "its error blocks",
+                                              step.name));
+  }
+}
+
+/// The free parameters of a step that affect residuals, in file order; warns of others.
+[[nodiscard]] FreeSet free_set(const StepConfig& step, const AnyProblem& problem, bool have_samples,
+                               Diagnostics& diagnostics) {
+  const ParameterTable& table = problem.table();
+  const std::vector<int> touched = problem.touched_parameters();
+  std::vector<int> free;
+  const auto add = [&](const std::string& name, const SourceLocation& place) {
+    const int index = table.find(name);
+    if (index < 0) return;
+    if (have_samples && !std::binary_search(touched.begin(), touched.end(), index)) {
+      diagnostics.warning(place, fmt::format("no residual of these samples depends on '{}'; it "
+                                             "keeps its initial value {}",
+                                             name, table[index].value));
+      return;
+    }
+    free.push_back(index);
+  };
+  for (const FreeParamConfig& param : free_parameters(step)) add(param.name, param.place);
+  if (free.empty()) {
+    diagnostics.error(step.place, fmt::format("step '{}': these samples determine none of "
+                                              "its free parameters",
+                                              step.name));
+  }
+  return FreeSet(std::move(free), table.size());
+}
+
+/// The table with the bounds of a step.
+[[nodiscard]] ParameterTable with_bounds(ParameterTable table, const StepConfig& step,
+                                         Diagnostics& diagnostics) {
+  for (const BoundConfig& bound : step.bounds) {
+    const int index = table.find(bound.name);
+    if (index < 0) continue;
+    table[index].lower = bound.lower;
+    table[index].upper = bound.upper;
+    double value = table[index].initial;
+    for (const auto& [assigned, initial] : initial_assignments(step, table)) {
+      if (assigned == index) value = initial;
+    }
+    if (value < bound.lower || value > bound.upper) {
+      diagnostics.error(bound.place, fmt::format("bound: the initial value {} of '{}' is outside "
+                                                 "[{}, {}]",
+                                                 value, bound.name, bound.lower, bound.upper));
+    }
+  }
+  return table;
+}
+
+/// Warns of priors on parameters that no step frees.
+void warn_of_held_priors(const Config& config, const ParameterTable& table,
+                         Diagnostics& diagnostics) {
+  std::set<int> free;
+  for (const StepConfig& step : config.steps) {
+    for (const FreeParamConfig& param : free_parameters(step)) free.insert(table.find(param.name));
+  }
+  free.erase(-1);
+  for (const StepConfig& step : config.steps) {
+    for (const BlockConfig& block : step.error_blocks) {
+      if (block.param.empty()) continue;
+      const auto rows = Prior{block.param}.parameters(table);
+      const auto held = [&](int parameter) { return !free.contains(parameter); };
+      const bool misspelt = std::all_of(rows.begin(), rows.end(), [](int p) { return p < 0; });
+      if (misspelt || !std::all_of(rows.begin(), rows.end(), held)) continue;
+      diagnostics.warning(block.place, fmt::format("error block '{}' has no effect: no step frees "
+                                                   "its param '{}'",
+                                                   block.name, block.param));
+    }
+  }
+}
+
+/// Adds the sensors and error blocks of a step.
+/// @return  false, with errors, if they do not match the robot
+bool add_models(AnyProblem& problem, const StepConfig& step, std::span<const Sample> samples,
+                Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.errors.size();
+  for (const ModelConfig& model : step.models) {
+    try {
+      sensor_entry(model).add(problem, mount_from(model), model.image);
+    } catch (const std::exception& e) {
+      diagnostics.error(model.place, fmt::format("model '{}': {}", model.name, e.what()));
+    }
+  }
+  if (diagnostics.errors.size() != before) return false;
+  for (const BlockConfig& block : step.error_blocks) {
+    try {
+      add_block(problem, block,
+                block.exclusive.value_or(is_exclusive_by_default(block, step, samples)));
+    } catch (const std::exception& e) {
+      const std::string what = e.what(), subject = "error block '" + block.name + "'";
+      diagnostics.error(block.place,
+                        what.starts_with(subject) ? what : fmt::format("{}: {}", subject, what));
+    }
+  }
+  return diagnostics.errors.size() == before;
+}
+
+/// Prepares the search for unknown poses of a step: the frames, and a few samples, with lines of
+/// sight instead of pixels, because the search also looks behind the camera.
+void prepare_search(CalibrationStep& step, const Config& config, const StepConfig& of_config,
+                    const Robot& robot, std::span<const Sample> samples) {
+  const ParameterTable& table = step.problem->table();
+  step.unknown_frames = unknown_frames(config, of_config, robot, table, step.free);
+  if (step.unknown_frames.empty()) return;
+  StepConfig of_step = of_config;
+  Diagnostics ignored;  // already reported for the whole problem
+  std::vector<BlockConfig> pixels;
+  std::erase_if(of_step.error_blocks, [&](const BlockConfig& block) {
+    const BlockEntry* entry = registry().block(block.type);
+    const bool is_pixel = entry != nullptr && entry->read_as == PointToPixel::kType;
+    if (is_pixel) pixels.push_back(block);
+    return is_pixel;
+  });
+  auto few = make_problem(robot, config.base_link, table, frames_of(config));
+  if (!add_models(*few, of_step, samples, ignored)) return;
+  for (const BlockConfig& block : pixels) {
+    few->add_built_in(block.name, PointToRay{}, block.models,
+                      {.exclusive = block.exclusive.value_or(false), .beside = block.ground});
+  }
+  const FewSamples chosen = few_samples(*step.problem, samples);
+  for (const int i : add_samples(*few, chosen.samples, ignored)) {
+    step.of_excerpt.push_back(chosen.numbers[static_cast<std::size_t>(i)]);
+  }
+  if (few->num_residuals() > 0) step.excerpt = std::move(few);
+}
+
+}  // namespace
+}  // namespace detail
+
+Calibration assemble(const Config& config, const Robot& robot, std::span<const Sample> samples,
+                     Diagnostics& diagnostics) {
+  Calibration calibration;
+  if (!robot.has_link(config.base_link)) {
+    diagnostics.error(
+        config.base_link_place.value_or(config.place),
+        fmt::format("base_link{}: no link '{}' in robot '{}'{}",
+                    config.base_link_place ? "" : " is not given", config.base_link, robot.name(),
+                    did_you_mean(config.base_link, robot.link_names())));
+    return calibration;
+  }
+  const std::set<std::string> frames = detail::frames_of(config);
+  calibration.table = detail::parameters_from(config, robot, samples, diagnostics);
+  if (!config.steps.empty()) {  // values of later steps are set when those steps start
+    for (const auto& [index, value] :
+         detail::initial_assignments(config.steps.front(), calibration.table)) {
+      calibration.table[index].initial = calibration.table[index].value = value;
+    }
+  }
+  detail::warn_of_held_priors(config, calibration.table, diagnostics);
+  detail::warn_of_unusable(config, samples, diagnostics);
+  detail::warn_of_far_points(config, samples, diagnostics);
+  detail::warn_of_changing_cameras(samples, diagnostics);
+  detail::warn_of_joints_with_two_positions(samples, diagnostics);
+  for (const StepConfig& step : config.steps) {
+    std::unique_ptr<AnyProblem> problem = make_problem(
+        robot, config.base_link, detail::with_bounds(calibration.table, step, diagnostics), frames);
+    detail::warn_of_unknown_sensors(step, samples, diagnostics);
+    if (!detail::add_models(*problem, step, samples, diagnostics)) continue;
+    (void)detail::add_samples(*problem, samples, diagnostics);
+    if (!diagnostics.errors.empty()) continue;
+    if (!samples.empty()) detail::check_terms(step, *problem, samples, diagnostics);
+    FreeSet free = detail::free_set(step, *problem, !samples.empty(), diagnostics);
+    calibration.steps.push_back({step.name, step.max_num_iterations, std::move(problem),
+                                 std::move(free),
+                                 detail::initial_assignments(step, calibration.table)});
+    if (!samples.empty()) {
+      detail::prepare_search(calibration.steps.back(), config, step, robot, samples);
+    }
+  }
+  return calibration;
+}
+
+}  // namespace kinecal

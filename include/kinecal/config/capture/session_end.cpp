@@ -1,0 +1,113 @@
+// Definitions of session_end.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/capture/session_end.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/text/reading.hpp"
+#include "kinecal/trust/measured_numbers.hpp"
+#include "kinecal/trust/pose_elsewhere.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Factor by which held-out samples are further off than their noise and than fitted ones: few
+/// samples fit better than they predict.  The design effect is in the uncertainty already and is
+/// not counted twice.  At least 1.
+[[nodiscard]] double times_held_out(const Assessment& step) {
+  double most = 0.0;
+  for (std::size_t t = 0; t < step.held_out.size(); ++t) {
+    const HeldOutError& error = step.held_out[t];
+    const double noise = step.noise[t].sigma * std::sqrt(step.noise[t].components);
+    const double expected = std::max(noise, error.fitted);
+    if (expected > 0.0) most = std::max(most, error.held_out / expected);
+  }
+  return std::max(1.0, most / std::sqrt(std::max(1.0, step.uncertainty.design_effect)));
+}
+
+/// Why a pose is not accurate enough; empty if it is.
+/// @param times  factor of its uncertainty
+/// @param where  "at the poses that are left"
+[[nodiscard]] std::string not_known(const Accuracy& wanted, PoseUncertainty pose, double times,
+                                    const std::string& where) {
+  pose.position *= times;
+  pose.rotation *= times;
+  OnlineState state;
+  state.known = pose.determined;
+  state.position = pose.position;
+  state.rotation = pose.rotation;
+  if (wanted.reached(state)) return {};
+  const std::string what = fmt::format("'{}' in '{}'", pose.frame, pose.in);
+  if (!pose.determined) return fmt::format("{} is not determined {}", what, where);
+  return fmt::format("{} is known to {} {}", what,
+                     wanted.position ? reading(pose.position, "m") : reading(pose.rotation, "rad"),
+                     where);
+}
+
+/// Why samples are too few; empty if they are not.
+[[nodiscard]] std::string too_few(const SessionResult& result) {
+  constexpr double kToSpare = 0.5;  // of the parameters: what shows the errors of joints
+  const auto free = static_cast<int>(result.step.parameters.size());
+  const auto needed = static_cast<int>(std::ceil((1.0 + kToSpare) * free));
+  const int numbers = measured_numbers(result.problem, result.values);
+  if (numbers >= needed) return {};
+  return fmt::format(
+      "{} free parameters need {} measured numbers; these samples have {}, at most 6 "
+      "for each pose and error block",
+      free, needed, numbers);
+}
+
+}  // namespace
+}  // namespace detail
+
+std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
+                      std::span<const Sample> ahead) {
+  const Assessment& step = result.step;  // clang 14 captures no structured binding
+  if (std::string few = detail::too_few(result); !few.empty()) return few;
+  if (result.judgement.verdict == Grade::do_not_use) {
+    return "the verdict is 'do not use': " + result.judgement.reasons.front();
+  }
+  if (!step.pose) return "no error block compares two frames";
+  const auto on_robot = [](const std::string& name, const std::string& link) {
+    return FrameOnRobot{link, name == link ? "" : name};
+  };
+  const FrameOnRobot in = on_robot(step.pose->in, step.pose->in_link);
+  const FrameOnRobot frame = wanted.frame.empty() ? on_robot(step.pose->frame, step.pose->link)
+                                                  : FrameOnRobot{wanted.frame};
+  const auto known_at = [&](std::span<const Sample> poses) {
+    return pose_at(result.problem, step, result.values, poses, frame, in);
+  };
+  const double times = detail::times_held_out(step);
+  std::string why =
+      detail::not_known(wanted, known_at(result.samples), times, "at the captured poses");
+  if (why.empty()) {  // only then: held-out samples are included
+    why = detail::not_known(
+        wanted, pose_held_out(result.problem, step, result.values, result.samples, frame, in), 1.0,
+        "at each pose by the samples of the others");
+  }
+  if (why.empty() && !ahead.empty()) {
+    why = detail::not_known(wanted, known_at(ahead), times, "at the poses that are left");
+  }
+  return why;
+}
+
+std::string why_go_on(const Accuracy& wanted, const SessionCalibration& all,
+                      std::span<const Sample> ahead) {
+  const JudgedResult& judged = all.judged;
+  if (judged.assessments.empty()) return judged.result.termination;
+  const Eigen::VectorXd values = judged.result.table.values();
+  return why_go_on(wanted,
+                   {*all.calibration.steps.back().problem,
+                    {values.data(), static_cast<std::size_t>(values.size())},
+                    judged.assessments.back(),
+                    judged.judgement,
+                    all.samples},
+                   ahead);
+}
+
+}  // namespace kinecal

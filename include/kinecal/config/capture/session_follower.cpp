@@ -1,0 +1,149 @@
+// Definitions of session_follower.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/capture/session_follower.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/trust/compared_frames.hpp"
+
+namespace kinecal {
+
+SessionFollower::SessionFollower(Config config, Robot robot, const std::string& frame)
+    : config_(std::move(config)), robot_(std::move(robot)), frame_(frame) {
+  Diagnostics diagnostics;
+  Calibration empty = assemble(config_, robot_, {}, diagnostics);
+  diagnostics.throw_if_errors();
+  problem_ = std::move(empty.steps.back().problem);
+  if (frame.empty() || robot_.has_link(frame)) return;
+  std::vector<std::string> names = robot_.link_names();
+  names.emplace_back("gripper");  // see parse_accuracy()
+  throw InputError("the robot has no link '" + frame + "'" + did_you_mean(frame, names));
+}
+
+/// @throws SampleError  if a sample does not match the configuration
+void SessionFollower::check(const Sample& sample) const {
+  problem_->without_samples()->add_sample(sample);
+}
+
+/// Calibrates all samples so far, and continues from there.
+/// @returns  false if there are too few
+bool SessionFollower::start() {
+  Diagnostics diagnostics;
+  Calibration calibration = assemble(config_, robot_, samples_, diagnostics);
+  if (!diagnostics.errors.empty() || calibration.steps.empty()) return false;
+  SolveOptions solving;
+  solving.threads = 1;
+  const CalibrationResult result = calibrate(calibration, {}, solving);
+  if (!result.converged) return false;
+  const CalibrationStep& step = calibration.steps.back();
+  frames_ = compared_frames(*step.problem, samples_);
+  if (!frames_) return false;
+  if (!frame_.empty()) frames_->first = {frame_};
+  const std::shared_ptr<const AnyProblem> problem = step.problem->without_samples();
+  const auto make = [problem] { return problem->without_samples(); };
+  const Eigen::VectorXd values = result.table.values();
+  online_.emplace(make, step.free,
+                  std::span<const double>(values.data(), static_cast<std::size_t>(values.size())),
+                  frames_->first, frames_->second);
+  return true;
+}
+
+OnlineState SessionFollower::start_again(std::span<const Sample> ahead) {
+  misfits_ = 0;
+  online_.reset();
+  OnlineState state;
+  constexpr std::size_t kFewest = 3;
+  if (samples_.size() < kFewest || !start()) return state;
+  online_->expect({ahead.begin(), ahead.end()});
+  for (const Sample& sample : samples_) state = online_->add(sample);
+  if (!state.known) online_.reset();
+  return state;
+}
+
+FollowedState SessionFollower::add(const Sample& sample, std::span<const Sample> ahead) {
+  FollowedState followed;
+  try {
+    check(sample);
+    if (online_) {
+      online_->expect({ahead.begin(), ahead.end()});
+      followed.online = online_->add(sample);
+      samples_.push_back(sample);
+      misfits_ = followed.online.fits ? 0 : misfits_ + 1;
+      constexpr int kMisfits = 2;
+      if (misfits_ == kMisfits) followed.online = start_again(ahead);
+    } else {
+      samples_.push_back(sample);
+      followed.online = start_again(ahead);
+    }
+    if (online_ && followed.online.known) followed.next = online_->next_move();
+  } catch (const SampleError& error) {
+    followed.problem = error.what();
+  }
+  return followed;
+}
+
+SessionCalibration SessionFollower::calibrate_all() const {
+  Diagnostics diagnostics;
+  SessionCalibration all{assemble(config_, robot_, samples_, diagnostics), {}, {}};
+  diagnostics.throw_if_errors();
+  all.judged = calibrate_and_judge(all.calibration, samples_);
+  all.samples = used_samples(all.judged, samples_);
+  return all;
+}
+
+Sample at_pose(const CapturePose& pose, const Sample& sample) {
+  Sample there;
+  there.joint_names = sample.joint_names;
+  there.joint_positions = sample.joint_positions;
+  for (std::size_t i = 0; i < there.joint_names.size(); ++i) {
+    const auto at =
+        std::find(pose.joint_names.begin(), pose.joint_names.end(), there.joint_names[i]);
+    if (at == pose.joint_names.end()) continue;
+    there.joint_positions[i] =
+        pose.positions[static_cast<std::size_t>(at - pose.joint_names.begin())];
+  }
+  return there;
+}
+
+std::pair<std::string, std::string> SessionFollower::frames() const {
+  if (!frames_) return {};
+  return {frames_->first.name(), frames_->second.name()};
+}
+
+bool Accuracy::reached(const OnlineState& state) const {
+  if (!state.known) return false;
+  if (position && !(state.position <= *position)) return false;
+  return !rotation || state.rotation <= *rotation;
+}
+
+Accuracy parse_accuracy(const std::string& text) {
+  std::istringstream words(text);
+  std::string name, unit, more;
+  double number = 0.0;
+  const bool complete = static_cast<bool>(words >> name >> number >> unit) && !(words >> more);
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const std::map<std::string, double> lengths = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}},
+                                      angles = {{"deg", kDegree}, {"rad", 1.0}};
+  if (!complete || !(number > 0.0) || !std::isfinite(number) ||
+      (!lengths.contains(unit) && !angles.contains(unit))) {
+    throw InputError("'" + text +
+                     "' is not an accuracy; write 'gripper 1 mm', 'gripper 0.1 deg', or the name "
+                     "of a link instead of gripper");
+  }
+  Accuracy accuracy;
+  if (name != "gripper") accuracy.frame = name;
+  if (lengths.contains(unit)) {
+    accuracy.position = number * lengths.at(unit);
+  } else {
+    accuracy.rotation = number * angles.at(unit);
+  }
+  return accuracy;
+}
+
+}  // namespace kinecal

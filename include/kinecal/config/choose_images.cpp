@@ -1,0 +1,135 @@
+// Definitions of choose_images.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/choose_images.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinecal/config/doubts/some_samples.ipp"
+#include "kinecal/config/doubts/used_joints.hpp"
+#include "kinecal/config/image_fits.ipp"
+#include "kinecal/config/registry.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// The choices that a camera's observations allow.
+struct ImageOptions {
+  bool seen = false;      ///< there are observations
+  bool differ = false;    ///< the choices differ
+  bool bends = false;     ///< a coefficient of the distortion is not zero
+  double turn = 0.0;      ///< angle of R, radians
+  std::string no_raw;     ///< why raw is impossible
+  bool rectified = true;  ///< is possible
+};
+
+[[nodiscard]] ImageOptions image_options(std::span<const Sample> samples, const std::string& camera,
+                                         const SensorEntry& entry) {
+  const std::shared_ptr<const AnySensor> as_raw = entry.make(ImageKind::raw),
+                                         as_rectified = entry.make(ImageKind::rectified);
+  ImageOptions options;
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(camera);
+    if (seen == nullptr || !seen->camera) continue;
+    options.seen = true;
+    const CameraInfo& info = *seen->camera;
+    for (const double d : info.d) options.bends = options.bends || d != 0.0;
+    const double trace = info.r[0] + info.r[4] + info.r[8];
+    if (trace > 1.0) options.turn = std::acos(std::min(1.0, 0.5 * (trace - 1.0)));
+    std::vector<double> raw, rectified;
+    try {
+      rectified = as_rectified->settings(*seen);
+    } catch (const SettingsError&) {
+      options.rectified = false;
+    }
+    try {
+      raw = as_raw->settings(*seen);
+    } catch (const SettingsError& e) {
+      options.no_raw = e.what();
+    }
+    options.differ = options.differ || raw != rectified;
+  }
+  return options;
+}
+
+/// Decides for one camera.
+void choose_image(Config& config, const Robot& robot, std::span<const Sample> samples,
+                  const ModelConfig& camera, const ImageOptions& options,
+                  Diagnostics& diagnostics) {
+  const std::string sensor = fmt::format("sensor '{}'", camera.name);
+  if (!options.no_raw.empty()) {
+    if (!options.rectified || !options.bends) return;  // an error, or P as always
+    set_image(config, camera.name, ImageKind::rectified);
+    diagnostics.note(camera.place,
+                     fmt::format("{}: image taken as rectified; {}", sensor, options.no_raw));
+    return;
+  }
+  if (!options.rectified || !options.differ) return;
+  const std::vector<Sample> some = some_of(samples);
+  const auto raw = fit_image(config, robot, some, camera.name, ImageKind::raw);
+  const auto rectified = fit_image(config, robot, some, camera.name, ImageKind::rectified);
+  const ImageKind image = preferred(raw, rectified);
+  if (image == ImageKind::automatic) return;
+  set_image(config, camera.name, image);
+  const auto text = [](const std::optional<ImageFit>& fit) {
+    return fit ? fmt::format("{:.2g} px", fit->median()) : "does not fit";
+  };
+  diagnostics.note(camera.place,
+                   fmt::format("{}: image raw {}, rectified {}: taken as {}", sensor, text(raw),
+                               text(rectified), image == ImageKind::raw ? "raw" : "rectified"));
+}
+
+/// A raw image is in the frame of the lens, but ROS uses a camera's frame for its rectified image.
+void warn_of_turned_image(const Config& config, const ModelConfig& camera,
+                          const ImageOptions& options, Diagnostics& diagnostics) {
+  constexpr double kTurned = 1e-4;
+  if (!(options.turn > kTurned) || !options.no_raw.empty()) return;
+  for (const StepConfig& step : config.steps) {
+    for (const ModelConfig& model : step.models) {
+      if (model.name != camera.name) continue;
+      const bool raw =
+          model.image == ImageKind::raw || (model.image == ImageKind::automatic && options.bends);
+      if (!raw) return;
+    }
+  }
+  diagnostics.warning(
+      camera.place,
+      fmt::format("sensor '{}': the image is raw, so frame '{}' is calibrated as that of the lens; "
+                  "R of camera_info turns the rectified image, for which ROS takes it, by {:.2g} "
+                  "degrees; calibrate with rectified images to have that frame",
+                  camera.name, camera.frame, options.turn * 180.0 / std::numbers::pi));
+}
+
+}  // namespace
+}  // namespace detail
+
+void choose_images(Config& config, const Robot& robot, std::span<const Sample> samples,
+                   Diagnostics& diagnostics) {
+  for (const ModelConfig& camera : detail::models_of(config)) {
+    if (!detail::has_image(camera)) continue;
+    ImageKind given = ImageKind::automatic;
+    for (const StepConfig& step : config.steps) {
+      for (const ModelConfig& model : step.models) {
+        if (model.name == camera.name && given == ImageKind::automatic) given = model.image;
+      }
+    }
+    const detail::ImageOptions options =
+        detail::image_options(samples, camera.name, *registry().sensor(camera.type));
+    if (given != ImageKind::automatic) {
+      detail::set_image(config, camera.name, given);
+    } else if (options.seen) {
+      detail::choose_image(config, robot, samples, camera, options, diagnostics);
+    }
+    detail::warn_of_turned_image(config, camera, options, diagnostics);
+  }
+}
+
+}  // namespace kinecal

@@ -1,0 +1,191 @@
+// Definitions of joint_positions.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/doubts/joint_positions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "kinecal/config/doubts/exchanged_joints.ipp"
+#include "kinecal/config/doubts/joint_limits.ipp"
+#include "kinecal/config/doubts/occurrences.hpp"
+
+namespace kinecal::detail {
+
+/// A joint without limits beyond this looks wound up, or in degrees.
+inline constexpr double kWoundUp = 4 * std::numbers::pi;
+
+/// True if the positions are wrong as they are but right when multiplied by `factor`.
+[[nodiscard]] inline bool fits_in_other_unit(const UsedJoint& joint, double factor) {
+  const auto of = [&](auto&& is) {
+    return static_cast<std::size_t>(
+        std::count_if(joint.positions.begin(), joint.positions.end(), is));
+  };
+  const std::size_t all = joint.positions.size();
+  if (!joint.limits) {
+    const std::size_t far = of([](double q) { return std::abs(q) > kWoundUp; });
+    return turns(joint.joint.type) && all > 1 && 10 * far >= 3 * all && joint.range() > kWoundUp;
+  }
+  const std::size_t outside = of([&](double q) { return is_outside(joint, q); });
+  const std::size_t after = of([&](double q) { return is_outside(joint, q * factor); });
+  const double most =
+      std::abs(*std::max_element(joint.positions.begin(), joint.positions.end(),
+                                 [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  const bool is_large = turns(joint.joint.type) ? most > std::numbers::pi : most > 1.0;
+  if (turn_into_limits(joint)) return false;  // its zero is elsewhere; degrees would hardly move it
+  return is_large && are_many(outside, all) && 50 * after <= all;
+}
+
+/// Joints whose positions are in degrees, or millimetres; indices.
+[[nodiscard]] inline std::vector<std::size_t> in_other_unit(std::span<const UsedJoint> joints,
+                                                            bool turning) {
+  const double factor = turning ? std::numbers::pi / 180.0 : 1e-3;
+  std::vector<std::size_t> found;
+  std::size_t limited = 0, all = 0;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (turns(joints[j].joint.type) != turning || joints[j].positions.empty()) continue;
+    all += joints[j].range() > 0.0 ? 1 : 0;
+    if (!fits_in_other_unit(joints[j], factor)) continue;
+    found.push_back(j);
+    limited += joints[j].limits ? 1 : 0;
+  }
+  // Without limits, a single joint may just be wound up.
+  return limited > 0 || 2 * found.size() >= std::max<std::size_t>(all, 2)
+             ? found
+             : std::vector<std::size_t>();
+}
+
+/// The index of the position that is furthest from zero.
+[[nodiscard]] inline std::size_t furthest(const UsedJoint& joint) {
+  const auto& q = joint.positions;
+  return static_cast<std::size_t>(
+      std::max_element(q.begin(), q.end(),
+                       [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+      q.begin());
+}
+
+/// One error for all joints that seem to be in degrees or millimetres.
+inline void report_unit(std::span<const UsedJoint> joints, const std::vector<std::size_t>& wrong,
+                        std::span<const Sample> samples, Diagnostics& diagnostics) {
+  const UsedJoint& joint = joints[wrong.front()];
+  const bool turning = turns(joint.joint.type);
+  const std::size_t at = furthest(joint);
+  std::string others;
+  for (std::size_t i = 1; i < wrong.size(); ++i) {
+    others += (i == 1 ? "; so do those of '" : ", '") + joints[wrong[i]].joint.name + "'";
+  }
+  diagnostics.error(
+      place_of(samples, joint.samples[at]),
+      fmt::format(
+          "positions of '{}' reach {:.6g}; {}: they look like {}{}; positions must be in {}",
+          joint.joint.name, joint.positions[at],
+          joint.limits ? "its limits are " + joint.limits_text()
+                       : "that is more than two turns, to and fro",
+          turning ? "degrees" : "millimetres", others, turning ? "radians" : "metres"));
+}
+
+/// Reports numbers that no joint reaches.
+/// @returns  true if there are any
+inline bool report_absurd(const UsedJoint& joint, std::span<const Sample> samples,
+                          Diagnostics& diagnostics) {
+  const bool turning = turns(joint.joint.type);
+  const double most =
+      joint.limits ? (turning ? 20 * std::numbers::pi : 1e3) : (turning ? 1e4 : 1e3);
+  Occurrences absurd;
+  double first = 0.0;
+  for (std::size_t i = 0; i < joint.positions.size(); ++i) {
+    const double q = joint.positions[i];
+    if (std::abs(q) <= most) continue;
+    if (absurd.add(joint.samples[i])) first = q;
+  }
+  if (absurd.count == 0) return false;
+  diagnostics.error(place_of(samples, absurd.first),
+                    fmt::format("position of '{}' is {:.6g} {}{}; {}; correct or remove the sample",
+                                joint.joint.name, first, turning ? "rad" : "m", absurd.others(),
+                                joint.limits ? "its limits are " + joint.limits_text()
+                                             : "no joint reaches that"));
+  return true;
+}
+
+/// Reports positions outside the limits: far (doubt), slightly or by a turn (warning).
+inline void report_outside(const UsedJoint& joint, std::span<const Sample> samples,
+                           Diagnostics& diagnostics) {
+  if (!joint.limits) return;
+  constexpr double kRounding = 1e-3;  // of limits in a URDF, radians or metres
+  Occurrences far, near;
+  double most_far = 0.0, most_near = 0.0;
+  for (std::size_t i = 0; i < joint.positions.size(); ++i) {
+    const double excess = excess_of(joint, joint.positions[i]);
+    if (excess <= kRounding) continue;
+    const bool is_far = is_outside(joint, joint.positions[i]);
+    (is_far ? far : near).add(joint.samples[i]);
+    double& most = is_far ? most_far : most_near;
+    most = std::max(most, excess);
+  }
+  const auto text = [&](const Occurrences& found, double most) {
+    return fmt::format("position of '{}' is outside its limits {}{}, by up to {:.3g} {}",
+                       joint.joint.name, joint.limits_text(), found.others(), most,
+                       turns(joint.joint.type) ? "rad" : "m");
+  };
+  if (far.count > 0) {
+    const std::optional<double> turn = turn_into_limits(joint);
+    diagnostics.doubt(
+        place_of(samples, far.first),
+        text(far, most_far) +
+            (turn ? fmt::format("; with {:+.3g} rad they are inside: is its zero another one than "
+                                "the URDF's?",
+                                *turn)
+                  : "; is it the position of another joint, in another unit, or the URDF of "
+                    "another robot?"));
+  } else if (near.count > 0) {
+    diagnostics.warning(place_of(samples, near.first), text(near, most_near));
+  }
+}
+
+void check_joint_positions(std::span<const UsedJoint> joints, std::span<const Sample> samples,
+                           Diagnostics& diagnostics) {
+  std::vector<bool> explained(joints.size(), false);
+  std::vector<std::size_t> renamed = report_negated(joints, samples, diagnostics);
+  if (renamed.empty()) renamed = report_exchanged(joints, samples, diagnostics);
+  for (const std::size_t j : renamed) explained[j] = true;
+  if (renamed.empty() && report_order(joints, samples, diagnostics)) return;
+  for (const bool turning : {true, false}) {
+    std::vector<std::size_t> wrong = in_other_unit(joints, turning);
+    std::erase_if(wrong, [&](std::size_t j) { return explained[j]; });
+    if (wrong.empty()) continue;
+    report_unit(joints, wrong, samples, diagnostics);
+    for (const std::size_t j : wrong) explained[j] = true;
+  }
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (explained[j] || report_absurd(joints[j], samples, diagnostics)) continue;
+    report_outside(joints[j], samples, diagnostics);
+  }
+}
+
+void check_still_joints(const Config& config, std::span<const UsedJoint> joints,
+                        Diagnostics& diagnostics) {
+  std::set<std::string> reported;
+  for (const StepConfig& step : config.steps) {
+    for (const FreeParamConfig& param : step.free_params) {
+      const auto joint = std::find_if(joints.begin(), joints.end(), [&](const UsedJoint& used) {
+        return used.joint.name == param.name;
+      });
+      if (joint == joints.end() || joint->positions.size() < 2) continue;
+      const double still = turns(joint->joint.type) ? 1e-4 : 1e-5;  // encoders at rest change less
+      if (joint->range() > still || !reported.insert(param.name).second) continue;
+      diagnostics.doubt(
+          param.place,
+          fmt::format("the offset of '{}' is free, but the joint never moves: it is at {:.6g} in "
+                      "all {}; so its offset cannot be told from an error of the frames beside it; "
+                      "record it in other positions, or remove it from free_params",
+                      param.name, joint->positions.front(),
+                      counted(joint->positions.size(), "sample")));
+    }
+  }
+}
+
+}  // namespace kinecal::detail

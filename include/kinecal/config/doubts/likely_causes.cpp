@@ -1,0 +1,146 @@
+// Definitions of likely_causes.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/doubts/likely_causes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "kinecal/config/doubts/cause_solver.ipp"
+#include "kinecal/config/doubts/hypotheses.ipp"
+#include "kinecal/config/doubts/some_samples.ipp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// A mistake explains a bad fit if undoing it leaves this fraction of the cost.
+constexpr double kExplains = 0.1;
+/// A scale of points is wrong, even if the fit is not bad, if correcting it halves the noise.
+constexpr double kExplainsScale = 0.25;
+
+/// The scale of a model's points that fits best: a board with larger squares than configured.  Fits
+/// parabolas through three costs, over the logarithm of the scale.
+[[nodiscard]] std::optional<Cause> scale_cause(const CauseSolver& solver,
+                                               const std::vector<Sample>& samples,
+                                               const std::string& model, const SolvedSamples& now,
+                                               double explains) {
+  const auto fit = [&](double x) {
+    std::vector<Sample> scaled = samples;
+    for (Sample& sample : scaled) {
+      for (Observation& seen : sample.observations) {
+        if (seen.sensor != model) continue;
+        for (Feature& feature : seen.features) feature.point *= std::exp(x);
+      }
+    }
+    return solve_samples(solver, solver.config, scaled);
+  };
+  constexpr double kFirst = 0.1, kFurthest = 1.1, kEnough = 1e-3;
+  constexpr int kSteps = 8;
+  double best = 0.0, step = kFirst;
+  SolvedSamples at_best = now;
+  for (int i = 0; i < kSteps && step > kEnough; ++i) {
+    const auto below = fit(best - step), above = fit(best + step);
+    if (!below || !above) return std::nullopt;
+    const double curvature = below->cost - 2.0 * at_best.cost + above->cost;
+    const double slope = 0.5 * (above->cost - below->cost);
+    const double most = 4.0 * step;
+    const double move = curvature > 0.0 ? std::clamp(-slope / curvature * step, -most, most)
+                                        : (slope > 0.0 ? -most : most);
+    const auto next = fit(best + move);
+    if (!next || std::abs(best + move) > kFurthest) return std::nullopt;
+    if (next->cost < at_best.cost) {
+      best += move;
+      at_best = *next;
+    }
+    if (i == 0 && std::abs(move) < most && at_best.cost > 2.0 * explains * now.cost) {
+      return std::nullopt;  // the parabola shows well enough that nothing can be gained
+    }
+    step = std::min(step, std::max(0.1 * step, std::abs(move)));
+  }
+  if (at_best.cost * std::max(1.0, std::exp(-2.0 * best)) >= explains * now.cost) {
+    return std::nullopt;
+  }
+  return Cause{at_best.cost, fmt::format("with the points of '{}' multiplied by {:.4g}, {}", model,
+                                         std::exp(best), fall_of(now, at_best))};
+}
+
+/// The models whose points fit better at another scale.
+[[nodiscard]] std::vector<Cause> scale_causes(const CauseSolver& solver,
+                                              const std::vector<Sample>& samples,
+                                              const SolvedSamples& now, double explains) {
+  std::vector<Cause> found;
+  const std::set<std::string> pixels = pixel_models(solver.config);
+  for (const ModelConfig& model : models_of(solver.config)) {
+    if (pixels.contains(model.name)) continue;
+    auto scaled = scale_cause(solver, samples, model.name, now, explains);
+    if (scaled) found.push_back(*std::move(scaled));
+  }
+  return found;
+}
+
+/// The sentences, lowest cost first; equal costs in the order of the hypotheses.  Drops causes that
+/// only explain a part of a better one, or that change the samples in the same way.
+[[nodiscard]] std::vector<std::string> sentences(std::vector<Cause> found) {
+  constexpr double kAlike = 1.5, kPartly = 100.0;
+  double best = HUGE_VAL;
+  for (const Cause& cause : found) best = std::min(best, cause.cost);
+  std::erase_if(found, [&](const Cause& cause) { return cause.cost > kPartly * best; });
+  std::set<double> costs;
+  std::erase_if(found, [&](const Cause& cause) { return !costs.insert(cause.cost).second; });
+  for (Cause& cause : found) cause.cost = std::max(cause.cost, kAlike * best);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Cause& a, const Cause& b) { return a.cost < b.cost; });
+  std::vector<std::string> all;
+  for (Cause& cause : found) all.push_back(std::move(cause.sentence));
+  return all;
+}
+
+}  // namespace
+}  // namespace detail
+
+std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
+                                       std::span<const Sample> samples, const Calibrator& solve) {
+  const detail::CauseSolver solver{config, robot, solve ? solve : detail::plain_calibrator()};
+  const std::vector<Sample> some = detail::some_of(samples);
+  const auto now = detail::solve_samples(solver, config, some);
+  std::vector<detail::Cause> found;
+  for (const auto& hypothesis :
+       detail::hypotheses(config, detail::used_joints(config, robot, some))) {
+    std::vector<Sample> changed = some;
+    Config changed_config = config;
+    if (hypothesis.correct) std::for_each(changed.begin(), changed.end(), hypothesis.correct);
+    if (hypothesis.correct_config) hypothesis.correct_config(changed_config);
+    const auto then = detail::solve_samples(solver, changed_config, changed);
+    if (!then) continue;
+    const double cost = then->cost / (hypothesis.shrinks * hypothesis.shrinks);
+    if (now && cost >= detail::kExplains * now->cost) continue;
+    found.push_back({cost, hypothesis.undone + ", " +
+                               (now ? detail::fall_of(*now, *then) : "the samples can be solved")});
+  }
+  if (now) {
+    for (detail::Cause& cause : detail::scale_causes(solver, some, *now, detail::kExplains)) {
+      found.push_back(std::move(cause));
+    }
+  }
+  return detail::sentences(std::move(found));
+}
+
+std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
+                                      std::span<const Sample> samples,
+                                      const ParameterTable& solution) {
+  const detail::CauseSolver solver{config, robot, detail::plain_calibrator(), &solution};
+  const std::vector<Sample> some = detail::some_of(samples);
+  const auto now = detail::solve_samples(solver, config, some);
+  const auto is_exact = [](const BlockStatistics& block) {
+    return block.after.mean < 1e-6;  // metres or pixels: simulated without noise
+  };
+  if (!now || std::all_of(now->blocks.begin(), now->blocks.end(), is_exact)) return {};
+  return detail::sentences(detail::scale_causes(solver, some, *now, detail::kExplainsScale));
+}
+
+}  // namespace kinecal

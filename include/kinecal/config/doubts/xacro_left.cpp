@@ -1,0 +1,79 @@
+// Definitions of xacro_left.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/doubts/xacro_left.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "kinecal/files/urdf/urdf_text.ipp"
+
+namespace kinecal::detail {
+
+/// A name quoted as one word for a shell.
+[[nodiscard]] inline std::string shell_word(const std::string& name) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:@%+-";
+  if (name.find_first_not_of(kPlain) == std::string::npos && !name.starts_with('-')) return name;
+  std::string word = name.starts_with('-') ? "'./" : "'";
+  for (const char c : name) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+std::string xacro_command(const std::string& file) {
+  std::filesystem::path stem = std::filesystem::path(file).filename();
+  if (!stem.has_extension()) return {};
+  while (stem.has_extension()) stem = stem.stem();  // robot.urdf.xacro
+  return fmt::format("xacro {} > {}", shell_word(file),
+                     shell_word(stem.string() + "_expanded.urdf"));
+}
+
+/// Error: remnants that may hold a part of the robot.
+inline void report_missing(const UrdfText& source, const std::vector<XacroRemnant>& remnants,
+                           Diagnostics& diagnostics) {
+  const auto missing = [](const XacroRemnant& remnant) { return !remnant.is_inert; };
+  const auto first = std::find_if(remnants.begin(), remnants.end(), missing);
+  if (first == remnants.end()) return;
+  const auto count = std::count_if(remnants.begin(), remnants.end(), missing);
+  const std::string command = xacro_command(source.file());
+  diagnostics.error(
+      source.place(first->element),
+      fmt::format(
+          "{} is xacro that was not expanded{}; links, joints or numbers of the robot may be "
+          "missing; "
+          "{}{}",
+          first->text, count == 1 ? "" : fmt::format(", and so are {} more places", count - 1),
+          command.empty() ? "expand its file with xacro into another file" : "run: " + command,
+          first->text.starts_with('<') ? ", or remove it if the robot is complete without it"
+                                       : ""));
+}
+
+/// Warning: remnants that nothing depends on.
+inline void report_inert(const UrdfText& source, const std::vector<XacroRemnant>& remnants,
+                         Diagnostics& diagnostics) {
+  constexpr std::size_t kMost = 5;  // number to list
+  std::vector<XacroRemnant> inert;
+  std::copy_if(remnants.begin(), remnants.end(), std::back_inserter(inert),
+               [](const XacroRemnant& remnant) { return remnant.is_inert; });
+  if (inert.empty()) return;
+  std::string others;
+  for (std::size_t i = 1; i < std::min(inert.size(), kMost); ++i) {
+    others += fmt::format(", {} in line {}", inert[i].text, source.place(inert[i].element).line);
+  }
+  if (inert.size() > kMost) others += fmt::format(" and {} more", inert.size() - kMost);
+  diagnostics.warning(source.place(inert[0].element),
+                      fmt::format("xacro left {}{}; ignored, for no link or joint depends on {}",
+                                  inert[0].text, others, inert.size() == 1 ? "it" : "them"));
+}
+
+void check_xacro(const std::string& text, const std::string& name_for_messages,
+                 Diagnostics& diagnostics) {
+  const UrdfText source(text, name_for_messages);
+  const XacroRemnants remnants(source.robot());
+  report_missing(source, remnants.all(), diagnostics);
+  report_inert(source, remnants.all(), diagnostics);
+}
+
+}  // namespace kinecal::detail

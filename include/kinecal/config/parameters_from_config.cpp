@@ -1,0 +1,296 @@
+// Definitions of parameters_from_config.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/parameters_from_config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "kinecal/geometry/rpy.hpp"
+
+namespace kinecal::detail {
+
+const SensorEntry& sensor_entry(const ModelConfig& model) {
+  const SensorEntry* entry = registry().sensor(model.type);
+  if (entry != nullptr) return *entry;
+  const std::vector<SensorEntry>& all =
+      registry().sensors();  // any camera: for names of parameters
+  return *std::find_if(all.begin(), all.end(),
+                       [](const SensorEntry& one) { return measures_depth(*one.sensor); });
+}
+
+Mount mount_from(const ModelConfig& model) {
+  return {model.name, model.frame, model.param_name};
+}
+
+std::vector<ParameterInfo> own_parameters(const BlockConfig& block) {
+  const BlockEntry* entry = registry().block(block.type);
+  if (entry == nullptr) return {};
+  try {
+    return entry->parameters(block);
+  } catch (const std::exception&) {  // reported where the block is read
+    return {};
+  }
+}
+
+/// Names of the frames in which features were recorded.
+[[nodiscard]] inline std::set<std::string> feature_frames(std::span<const Sample> samples) {
+  std::set<std::string> frames;
+  for (const Sample& sample : samples) {
+    for (const Observation& observation : sample.observations) {
+      for (const Feature& feature : observation.features) frames.insert(feature.frame);
+    }
+  }
+  return frames;
+}
+
+inline void add_if_new(ParameterTable& table, const std::string& name, const std::string& unit) {
+  if (table.find(name) < 0) table.add({.name = name, .unit = unit});
+}
+
+inline void add_frame(ParameterTable& table, const std::string& frame) {
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    add_if_new(table, parameter_name(frame, kFrameAxes[axis]), axis < 3 ? "m" : "rad");
+  }
+}
+
+/// Adds the offset of a joint, or reports why it cannot have one.
+inline void add_joint(ParameterTable& table, const Robot& robot, const std::string& name,
+                      const SourceLocation& place, Diagnostics& diagnostics) {
+  const Joint& joint = robot.joint(name);
+  if (!moves(joint.type)) {
+    diagnostics.error(place, fmt::format("joint '{}' is {} and has no offset; free its frame "
+                                         "instead (free_frames)",
+                                         name, to_string(joint.type)));
+    return;
+  }
+  if (joint.mimic) {
+    diagnostics.error(place, fmt::format("joint '{}' mimics '{}'; free the offset of '{}' instead",
+                                         name, joint.mimic->joint, drive(robot, joint).joint));
+    return;
+  }
+  add_if_new(table, name, turns(joint.type) ? "rad" : "m");
+}
+
+/// Adds a parameter of a joint model, "elbow_gear_ratio", or reports why the joint cannot have it.
+/// @returns  false if the name is not one of a joint and a joint model
+inline bool add_joint_model(ParameterTable& table, const Robot& robot, const std::string& name,
+                            const SourceLocation& place, Diagnostics& diagnostics) {
+  for (std::size_t k = 0; k < kJointModelSize; ++k) {
+    const std::string suffix = "_" + std::string(kJointModelNames[k]);
+    if (!name.ends_with(suffix)) continue;
+    const std::string of = name.substr(0, name.size() - suffix.size());
+    if (!robot.has_joint(of)) continue;
+    const Joint& joint = robot.joint(of);
+    if (!moves(joint.type) || joint.mimic) {
+      diagnostics.error(
+          place, fmt::format("'{}': joint '{}' {}", name, of,
+                             joint.mimic ? "mimics another; name that one" : "does not move"));
+    } else if (kJointModelRotatesOnly[k] && !turns(joint.type)) {
+      diagnostics.error(place, fmt::format("'{}': joint '{}' slides; only a joint that rotates has "
+                                           "this parameter",
+                                           name, of));
+    } else {
+      add_if_new(table, name, std::string(kJointModelUnits[k]));
+    }
+    return true;
+  }
+  return false;
+}
+
+/// Reports a fixed frame that is in the URDF, and warns of one without features.
+inline void check_fixed_frame(const FreeFrameConfig& frame, const Robot& robot,
+                              const std::set<std::string>& recorded, bool have_samples,
+                              Diagnostics& diagnostics) {
+  if (robot.has_joint(frame.name) || robot.has_link(frame.name)) {
+    diagnostics.error(frame.place,
+                      fmt::format("fixed frame '{}' is a {} of the robot, whose URDF says where it "
+                                  "is; fixed_frames are beyond the link of a model",
+                                  frame.name, robot.has_joint(frame.name) ? "joint" : "link"));
+  } else if (have_samples && !recorded.contains(frame.name)) {
+    diagnostics.warning(frame.place,
+                        fmt::format("fixed frame '{}': no feature of the samples is in it{}",
+                                    frame.name, did_you_mean(frame.name, recorded)));
+  }
+}
+
+/// Reports a free frame that is neither a joint nor a virtual frame of recorded features.
+inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
+                        const std::set<std::string>& recorded, bool have_samples,
+                        Diagnostics& diagnostics) {
+  if (frame.is_fixed) return check_fixed_frame(frame, robot, recorded, have_samples, diagnostics);
+  if (robot.has_joint(frame.name)) return;
+  if (robot.has_link(frame.name)) {
+    const Joint* joint = robot.parent_joint(frame.name);
+    diagnostics.error(frame.place,
+                      fmt::format("free frame '{}' is a link; frames are named by their joint{}",
+                                  frame.name, joint ? ": '" + joint->name + "'" : ""));
+    return;
+  }
+  if (recorded.contains(frame.name)) return;
+  const auto nearest = nearest_name(frame.name, robot.joint_names());
+  if (nearest) {
+    diagnostics.error(frame.place,
+                      fmt::format("free frame '{}' is neither a joint of the robot nor "
+                                  "a frame of the samples; did you mean '{}'?",
+                                  frame.name, *nearest));
+  } else if (have_samples) {
+    diagnostics.warning(frame.place,
+                        fmt::format("free frame '{}' is neither a joint of the robot nor "
+                                    "a frame of the samples; it keeps its initial value",
+                                    frame.name));
+  }
+}
+
+/// Names that free_params of a step may contain.
+[[nodiscard]] inline std::vector<std::string> free_param_names(const Robot& robot,
+                                                               const StepConfig& step) {
+  std::vector<std::string> names;
+  for (const Joint& joint : robot.joints()) {
+    if (!moves(joint.type) || joint.mimic) continue;
+    names.push_back(joint.name);
+    for (const std::string_view part : kJointModelNames) {
+      names.push_back(parameter_name(joint.name, part));
+    }
+  }
+  for (const ModelConfig& model : step.models) {
+    for (const ParameterInfo& info : sensor_entry(model).sensor->parameters()) {
+      names.push_back(parameter_name(mount_from(model).parameter_prefix(), info.name));
+    }
+  }
+  for (const BlockConfig& block : step.error_blocks) {
+    for (const ParameterInfo& info : own_parameters(block)) {
+      names.push_back(parameter_name(block.name, info.name));
+    }
+  }
+  return names;
+}
+
+inline void add_params(ParameterTable& table, const Robot& robot, const StepConfig& step,
+                       Diagnostics& diagnostics) {
+  for (const FreeParamConfig& param : step.free_params) {
+    if (table.find(param.name) >= 0) continue;  // of a sensor or block
+    if (robot.has_joint(param.name)) {
+      add_joint(table, robot, param.name, param.place, diagnostics);
+      continue;
+    }
+    if (add_joint_model(table, robot, param.name, param.place, diagnostics)) {
+      if (table.find(param.name) < 0) continue;
+      diagnostics.warning(param.place,
+                          fmt::format("a URDF cannot hold '{}': apply it in the driver of the "
+                                      "joint; calibration.yaml has its value",
+                                      param.name));
+      continue;
+    }
+    diagnostics.error(
+        param.place,
+        fmt::format("free parameter '{}' is neither a joint of the robot nor a parameter of a "
+                    "joint, sensor or error block{}",
+                    param.name, did_you_mean(param.name, free_param_names(robot, step))));
+  }
+}
+
+inline void add_valued_joints(ParameterTable& table, const Robot& robot, const StepConfig& step,
+                              Diagnostics& diagnostics) {
+  const auto check = [&](const std::string& name, const SourceLocation& place, const char* what) {
+    if (table.find(name) >= 0) return;
+    if (robot.has_joint(name)) {
+      add_joint(table, robot, name, place, diagnostics);
+      return;
+    }
+    if (add_joint_model(table, robot, name, place, diagnostics)) return;
+    std::vector<std::string> names = free_param_names(robot, step);
+    for (const Parameter& parameter : table) names.push_back(parameter.name);
+    diagnostics.error(place, fmt::format("{} '{}' is not a parameter of this calibration{}", what,
+                                         name, did_you_mean(name, names)));
+  };
+  for (const auto& value : step.initial_values) check(value.name, value.place, "initial value:");
+  for (const auto& bound : step.bounds) check(bound.name, bound.place, "bound:");
+}
+
+/// Reports a parameter of a frame, sensor or block with the name of a joint, which would be
+/// ambiguous.
+inline void check_collisions(const ParameterTable& table, const Robot& robot, const Config& config,
+                             Diagnostics& diagnostics) {
+  const auto check = [&](const std::string& name, const SourceLocation& place,
+                         const std::string& owner) {
+    if (table.find(name) < 0 || !robot.has_joint(name) || !moves(robot.joint(name).type)) return;
+    diagnostics.error(place, fmt::format("parameter '{}' of {} has the name of a joint of the "
+                                         "robot; rename one of them",
+                                         name, owner));
+  };
+  for (const StepConfig& step : config.steps) {
+    for (const FreeFrameConfig& frame : step.free_frames) {
+      for (auto axis : kFrameAxes) {
+        check(parameter_name(frame.name, axis), frame.place, "frame '" + frame.name + "'");
+      }
+    }
+    for (const ModelConfig& model : step.models) {
+      for (const ParameterInfo& info : sensor_entry(model).sensor->parameters()) {
+        check(parameter_name(mount_from(model).parameter_prefix(), info.name), model.place,
+              "model '" + model.name + "'");
+      }
+    }
+    for (const BlockConfig& block : step.error_blocks) {
+      for (const ParameterInfo& info : own_parameters(block)) {
+        check(parameter_name(block.name, info.name), block.place,
+              "error block '" + block.name + "'");
+      }
+    }
+  }
+}
+
+std::set<std::string> frames_of(const Config& config) {
+  std::set<std::string> frames;
+  for (const StepConfig& step : config.steps) {
+    for (const FreeFrameConfig& frame : step.free_frames) frames.insert(frame.name);
+  }
+  return frames;
+}
+
+ParameterTable parameters_from(const Config& config, const Robot& robot,
+                               std::span<const Sample> samples, Diagnostics& diagnostics) {
+  ParameterTable table;
+  const std::set<std::string> recorded = feature_frames(samples);
+  for (const StepConfig& step : config.steps) {
+    for (const ModelConfig& model : step.models) {
+      add_sensor_parameters(table, *sensor_entry(model).sensor, mount_from(model), samples);
+    }
+    for (const BlockConfig& block : step.error_blocks) {
+      add_parameters(table, block.name, own_parameters(block));
+    }
+    for (const FreeFrameConfig& frame : step.free_frames) {
+      check_frame(frame, robot, recorded, !samples.empty(), diagnostics);
+      add_frame(table, frame.name);
+    }
+    add_params(table, robot, step, diagnostics);
+    add_valued_joints(table, robot, step, diagnostics);
+  }
+  check_collisions(table, robot, config, diagnostics);
+  return table;
+}
+
+std::vector<std::pair<int, double>> initial_assignments(const StepConfig& step,
+                                                        const ParameterTable& table) {
+  std::vector<std::pair<int, double>> assignments;
+  for (const FrameInitialValueConfig& value : step.frame_initial_values) {
+    const auto frame = std::find_if(step.free_frames.begin(), step.free_frames.end(),
+                                    [&](const auto& f) { return f.name == value.name; });
+    if (frame == step.free_frames.end()) continue;
+    Eigen::Matrix<double, 6, 1> all;
+    all << value.xyz, log(rotation_from_rpy(value.rpy));
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      if (!frame->axes[axis]) continue;  // robot_calibration ignores it; the reader has warned
+      const int index = table.find(parameter_name(value.name, kFrameAxes[axis]));
+      assignments.emplace_back(index, all(static_cast<Eigen::Index>(axis)));
+    }
+  }
+  for (const InitialValueConfig& value : step.initial_values) {
+    if (const int index = table.find(value.name); index >= 0) {
+      assignments.emplace_back(index, value.value);
+    }
+  }
+  return assignments;
+}
+
+}  // namespace kinecal::detail

@@ -1,0 +1,48 @@
+// Definitions of read_config.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/read_config.hpp"
+
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "kinecal/config/config_dialects.ipp"
+#include "kinecal/files/yaml/yaml_document.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Appends messages, each once: steps that share a list report the same errors.
+void add_once(std::vector<std::string>& messages, const std::vector<std::string>& more) {
+  std::set<std::string> added;
+  for (const std::string& message : more) {
+    if (added.insert(message).second) messages.push_back(message);
+  }
+}
+
+}  // namespace
+}  // namespace detail
+
+Config read_config(const std::string& path, Diagnostics& diagnostics) {
+  return parse_config(detail::read_yaml_text(path), path, diagnostics);
+}
+
+Config parse_config(const std::string& text, const std::string& path, Diagnostics& diagnostics) {
+  detail::ConfigProgress progress;
+  progress.config.place = {path, 0};
+  Diagnostics found;
+  const detail::YamlNode content = detail::parse_config_text(text, path, found);
+  if (content.is_map()) {
+    detail::ConfigMap file(content, {path, 0}, "", found);
+    detail::read_dialect(file, progress);
+  } else {
+    found.error({path, 0}, "the file is " + detail::describe_config(content) + ", not a map");
+  }
+  detail::add_once(diagnostics.errors, found.errors);
+  detail::add_once(diagnostics.warnings, found.warnings);
+  return progress.config;
+}
+
+}  // namespace kinecal

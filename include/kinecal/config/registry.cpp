@@ -1,0 +1,160 @@
+// The registry with its built-in types.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/config/registry.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+using Keys = std::vector<std::vector<std::string>>;
+using NumberKeys = std::vector<std::pair<std::string, double>>;
+
+/// The entries of all built-in sensors, in the order of the variant.
+template <Sensor... Ms>
+[[nodiscard]] std::vector<SensorEntry> built_in_sensors(const std::variant<Ms...>*) {
+  const auto add = [](AnyProblem& problem, const BuiltInSensor& sensor, const Mount& mount) {
+    problem.add_built_in(sensor, mount);
+  };
+  return {sensor_entry_of(Ms{}, add)...};
+}
+
+/// @param make  makes the block from the numbers of a configuration
+template <ErrorBlock B, class Make>
+[[nodiscard]] BlockEntry built_in_block(const Keys& keys, NumberKeys numbers, Make make,
+                                        const std::string& type = B::kType) {
+  BlockEntry entry;
+  entry.type = type;
+  entry.read_as = B::kType;
+  entry.unit = B::kUnit;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    entry.sensors.push_back({keys[i], kQuantities<B>[i]});
+  }
+  entry.numbers = std::move(numbers);
+  entry.parameters = [make](const BlockConfig& block) {
+    const auto infos = parameters_of(B(make(block)));
+    return std::vector<ParameterInfo>(infos.begin(), infos.end());
+  };
+  entry.add = [make](AnyProblem& problem, const BlockConfig& block, const TermOptions& options) {
+    problem.add_built_in(block.name, B(make(block)), block.models, options);
+  };
+  return entry;
+}
+
+/// @throws std::invalid_argument  if a length is negative
+[[nodiscard]] double length_of(const BlockConfig& block, const char* key) {
+  const double length = block.numbers.at(key);
+  if (length < 0.0) throw std::invalid_argument(std::string(key) + " is negative");
+  return length;
+}
+
+[[nodiscard]] BlockEntry prior_entry() {
+  BlockEntry entry;
+  entry.type = entry.read_as = "outrageous";
+  entry.unit = "1";
+  entry.numbers = {{"joint_scale", 1.0}, {"position_scale", 1.0}, {"rotation_scale", 1.0}};
+  for (const char* mean : kPriorMeans) entry.numbers.emplace_back(mean, 0.0);
+  entry.has_param = true;
+  entry.parameters = [](const BlockConfig&) { return std::vector<ParameterInfo>(); };
+  entry.add = [](AnyProblem& problem, const BlockConfig& block, const TermOptions& options) {
+    const auto number = [&](const char* key) { return block.numbers.at(key); };
+    Prior prior{block.param, number("joint_scale"), number("position_scale"),
+                number("rotation_scale")};
+    for (std::size_t i = 0; i < prior.mean.size(); ++i) prior.mean[i] = number(kPriorMeans[i]);
+    problem.add_prior(block.name, prior, options);
+  };
+  return entry;
+}
+
+}  // namespace
+}  // namespace detail
+
+Registry::Registry() {
+  using detail::built_in_block;
+  sensors_ = detail::built_in_sensors(static_cast<const BuiltInSensor*>(nullptr));
+
+  const auto number = [](const BlockConfig& block, const char* key) {
+    return block.numbers.at(key);
+  };
+  const detail::Keys pair = {{"model_a"}, {"model_b"}};
+  const auto point_to_point = [](const BlockConfig&) { return PointToPoint{}; };
+  add(built_in_block<PointToPoint>(pair, {}, point_to_point));
+  add(built_in_block<PointToPoint>({{"camera", "model_a"}, {"arm", "model_b"}}, {}, point_to_point,
+                                   "camera3d_to_arm"));
+  add(built_in_block<PointToPixel>({{"model_3d"}, {"model_2d"}}, {{"scale", 1.0}},
+                                   [](const BlockConfig&) { return PointToPixel{}; }));
+  // The default is the ground, z = 0 of the base link.
+  const detail::NumberKeys plane = {{"a", 0.0}, {"b", 0.0}, {"c", 1.0}, {"d", 0.0}, {"scale", 1.0}};
+  const auto point_to_plane = [number](const BlockConfig& block) {
+    return PointToPlane(number(block, "a"), number(block, "b"), number(block, "c"),
+                        number(block, "d"));
+  };
+  add(built_in_block<PointToPlane>({{"model", "model_a"}}, plane, point_to_plane));
+  add(built_in_block<PointToPlane>({{"camera", "model_a", "model"}}, plane, point_to_plane,
+                                   "camera3d_to_ground"));
+  add(built_in_block<PlaneToPlane>(
+      pair, {{"normal_scale", 1.0}, {"offset_scale", 1.0}}, [number](const BlockConfig& block) {
+        return PlaneToPlane{number(block, "normal_scale"), number(block, "offset_scale")};
+      }));
+  add(detail::prior_entry());
+  for (BlockEntry& entry : blocks_) entry.is_upstream = true;
+  add(built_in_block<PointDistance>(
+      pair, {{"length", 0.0}, {"scale", 1.0}},
+      [](const BlockConfig& block) { return PointDistance{detail::length_of(block, "length")}; }));
+  add(built_in_block<PointToLine>(
+      {{"model", "model_a"}},
+      {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"a", 0.0}, {"b", 0.0}, {"c", 1.0}, {"scale", 1.0}},
+      [number](const BlockConfig& block) {
+        return PointToLine({number(block, "x"), number(block, "y"), number(block, "z")},
+                           {number(block, "a"), number(block, "b"), number(block, "c")});
+      }));
+  add(built_in_block<PointToSphere>(
+      {{"model", "model_a"}}, {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"radius", 0.0}, {"scale", 1.0}},
+      [number](const BlockConfig& block) {
+        return PointToSphere{{number(block, "x"), number(block, "y"), number(block, "z")},
+                             detail::length_of(block, "radius")};
+      }));
+  add(built_in_block<PoseToPose>(
+      pair, {{"translation_scale", 1.0}, {"rotation_scale", 1.0}},
+      [number](const BlockConfig& block) {
+        return PoseToPose{number(block, "translation_scale"), number(block, "rotation_scale")};
+      }));
+  add(built_in_block<RayToRay>(pair, {{"scale", 1.0}},
+                               [](const BlockConfig&) { return RayToRay{}; }));
+}
+
+void Registry::add(SensorEntry entry) {
+  if (sensor(entry.type) != nullptr) {
+    throw std::invalid_argument("sensor type '" + entry.type + "' is registered already");
+  }
+  sensors_.push_back(std::move(entry));
+}
+
+void Registry::add(BlockEntry entry) {
+  if (block(entry.type) != nullptr) {
+    throw std::invalid_argument("error block type '" + entry.type + "' is registered already");
+  }
+  blocks_.push_back(std::move(entry));
+}
+
+const SensorEntry* Registry::sensor(const std::string& type) const {
+  const auto it = std::find_if(sensors_.begin(), sensors_.end(),
+                               [&](const SensorEntry& entry) { return entry.type == type; });
+  return it == sensors_.end() ? nullptr : &*it;
+}
+
+const BlockEntry* Registry::block(const std::string& type) const {
+  const auto it = std::find_if(blocks_.begin(), blocks_.end(),
+                               [&](const BlockEntry& entry) { return entry.type == type; });
+  return it == blocks_.end() ? nullptr : &*it;
+}
+
+Registry& registry() {
+  static Registry all;
+  return all;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,50 @@
+// Definitions of read_recording.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/files/recordings/read_recording.hpp"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "kinecal/files/recordings/bag_topics.hpp"
+#include "kinecal/files/recordings/message_decoder.ipp"
+#include "kinecal/files/recordings/message_samples.ipp"
+
+namespace kinecal {
+
+Recording read_recording(const std::string& path, Diagnostics& diagnostics, unsigned threads,
+                         const ProgressMeter& meter) {
+  if (recording_format(path) == RecordingFormat::yaml) {
+    return {read_samples(path, diagnostics, threads, meter), {}};
+  }
+  Recording recording;
+  const std::size_t errors_before = diagnostics.errors.size();
+  detail::MessageDecoder decoder(path, diagnostics);
+  detail::MessageSamples samples(path);
+  int number = 0;
+  const auto handle = [&](const BagMessage& message) {
+    if (use_of(message.topic) == TopicUse::urdf) {
+      const auto text = decoder.decode(message, 1);
+      const MessageValue* data = text ? text->find("data") : nullptr;
+      if (data == nullptr) return;
+      if (const auto* urdf = data->as<std::string_view>()) recording.urdf = *urdf;
+    } else if (!samples.too_many_errors()) {
+      ++number;
+      if (const auto sample = decoder.decode(message, number)) samples.add(*sample, number);
+    }
+  };
+  const auto wants = [](const BagTopic& topic) {
+    const TopicUse use = use_of(topic);
+    return use == TopicUse::samples || use == TopicUse::urdf;
+  };
+  read_bag(path, {wants, handle, meter}, diagnostics);
+  recording.samples = samples.take(diagnostics);
+  if (number == 0 && diagnostics.errors.size() == errors_before) {
+    diagnostics.error({path, 0},
+                      "no messages of robot_calibration_msgs/CalibrationData in this bag; "
+                      "'kinecal inspect' shows what is in it");
+  }
+  return recording;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,42 @@
+// Definitions of write_recording.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/files/recordings/write_recording.hpp"
+
+#include <filesystem>
+#include <sstream>
+
+#include "kinecal/files/bags/mcap/write_mcap.hpp"
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/recordings/convert.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/samples/write_samples.hpp"
+
+namespace kinecal {
+
+std::optional<Encoding> output_encoding(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".bag") return Encoding::ros1;
+  if (extension == ".mcap") return Encoding::cdr;
+  if (extension == ".yaml" || extension == ".yml") return std::nullopt;
+  throw InputError(path + ": unknown format; the name must end in .yaml, .bag or .mcap");
+}
+
+void write_recording(const std::string& path, const std::vector<Sample>& samples,
+                     const std::string& urdf) {
+  const std::optional<Encoding> encoding = output_encoding(path);
+  const std::filesystem::path name(path);
+  OutputFolder folder(name.has_parent_path() ? name.parent_path() : ".");
+  if (!encoding) {
+    std::ostringstream text;
+    write_samples(text, samples);
+    folder.write({{name.filename().string(), text.str()}});
+    return;
+  }
+  BagOutput bag(path, *encoding,
+                *encoding == Encoding::cdr ? best_mcap_compression() : Compression::none);
+  if (!urdf.empty()) write_urdf(bag, urdf);
+  write_samples(bag, samples);
+  bag.finish();
+}
+
+}  // namespace kinecal

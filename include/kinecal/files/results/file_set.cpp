@@ -1,0 +1,113 @@
+// A set of files: definitions of file_set.hpp.
+//
+// All files are first written to a temporary folder inside the target folder, then renamed.  If
+// anything fails, the old files are restored.  A reader never sees half a file.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/files/results/file_set.hpp"
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "kinecal/files/results/staging.ipp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Suffix of the second name that a file keeps while it is replaced.
+constexpr const char* kBefore = ".before";
+
+void check_target(const std::filesystem::path& target) {
+  const auto status = std::filesystem::status(target);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw OutputError(target.string() + ": exists and is not a file");
+  }
+}
+
+/// Gives a second name to a file that will be replaced, if it exists.
+void keep_file(const std::filesystem::path& file, const std::filesystem::path& kept) {
+  if (!std::filesystem::exists(file)) return;
+  std::error_code error;
+  std::filesystem::create_hard_link(file, kept, error);
+  if (error) std::filesystem::copy_file(file, kept, error);  // a file system without links
+  if (error) throw OutputError(file.string() + ": cannot be kept: " + error.message());
+}
+
+void put_back(const std::filesystem::path& kept, const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::exists(kept)) {
+    std::filesystem::rename(kept, file, ignored);
+  } else {
+    std::filesystem::remove(file, ignored);
+  }
+}
+
+}  // namespace
+}  // namespace detail
+
+OutputFolder::OutputFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+  const detail::StagingFolder can_be_written = stage();
+}
+
+detail::StagingFolder OutputFolder::stage() {
+  constexpr int kTries = 50;  // the run that made the folder removes it while it is empty
+  for (int i = 1;; ++i) {
+    try {
+      create();
+      return detail::StagingFolder(folder_);
+    } catch (const OutputError&) {
+      if (i == kTries) throw;
+    }
+  }
+}
+
+void OutputFolder::create() {
+  const std::filesystem::path absolute = std::filesystem::absolute(folder_).lexically_normal();
+  std::filesystem::path path;
+  for (const auto& part : absolute) {
+    path /= part;
+    if (path.empty() || std::filesystem::exists(path)) continue;
+    std::error_code error;
+    std::filesystem::create_directory(path, error);
+    if (error) throw OutputError(folder_.string() + ": cannot be created: " + error.message());
+    created_.push_back(path);
+  }
+  if (!std::filesystem::is_directory(folder_)) {
+    throw OutputError(folder_.string() + ": is not a folder");
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  for (auto it = created_.rbegin(); it != created_.rend(); ++it) {
+    std::filesystem::remove(*it, ignored);
+  }
+}
+
+void OutputFolder::write(const std::vector<OutputFile>& files) {
+  for (const OutputFile& file : files) detail::check_target(folder_ / file.name);
+  const detail::StagingFolder staging = stage();
+  for (const OutputFile& file : files) {
+    detail::write_durably(staging.path() / file.name, file.content, folder_ / file.name);
+  }
+  const detail::FolderLock lock(folder_);
+  std::vector<std::string> placed;
+  try {
+    for (const OutputFile& file : files) {
+      detail::keep_file(folder_ / file.name, staging.path() / (file.name + detail::kBefore));
+      detail::rename_file(staging.path() / file.name, folder_ / file.name);
+      placed.push_back(file.name);
+    }
+  } catch (const OutputError&) {
+    for (const std::string& name : placed) {
+      detail::put_back(staging.path() / (name + detail::kBefore), folder_ / name);
+    }
+    throw;
+  }
+}
+
+}  // namespace kinecal

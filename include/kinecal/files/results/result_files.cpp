@@ -1,0 +1,127 @@
+// The content of a result's files: definitions of result_files.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/files/results/result_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/files/cameras/camera_fields.ipp"
+#include "kinecal/files/cameras/camera_info.hpp"
+#include "kinecal/files/results/result_text.ipp"
+#include "kinecal/files/yaml/yaml_text.hpp"
+#include "kinecal/solve/calibrate.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// A camera of a calibration, with its parameters applied to the recorded settings.
+struct CalibratedCamera {
+  Mount mount;
+  CameraInfo info;
+  bool measures_depth = false;
+};
+
+[[nodiscard]] std::vector<CalibratedCamera> calibrated_cameras(const Calibration& calibration,
+                                                               const ParameterTable& table,
+                                                               std::span<const Sample> samples) {
+  std::vector<CalibratedCamera> cameras;
+  for (const CalibrationStep& step : calibration.steps) {
+    for (const MountedSensor& mounted : step.problem->sensors()) {
+      const Mount& mount = mounted.mount();
+      const auto same = [&](const auto& camera) { return camera.mount.name == mount.name; };
+      if (std::any_of(cameras.begin(), cameras.end(), same)) continue;
+      if (!mounted.sensor().is_camera()) continue;
+      for (const Sample& sample : samples) {
+        const Observation* seen = sample.observation(mount.name);
+        if (seen == nullptr || !seen->camera) continue;
+        const Eigen::VectorXd all = table.values();
+        const std::vector<double> own =
+            mounted.own_values({all.data(), static_cast<std::size_t>(all.size())});
+        cameras.push_back({mount, mounted.sensor().calibrated(*seen->camera, own),
+                           measures_depth(mounted.sensor())});
+        break;
+      }
+    }
+  }
+  return cameras;
+}
+
+}  // namespace
+}  // namespace detail
+
+std::vector<JointPatch> joint_patches(const Robot& robot, const ParameterTable& table) {
+  std::vector<JointPatch> patches;
+  for (const Joint& joint : robot.joints()) {
+    const auto value = [&](const std::string& name) {
+      const int index = table.find(name);
+      return index < 0 ? 0.0 : table[index].value;
+    };
+    Eigen::Matrix<double, 6, 1> frame;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      frame(static_cast<Eigen::Index>(axis)) = value(parameter_name(joint.name, kFrameAxes[axis]));
+    }
+    JointPatch patch{joint.name, moves(joint.type) && !joint.mimic ? value(joint.name) : 0.0, {}};
+    if (frame.isZero(0.0) && patch.offset == 0.0) continue;
+    patch.correction = {exp(Vector3<double>(frame.tail<3>())), frame.head<3>()};
+    patches.push_back(patch);
+  }
+  return patches;
+}
+
+std::string impossible_camera(const Calibration& calibration, const ParameterTable& table,
+                              std::span<const Sample> samples) {
+  Diagnostics diagnostics;
+  for (const detail::CalibratedCamera& camera :
+       detail::calibrated_cameras(calibration, table, samples)) {
+    const SourceLocation place{"camera '" + camera.mount.name + "'", 0};
+    detail::check_camera(camera.info, place, diagnostics);
+    const std::string scaling = parameter_name(camera.mount.parameter_prefix(), "z_scaling");
+    if (camera.measures_depth && !(table[scaling].value > -1.0)) {
+      diagnostics.error(
+          place, fmt::format("depth scale must be positive, is {}", 1.0 + table[scaling].value));
+    }
+  }
+  return diagnostics.errors.empty() ? "" : diagnostics.errors.front();
+}
+
+std::vector<OutputFile> result_files(const Robot& robot, const std::string& urdf_text,
+                                     const std::string& urdf_name, const Calibration& calibration,
+                                     const CalibrationResult& result,
+                                     std::span<const Sample> samples,
+                                     const ResultFileOptions& options) {
+  std::vector<OutputFile> files;
+  const std::string urdf = detail::dated("calibrated", ".urdf", options.date);
+  files.push_back({urdf, patch_urdf(urdf_text, urdf_name, robot, joint_patches(robot, result.table),
+                                    options.offsets)});
+  std::string references;
+  const auto refer = [&](const std::string& kind, const std::string& camera,
+                         const std::string& file) {
+    const bool first = references.find("\n" + kind + ":") == std::string::npos;
+    const std::string key = first ? kind : camera + "_" + kind;
+    references += fmt::format("\n{}: {}", detail::name_to_yaml(key), detail::name_to_yaml(file));
+  };
+  for (const detail::CalibratedCamera& camera :
+       detail::calibrated_cameras(calibration, result.table, samples)) {
+    const std::string& name = camera.mount.name;
+    const std::string content = to_camera_info_yaml(camera.info, name);
+    if (camera.measures_depth) {
+      files.push_back({detail::camera_file("depth", name, options.date), content});
+      refer("depth_info", name, files.back().name);
+    }
+    files.push_back({detail::camera_file("rgb", name, options.date), content});
+    refer("rgb_info", name, files.back().name);
+  }
+  std::string values = detail::values_yaml(result, options.deviations);
+  if (!references.empty()) values += references.substr(1) + "\n";
+  values += fmt::format("urdf: {}\n", urdf);
+  files.push_back({detail::dated("calibration", ".yaml", options.date), values});
+  return files;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,155 @@
+// Reads a robot from its URDF: definitions of read_urdf.hpp.
+//
+// urdfdom decides what a valid URDF is.  Common errors for which urdfdom has no clear message are
+// found before it runs and reported with file and line.  The rotation of an origin is computed from
+// the roll, pitch and yaw in the file, not from urdfdom's quaternion, which rounds.
+// Source: URDF specification, <joint>.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/files/urdf/read_urdf.hpp"
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/files/urdf/urdf_text.ipp"
+#include "kinecal/files/urdf/urdfdom.ipp"
+#include "kinecal/geometry/rpy.hpp"
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// The types of joints by their names in a URDF.
+[[nodiscard]] const std::map<std::string, JointType>& urdf_joint_types() {
+  static const std::map<std::string, JointType> types = [] {
+    std::map<std::string, JointType> names;
+    for (JointType type : {JointType::fixed, JointType::revolute, JointType::continuous,
+                           JointType::prismatic, JointType::floating, JointType::planar}) {
+      names.emplace(to_string(type), type);
+    }
+    return names;
+  }();
+  return types;
+}
+
+/// Reports the errors of one joint for which urdfdom has no clear message.
+void check_urdf_joint(const UrdfText& source, pugi::xml_node joint, Diagnostics& diagnostics) {
+  const SourceLocation place = source.place(joint);
+  const std::string name = joint.attribute("name").value(), type = joint.attribute("type").value();
+  if (name.empty()) return diagnostics.error(place, "a joint has no name");
+  if (const pugi::xml_node first = source.joint(name); first != joint) {
+    diagnostics.error(place, "joint '" + name + "' occurs twice, first in line " +
+                                 std::to_string(source.place(first).line));
+  }
+  if (!urdf_joint_types().contains(type)) {
+    std::vector<std::string> known;
+    for (const auto& [known_type, value] : urdf_joint_types()) known.push_back(known_type);
+    diagnostics.error(
+        place, "joint '" + name + "' has " +
+                   (type.empty() ? "no type"
+                                 : "the unknown type '" + type + "'" + did_you_mean(type, known)));
+  }
+  for (const char* end : {"parent", "child"}) {
+    if (joint.child(end).attribute("link").empty()) {
+      diagnostics.error(place, "joint '" + name + "' has no <" + end + " link=\"...\"/>");
+    }
+  }
+  for (const std::string& text :
+       {name, std::string(joint.child("parent").attribute("link").value()),
+        std::string(joint.child("child").attribute("link").value())}) {
+    if (!has_control_characters(text)) continue;
+    diagnostics.error(place, "the name '" + printable(text) + "' has a control character");
+  }
+  (void)source.vector(joint.child("origin"), "xyz", diagnostics);
+  (void)source.vector(joint.child("origin"), "rpy", diagnostics);
+  (void)source.vector(joint.child("axis"), "xyz", diagnostics);
+}
+
+/// The robot with these joints, which must be a tree.
+/// @throws InputError  if the joints are not a robot, or not a tree
+[[nodiscard]] Robot make_urdf_robot(const UrdfText& source, std::vector<Joint> joints) {
+  try {
+    Robot robot(source.robot().attribute("name").value(), std::move(joints));
+    for (const Joint& joint : robot.joints()) (void)joints_to_root(robot, joint.child);
+    return robot;
+  } catch (const RobotError& e) {
+    Diagnostics diagnostics;
+    diagnostics.error(source.place_of_name_in(e.what()), e.what());
+    source.throw_if_errors(diagnostics);
+    throw;
+  }
+}
+
+/// Reports errors of the joints and their connections for which urdfdom has no clear message.
+/// (urdfdom would also leak links that form a circle.)
+void check_urdf_joints(const UrdfText& source) {
+  Diagnostics diagnostics;
+  const std::string robot = source.robot().attribute("name").value();
+  if (has_control_characters(robot)) {
+    diagnostics.error(source.place(source.robot()),
+                      "the name '" + printable(robot) + "' has a control character");
+  }
+  std::vector<Joint> joints;
+  for (pugi::xml_node node : source.robot().children("joint")) {
+    check_urdf_joint(source, node, diagnostics);
+    Joint joint;
+    joint.name = node.attribute("name").value();
+    joint.parent = node.child("parent").attribute("link").value();
+    joint.child = node.child("child").attribute("link").value();
+    joints.push_back(std::move(joint));
+  }
+  source.throw_if_errors(diagnostics);
+  (void)make_urdf_robot(source, std::move(joints));
+}
+
+/// The joint with the exact numbers of the file; urdfdom rounds.
+[[nodiscard]] Joint make_urdf_joint(const UrdfText& source, pugi::xml_node node,
+                                    const urdf::Joint& parsed) {
+  Joint joint;
+  Diagnostics checked_before;
+  joint.name = parsed.name;
+  joint.type = urdf_joint_types().at(node.attribute("type").value());
+  joint.parent = parsed.parent_link_name;
+  joint.child = parsed.child_link_name;
+  const pugi::xml_node origin = node.child("origin");
+  joint.origin.rotation = rotation_from_rpy(source.vector(origin, "rpy", checked_before));
+  joint.origin.translation = source.vector(origin, "xyz", checked_before);
+  if (moves(joint.type)) joint.axis = {parsed.axis.x, parsed.axis.y, parsed.axis.z};
+  if (parsed.mimic) {
+    joint.mimic = Mimic{parsed.mimic->joint_name, parsed.mimic->multiplier, parsed.mimic->offset};
+  }
+  const bool limited = moves(joint.type) && joint.type != JointType::continuous;
+  if (limited && parsed.limits) joint.limits = {parsed.limits->lower, parsed.limits->upper};
+  return joint;
+}
+
+}  // namespace
+}  // namespace detail
+
+Robot parse_urdf(const std::string& text, const std::string& name_for_messages) {
+  const detail::UrdfText source(text, name_for_messages);
+  detail::check_urdf_joints(source);
+  const urdf::ModelInterfaceSharedPtr model = detail::parse_with_urdfdom(source);
+  std::vector<Joint> joints;
+  for (pugi::xml_node node : source.robot().children("joint")) {
+    const urdf::JointConstSharedPtr joint = model->getJoint(node.attribute("name").value());
+    joints.push_back(detail::make_urdf_joint(source, node, *joint));
+  }
+  return detail::make_urdf_robot(source, std::move(joints));
+}
+
+std::string read_urdf_text(const std::string& path) {
+  return detail::read_text_file(path);
+}
+
+Robot read_urdf(const std::string& path) {
+  return parse_urdf(read_urdf_text(path), path);
+}
+
+}  // namespace kinecal

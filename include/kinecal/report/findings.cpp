@@ -1,0 +1,166 @@
+// Writes the report as text.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/report/findings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/report/text.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+[[nodiscard]] inline std::string verdict_text(const Findings& findings) {
+  const Judgement& judgement = findings.judgement;
+  std::string text = fmt::format("verdict: {}\n", to_string(judgement.verdict));
+  for (const std::string& reason : judgement.reasons) text += fmt::format("  - {}\n", reason);
+  return text;
+}
+
+[[nodiscard]] inline std::string fit_table(const Findings& findings) {
+  TextTable table({"error block", "features", "unit", "before", "fitted", "held out", "worst",
+                   "noise", "sigma given"});
+  for (const BlockStatistics& block : findings.result.blocks) {
+    const auto* noise = of_block(findings.assessments, &Assessment::noise, block.name);
+    if (noise == nullptr) continue;  // a prior
+    const auto* error = of_block(findings.assessments, &Assessment::held_out, block.name);
+    const auto text = [&](double value) { return in_reading_unit(value, block.unit); };
+    const double root = std::sqrt(static_cast<double>(noise->components));
+    table.add({block.name, fmt::format("{}", block.count), reading_unit(block.unit),
+               text(root * block.before.rms), text(root * block.after.rms),
+               error == nullptr || error->features == 0 ? "-" : text(error->held_out),
+               text(block.after.max), noise->freedom > 0.0 ? text(noise->sigma) : "-",
+               noise->given > 0.0 ? text(noise->given) : "-"});
+  }
+  const double effect =
+      findings.assessments.empty() ? 1.0 : findings.assessments.back().uncertainty.design_effect;
+  return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
+         table.str() + design_effect_note(effect);
+}
+
+std::string cause_text(const Findings& findings, int sample) {
+  const auto cause = findings.causes.find(sample);
+  return cause == findings.causes.end() ? "" : "; likely cause: " + cause->second;
+}
+
+std::string note_on(const Parameter& parameter, double deviation) {
+  if (!std::isfinite(deviation)) return "not determined";
+  if (deviation > useful_deviation(parameter)) return "hardly determined";
+  if (std::abs(parameter.value - parameter.initial) < 2.0 * deviation) return "not significant";
+  return "";
+}
+
+[[nodiscard]] inline std::string parameters_table(const Findings& findings) {
+  TextTable table({"parameter", "calibrated", "+-", "unit", "value", "from", ""});
+  for (const int i : findings.result.calibrated) {
+    const Parameter& parameter = findings.result.table[i];
+    const auto deviation = findings.deviation(i);
+    const auto [text, unit] = for_people(parameter.value, parameter.unit);
+    const std::string known =
+        deviation && std::isfinite(*deviation) ? for_people(*deviation, parameter.unit).first : "-";
+    table.add({parameter.name, text, known, unit, fmt::format("{:.8g}", parameter.value),
+               fmt::format("{:.8g}", parameter.initial),
+               deviation ? note_on(parameter, *deviation) : "at its bound"});
+  }
+  std::string text = "Parameters, with one standard deviation\n" + table.str();
+  for (const Assessment& step : findings.assessments) {
+    if (!step.pose || &step != &findings.assessments.back()) continue;
+    const PoseUncertainty& pose = *step.pose;
+    text +=
+        fmt::format("\nPose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
+                    pose.frame, pose.in, reading(pose.position, "m"), reading(pose.rotation, "rad"),
+                    reading(pose.worst_position, "m"), reading(pose.worst_rotation, "rad"));
+  }
+  return text;
+}
+
+[[nodiscard]] inline std::string correlations_text(const Findings& findings) {
+  std::string text;
+  if (findings.assessments.empty()) return text;
+  const Assessment& step = findings.assessments.back();
+  constexpr std::size_t kListed = 5;
+  const std::vector<Correlation> pairs = high_correlations(step.uncertainty);
+  for (std::size_t i = 0; i < std::min(kListed, pairs.size()); ++i) {
+    const auto name = [&](int column) {
+      return findings.result.table[step.parameters[static_cast<std::size_t>(column)]].name;
+    };
+    text += fmt::format("  {:+.3f}  {}, {}\n", pairs[i].coefficient, name(pairs[i].a),
+                        name(pairs[i].b));
+  }
+  if (pairs.size() > kListed) text += fmt::format("  and {} more\n", pairs.size() - kListed);
+  return text.empty() ? text : "Correlated above 0.9: hard to tell apart\n" + text;
+}
+
+[[nodiscard]] inline std::string captures_text(const Findings& findings) {
+  std::string text;
+  for (const LeftOutSample& sample : findings.left_out) {
+    text +=
+        fmt::format("  {} (sample {}): {}; left out\n", sample.source, sample.number, sample.why);
+  }
+  if (findings.assessments.empty()) return text;
+  const Assessment& step = findings.assessments.back();
+  std::vector<CaptureError> worst = step.captures;
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const auto& a, const auto& b) { return a.times > b.times; });
+  constexpr std::size_t kWorst = 3;
+  for (std::size_t i = 0; i < worst.size() && (worst[i].bad || i < kWorst); ++i) {
+    if (!(worst[i].times > 0.0)) break;
+    const auto sample = static_cast<std::size_t>(worst[i].sample);
+    text += fmt::format("  {} (sample {}): {}{}{}\n", findings.sources[sample],
+                        findings.numbers[sample], capture_text(worst[i], step),
+                        worst[i].bad ? "; does not fit the others" : "",
+                        cause_text(findings, worst[i].sample));
+  }
+  return text.empty() ? text : "Worst samples\n" + text;
+}
+
+[[nodiscard]] inline std::string next_text(const Findings& findings) {
+  if (findings.judgement.verdict == Grade::do_not_use) {
+    return "Next: fix the problems listed under the verdict and calibrate again; no results were "
+           "written\n";
+  }
+  std::string idle;
+  for (const Assessment& step : findings.assessments) {
+    if (&step != &findings.assessments.back()) continue;
+    for (const IdleGroup& group : step.idle) idle += (idle.empty() ? "" : ", ") + group.owner;
+  }
+  if (!idle.empty()) {
+    return "Next: " + idle + " may as well be held: freeing them predicts no better\n";
+  }
+  return findings.judgement.verdict == Grade::good
+             ? "Next: kinecal install, and verify the result with a few new poses\n"
+             : "Next: record more samples, or verify the result with a few new poses\n";
+}
+
+}  // namespace detail
+
+Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedResult judged,
+                     std::span<const Sample> samples) {
+  Findings findings{std::move(judged)};
+  findings.robot = robot.name();
+  findings.poses = recorded_poses(calibration, samples);
+  return findings;
+}
+
+std::string findings_text(const Findings& findings) {
+  std::string text = detail::verdict_text(findings);
+  text += fmt::format("\nRobot '{}', {} sample{}", findings.robot, findings.sources.size(),
+                      findings.sources.size() == 1 ? "" : "s");
+  if (!findings.left_out.empty()) text += fmt::format(", {} left out", findings.left_out.size());
+  text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_table(findings);
+  for (const Assessment& step : findings.assessments) {
+    const std::string open =
+        observability_text(step.step, step.observability, findings.result.table);
+    if (!open.empty()) text += "\n" + open;
+  }
+  for (const std::string& part :
+       {detail::correlations_text(findings), detail::captures_text(findings)}) {
+    if (!part.empty()) text += "\n" + part;
+  }
+  return text + "\n" + detail::next_text(findings);
+}
+
+}  // namespace kinecal

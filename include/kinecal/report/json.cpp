@@ -1,0 +1,150 @@
+// Writing the report as JSON.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/report/json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "kinecal/files/json/json_text.hpp"
+#include "kinecal/report/json_state.ipp"
+
+namespace kinecal {
+
+namespace detail {
+
+[[nodiscard]] inline Json json(const Statistics& s) {
+  return {{"rms", s.rms}, {"mean", s.mean}, {"median", s.median}, {"max", s.max}};
+}
+
+[[nodiscard]] inline Json json(const FoundMinimum& minimum) {
+  return {{"cost", minimum.cost}, {"solves", minimum.solves}};
+}
+
+[[nodiscard]] inline Json json(const StartSummary& starts) {
+  if (!starts.searched()) return nullptr;
+  const auto write = [](const FoundMinimum& minimum) { return json(minimum); };
+  return {{"frames", starts.frames},
+          {"starts", starts.starts},
+          {"random_starts", starts.random_starts},
+          {"failed", starts.failed},
+          {"minima", json_list(starts.minima, write)},
+          {"taken", starts.taken < 0 ? Json() : Json(starts.taken)}};
+}
+
+[[nodiscard]] inline Json json(const StepResult& step) {
+  return {{"name", step.name},
+          {"iterations", step.iterations},
+          {"initial_cost", step.initial_cost},
+          {"final_cost", step.final_cost},
+          {"seconds", step.seconds},
+          {"num_residuals", step.num_residuals},
+          {"num_parameters", step.num_parameters},
+          {"form", to_string(step.form)},
+          {"costs", step.costs},
+          {"starts", json(step.starts)}};
+}
+
+[[nodiscard]] inline Json json(const BlockStatistics& block) {
+  return {{"name", block.name},   {"type", block.type},           {"unit", block.unit},
+          {"count", block.count}, {"before", json(block.before)}, {"after", json(block.after)}};
+}
+
+[[nodiscard]] inline Json json(const Observability& observability, const ParameterTable& table) {
+  const auto combination = [&](const Combination& of) { return json(of, table); };
+  const auto name = [&](int parameter) { return table[parameter].name; };
+  return {{"rank", observability.rank},
+          {"condition", observability.condition},
+          {"unobservable", json_list(observability.unobservable, combination)},
+          {"hold", json_list(observability.hold, name)}};
+}
+
+[[nodiscard]] inline Json json(const BlockNoise& noise, const HeldOutError* error) {
+  return {{"name", noise.block},
+          {"unit", noise.unit},
+          {"sigma", noise.sigma},
+          {"robust_sigma", noise.robust},
+          {"sigma_given", noise.given > 0.0 ? Json(noise.given) : Json()},
+          {"features", noise.features},
+          {"components", noise.components},
+          {"freedom", noise.freedom},
+          {"fitted", error == nullptr ? Json() : Json(error->fitted)},
+          {"held_out", error == nullptr ? Json() : Json(error->held_out)}};
+}
+
+[[nodiscard]] inline Json json(const LeftOutSample& sample) {
+  return {{"sample", sample.number}, {"source", sample.source}, {"why", sample.why}};
+}
+
+[[nodiscard]] inline Json json(const PoseUncertainty& pose) {
+  return {{"frame", pose.frame},
+          {"link", pose.link},
+          {"in", pose.in},
+          {"in_link", pose.in_link},
+          {"position", pose.position},
+          {"rotation", pose.rotation},
+          {"worst_position", pose.worst_position},
+          {"worst_rotation", pose.worst_rotation},
+          {"determined", pose.determined}};
+}
+
+[[nodiscard]] inline Json json_parameter(const Findings& findings, int i) {
+  const Parameter& parameter = findings.result.table[i];
+  const auto deviation = findings.deviation(i);
+  const bool known = deviation && std::isfinite(*deviation);
+  return {{"name", parameter.name},
+          {"value", parameter.value},
+          {"initial", parameter.initial},
+          {"unit", parameter.unit},
+          {"sigma", known ? Json(*deviation) : Json()},
+          {"significant", known && note_on(parameter, *deviation).empty()}};
+}
+
+[[nodiscard]] inline Json json_captures(const Findings& findings, const Assessment& step) {
+  Json bad = Json::array();
+  for (const CaptureError& error : step.captures) {
+    if (!error.bad) continue;
+    const auto sample = static_cast<std::size_t>(error.sample);
+    bad.push_back(
+        json(LeftOutSample{findings.numbers[sample], findings.sources[sample],
+                           capture_text(error, step) + cause_text(findings, error.sample)}));
+  }
+  return bad;
+}
+
+}  // namespace detail
+
+std::string json_report(const Findings& findings) {
+  using detail::json_list;
+  const auto write = [](const auto& item) { return detail::json(item); };
+  const CalibrationResult& result = findings.result;
+  const Assessment none, &last = findings.assessments.empty() ? none : findings.assessments.back();
+  const auto noise = [&](const BlockNoise& of) {
+    return detail::json(of,
+                        detail::of_block(findings.assessments, &Assessment::held_out, of.block));
+  };
+  const auto observability = [&](const Assessment& step) {
+    return detail::json(step.observability, result.table);
+  };
+  const auto parameter = [&](int i) { return detail::json_parameter(findings, i); };
+  detail::Json images = detail::Json::object();
+  for (const auto& [sensor, image] : findings.images) images[sensor] = image;
+  const detail::Json report = {{"verdict", to_string(findings.judgement.verdict)},
+                               {"reasons", findings.judgement.reasons},
+                               {"converged", result.converged},
+                               {"termination", result.termination},
+                               {"steps", json_list(result.steps, write)},
+                               {"error_blocks", json_list(result.blocks, write)},
+                               {"noise", json_list(last.noise, noise)},
+                               {"design_effect", last.uncertainty.design_effect},
+                               {"parameters", json_list(result.calibrated, parameter)},
+                               {"pose", last.pose ? detail::json(*last.pose) : detail::Json()},
+                               {"observability", json_list(findings.assessments, observability)},
+                               {"bad_samples", detail::json_captures(findings, last)},
+                               {"left_out", json_list(findings.left_out, write)},
+                               {"images", images},
+                               {"covariance", detail::json_covariance(findings)},
+                               {"poses", detail::json(findings.poses)}};
+  return detail::json_lines(report);
+}
+
+}  // namespace kinecal

@@ -1,0 +1,180 @@
+// Definitions of select_poses.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/study/select_poses.hpp"
+
+#include <numeric>
+#include <utility>
+
+#include "kinecal/study/pose_design.ipp"
+#include "kinecal/study/seeded_random.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// A search for poses.
+class PoseSearch {
+ public:
+  PoseSearch(const PoseCandidates& candidates, const SelectOptions& options)
+      : design_(candidates, options.criterion), shares_(candidates.shares), options_(options) {
+    if (!shares_.empty() && shares_.size() != candidates.information.size()) {
+      throw std::invalid_argument("not every pose has its joints");
+    }
+  }
+
+  [[nodiscard]] PoseSelection run() {
+    std::vector<int> chosen = greedy(all(), options_.count, {});
+    exchange(chosen);
+    PoseSelection selection;
+    selection.chosen = greedy(chosen, static_cast<int>(chosen.size()), {});
+    DesignSums sum = design_.nothing();
+    for (const int pose : selection.chosen) {
+      sum = sum.plus(design_.of(pose));
+      selection.values.push_back(design_.value(sum));
+    }
+    selection.value = value_after_failures(selection.chosen);
+    return selection;
+  }
+
+ private:
+  static constexpr double kLittle = 1e-6;  ///< of all candidates' information
+
+  [[nodiscard]] std::vector<int> all() const {
+    std::vector<int> every(static_cast<std::size_t>(design_.size()));
+    std::iota(every.begin(), every.end(), 0);
+    return every;
+  }
+
+  [[nodiscard]] bool are_alike(int a, int b) const {
+    if (shares_.empty()) return false;
+    const auto &of_a = shares_[static_cast<std::size_t>(a)],
+               &of_b = shares_[static_cast<std::size_t>(b)];
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+      if (std::abs(of_a[i] - of_b[i]) > options_.least_distance) return false;
+    }
+    return true;
+  }
+  /// True if a pose may join some others when one of them leaves.
+  [[nodiscard]] bool may_join(int pose, const std::vector<int>& others, int leaves) const {
+    return std::none_of(others.begin(), others.end(), [&](int other) {
+      return other != leaves && (other == pose || are_alike(other, pose));
+    });
+  }
+
+  /// Adds the pose that helps most, again and again.
+  [[nodiscard]] std::vector<int> greedy(const std::vector<int>& from, int count,
+                                        std::vector<int> chosen) const {
+    DesignSums sum = design_.sum(chosen);
+    while (static_cast<int>(chosen.size()) < count) {
+      double least = std::numeric_limits<double>::infinity();
+      int best = -1;
+      for (const int pose : from) {
+        if (!may_join(pose, chosen, -1)) continue;
+        const double value = design_.value(sum.plus(design_.of(pose)), kLittle);
+        if (best >= 0 && !(value < least)) continue;
+        best = pose;
+        least = value;
+      }
+      if (best < 0) break;
+      chosen.push_back(best);
+      sum = sum.plus(design_.of(best));
+    }
+    return chosen;
+  }
+
+  /// The value without the poses that the set would miss most.
+  [[nodiscard]] double value_after_failures(std::vector<int> chosen) const {
+    DesignSums sum = design_.sum(chosen);
+    double value = design_.value(sum, kLittle);
+    for (int failure = 0; failure < options_.failures && !chosen.empty(); ++failure) {
+      std::size_t missed = 0;
+      double most = -std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const double without = design_.value(sum.minus(design_.of(chosen[i])), kLittle);
+        if (!(without > most)) continue;
+        most = without;
+        missed = i;
+      }
+      sum = sum.minus(design_.of(chosen[missed]));
+      chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(missed));
+      value = most;
+    }
+    return value;
+  }
+
+  [[nodiscard]] double value_of(const std::vector<int>& chosen, const DesignSums& sum) const {
+    return options_.failures > 0 ? value_after_failures(chosen) : design_.value(sum, kLittle);
+  }
+
+  /// Exchanges chosen poses for others while that helps.
+  void exchange(std::vector<int>& chosen) const {
+    constexpr double kHelps = 1e-6;  // of the value
+    constexpr int kRounds = 50;
+    DesignSums sum = design_.sum(chosen);
+    double least = value_of(chosen, sum);
+    bool improved = true;
+    for (int round = 0; round < kRounds && improved; ++round) {
+      improved = false;
+      for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const int leaves = chosen[i];
+        const DesignSums others = sum.minus(design_.of(leaves));
+        int best = leaves;
+        for (int pose = 0; pose < design_.size(); ++pose) {
+          if (!may_join(pose, chosen, leaves) || pose == leaves) continue;
+          chosen[i] = pose;
+          const double value = value_of(chosen, others.plus(design_.of(pose)));
+          if (!(least - value > kHelps * std::abs(least))) continue;
+          least = value;
+          best = pose;
+        }
+        chosen[i] = best;
+        sum = others.plus(design_.of(best));
+        improved = improved || best != leaves;
+      }
+    }
+  }
+
+  PoseDesign design_;
+  const std::vector<std::vector<double>>& shares_;
+  SelectOptions options_;
+};
+
+}  // namespace
+}  // namespace detail
+
+PoseSelection select_poses(const PoseCandidates& candidates, const SelectOptions& options) {
+  return detail::PoseSearch(candidates, options).run();
+}
+
+double design_value(const PoseCandidates& candidates, const std::vector<int>& chosen,
+                    PoseCriterion criterion) {
+  const detail::PoseDesign design(candidates, criterion);
+  return design.value(design.sum(chosen));
+}
+
+RandomSets random_sets(const PoseCandidates& candidates, int count, int sets,
+                       PoseCriterion criterion, std::uint64_t seed) {
+  const detail::PoseDesign design(candidates, criterion);
+  SeededRandom random(seed);
+  std::vector<int> all(static_cast<std::size_t>(design.size()));
+  std::iota(all.begin(), all.end(), 0);
+  RandomSets result;
+  double least = std::numeric_limits<double>::infinity();
+  const int size = std::min(count, design.size());
+  for (int set = 0; set < sets; ++set) {
+    for (int i = 0; i < size; ++i) {
+      std::swap(all[static_cast<std::size_t>(i)],
+                all[static_cast<std::size_t>(random.integer(i, design.size() - 1))]);
+    }
+    const std::vector<int> chosen(all.begin(), all.begin() + size);
+    const double value = design.value(design.sum(chosen));
+    result.values.push_back(value);
+    if (result.best.empty() || value < least) result.best = chosen;
+    least = std::min(least, value);
+  }
+  std::sort(result.values.begin(), result.values.end());
+  return result;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,107 @@
+// Definitions of board_turns.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/detect/board_turns.hpp"
+
+#include <fmt/core.h>
+
+#include <variant>
+
+#include "kinecal/capture/board_flips.hpp"
+#include "kinecal/capture/board_order.hpp"
+#include "kinecal/text/counted.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Frame of a camera's features; empty if there are none.
+[[nodiscard]] std::string camera_frame(const std::string& camera,
+                                       const std::vector<Sample>& samples) {
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(camera);
+    if (seen != nullptr && !seen->features.empty()) return seen->features.front().frame;
+  }
+  return {};
+}
+
+/// The first of these that the robot has; empty if there is none.
+[[nodiscard]] std::string link_among(const Robot& robot, const std::string& wanted,
+                                     const std::string& other) {
+  if (!wanted.empty()) return wanted;
+  return robot.has_link(other) ? other : "";
+}
+
+[[nodiscard]] std::string alike_text(const CaptureFinder& finder,
+                                     const CheckerboardSettings& board) {
+  return fmt::format("finder '{}': a board of {}x{} corners looks the same when it is turned",
+                     finder.name, board.points_x, board.points_y);
+}
+
+/// What was turned, in words.
+void report_turns(const CaptureFinder& finder, const Flips& flips,
+                  const std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  constexpr int kQuarter = 90;  // degrees
+  std::string turned, doubtful;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const int quarters = flips.quarter_turns[i];
+    if (quarters == 0) continue;
+    ++count;
+    turned += fmt::format("{}{} ({} deg)", turned.empty() ? "" : ", ", samples[i].source,
+                          kQuarter * quarters);
+  }
+  for (const std::size_t i : flips.undecided) {
+    doubtful += (doubtful.empty() ? "" : ", ") + samples[i].source;
+  }
+  if (count > 0) {
+    diagnostics.note(finder.place,
+                     fmt::format("finder '{}': the board was turned in {} of {}: {}", finder.name,
+                                 count, counted(samples.size(), "sample"), turned));
+  }
+  if (!doubtful.empty()) {
+    diagnostics.warning(
+        finder.place, fmt::format("finder '{}': which way round the board is cannot be decided in "
+                                  "these samples; leave them out if they do not fit: {}",
+                                  finder.name, doubtful));
+  }
+}
+
+}  // namespace
+}  // namespace detail
+
+void turn_boards(const std::vector<CaptureFinder>& finders, const std::optional<Robot>& robot,
+                 const BoardLinks& links, std::vector<Sample>& samples, Diagnostics& diagnostics) {
+  constexpr int kFullTurn = 4;  // quarters
+  for (const CaptureFinder& finder : finders) {
+    const auto* board = std::get_if<CheckerboardSettings>(&finder.settings);
+    if (board == nullptr || turns_alike(board->points_x, board->points_y) == kFullTurn) continue;
+    std::string in, link;
+    if (robot) {
+      in = detail::link_among(*robot, links.board, board->target.frame);
+      link = detail::link_among(*robot, links.camera,
+                                detail::camera_frame(board->target.camera_sensor, samples));
+    }
+    if (in.empty() || link.empty()) {
+      diagnostics.warning(
+          finder.place,
+          detail::alike_text(finder, *board) +
+              "; x is taken as the direction nearest to the image's right. Give --urdf, "
+              "--board-link "
+              "and --camera-link to have turned boards put right, leave out images in which it is "
+              "turned further, or use a board of which points_x + points_y is odd");
+      continue;
+    }
+    try {
+      const auto poses = link_poses(*robot, in, link, samples);
+      detail::report_turns(finder, resolve_flips(samples, *board, poses), samples, diagnostics);
+    } catch (const std::exception& error) {
+      diagnostics.warning(finder.place, detail::alike_text(finder, *board) +
+                                            ", and turned ones cannot be put "
+                                            "right: " +
+                                            error.what());
+    }
+  }
+}
+
+}  // namespace kinecal

@@ -1,0 +1,74 @@
+// Definitions of detect.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/detect/detect.hpp"
+
+#include <memory>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "kinecal/capture/session.hpp"
+
+namespace kinecal {
+namespace detail {
+namespace {
+
+template <class F>
+[[nodiscard]] std::function<Found(const View&)> shared_finder(F finder) {
+  return [finder = std::make_shared<const F>(std::move(finder))](const View& view) {
+    return finder->find(view);
+  };
+}
+
+[[nodiscard]] std::function<Found(const View&)> finder_of(const FinderSettings& settings) {
+  return std::visit(
+      [](const auto& chosen) -> std::function<Found(const View&)> {
+        using Chosen = std::decay_t<decltype(chosen)>;
+        if constexpr (std::is_same_v<Chosen, LedFinder>) {
+          throw std::invalid_argument(
+              "LEDs have to be switched while a camera looks, so images alone do not do; capture "
+              "LEDs on the robot");
+        } else if constexpr (std::is_same_v<Chosen, CheckerboardSettings>) {
+          return shared_finder(CheckerboardFinder(chosen));
+        } else if constexpr (std::is_same_v<Chosen, AprilTagSettings>) {
+          return shared_finder(AprilTagFinder(chosen));
+        } else if constexpr (std::is_same_v<Chosen, CharucoSettings>) {
+          return shared_finder(CharucoFinder(chosen));
+        } else {
+          return shared_finder(chosen);
+        }
+      },
+      settings);
+}
+
+}  // namespace
+}  // namespace detail
+
+ViewFinder view_finder(const CaptureFinder& finder, const FinderSettings& settings) {
+  try {
+    return {finder.name, detail::finder_of(settings)};
+  } catch (const std::exception& error) {
+    throw InputError(finder.place.str() + ": finder '" + finder.name + "': " + error.what());
+  }
+}
+
+Detection detect(const View& view, std::span<const ViewFinder> finders, const std::string& source) {
+  Detection detection;
+  std::vector<FinderOutcome> outcomes;
+  for (const ViewFinder& finder : finders) {
+    Found found = finder.find(view);
+    detection.marks.insert(detection.marks.end(), found.marks.begin(), found.marks.end());
+    if (found) {
+      detection.features += found.observations.front().features.size();
+      outcomes.push_back({finder.name, {}, std::move(found)});
+    } else {
+      detection.refused.push_back(finder.name + ": " + found.refusal);
+    }
+  }
+  detection.samples = detail::samples_of(view.joints, outcomes);
+  for (Sample& sample : detection.samples) sample.source = source;
+  return detection;
+}
+
+}  // namespace kinecal

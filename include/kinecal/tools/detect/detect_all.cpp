@@ -1,0 +1,55 @@
+// Definitions of detect_all.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/detect/detect_all.hpp"
+
+#include <iterator>
+#include <utility>
+
+#include "kinecal/evaluation/parallel.hpp"
+
+namespace kinecal {
+
+std::vector<ViewFinder> make_finders(const DetectionInput& input,
+                                     std::vector<std::string>& errors) {
+  std::vector<ViewFinder> finders;
+  for (const CaptureFinder& finder : input.config.finders) {
+    try {
+      if (!finder.region_frame.empty() && !input.robot) {
+        throw InputError(finder.place.str() + ": finder '" + finder.name +
+                         "' has a region in frame '" + finder.region_frame +
+                         "'; give the robot with --urdf");
+      }
+      finders.push_back(
+          view_finder(finder, input.robot ? on_robot(finder, *input.robot) : finder.settings));
+    } catch (const InputError& error) {
+      errors.emplace_back(error.what());
+    }
+  }
+  return finders;
+}
+
+DetectedSamples detect_all(const DetectionInput& input, const DetectionOptions& options,
+                           Diagnostics& diagnostics) {
+  const auto finders = [&input] {
+    std::vector<std::string> errors;  // were reported: there are none
+    return make_finders(input, errors);
+  };
+  const LookOptions how{finders, detail::number_of_threads(options.threads), options.thumbnails,
+                        options.meter};
+  DetectedSamples found;
+  const auto add = [&](std::vector<Look> looks) {
+    for (Look& look : looks) {
+      found.features += look.features;
+      found.used += look.samples.empty() ? 0 : 1;
+      std::move(look.samples.begin(), look.samples.end(), std::back_inserter(found.samples));
+      look.samples.clear();
+      found.looks.push_back(std::move(look));
+    }
+  };
+  if (!input.images.empty()) add(look_at(input.images, input.camera, input.frame, how));
+  for (const RecordedViews& recording : input.recordings) add(look_at(recording, how));
+  turn_boards(input.config.finders, input.robot, input.links, found.samples, diagnostics);
+  return found;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,194 @@
+// Definitions of image_folder.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/detect/image_folder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "kinecal/files/csv/csv_table.hpp"
+#include "kinecal/files/csv/read_csv_samples.hpp"
+#include "kinecal/files/images/read_image.hpp"
+#include "kinecal/files/natural_order.hpp"
+#include "kinecal/files/text_file.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
+
+namespace kinecal {
+namespace detail {
+namespace {
+
+/// A text in lower case (ASCII).
+[[nodiscard]] std::string in_small_letters(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// True for the name of an image.
+[[nodiscard]] bool is_image_name(const std::string& name) {
+  const std::string ending = in_small_letters(std::filesystem::path(name).extension().string());
+  return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
+}
+
+/// Names of the images in a folder, in natural order.
+[[nodiscard]] std::vector<std::string> image_names(const std::string& folder) {
+  std::error_code failed;
+  std::filesystem::directory_iterator files(folder, failed);
+  if (failed) throw InputError(folder + ": " + failed.message());
+  std::vector<std::string> names;
+  for (const std::filesystem::directory_entry& file : files) {
+    if (is_image_name(file.path().string())) names.push_back(file.path().filename().string());
+  }
+  if (names.empty()) throw InputError(folder + ": has no PNG or JPEG images");
+  std::sort(names.begin(), names.end(), file_naturally_before);
+  return names;
+}
+
+/// The separator of a table: the first of these in its header.
+[[nodiscard]] char separator_of(std::string_view text) {
+  const std::string_view header = text.substr(0, text.find_first_of("\r\n"));
+  for (const char separator : {',', ';', '\t'}) {
+    if (header.find(separator) != std::string_view::npos) return separator;
+  }
+  return ' ';
+}
+
+/// The column with the names of images: by its name, or because its first cell names an image;
+/// nullopt if the table has none.
+[[nodiscard]] std::optional<std::size_t> image_column(const std::vector<CsvRow>& rows) {
+  for (std::size_t i = 0; !rows.empty() && i < rows.front().cells.size(); ++i) {
+    const std::string name = in_small_letters(rows.front().cells[i]);
+    if (name == "image" || name == "file" || name == "filename") return i;
+  }
+  for (std::size_t i = 0; rows.size() > 1 && i < rows[1].cells.size(); ++i) {
+    if (is_image_name(rows[1].cells[i])) return i;
+  }
+  return std::nullopt;
+}
+
+/// Every column except that of the images is a joint.
+[[nodiscard]] CsvMapping joints_of_header(const std::vector<CsvRow>& rows, char separator,
+                                          std::optional<std::size_t> image,
+                                          const std::string& table) {
+  CsvMapping mapping;
+  mapping.separator = separator;
+  for (std::size_t i = 0; !rows.empty() && i < rows.front().cells.size(); ++i) {
+    if (i == image) continue;
+    const std::string& name = rows.front().cells[i];
+    mapping.joints.push_back({name, {{name, {table, rows.front().line}}}, {}});
+  }
+  return mapping;
+}
+
+/// Assigns images to rows.
+/// @param image  column of their names; nullopt: the order of their names
+/// @return       by the source of each row
+[[nodiscard]] std::map<std::string, std::string> images_of_rows(
+    const std::vector<CsvRow>& rows, bool header, std::optional<std::size_t> image,
+    const ImageFolder& folder, const std::vector<std::string>& names, Diagnostics& diagnostics) {
+  std::map<std::string, std::string> result;
+  std::set<std::string> used;
+  const std::size_t first = header ? 1 : 0;
+  for (std::size_t i = first; i < rows.size(); ++i) {
+    const SourceLocation place{folder.table, rows[i].line};
+    std::string name;
+    if (image && *image < rows[i].cells.size()) name = rows[i].cells[*image];
+    if (!image && i - first < names.size()) name = names[i - first];
+    const std::string file = std::filesystem::path(name).filename().string();
+    if (!image && name.empty()) {
+      diagnostics.error(place, "there is no image for this row: the table has " +
+                                   std::to_string(rows.size() - first) + " rows, " + folder.images +
+                                   " has " + std::to_string(names.size()) + " images");
+    } else if (!std::binary_search(names.begin(), names.end(), file, file_naturally_before)) {
+      diagnostics.error(place, "image '" + printable(name) + "' is not in " + folder.images +
+                                   did_you_mean(file, names));
+    } else if (!used.insert(file).second) {
+      diagnostics.error(place, "image '" + printable(name) + "' has a row already");
+    } else {
+      result[place.str()] = file;
+    }
+  }
+  for (const std::string& name : names) {
+    if (used.count(name) > 0) continue;
+    diagnostics.error({folder.table, 0},
+                      "has no row for image " + printable(name) + " of " + folder.images);
+  }
+  return result;
+}
+
+/// The depth image of an image: the same name, with extension .png.
+[[nodiscard]] std::string depth_of(const ImageFolder& folder, const std::string& image,
+                                   const std::string& source, Diagnostics& diagnostics) {
+  if (folder.depth.empty()) return {};
+  std::string path =
+      (std::filesystem::path(folder.depth) / image).replace_extension(".png").string();
+  if (!std::filesystem::exists(path)) {
+    diagnostics.errors.push_back(source + ": image '" + printable(image) +
+                                 "' has no depth: " + printable(path) + " does not exist");
+  }
+  return path;
+}
+
+}  // namespace
+}  // namespace detail
+
+std::vector<PosedImage> list_images(const ImageFolder& folder, Diagnostics& diagnostics) {
+  const std::vector<std::string> names = detail::image_names(folder.images);
+  if (!folder.depth.empty() && !std::filesystem::is_directory(folder.depth)) {
+    throw InputError(folder.depth + ": is not a folder with images of depth");
+  }
+  const std::string text = detail::read_text_file(folder.table);
+  CsvMapping mapping;
+  if (!folder.columns.empty()) mapping = read_csv_mapping(folder.columns, diagnostics);
+  const char separator = folder.columns.empty() ? detail::separator_of(text) : mapping.separator;
+  Diagnostics repeated;  // csv_samples() reports them again
+  const auto rows = detail::csv_rows(text, separator, folder.table, repeated);
+  const bool header = folder.columns.empty() || mapping.header;
+  const auto image = header ? detail::image_column(rows) : std::nullopt;
+  if (folder.columns.empty()) {
+    mapping = detail::joints_of_header(rows, separator, image, folder.table);
+  }
+  mapping.observations.clear();  // they are in the images
+  if (!diagnostics.errors.empty()) return {};
+  const std::vector<Sample> samples = csv_samples(text, mapping, folder.table, diagnostics);
+  if (rows.size() < (header ? 2U : 1U)) return {};  // an error: no image has a row
+  const auto images = detail::images_of_rows(rows, header, image, folder, names, diagnostics);
+  std::vector<PosedImage> result;
+  for (const Sample& sample : samples) {
+    const auto found = images.find(sample.source);
+    if (found == images.end()) continue;
+    result.push_back({(std::filesystem::path(folder.images) / found->second).string(),
+                      detail::depth_of(folder, found->second, sample.source, diagnostics),
+                      {{}, sample.joint_names, sample.joint_positions},
+                      sample.source});
+  }
+  return result;
+}
+
+View read_view(const PosedImage& image, const std::optional<CameraInfo>& camera,
+               const std::string& frame) {
+  View view;
+  view.frame = frame;
+  view.camera = camera;
+  view.image = read_image(image.path);
+  view.joints = image.joints;
+  if (image.depth.empty()) return view;
+  const DepthImage depth = read_depth(image.depth);
+  if (depth.width != view.image.width || depth.height != view.image.height) {
+    throw InputError(image.depth + ": has " + std::to_string(depth.width) + "x" +
+                     std::to_string(depth.height) + " pixels, but " + image.path + " has " +
+                     std::to_string(view.image.width) + "x" + std::to_string(view.image.height));
+  }
+  if (!camera) throw InputError(image.depth + ": points of depth need a camera; give its file");
+  try {
+    view.points = points_of(depth, *camera);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(image.depth + ": " + error.what());
+  }
+  return view;
+}
+
+}  // namespace kinecal

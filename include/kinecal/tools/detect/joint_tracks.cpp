@@ -1,0 +1,195 @@
+// Definitions of joint_tracks.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/detect/joint_tracks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
+#include "kinecal/tools/detect/joint_checks.ipp"
+#include "kinecal/tools/detect/listed.ipp"
+
+namespace kinecal {
+
+void JointTracks::add(const std::string& topic, const MeasuredJoints& reading) {
+  std::map<std::string, double> sorted;
+  bool is_whole = true;
+  for (std::size_t i = 0; i < reading.names.size() && i < reading.positions.size(); ++i) {
+    if (std::isfinite(reading.positions[i])) {
+      sorted[reading.names[i]] = reading.positions[i];
+    } else {
+      ++not_finite_[{topic, reading.names[i]}];
+      is_whole = is_whole && !measures(topic, reading.names[i]);
+    }
+  }
+  if (!is_whole) return;  // a gap of joints that other tracks measure
+  if (sorted.empty()) {
+    silent_.insert(topic);
+    return;
+  }
+  std::vector<std::string> names;
+  std::vector<double> positions;
+  for (const auto& [name, position] : sorted) names.push_back(name);
+  for (const auto& [name, position] : sorted) positions.push_back(position);
+  auto track = std::find_if(tracks_.begin(), tracks_.end(), [&](const detail::JointTrack& t) {
+    return t.topic == topic && t.names == names;
+  });
+  if (track == tracks_.end()) {
+    track = tracks_.insert(tracks_.end(), detail::JointTrack{topic, names});
+    track->used.assign(names.size(), true);
+  }
+  track->add(reading.stamp, positions);
+}
+
+bool JointTracks::measures(const std::string& topic, const std::string& joint) const {
+  return std::any_of(tracks_.begin(), tracks_.end(), [&](const detail::JointTrack& track) {
+    return track.topic == topic &&
+           std::find(track.names.begin(), track.names.end(), joint) != track.names.end();
+  });
+}
+
+void JointTracks::choose_topics(const std::vector<std::string>& topics, const std::string& file,
+                                Diagnostics& diagnostics) {
+  std::set<std::string> known;
+  for (const detail::JointTrack& track : tracks_) known.insert(track.topic);
+  for (const std::string& topic : silent_) {
+    if (known.count(topic) > 0) continue;
+    diagnostics.warning({file, 0}, "topic '" + topic + "' has joint states without positions");
+  }
+  for (const auto& [joint, count] : not_finite_) {
+    diagnostics.warning({file, 0}, "topic '" + joint.first + "': the position of joint '" +
+                                       joint.second + "' is not a number in " +
+                                       std::to_string(count) + " messages");
+  }
+  for (const std::string& topic : topics) {
+    if (known.count(topic) > 0) continue;
+    diagnostics.error(
+        {file, 0}, "has no joint positions on topic '" + topic + "'" +
+                       did_you_mean(topic, std::vector<std::string>(known.begin(), known.end())));
+  }
+  std::erase_if(tracks_, [&](const detail::JointTrack& track) {
+    return !topics.empty() && std::find(topics.begin(), topics.end(), track.topic) == topics.end();
+  });
+  if (tracks_.empty() && diagnostics.errors.empty()) {
+    diagnostics.error({file, 0},
+                      "has no joint positions (sensor_msgs/JointState); record joint_states, too");
+  }
+}
+
+void JointTracks::settle_conflicts(const std::string& file, Diagnostics& diagnostics) {
+  std::map<std::string, std::set<std::string>> topics_of;
+  for (const detail::JointTrack& track : tracks_) {
+    for (const std::string& name : track.names) topics_of[name].insert(track.topic);
+  }
+  std::set<std::string> taken;
+  std::string conflict;
+  for (const auto& [joint, topics] : topics_of) {
+    if (topics.size() < 2) continue;
+    if (topics.count("joint_states") == 0) {
+      if (!conflict.empty()) continue;  // one example is enough
+      conflict = joint;
+      diagnostics.error({file, 0}, "joint '" + printable(joint) +
+                                       "' is on several topics: " + detail::listed(topics) +
+                                       "; choose those to use with --joints");
+    }
+    taken.insert(joint);
+  }
+  if (taken.empty() || !conflict.empty()) return;
+  diagnostics.notes.push_back(file + ": positions of " + detail::listed(taken) +
+                              " are taken from topic 'joint_states', although others have them");
+  for (detail::JointTrack& track : tracks_) {
+    if (track.topic == "joint_states") continue;
+    for (std::size_t i = 0; i < track.names.size(); ++i) {
+      if (taken.count(track.names[i]) > 0) track.used[i] = false;
+    }
+  }
+}
+
+void JointTracks::choose(const std::vector<std::string>& topics, const std::string& file,
+                         Diagnostics& diagnostics) {
+  choose_topics(topics, file, diagnostics);
+  settle_conflicts(file, diagnostics);
+  constexpr std::size_t kFewest = 4;
+  std::erase_if(tracks_, [&](const detail::JointTrack& track) {
+    if (track.stamps.size() >= kFewest) return false;
+    diagnostics.warning({file, 0}, "joints " + detail::listed(track.names) + " of topic '" +
+                                       track.topic + "' are left out: they were measured " +
+                                       std::to_string(track.stamps.size()) + " times only");
+    return true;
+  });
+  const std::optional<Standstill> all = span();
+  for (detail::JointTrack& track : tracks_) {
+    detail::check_stamps(track, *all, file, diagnostics);
+    track.sort();
+  }
+}
+
+std::vector<Standstill> JointTracks::standstills(const std::set<std::string>& restless,
+                                                 const SettleOptions& options) const {
+  std::optional<std::vector<Standstill>> all;
+  for (const detail::JointTrack& track : tracks_) {
+    std::vector<std::size_t> joints;
+    for (std::size_t i = 0; i < track.names.size(); ++i) {
+      if (track.used[i] && restless.count(track.names[i]) == 0) joints.push_back(i);
+    }
+    if (joints.empty()) continue;
+    const std::vector<Standstill> own = track.rests(joints, options);
+    all = all ? detail::common(*all, own) : own;
+  }
+  if (!all && !tracks_.empty()) all = {*span()};
+  if (!all) return {};
+  std::erase_if(*all, [&](const Standstill& s) { return s.end - s.begin < options.window; });
+  return *all;
+}
+
+std::vector<std::string> JointTracks::never_still(const SettleOptions& options) const {
+  std::vector<std::string> result;
+  for (const detail::JointTrack& track : tracks_) {
+    for (std::size_t i = 0; i < track.names.size(); ++i) {
+      if (track.used[i] && track.rests({i}, options).empty()) result.push_back(track.names[i]);
+    }
+  }
+  return result;
+}
+
+std::set<std::string> JointTracks::names() const {
+  std::set<std::string> all;
+  for (const detail::JointTrack& track : tracks_)
+    all.insert(track.names.begin(), track.names.end());
+  return all;
+}
+
+MeasuredJoints JointTracks::positions(Stamp stamp, const Standstill& during) const {
+  constexpr std::chrono::milliseconds kNear{150};
+  MeasuredJoints joints;
+  joints.stamp = stamp;
+  for (const detail::JointTrack& track : tracks_) {
+    const auto [first, last] = track.near(
+        stamp, {std::max(during.begin, stamp - kNear), std::min(during.end, stamp + kNear)});
+    for (std::size_t j = 0; j < track.names.size(); ++j) {
+      if (!track.used[j] || joints.position(track.names[j])) continue;
+      double mean = 0.0;
+      for (std::size_t i = first; i < last; ++i) mean += track.rows[i][j];
+      joints.names.push_back(track.names[j]);
+      joints.positions.push_back(mean / static_cast<double>(last - first));
+    }
+  }
+  return joints;
+}
+
+std::optional<Standstill> JointTracks::span() const {
+  std::optional<Standstill> all;
+  for (const detail::JointTrack& track : tracks_) {
+    if (track.stamps.empty()) continue;
+    const auto [first, last] = std::minmax_element(track.stamps.begin(), track.stamps.end());
+    const Standstill own{*first, *last};
+    if (!all) all = own;
+    all = Standstill{std::min(all->begin, own.begin), std::max(all->end, own.end)};
+  }
+  return all;
+}
+
+}  // namespace kinecal

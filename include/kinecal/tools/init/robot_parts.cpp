@@ -1,0 +1,173 @@
+// Recognizes likely parts of a robot: definitions of robot_parts.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/init/robot_parts.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/text/nearest_name.hpp"
+#include "kinecal/tools/init/camera_parts.ipp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// True for a joint with a drive: it moves, and does not mimic another.
+[[nodiscard]] bool is_driven(const Joint& joint) {
+  return moves(joint.type) && !joint.mimic;
+}
+
+/// Number of driven joints that lead only to this link: below the last fork to other driven joints.
+[[nodiscard]] std::size_t own_joints(const Robot& robot, const std::string& link) {
+  const std::vector<const Joint*> way = joints_to_root(robot, link);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (is_driven(*way[i])) ++count;
+    for (const Joint& other : robot.joints()) {
+      // A head or a second arm, not a wheel: two driven joints in a row.
+      if (!is_driven(other)) continue;
+      const std::vector<const Joint*> beside = joints_to_root(robot, other.child);
+      const auto fork = std::find_if(beside.begin(), beside.end(),
+                                     [&](const Joint* j) { return j->parent == way[i]->parent; });
+      if (fork == beside.end() || *fork == way[i]) continue;
+      const auto driven =
+          std::count_if(beside.begin(), fork + 1, [](const Joint* j) { return is_driven(*j); });
+      if (driven >= 2) return count;
+    }
+  }
+  return count;
+}
+
+/// True if the name of a joint, or of the link it moves, contains one of these words.
+[[nodiscard]] bool is_called(const Joint& joint, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(), [&](const char* word) {
+    return contains_word(joint.name, word) || contains_word(joint.child, word);
+  });
+}
+
+/// True if a joint at the end of a chain moves a finger: it mimics another or is mimicked, or its
+/// name says so, beyond an arm.
+/// @param turning  number of rotating joints above it
+[[nodiscard]] bool moves_a_finger(const Robot& robot, const Joint& joint, std::ptrdiff_t turning) {
+  constexpr std::ptrdiff_t kArm = 3;
+  if (joint.mimic) return true;
+  if (turning < kArm) return false;
+  const auto& joints = robot.joints();
+  const bool is_mimicked = std::any_of(joints.begin(), joints.end(), [&](const Joint& other) {
+    return other.mimic && other.mimic->joint == joint.name;
+  });
+  return is_mimicked || is_called(joint, {"finger", "knuckle", "thumb", "jaw", "claw"}) ||
+         (joint.type == JointType::prismatic && is_called(joint, {"gripper"})) ||
+         (is_called(joint, {"gripper"}) && is_called(joint, {"motor"}));
+}
+
+/// The end of an arm without the fingers of its gripper and the cameras on its wrist.
+[[nodiscard]] std::string end_of_arm(const Robot& robot, std::string link) {
+  for (;;) {
+    const std::vector<const Joint*> way = joints_to_root(robot, link);
+    const auto last =
+        std::find_if(way.begin(), way.end(), [](const Joint* j) { return moves(j->type); });
+    if (last == way.end()) return link;
+    const auto turning =
+        std::count_if(last + 1, way.end(), [](const Joint* j) { return turns(j->type); });
+    if (moves_a_finger(robot, **last, turning)) {
+      link = (*last)->parent;
+    } else if (looks_like_camera(link)) {
+      link = way.front()->parent;
+    } else {
+      return link;
+    }
+  }
+}
+
+/// True if a wheel or a caster is on the path to a link.
+[[nodiscard]] bool is_on_a_wheel(const Robot& robot, const std::string& link) {
+  const std::vector<const Joint*> way = joints_to_root(robot, link);
+  return std::any_of(way.begin(), way.end(), [](const Joint* joint) {
+    return moves(joint->type) && is_called(*joint, {"wheel", "caster"});
+  });
+}
+
+}  // namespace
+}  // namespace detail
+
+std::vector<std::string> propose_arms(const Robot& robot) {
+  constexpr std::size_t kLeast = 3;  // a pan-tilt head has two
+  std::set<std::string> parents;
+  for (const Joint& joint : robot.joints()) parents.insert(joint.parent);
+  std::vector<std::pair<std::size_t, std::string>> ends;
+  for (const Joint& joint : robot.joints()) {
+    if (parents.contains(joint.child) || detail::is_on_a_wheel(robot, joint.child)) continue;
+    const std::string end = detail::end_of_arm(robot, joint.child);
+    const std::size_t own = detail::own_joints(robot, end);
+    const auto same = [&](const auto& known) { return known.second == end; };
+    if (own < kLeast || std::any_of(ends.begin(), ends.end(), same)) continue;
+    ends.emplace_back(own, end);
+  }
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> names;
+  for (auto& [own, name] : ends) names.push_back(std::move(name));
+  return names;
+}
+
+std::vector<std::string> propose_cameras(const Robot& robot) {
+  const auto rank = [](const std::string& link) {
+    if (!detail::contains_word(link, "optical")) return 3;
+    if (detail::contains_word(link, "rgb") || detail::contains_word(link, "color")) return 0;
+    return detail::contains_word(link, "depth") || detail::contains_word(link, "infra") ? 2 : 1;
+  };
+  std::vector<std::string> names;
+  for (const Joint& joint : robot.joints()) {
+    if (detail::looks_like_camera(joint.child)) names.push_back(joint.child);
+  }
+  std::stable_sort(names.begin(), names.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  return names;
+}
+
+std::string propose_base(const Robot& robot, const std::string& link) {
+  std::string base = link;
+  for (const Joint* joint : joints_to_root(robot, link)) {
+    if (joint->type == JointType::floating || joint->type == JointType::planar) break;
+    base = joint->parent;
+  }
+  return base;
+}
+
+bool is_free_frame_name(const Robot& robot, const std::string& name) {
+  return !robot.has_link(name) && !nearest_name(name, robot.joint_names());
+}
+
+std::string propose_frame(const Robot& robot, std::vector<std::string> names) {
+  for (std::size_t i = 0;; ++i) {
+    if (i == names.size()) names.push_back("virtual_frame_" + std::to_string(i));
+    if (is_free_frame_name(robot, names[i])) return names[i];
+  }
+}
+
+InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
+  const auto propose = [](std::string& answer, const std::string& proposal) {
+    if (answer.empty()) answer = proposal;
+  };
+  const InitTarget target = answers.target;
+  const std::string& end = needs_arm(target) ? answers.arm : answers.camera;
+  if (robot.has_link(end)) propose(answers.base, propose_base(robot, end));
+  if (target == InitTarget::tracker) {
+    propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
+    propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
+  } else if (needs_target_frame(target)) {
+    propose(answers.target_frame, propose_frame(robot, {"checkerboard", "board_frame"}));
+  }
+  return answers;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,112 @@
+// Assessing steps.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/assess.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "kinecal/solve/spectrum.hpp"
+#include "kinecal/trust/compared_frames.hpp"
+#include "kinecal/trust/inside_bounds.ipp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Groups of parameters that improve nothing: their change d from the initial values is no larger
+/// than chance, d^T C^-1 d < 2 rank.  A fit without them predicts just as well.
+/// Source: Akaike, A New Look at the Statistical Model Identification, 1974.
+[[nodiscard]] std::vector<IdleGroup> idle_groups(const AnyProblem& problem, const FreeSet& free,
+                                                 std::span<const double> values,
+                                                 const Uncertainty& known) {
+  std::map<std::string, std::vector<int>> columns;
+  for (int c = 0; c < free.size(); ++c) {
+    const int p = free.parameters()[static_cast<std::size_t>(c)];
+    columns[problem.owners()[static_cast<std::size_t>(p)]].push_back(c);
+  }
+  std::vector<IdleGroup> idle;
+  for (const auto& [owner, of_owner] : columns) {
+    IdleGroup group{.owner = owner, .parameters = {}};
+    Eigen::VectorXd change(std::ssize(of_owner));
+    bool determined = true;
+    for (std::size_t i = 0; i < of_owner.size(); ++i) {
+      const int p = free.parameters()[static_cast<std::size_t>(of_owner[i])];
+      group.parameters.push_back(p);
+      change(static_cast<Eigen::Index>(i)) =
+          values[static_cast<std::size_t>(p)] - problem.table()[p].initial;
+      determined = determined && std::isfinite(known.deviation(of_owner[i]));
+    }
+    const Spectrum spectrum(known.covariance.matrix()(of_owner, of_owner));
+    group.rank = static_cast<int>(change.size() - spectrum.null);
+    group.statistic = change.dot(spectrum.pseudo_inverse() * change);
+    if (determined && group.rank > 0 && group.statistic < 2.0 * group.rank) idle.push_back(group);
+  }
+  return idle;
+}
+
+}  // namespace
+}  // namespace detail
+
+std::optional<double> Assessment::deviation(int parameter) const {
+  const auto at = std::find(parameters.begin(), parameters.end(), parameter);
+  if (at == parameters.end()) return std::nullopt;
+  return uncertainty.deviation(at - parameters.begin());
+}
+
+Assessment assess(const AnyProblem& problem, const FreeSet& free, std::span<const double> values,
+                  std::span<const Sample> samples, const AssessOptions& options) {
+  Assessment found;
+  found.observability = observability(problem, free, values);
+  const FreeSet inside = detail::inside_bounds(problem, free, values, found.at_bound);
+  found.parameters = inside.parameters();
+  const auto evaluator = problem.evaluator(inside);
+  const LinearFit fit =
+      linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
+  found.rows = static_cast<int>(fit.residual.size());
+  const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
+  found.noise = estimate_noise(problem, fit, inverse);
+  found.uncertainty = uncertainty(problem, fit, found.noise);
+  detail::mark_undetermined(problem, inside, fit.coordinates, found.uncertainty);
+  found.pulls = prior_pulls(problem, inside, values, fit, inverse, found.uncertainty);
+  found.weak = weak_parameters(problem, inside, found.uncertainty);
+  found.captures = capture_errors(problem, fit);
+  found.change = recording_change(problem, inside, fit);
+  found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
+  const int folds = std::min(options.folds, static_cast<int>(samples.size()));
+  if (folds >= 2) {
+    try {
+      found.held_out =
+          held_out_errors(*evaluator, values, fit, folds_of(samples, folds), options.meter);
+    } catch (const std::domain_error&) {  // without a fold, a point ends up behind a camera
+      for (int t = 0; t < problem.num_terms(); ++t) {
+        const Term& term = problem.term(t);
+        found.held_out.push_back(
+            {term.name, term.options.unit, 0, 0.0, std::numeric_limits<double>::infinity()});
+      }
+    }
+  }
+  if (const auto frames = compared_frames(problem, samples)) {
+    found.pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty, samples,
+                                  frames->first, frames->second);
+  }
+  return found;
+}
+
+std::vector<Assessment> assess(const Calibration& calibration, const CalibrationResult& result,
+                               std::span<const Sample> samples, const AssessOptions& options) {
+  std::vector<Assessment> all;
+  const Eigen::VectorXd values = result.table.values();
+  for (std::size_t s = 0; s < result.steps.size(); ++s) {
+    const CalibrationStep& step = calibration.steps[s];
+    all.push_back(assess(*step.problem, step.free,
+                         {values.data(), static_cast<std::size_t>(values.size())}, samples,
+                         options));
+    all.back().step = step.name;
+  }
+  return all;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,130 @@
+// Definitions of assess_shards.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/assess_shards.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kinecal/trust/compared_frames.hpp"
+#include "kinecal/trust/inside_bounds.ipp"
+#include "kinecal/trust/shard_sums.ipp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// Noise of each error block.
+/// @param inverse  (free x free) of the information
+[[nodiscard]] inline std::vector<BlockNoise> noise_of(const AnyProblem& problem,
+                                                      const ShardSums& sums,
+                                                      const Eigen::MatrixXd& inverse) {
+  std::vector<BlockNoise> noise;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const Term& term = problem.term(t);
+    const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
+    const double median = DistanceBins::median(block.bins.col(2)) * term.weight;
+    noise.push_back(block_noise(term, static_cast<int>(block.figures(BlockSums::features)),
+                                block.figures(BlockSums::weighted),
+                                inverse.cwiseProduct(block.information).sum(),
+                                robust_sigma({median}, term.feature_size)));
+  }
+  return noise;
+}
+
+[[nodiscard]] inline std::vector<BlockStatistics> statistics_of_blocks(const AnyProblem& problem,
+                                                                       const ShardSums& sums) {
+  std::vector<BlockStatistics> all;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const Term& term = problem.term(t);
+    const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
+    all.push_back({term.name, term.options.type, term.options.unit,
+                   static_cast<int>(block.figures(BlockSums::features)),
+                   block.statistics(BlockSums::mean_before, 0, term.feature_size),
+                   block.statistics(BlockSums::mean_after, 1, term.feature_size)});
+  }
+  return all;
+}
+
+/// Number of residuals, without priors.
+[[nodiscard]] inline double rows_of(const AnyProblem& problem, const ShardSums& sums) {
+  double rows = 0.0;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    rows += sums.blocks[static_cast<std::size_t>(t)].figures(BlockSums::features) *
+            problem.term(t).feature_size;
+  }
+  return rows;
+}
+
+/// Adds the sums of all shards.
+/// @param misfits  out: see ShardAssessment
+[[nodiscard]] inline ShardSums all_sums(const Shards& shards, const FreeSet& free,
+                                        std::span<const double> before,
+                                        std::span<const double> after,
+                                        std::vector<double>& misfits) {
+  const AnyProblem& problem = *shards.problem;
+  const auto numbers_of = [&](int shard) {
+    return sums_of(*shards.read(shard), free, before, after).packed();
+  };
+  const std::string what = name_at(name_at("sums", free, before), free, after);
+  ShardSums sums(free.size(), problem.num_terms());
+  for (const std::vector<double>& one : numbers_of_shards(shards, what, numbers_of)) {
+    const double rows = rows_of(problem, sums), cost = sums.cost;
+    sums.add(one);
+    misfits.push_back(
+        std::sqrt(2.0 * (sums.cost - cost) / std::max(1.0, rows_of(problem, sums) - rows)));
+  }
+  return sums;
+}
+
+/// Inverse of a Hessian in the directions that samples and priors determine; zero in others.
+/// @returns  (free x free)
+[[nodiscard]] inline Eigen::MatrixXd inverse_in(const Coordinates& by,
+                                                const Eigen::MatrixXd& hessian) {
+  return by.basis * Spectrum(by.basis.transpose() * hessian * by.basis).pseudo_inverse() *
+         by.basis.transpose();
+}
+
+/// C, from the sums.
+[[nodiscard]] inline Uncertainty shard_uncertainty(const AnyProblem& problem, const ShardSums& sums,
+                                                   const Coordinates& by, double of_priors) {
+  const double rows = rows_of(problem, sums);
+  const double freedom = rows / std::max(1.0, rows - static_cast<double>(by.basis.cols()));
+  const Eigen::MatrixXd inverse = inverse_in(by, sums.hessian);
+  const Eigen::MatrixXd covariance =
+      inverse * (freedom * sums.scores + of_priors * sums.priors) * inverse;
+  return {static_cast<int>(by.basis.cols()), covariance, deviations(covariance, by.lost), 1.0};
+}
+
+}  // namespace detail
+
+ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
+                              std::span<const double> before, std::span<const double> after,
+                              std::span<const Sample> samples) {
+  const AnyProblem& problem = *shards.problem;
+  ShardAssessment found;
+  Assessment& of = found.assessment;
+  of.observability =
+      detail::observability_of(problem, free, detail::shard_information(shards, free, after));
+  const FreeSet inside = detail::inside_bounds(problem, free, after, of.at_bound);
+  of.parameters = inside.parameters();
+  const Coordinates by = detail::coordinates_of(detail::shard_information(shards, inside, after));
+  const detail::ShardSums sums = detail::all_sums(shards, inside, before, after, found.misfits);
+  of.rows = static_cast<int>(detail::rows_of(problem, sums));
+  Eigen::MatrixXd information = sums.priors;
+  for (const detail::BlockSums& block : sums.blocks) information += block.information;
+  of.noise = detail::noise_of(problem, sums, detail::inverse_in(by, information));
+  of.uncertainty = detail::shard_uncertainty(problem, sums, by, prior_variance(of.noise));
+  detail::mark_undetermined(problem, inside, by, of.uncertainty);
+  of.weak = weak_parameters(problem, inside, of.uncertainty);
+  found.blocks = detail::statistics_of_blocks(problem, sums);
+  const std::shared_ptr<const AnyProblem> first = shards.read(0);
+  if (const auto frames = compared_frames(*first, samples)) {
+    const LinearFit fit = linear_fit(*first->evaluator(inside), after, by);
+    of.pose = pose_uncertainty(*first, inside, after, fit, of.uncertainty, samples, frames->first,
+                               frames->second);
+  }
+  return found;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,193 @@
+// Finding bad captures.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/captures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/trust/influence.ipp"
+#include "kinecal/trust/noise.hpp"
+#include "kinecal/trust/observability.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// The search for bad captures on the rows of one problem.
+class CaptureSearch {
+ public:
+  CaptureSearch(const AnyProblem& problem, const LinearFit& fit)
+      : problem_(problem), fit_(fit), bad_(static_cast<std::size_t>(problem.num_samples()), false) {
+    for (const RowBlock& block : fit.blocks) {
+      const int size = problem.term(block.term).feature_size;
+      for (Eigen::Index row = 0; row < block.size; row += size) {
+        features_.push_back(
+            {block.term, block.sample, static_cast<int>(row) / size, block.first + row, size});
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<CaptureError> find() {
+    fit_without(bad_);
+    mark();
+    if (std::find(bad_.begin(), bad_.end(), true) != bad_.end()) {
+      fit_robustly();
+      mark();
+      constexpr int kRefits = 10;
+      for (int round = 0; round < kRefits; ++round) {
+        const std::vector<bool> before = bad_;
+        fit_without(bad_);
+        mark(Tail::as_seen);
+        if (bad_ == before) break;
+      }
+    }
+    return worst();
+  }
+
+ private:
+  struct FeatureRows {
+    int term, sample, number;
+    Eigen::Index row;
+    int size;
+  };
+
+  [[nodiscard]] double distance(const FeatureRows& f) const {
+    return residual_.segment(f.row, f.size).norm();
+  }
+
+  /// Noise of each term, from the median of the features in samples that are not bad.
+  void set_sigmas(double freedom) {
+    std::vector<std::vector<double>> distances(static_cast<std::size_t>(problem_.num_terms()));
+    std::vector<int> sizes(distances.size(), 1);
+    for (const FeatureRows& f : features_) {
+      if (bad_[static_cast<std::size_t>(f.sample)]) continue;
+      distances[static_cast<std::size_t>(f.term)].push_back(distance(f));
+      sizes[static_cast<std::size_t>(f.term)] = f.size;
+    }
+    sigma_.clear();
+    tail_.clear();
+    for (std::size_t t = 0; t < distances.size(); ++t) {
+      const double sigma = robust_sigma(distances[t], sizes[t]);
+      tail_.push_back(tail_factor(distances[t], sizes[t], sigma));
+      sigma_.push_back(sigma / std::sqrt(freedom));
+    }
+  }
+  /// The share of rows that parameters do not use up.
+  [[nodiscard]] double freedom(double rows) const {
+    const double n = static_cast<double>(fit_.size());
+    return rows > 2.0 * n ? 1.0 - n / rows : 0.5;
+  }
+
+  void solve(const Eigen::VectorXd& weights) {
+    inverse_ = Spectrum(information(fit_, weights)).pseudo_inverse();
+    const Eigen::VectorXd gradient =
+        fit_.jacobian.transpose() * weights.cwiseProduct(fit_.residual) + fit_.prior_gradient;
+    residual_ = fit_.residual - fit_.jacobian * (inverse_ * gradient);
+  }
+  void fit_without(const std::vector<bool>& bad) {
+    Eigen::VectorXd weights = fit_.loss;
+    double rows = 0.0;
+    for (const RowBlock& block : fit_.blocks) {
+      if (bad[static_cast<std::size_t>(block.sample)]) {
+        weights.segment(block.first, block.size).setZero();
+      } else {
+        rows += static_cast<double>(block.size);
+      }
+    }
+    solve(weights);
+    set_sigmas(freedom(rows));
+  }
+  /// M-estimates with the scale of the median.
+  void fit_robustly() {
+    bad_.assign(bad_.size(), false);
+    set_sigmas(1.0);
+    constexpr int kCauchy = 12, kTukey = 12;
+    for (int i = 0; i < kCauchy + kTukey; ++i) {
+      Eigen::VectorXd weights = fit_.loss;
+      for (const FeatureRows& f : features_) {
+        const Loss loss =
+            i < kCauchy ? Loss{LossType::cauchy, 2.385} : Loss{LossType::tukey, 4.685};
+        const double s = distance(f) / sigma_of(f), squared = s * s / f.size;
+        weights.segment(f.row, f.size) *= loss(squared).derivative;
+      }
+      solve(weights);
+      set_sigmas(freedom(static_cast<double>(fit_.residual.size())));
+    }
+  }
+  /// Noise of a weighted residual; at least the rounding of exact data.
+  [[nodiscard]] double sigma_of(const FeatureRows& f) const {
+    return std::max(sigma_[static_cast<std::size_t>(f.term)], 1e-9);
+  }
+  /// Distance of this feature in standard deviations.
+  [[nodiscard]] double times(const FeatureRows& f) const {
+    const auto j = fit_.jacobian.middleRows(f.row, f.size);
+    const double leverage = std::min(0.99, (j * inverse_).cwiseProduct(j).sum() / f.size);
+    const bool in = !bad_[static_cast<std::size_t>(f.sample)];
+    return distance(f) / (sigma_of(f) * std::sqrt(in ? 1.0 - leverage : 1.0 + leverage));
+  }
+  [[nodiscard]] double limit(const FeatureRows& f) const {
+    constexpr double kFalse = 1e-3;  // share of good data sets with a false alarm
+    const double t = std::log(static_cast<double>(features_.size()) / kFalse), k = f.size;
+    const double factor = tail_counts_ ? tail_[static_cast<std::size_t>(f.term)] : 1.0;
+    return factor * std::sqrt(k + 2.0 * std::sqrt(k * t) + 2.0 * t);
+  }
+  /// Assumes equal noise in all directions, or uses the observed tail of the features that fit.
+  /// The latter only when bad captures are no longer among them.
+  enum class Tail { normal, as_seen };
+
+  void mark(Tail tail = Tail::normal) {
+    tail_counts_ = tail == Tail::as_seen;
+    std::vector<bool> bad(bad_.size(), false);
+    for (const FeatureRows& f : features_) {
+      if (times(f) > limit(f)) bad[static_cast<std::size_t>(f.sample)] = true;
+    }
+    bad_ = std::move(bad);
+  }
+
+  [[nodiscard]] std::vector<CaptureError> worst() const {
+    std::vector<CaptureError> all(bad_.size());
+    for (const FeatureRows& f : features_) {
+      CaptureError& of = all[static_cast<std::size_t>(f.sample)];
+      const double unit = 1.0 / problem_.term(f.term).weight, d = unit * distance(f);
+      const double so_far = times(f);
+      of.sample = f.sample;
+      if (so_far > of.times) {
+        of.others = of.term == f.term ? std::max(of.others, of.distance) : 0.0;
+        of.times = so_far;
+        of.limit = limit(f);
+        of.term = f.term;
+        of.feature = problem_.feature(f.term, f.sample, f.number);
+        of.distance = d;
+      } else if (of.term == f.term) {
+        of.others = std::max(of.others, d);
+      }
+    }
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      all[s].sample = static_cast<int>(s);
+      all[s].bad = bad_[s];
+    }
+    return all;
+  }
+
+  const AnyProblem& problem_;
+  const LinearFit& fit_;
+  std::vector<FeatureRows> features_;
+  std::vector<bool> bad_;      ///< by sample
+  std::vector<double> sigma_;  ///< of weighted residual components, by term
+  std::vector<double> tail_;   ///< factor of the limit, by term: see tail_factor()
+  bool tail_counts_ = false;
+  Eigen::VectorXd residual_;  ///< of the present fit
+  Eigen::MatrixXd inverse_;   ///< of its information
+};
+
+}  // namespace
+}  // namespace detail
+
+std::vector<CaptureError> capture_errors(const AnyProblem& problem, const LinearFit& fit) {
+  std::vector<CaptureError> captures = detail::CaptureSearch(problem, fit).find();
+  detail::set_influences(fit, captures);
+  return captures;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,50 @@
+// Finding the frames that a problem compares.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/compared_frames.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Where the features of a sensor are: its link, or a virtual frame beyond it.
+[[nodiscard]] FrameOnRobot frame_of_features(const AnyProblem& problem, int sensor,
+                                             std::span<const Sample> samples) {
+  const MountedSensor& mounted = problem.sensors()[static_cast<std::size_t>(sensor)];
+  FrameOnRobot frame{mounted.mount().frame};
+  for (const Sample& sample : samples) {
+    const Observation* seen = sample.observation(mounted.mount().name);
+    if (seen == nullptr || seen->features.empty()) continue;
+    const std::string& name = seen->features.front().frame;
+    const bool is_virtual = problem.frames().contains(name) && !problem.robot().has_joint(name);
+    if (is_virtual && !mounted.sensor().in_own_frame()) frame.frame = name;
+    break;
+  }
+  return frame;
+}
+
+}  // namespace
+}  // namespace detail
+
+std::optional<std::pair<FrameOnRobot, FrameOnRobot>> compared_frames(
+    const AnyProblem& problem, std::span<const Sample> samples) {
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const std::vector<int>& sensors = problem.term(t).sensors;
+    if (problem.samples_of(t) == 0) continue;
+    FrameOnRobot one = detail::frame_of_features(problem, sensors[0], samples),
+                 other{problem.base()};
+    if (sensors.size() > 1) {
+      other = detail::frame_of_features(problem, sensors[1], samples);
+      const auto& first = problem.sensors()[static_cast<std::size_t>(sensors[0])];
+      if (first.sensor().in_own_frame()) std::swap(one, other);
+    }
+    if (one.name() != other.name()) return std::pair(one, other);
+  }
+  return std::nullopt;
+}
+
+}  // namespace kinecal

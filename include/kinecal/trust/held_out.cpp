@@ -1,0 +1,92 @@
+// Cross-validation.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/held_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Sums of squared distances over selected rows, by error block, in their units.
+struct SquaredDistances {
+  std::vector<double> sum;
+  std::vector<int> features;
+
+  explicit SquaredDistances(const AnyProblem& problem)
+      : sum(static_cast<std::size_t>(problem.num_terms()), 0.0), features(sum.size(), 0) {}
+
+  void add(const AnyProblem& problem, const Eigen::VectorXd& residual, const RowBlock& block) {
+    const Term& term = problem.term(block.term);
+    const double unit = 1.0 / term.weight;
+    const auto t = static_cast<std::size_t>(block.term);
+    sum[t] += unit * unit * residual.segment(block.first, block.size).squaredNorm();
+    features[t] += static_cast<int>(block.size) / term.feature_size;
+  }
+};
+
+}  // namespace
+}  // namespace detail
+
+std::vector<int> folds_of(std::span<const Sample> samples, int folds) {
+  std::vector<std::size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t i) {
+    const Sample& s = samples[i];
+    double sum = 0.0;
+    for (const Observation& seen : s.observations) {
+      for (const Feature& feature : seen.features) {
+        if (feature.point.allFinite()) sum += feature.point.sum();
+      }
+    }
+    return std::pair(s.joint_positions, sum);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  std::vector<int> fold(samples.size());
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    fold[order[n]] = static_cast<int>(n % static_cast<std::size_t>(folds));
+  }
+  return fold;
+}
+
+std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator, std::span<const double> values,
+                                          const LinearFit& fit, const std::vector<int>& fold,
+                                          const ProgressMeter& meter) {
+  const AnyProblem& problem = evaluator.problem();
+  const int folds = fold.empty() ? 0 : 1 + *std::max_element(fold.begin(), fold.end());
+  const auto in = [&](const RowBlock& block, int k) {
+    return fold[static_cast<std::size_t>(block.sample)] == k;
+  };
+  detail::SquaredDistances fitted(problem), held_out(problem);
+  for (const RowBlock& block : fit.blocks) fitted.add(problem, fit.residual, block);
+  for (int k = 0; k < folds; ++k) {
+    Eigen::VectorXd weights = fit.loss;
+    for (const RowBlock& block : fit.blocks) {
+      if (in(block, k)) weights.segment(block.first, block.size).setZero();
+    }
+    const auto kept = std::count_if(fold.begin(), fold.end(), [&](int f) { return f != k; });
+    const double priors = static_cast<double>(kept) / static_cast<double>(fold.size());
+    const Refit without = refit(evaluator, values, fit, weights, priors);
+    for (const RowBlock& block : fit.blocks) {
+      if (in(block, k)) held_out.add(problem, without.residual, block);
+    }
+    if (meter) meter((k + 1.0) / folds, "fitting without each fold");
+  }
+  std::vector<HeldOutError> errors;
+  for (std::size_t t = 0; t < fitted.sum.size(); ++t) {
+    const Term& term = problem.term(static_cast<int>(t));
+    const auto root = [&](const detail::SquaredDistances& of) {
+      return of.features[t] > 0 ? std::sqrt(of.sum[t] / of.features[t]) : 0.0;
+    };
+    errors.push_back(
+        {term.name, term.options.unit, fitted.features[t], root(fitted), root(held_out)});
+  }
+  return errors;
+}
+
+}  // namespace kinecal

@@ -1,0 +1,187 @@
+// Judging calibrations.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinecal/trust/judge_noise.ipp"
+#include "kinecal/trust/plausible_change.ipp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// A step that determines nothing leaves the robot as it was, however well it fits.
+void judge_determined(const Assessment& step, bool last, Judgement& judgement) {
+  if (step.parameters.empty() || step.uncertainty.determined > 0) return;
+  judgement.add(last ? Grade::do_not_use : Grade::use_with_care,
+                "step '" + step.step + "': these samples determine none of its " +
+                    std::to_string(step.parameters.size()) +
+                    " free parameters; does any error block depend on them, with what weight?");
+}
+
+void judge_freedom(const Assessment& step, Judgement& judgement) {
+  const double parameters = std::max(1, step.uncertainty.determined);
+  const double freedom = step.rows - parameters;
+  if (freedom >= parameters) return;
+  judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,
+                "step '" + step.step + "': " + std::to_string(step.rows) +
+                    " residuals are too few to check " +
+                    std::to_string(static_cast<int>(parameters)) +
+                    " parameters; record more samples");
+}
+
+void judge_held_out(const Assessment& step, Judgement& judgement) {
+  constexpr Limits kTimes{1.5, 3.0};
+  for (std::size_t t = 0; t < step.held_out.size(); ++t) {
+    const HeldOutError& error = step.held_out[t];
+    // Few samples fit better than their noise; outliers under a loss are in both errors.
+    const double noise = step.noise[t].sigma * std::sqrt(step.noise[t].components);
+    const double expected = std::max(noise, error.fitted);
+    if (error.features == 0 || !(expected > 0.0)) continue;
+    const double times = error.held_out / expected;
+    if (!kTimes.exceeded(times)) continue;
+    judgement.add(kTimes.grade(times),
+                  "error block '" + error.block + "': " + reading(error.held_out, error.unit) +
+                      " on samples held out, " + reading(error.fitted, error.unit) +
+                      " on fitted ones; record more samples or free fewer parameters");
+  }
+}
+
+/// Samples that do not fit: a few are bad captures, many show a wrong model.
+void judge_share(int bad, int samples, const std::string& where, const std::string& what,
+                 Judgement& judgement) {
+  constexpr Limits kShare{0.1, 0.25};
+  const double share = static_cast<double>(bad) / std::max(1, samples);
+  if (bad == 0 || share <= kShare.care) return;
+  judgement.add(share > kShare.refuse ? Grade::do_not_use : Grade::use_with_care,
+                where + std::to_string(bad) + " of " + std::to_string(samples) +
+                    " samples do not fit the others" + what);
+}
+
+void judge_captures(const Assessment& step, const AnyProblem& problem, Judgement& judgement) {
+  const auto bad = std::count_if(step.captures.begin(), step.captures.end(),
+                                 [](const CaptureError& error) { return error.bad; });
+  judge_share(static_cast<int>(bad), problem.num_samples(), "step '" + step.step + "': ", "",
+              judgement);
+}
+
+void judge_change(const Assessment& step, const AnyProblem& problem, Judgement& judgement) {
+  if (!step.change) return;
+  constexpr double kThird = 1.0 / 3.0;
+  judgement.add(step.change->noise_left < kThird ? Grade::do_not_use : Grade::use_with_care,
+                "'" + step.change->owner + "' seems to have changed during the recording, before " +
+                    problem.source(step.change->sample) +
+                    ": with one value before and another after, "
+                    "the noise falls to " +
+                    reading(1e2 * step.change->noise_left, "1") +
+                    " %; calibrate with the samples of one part");
+}
+
+/// The change of a parameter; for a ratio 1 + v, relative.
+[[nodiscard]] double change_of(const Parameter& p) {
+  if (p.unit != "1" || !(1.0 + p.initial > 0.0)) return p.value - p.initial;
+  return (1.0 + p.value) / (1.0 + p.initial) - 1.0;
+}
+
+void judge_values(const CalibrationStep& step, const CalibrationResult& result,
+                  const Assessment& assessment, Judgement& judgement) {
+  for (const int p : step.free.parameters()) {
+    const Parameter& parameter = result.table[p];
+    const double by = change_of(parameter);
+    const Limits limits = plausible_change(step, p);
+    if (limits.exceeded(std::abs(by))) {
+      judgement.add(limits.grade(std::abs(by)),
+                    "'" + parameter.name + "' changed by " +
+                        (parameter.unit == "1" ? reading(1e2 * by, "1") + " %"
+                                               : reading(by, parameter.unit)) +
+                        "; is the URDF or its initial value wrong, or do these samples not "
+                        "determine it?");
+    }
+  }
+  for (const int p : assessment.at_bound) {
+    judgement.add(Grade::use_with_care, "'" + result.table[p].name + "' ended at its bound " +
+                                            reading(result.table[p].value, result.table[p].unit));
+  }
+}
+
+void judge_weak(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
+  if (step.weak.parameters.empty()) return;
+  std::string hold;
+  for (const int p : step.weak.hold) hold += " " + table[p].name;
+  const Parameter& first = table[step.weak.hold.front()];
+  const std::size_t others = step.weak.parameters.size() - 1;
+  judgement.add(Grade::use_with_care,
+                "these samples hardly determine '" + first.name + "' (+- " +
+                    reading(step.deviation(step.weak.hold.front()).value_or(0.0), first.unit) +
+                    ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
+                    "; record poses that differ more, or hold:" + hold);
+}
+
+void judge_priors(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
+  for (const PriorPull& pull : step.pulls) {
+    const Parameter& p = table[pull.parameter];
+    judgement.add(
+        Grade::use_with_care,
+        "prior '" + pull.prior + "' and the samples contradict each other: it moves '" + p.name +
+            "' by " + reading(pull.shift, p.unit) + ", " + reading(pull.times, "1") +
+            " times its +-, which does not contain that; is its scale too large, or is the "
+            "drawing wrong there?");
+  }
+}
+
+void judge_pose(const Assessment& step, Judgement& judgement) {
+  if (!step.pose) return;
+  constexpr Limits kPosition{0.005, 0.02};
+  const std::string pose = "the position of '" + step.pose->frame + "' in '" + step.pose->in + "'";
+  if (!step.pose->determined) {
+    judgement.add(Grade::use_with_care,
+                  pose +
+                      " depends on a combination of parameters that these samples do not "
+                      "determine; see 'cannot be determined'");
+  }
+  if (!kPosition.exceeded(step.pose->position)) return;
+  judgement.add(
+      kPosition.grade(step.pose->position),
+      pose + " is known to " + reading(step.pose->position, "m") + " only; record more samples");
+}
+
+}  // namespace
+}  // namespace detail
+
+void judge_left_out(int left_out, int samples, Judgement& judgement) {
+  detail::judge_share(left_out, samples, "", " and were left out", judgement);
+}
+
+bool fits_badly(const Assessment& step) {
+  Judgement of_noise;
+  detail::judge_noise(step, of_noise);
+  return of_noise.verdict != Grade::good;
+}
+
+Judgement judge(const Calibration& calibration, const CalibrationResult& result,
+                const std::vector<Assessment>& assessments,
+                const std::vector<std::string>& doubts) {
+  Judgement judgement;
+  if (!result.converged) judgement.add(Grade::do_not_use, result.termination);
+  for (std::size_t s = 0; s < assessments.size(); ++s) {
+    const CalibrationStep& step = calibration.steps[s];
+    const bool last = s + 1 == assessments.size();
+    if (last) detail::judge_noise(assessments[s], judgement);  // earlier steps fit less
+    detail::judge_determined(assessments[s], last, judgement);
+    detail::judge_freedom(assessments[s], judgement);
+    if (last) detail::judge_held_out(assessments[s], judgement);
+    if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
+    if (last) detail::judge_change(assessments[s], *step.problem, judgement);
+    detail::judge_values(step, result, assessments[s], judgement);
+    if (last) detail::judge_weak(assessments[s], result.table, judgement);
+    if (last) detail::judge_priors(assessments[s], result.table, judgement);
+    if (last) detail::judge_pose(assessments[s], judgement);
+  }
+  for (const std::string& doubt : doubts) judgement.add(Grade::use_with_care, doubt);
+  return judgement;
+}
+
+}  // namespace kinecal

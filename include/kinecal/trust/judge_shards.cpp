@@ -1,0 +1,175 @@
+// Definitions of judge_shards.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/judge_shards.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "kinecal/trust/assess_shards.hpp"
+#include "kinecal/trust/estimated_noise.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// The procedure on samples in shards.
+class ShardProcedure {
+ public:
+  ShardProcedure(ShardedCalibration& calibration, const ProcedureOptions& options)
+      : calibration_(calibration), options_(options), noise_(calibration.first) {}
+
+  [[nodiscard]] JudgedResult run() {
+    JudgedResult judged = noise_.settle(calibration_.first, [&] { return fit(); });
+    judged.sources.resize(static_cast<std::size_t>(calibration_.num_samples));
+    judged.numbers.resize(judged.sources.size());
+    std::iota(judged.numbers.begin(), judged.numbers.end(), 1);
+    judged.judgement =
+        judge(calibration_.first, judged.result, judged.assessments, options_.doubts);
+    judge_misfits(judged.judgement);
+    return judged;
+  }
+
+ private:
+  [[nodiscard]] const CalibrationStep& step(std::size_t s) const {
+    return calibration_.first.steps[s];
+  }
+
+  [[nodiscard]] ShardExchange exchange(const std::string& prefix) const {
+    if (!calibration_.exchange) return {};
+    return [this, prefix](const std::string& what, const NumbersOfShard& numbers_of) {
+      return calibration_.exchange(prefix + what, numbers_of);
+    };
+  }
+
+  /// Sigmas of the steps' problems, for the shards that are in memory.
+  void set_sigmas() {
+    for (auto& [key, problem] : problems_) {
+      const AnyProblem& changed = *step(key.first).problem;
+      for (int t = 0; t < changed.num_terms(); ++t) {
+        problem->set_sigma(t, changed.term(t).sigma);
+      }
+    }
+  }
+
+  /// A step's problem with the samples of a shard: the first is that of the calibration.  Few samples
+  /// are kept in memory.
+  [[nodiscard]] std::shared_ptr<const AnyProblem> problem(std::size_t s, int shard) {
+    constexpr int kKept = 100000;  // samples
+    if (shard == 0) return {std::shared_ptr<const AnyProblem>(), step(s).problem.get()};
+    const auto known = problems_.find({s, shard});
+    if (known != problems_.end()) return known->second;
+    std::shared_ptr<AnyProblem> made = step(s).problem->without_samples();
+    for (const Sample& sample : calibration_.read(shard)) made->add_sample(sample);
+    int kept = made->num_samples();
+    for (const auto& [key, one] : problems_) kept += one->num_samples();
+    if (kept <= kKept) problems_[{s, shard}] = made;
+    return made;
+  }
+
+  /// The result of the first shard alone: where to start.
+  [[nodiscard]] std::vector<double> start(const std::string& prefix) const {
+    const auto of_first = [&](int shard) {
+      if (shard > 0) return std::vector<double>();
+      const CalibrationResult result = calibrate(calibration_.first);
+      const Eigen::VectorXd values =
+          result.converged ? result.table.values() : calibration_.first.table.values();
+      return std::vector<double>(values.begin(), values.end());
+    };
+    const Shards shards{nullptr, std::max(1, static_cast<int>(calibration_.names.size())),
+                        0,       0,
+                        {},      exchange(prefix)};
+    return numbers_of_shards(shards, "start", of_first).front();
+  }
+
+  [[nodiscard]] JudgedResult fit() {
+    set_sigmas();
+    std::string prefix = "step";
+    for (const double sigma : noise_.sigmas(calibration_.first)) {
+      char exact[40];
+      (void)std::snprintf(exact, sizeof exact, " %.17g", sigma);
+      prefix += exact;
+    }
+    const Eigen::VectorXd table = calibration_.first.table.values();
+    const std::vector<double> initial(table.begin(), table.end()), guess = start(prefix);
+    JudgedResult judged;
+    judged.result.table = calibration_.first.table;
+    std::vector<double> values = initial;
+    for (std::size_t s = 0; s < calibration_.first.steps.size(); ++s) {
+      const std::string of_step = prefix + " " + std::to_string(s) + " ";
+      if (!solve(s, of_step, initial, guess, values, judged)) break;
+    }
+    for (int i = 0; i < judged.result.table.size(); ++i) {
+      judged.result.table[i].value = values[static_cast<std::size_t>(i)];
+    }
+    return judged;
+  }
+
+  /// @param values  in: where the step before ended; out: where this one did
+  /// @returns  whether it converged
+  bool solve(std::size_t s, const std::string& prefix, const std::vector<double>& initial,
+             const std::vector<double>& guess, std::vector<double>& values, JudgedResult& judged) {
+    const FreeSet& free = calibration_.free[s];
+    const std::unique_ptr<AnyProblem> bare = step(s).problem->without_samples();
+    Shards shards{bare.get(),
+                  static_cast<int>(calibration_.names.size()),
+                  calibration_.num_samples,
+                  calibration_.num_residuals[s],
+                  [this, s](int shard) { return problem(s, shard); },
+                  exchange(prefix)};
+    for (const auto& [parameter, value] : step(s).assignments) {
+      values[static_cast<std::size_t>(parameter)] = value;
+    }
+    const std::vector<double> reference = values;
+    for (const int p : free.parameters()) {
+      values[static_cast<std::size_t>(p)] = guess[static_cast<std::size_t>(p)];
+    }
+    SolveOptions solving = options_.solving;
+    solving.max_num_iterations = step(s).max_num_iterations;
+    StepResult solved = solve_shards(shards, free, values, reference, solving);
+    solved.name = step(s).name;
+    add_step(std::move(solved), free, judged.result);
+    if (!judged.result.converged) return false;
+    ShardAssessment found = assess_shards(shards, free, initial, values, calibration_.samples);
+    found.assessment.step = step(s).name;
+    judged.assessments.push_back(std::move(found.assessment));
+    merge_statistics(judged.result.blocks, std::move(found.blocks));
+    misfits_ = std::move(found.misfits);
+    return true;
+  }
+
+  /// Shards that do not fit the others.
+  void judge_misfits(Judgement& judgement) const {
+    constexpr double kMuch = 2.0;
+    if (misfits_.size() < 3) return;
+    std::vector<double> sorted = misfits_;
+    std::sort(sorted.begin(), sorted.end());
+    const double median = sorted[sorted.size() / 2];
+    for (std::size_t shard = 0; shard < misfits_.size(); ++shard) {
+      if (misfits_[shard] <= kMuch * median) continue;
+      char times[48];
+      (void)std::snprintf(times, sizeof times, "%.1f", misfits_[shard] / median);
+      judgement.add(Grade::use_with_care, calibration_.names[shard] + ": its residuals are " +
+                                              times + " times those of most files");
+    }
+  }
+
+  ShardedCalibration& calibration_;
+  const ProcedureOptions& options_;
+  EstimatedNoise noise_;
+  std::map<std::pair<std::size_t, int>, std::shared_ptr<AnyProblem>> problems_;
+  std::vector<double> misfits_;
+};
+
+}  // namespace
+}  // namespace detail
+
+JudgedResult calibrate_and_judge(ShardedCalibration& calibration, const ProcedureOptions& options) {
+  return detail::ShardProcedure(calibration, options).run();
+}
+
+}  // namespace kinecal

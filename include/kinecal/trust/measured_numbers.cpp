@@ -1,0 +1,20 @@
+// Counting measured numbers.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/measured_numbers.hpp"
+
+#include <algorithm>
+
+#include "kinecal/evaluation/any_evaluator.hpp"
+
+namespace kinecal {
+
+int measured_numbers(const AnyProblem& problem, std::span<const double> values) {
+  constexpr Eigen::Index kOfABody = 6;
+  Eigen::Index numbers = 0;
+  (void)evaluate(problem, values, nullptr, [&](int, int, const TermResiduals& rows) {
+    numbers += std::min(rows.residual.size(), kOfABody);
+  });
+  return static_cast<int>(numbers);
+}
+
+}  // namespace kinecal

@@ -1,0 +1,92 @@
+// Estimating noise.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinecal {
+
+double robust_sigma(std::vector<double> distances, int components) {
+  if (distances.empty()) return 0.0;
+  const auto middle = distances.begin() + std::ssize(distances) / 2;
+  std::nth_element(distances.begin(), middle, distances.end());
+  // Median of chi-square, Wilson and Hilferty: k (1 - 2 / 9k)^3; exact to 2 % for one component.
+  const double k = components;
+  return *middle / std::sqrt(k * std::pow(1.0 - 2.0 / (9.0 * k), 3.0));
+}
+
+double detail::tail_factor(std::vector<double> distances, int components, double sigma) {
+  constexpr std::size_t kFew = 40;
+  constexpr double kNormal = 1.645, kMost = 1.7;  // quantile of a normal distribution
+  if (distances.size() < kFew || !(sigma > 0.0)) return 1.0;
+  const auto at =
+      distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size()));
+  std::nth_element(distances.begin(), at, distances.end());
+  // Of chi-square, Wilson and Hilferty: k (1 - 2 / 9k + z sqrt(2 / 9k))^3.
+  const double k = components, part = 2.0 / (9.0 * k);
+  const double expected =
+      sigma * std::sqrt(k * std::pow(1.0 - part + kNormal * std::sqrt(part), 3.0));
+  return std::clamp(*at / expected, 1.0, kMost);
+}
+
+BlockNoise detail::block_noise(const Term& term, int features, double squares, double leverage,
+                               double robust) {
+  BlockNoise of;
+  of.block = term.name;
+  of.unit = term.options.unit;
+  of.features = features;
+  of.components = term.feature_size;
+  of.unit_sigma = 1.0 / term.weight;
+  of.given = term.options.sigma ? of.unit_sigma : 0.0;
+  const double rows = static_cast<double>(features) * of.components;
+  of.freedom = rows - leverage;
+  constexpr double kNoFreedom = 1e-6;  // the parameters fit every row
+  if (of.freedom < kNoFreedom * rows || rows == 0.0) return of;
+  of.sigma = of.unit_sigma * std::sqrt(squares / of.freedom);
+  of.robust = of.unit_sigma * robust * std::sqrt(rows / of.freedom);
+  return of;
+}
+
+double prior_variance(const std::vector<BlockNoise>& noise) {
+  double squares = 0.0, freedom = 0.0;
+  bool given = true;
+  for (const BlockNoise& of : noise) {
+    if (!(of.freedom > 0.0)) continue;
+    given = given && of.given > 0.0;
+    squares += of.weighted() * of.weighted() * of.freedom;
+    freedom += of.freedom;
+  }
+  return given || freedom == 0.0 ? 1.0 : squares / freedom;
+}
+
+std::vector<BlockNoise> estimate_noise(const AnyProblem& problem, const LinearFit& fit,
+                                       const Eigen::MatrixXd& inverse) {
+  const auto terms = static_cast<std::size_t>(problem.num_terms());
+  std::vector<double> squares(terms, 0.0), leverages(terms, 0.0);
+  std::vector<std::vector<double>> distances(terms);
+  for (const RowBlock& block : fit.blocks) {
+    const auto t = static_cast<std::size_t>(block.term);
+    const int size = problem.term(block.term).feature_size;
+    const auto jacobian = fit.jacobian.middleRows(block.first, block.size);
+    const auto loss = fit.loss.segment(block.first, block.size);
+    const auto r = fit.residual.segment(block.first, block.size);
+    const Eigen::VectorXd leverage =
+        (jacobian * inverse).cwiseProduct(jacobian).rowwise().sum().cwiseProduct(loss);
+    leverages[t] += leverage.sum();
+    squares[t] += r.cwiseAbs2().dot(loss);
+    for (Eigen::Index row = 0; row < block.size; row += size) {
+      distances[t].push_back(r.segment(row, size).norm());
+    }
+  }
+  std::vector<BlockNoise> noise;
+  for (std::size_t t = 0; t < terms; ++t) {
+    const Term& term = problem.term(static_cast<int>(t));
+    noise.push_back(detail::block_noise(term, static_cast<int>(distances[t].size()), squares[t],
+                                        leverages[t],
+                                        robust_sigma(distances[t], term.feature_size)));
+  }
+  return noise;
+}
+
+}  // namespace kinecal

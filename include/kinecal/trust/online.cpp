@@ -1,0 +1,72 @@
+// Following a session.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/online.hpp"
+
+#include <limits>
+
+#include "kinecal/trust/online_misfits.ipp"
+#include "kinecal/trust/online_moves.ipp"
+
+namespace kinecal {
+
+OnlineCalibration::OnlineCalibration(MakeProblem make, const FreeSet& free,
+                                     std::span<const double> values, const FrameOnRobot& frame,
+                                     const FrameOnRobot& in)
+    : inside_(new Inside{std::move(make), free, {values.begin(), values.end()}, frame, in}) {
+  inside_->problem->check(free);
+  (void)detail::PoseDerivative(*inside_->problem, free, inside_->values, frame, in);
+}
+
+OnlineCalibration::~OnlineCalibration() = default;
+OnlineCalibration::OnlineCalibration(OnlineCalibration&&) noexcept = default;
+OnlineCalibration& OnlineCalibration::operator=(OnlineCalibration&&) noexcept = default;
+
+void OnlineCalibration::expect(std::vector<Sample> poses) {
+  inside_->ahead = std::move(poses);
+}
+
+OnlineState OnlineCalibration::add(const Sample& sample) {
+  OnlineState state;
+  state.fits = inside_->add_if_it_fits(sample, state);
+  state.samples = static_cast<int>(inside_->samples.size());
+  state.noise = std::sqrt(inside_->noise2);
+  if (inside_->hessian.size() > 0) inside_->set_pose(state);
+  return state;
+}
+
+const std::vector<double>& OnlineCalibration::values() const {
+  return inside_->values;
+}
+
+std::optional<NextMove> OnlineCalibration::next_move(double step) const {
+  const Inside& known = *inside_;
+  if (known.samples.empty() || known.freedom <= 0) return std::nullopt;
+  auto candidates = known.candidates(step);
+  const auto trials = known.make();
+  for (const auto& candidate : candidates) trials->add_sample(candidate.second);
+  std::vector<detail::SampleRows> rows(candidates.size());
+  (void)trials->evaluator(known.free)
+      ->evaluate(
+          known.values, true,
+          [&](int term, int sample, const TermResiduals& of_term) {
+            rows[static_cast<std::size_t>(sample)].append(of_term, trials->term(term).weight);
+          },
+          Linearization::error_free);
+  OnlineState now;
+  known.set_pose(now);
+  std::optional<NextMove> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (rows[i].jacobian.size() == 0) continue;
+    OnlineState then;
+    known.set_pose(then, known.hessian + rows[i].jacobian.transpose() * rows[i].jacobian);
+    if (!(then.position < least)) continue;
+    least = then.position;
+    best = candidates[i].first;
+    best->position = then.position;
+  }
+  if (best && now.known && best->position >= now.position) return std::nullopt;
+  return best;
+}
+
+}  // namespace kinecal

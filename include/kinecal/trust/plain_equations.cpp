@@ -1,0 +1,15 @@
+// Definitions of plain_equations.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/plain_equations.hpp"
+
+#include "kinecal/evaluation/any_evaluator.hpp"
+
+namespace kinecal {
+
+PlainEquations plain_equations(const AnyProblem& problem, const FreeSet& free,
+                               std::span<const double> values) {
+  const NormalEquations normal = problem.evaluator(free)->normal_equations(values);
+  return {PlainMatrix(normal.gradient), PlainMatrix(normal.hessian)};
+}
+
+}  // namespace kinecal

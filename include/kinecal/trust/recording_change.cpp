@@ -1,0 +1,137 @@
+// Finds a change during the recording.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/recording_change.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "kinecal/solve/spectrum.hpp"
+
+namespace kinecal {
+
+namespace detail {
+
+/// True if residuals are only rounding, in their own units: simulated samples without noise.
+[[nodiscard]] inline bool is_exact(const AnyProblem& problem, const LinearFit& fit) {
+  constexpr double kRounding = 1e-7;
+  double squares = 0.0;
+  for (const RowBlock& block : fit.blocks) {
+    const double weight = problem.term(block.term).weight;
+    squares += fit.residual.segment(block.first, block.size).squaredNorm() / (weight * weight);
+  }
+  return !(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()));
+}
+
+/// J^T W J and J^T W r of the samples from some sample on.
+struct TailSums {
+  int sample = 0;  ///< the first one
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+};
+
+/// The sums from some samples on, at up to 64 places; skips the first and the last samples, whose
+/// change is indistinguishable from a bad capture.
+[[nodiscard]] inline std::vector<TailSums> tail_sums(const LinearFit& fit, int samples) {
+  constexpr int kParts = 64, kFew = 3;
+  const Eigen::Index n = fit.size();
+  const int parts = std::min(kParts, samples);
+  std::vector<TailSums> sums(static_cast<std::size_t>(parts),
+                             {0, Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
+  for (int p = 0; p < parts; ++p) {
+    sums[static_cast<std::size_t>(p)].sample =
+        static_cast<int>((static_cast<long>(p) * samples + parts - 1) / parts);
+  }
+  for (const RowBlock& block : fit.blocks) {
+    const auto part = static_cast<std::size_t>(static_cast<long>(block.sample) * parts / samples);
+    const auto rows = fit.jacobian.middleRows(block.first, block.size);
+    const auto weights = fit.loss.segment(block.first, block.size);
+    sums[part].information += rows.transpose() * weights.asDiagonal() * rows;
+    sums[part].gradient +=
+        rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size));
+  }
+  for (std::size_t p = sums.size(); p-- > 1;) {
+    sums[p - 1].information += sums[p].information;
+    sums[p - 1].gradient += sums[p].gradient;
+  }
+  std::erase_if(sums, [&](const TailSums& tail) {
+    return tail.sample < kFew || tail.sample > samples - kFew;
+  });
+  return sums;
+}
+
+/// The share by which the sum of squares falls with changing parameters, times that sum.  Skips
+/// changes that other parameters could explain just as well: if the samples before and after have
+/// nothing in common, there are many.  Also skips parameters without effect on the samples after
+/// the change.
+/// @param by     (coordinates x parameters) of the owner
+/// @param whole  (parameters) diagonal of their information in all samples
+[[nodiscard]] inline double fall_of(const TailSums& tail, const Eigen::MatrixXd& inverse,
+                                    const Eigen::MatrixXd& by, const Eigen::VectorXd& whole) {
+  constexpr double kOwn = 1e-3;   // least share of a change's effect that others cannot explain
+  constexpr double kNone = 1e-9;  // of the information in all samples: less is rounding
+  const Eigen::MatrixXd cross = by.transpose() * tail.information;
+  const Eigen::MatrixXd all = cross * by;
+  const Eigen::VectorXd scale = all.diagonal().binaryExpr(
+      whole, [](double a, double w) { return a > kNone * w ? 1.0 / std::sqrt(a) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(
+      scale.asDiagonal() * (all - cross * inverse * cross.transpose()) * scale.asDiagonal());
+  const Eigen::VectorXd gradient =
+      own.eigenvectors().transpose() * scale.cwiseProduct(by.transpose() * tail.gradient);
+  double fall = 0.0;
+  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+    if (own.eigenvalues()(i) > kOwn) fall += gradient(i) * gradient(i) / own.eigenvalues()(i);
+  }
+  return fall;
+}
+
+/// Probability of a share above x by chance; rounds q up to an even number.
+[[nodiscard]] inline double chance_of_share(double x, int q, double freedom) {
+  const double b = 0.5 * (freedom - q);
+  double term = 1.0, sum = 0.0;
+  for (int j = 0; j < (q + 1) / 2; ++j) {
+    sum += term;
+    term *= x * (b + j) / (j + 1);
+  }
+  return std::pow(1.0 - x, b) * sum;
+}
+
+}  // namespace detail
+
+std::optional<RecordingChange> recording_change(const AnyProblem& problem, const FreeSet& free,
+                                                const LinearFit& fit) {
+  const double squares = fit.loss.dot(fit.residual.cwiseAbs2());
+  const double freedom = static_cast<double>(fit.residual.size() - fit.size());
+  constexpr double kLeft = 0.5, kChance = 1e-6;
+  if (detail::is_exact(problem, fit)) return {};
+  std::map<std::string, std::vector<int>> columns;
+  for (int c = 0; c < free.size(); ++c) {
+    const int p = free.parameters()[static_cast<std::size_t>(c)];
+    columns[problem.owners()[static_cast<std::size_t>(p)]].push_back(c);
+  }
+  const Eigen::MatrixXd all = information(fit, fit.loss);
+  const Eigen::MatrixXd inverse = detail::Spectrum(all).pseudo_inverse();
+  const Eigen::MatrixXd to_coordinates =
+      fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
+  const std::vector<detail::TailSums> tails = detail::tail_sums(fit, problem.num_samples());
+  const double tests = static_cast<double>(tails.size() * columns.size());
+  std::optional<RecordingChange> best;
+  for (const auto& [owner, of_owner] : columns) {
+    const int q = static_cast<int>(of_owner.size());
+    if (freedom - q < 2.0 * q) continue;
+    const Eigen::MatrixXd by = to_coordinates(Eigen::all, of_owner);
+    const Eigen::VectorXd whole = (by.transpose() * all * by).diagonal();
+    for (const detail::TailSums& tail : tails) {
+      const double x = std::clamp(detail::fall_of(tail, inverse, by, whole) / squares, 0.0, 1.0);
+      const double left = std::sqrt((1.0 - x) * freedom / (freedom - q));
+      if (left > kLeft || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
+      if (!best || left < best->noise_left) best = RecordingChange{owner, tail.sample, left};
+    }
+  }
+  return best;
+}
+
+}  // namespace kinecal
