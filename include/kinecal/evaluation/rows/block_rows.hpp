@@ -63,7 +63,7 @@ class BlockRows {
   }
   [[nodiscard]] static ConditionsOf<B, S> conditions(const Views& views) {
     ConditionsOf<B, S> all;
-    std::copy_n(views.numbers.conditions, all.size(), all.begin());
+    std::copy_n(views.conditions, all.size(), all.begin());
     return all;
   }
   /// Adds the columns of the block's own parameters.
