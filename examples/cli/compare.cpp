@@ -16,10 +16,10 @@
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
+#include "kinecal/tools/install/stored_result.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "output_file.hpp"
 #include "report.hpp"
-#include "result.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -50,7 +50,7 @@ struct Comparison {
 
 /// A result with its problem, without samples.
 struct Assembled {
-  Result result;
+  StoredResult result;
   Calibration calibration;
   std::vector<double> values;
   std::map<std::string, double> rising;

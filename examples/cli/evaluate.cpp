@@ -16,7 +16,7 @@
 namespace kinecal::cli {
 namespace {
 
-std::string json(const Result& result, const NewSamples& fresh) {
+std::string json(const StoredResult& result, const NewSamples& fresh) {
   return detail::json_lines({{"result", result.folder},
                              {"verdict", result.verdict},
                              {"samples", fresh.samples.size()},
@@ -27,7 +27,7 @@ std::string json(const Result& result, const NewSamples& fresh) {
 }  // namespace
 
 int evaluate(const RecheckOptions& options) {
-  const Result result = read_result(options.result);
+  const StoredResult result = read_result(options.result);
   if (!options.report.empty()) check_output(options.report, options.samples, true);
   const NewSamples fresh =
       read_new_samples(result, {options.samples, options.cameras, options.recorded});

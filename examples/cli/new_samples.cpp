@@ -23,7 +23,7 @@ namespace kinecal::cli {
 namespace {
 
 /// The configuration with the offset of each joint in its last step: each may have moved.
-Config with_all_joints(const Result& result, const std::vector<detail::UsedJoint>& joints) {
+Config with_all_joints(const StoredResult& result, const std::vector<detail::UsedJoint>& joints) {
   Config config = result.config;
   StepConfig& step = config.steps.back();
   for (const detail::UsedJoint& used : joints) {
@@ -35,14 +35,14 @@ Config with_all_joints(const Result& result, const std::vector<detail::UsedJoint
   return config;
 }
 
-void doubt(const Result& result, std::span<const Sample> samples,
+void doubt(const StoredResult& result, std::span<const Sample> samples,
            const std::vector<detail::UsedJoint>& joints, Diagnostics& diagnostics) {
   detail::check_joint_positions(joints, samples, diagnostics);
   (void)detail::check_repeated_samples(result.config, joints, samples, diagnostics);
   detail::check_sensor_points(result.config, result.robot, samples, diagnostics);
 }
 
-void assemble_new(const Result& result, NewSamples& fresh) {
+void assemble_new(const StoredResult& result, NewSamples& fresh) {
   const auto joints = detail::used_joints(result.config, result.robot, fresh.samples);
   Diagnostics quiet;  // what a configuration leaves free is not of interest here
   fresh.calibration = assemble(with_all_joints(result, joints), result.robot, fresh.samples, quiet);
@@ -63,7 +63,7 @@ void assemble_new(const Result& result, NewSamples& fresh) {
 
 /// Takes the result off what was recorded with it in force: offsets in <calibration rising>, and cameras.
 /// @returns  false if it changes nothing
-bool take_off(const Result& result, const AnyProblem& problem, std::vector<Sample>& samples) {
+bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector<Sample>& samples) {
   bool changes = !result.added_rising.empty();
   add_rising(result.added_rising, samples, -1.0);
   for (const MountedSensor& sensor : problem.sensors()) {
@@ -86,7 +86,8 @@ bool take_off(const Result& result, const AnyProblem& problem, std::vector<Sampl
 }
 
 /// Decides whether the result was in force when the samples were recorded.
-void choose_recorded(const Result& result, const NewSampleOptions& options, NewSamples& fresh) {
+void choose_recorded(const StoredResult& result, const NewSampleOptions& options,
+                     NewSamples& fresh) {
   NewSamples with;
   with.samples = fresh.samples;
   if (!take_off(result, fresh.problem(), with.samples)) return;
@@ -119,7 +120,7 @@ void choose_recorded(const Result& result, const NewSampleOptions& options, NewS
   return distances.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(distances.size()));
 }
 
-const FittedBlock& fitted_block(const Result& result, const std::string& name) {
+const FittedBlock& fitted_block(const StoredResult& result, const std::string& name) {
   static const FittedBlock none;
   const auto found = result.fitted.find(name);
   return found == result.fitted.end() ? none : found->second;
@@ -127,7 +128,7 @@ const FittedBlock& fitted_block(const Result& result, const std::string& name) {
 
 }  // namespace
 
-NewSamples read_new_samples(const Result& result, const NewSampleOptions& options) {
+NewSamples read_new_samples(const StoredResult& result, const NewSampleOptions& options) {
   NewSamples fresh;
   fresh.samples = read_recordings(options.samples, fresh.diagnostics).samples;
   for (const std::string& camera : options.cameras) {
@@ -157,7 +158,7 @@ NewSamples read_new_samples(const Result& result, const NewSampleOptions& option
   return fresh;
 }
 
-Assessment assess_new(const Result& result, const NewSamples& fresh) {
+Assessment assess_new(const StoredResult& result, const NewSamples& fresh) {
   const AnyProblem& problem = fresh.problem();
   Assessment found;
   for (int t = 0; t < problem.num_terms(); ++t) {
@@ -200,7 +201,7 @@ Assessment assess_new(const Result& result, const NewSamples& fresh) {
   return found;
 }
 
-std::string fit_text(const Result& result, const NewSamples& fresh) {
+std::string fit_text(const StoredResult& result, const NewSamples& fresh) {
   const AnyProblem& problem = fresh.problem();
   const auto norms = feature_norms(problem, {fresh.values.data(), fresh.values.size()});
   TextTable table({"error block", "features", "unit", "now", "calibration", "held out", "worst now",
@@ -226,7 +227,7 @@ std::string fit_text(const Result& result, const NewSamples& fresh) {
          table.str();
 }
 
-detail::Json fit_json(const Result& result, const NewSamples& fresh) {
+detail::Json fit_json(const StoredResult& result, const NewSamples& fresh) {
   const AnyProblem& problem = fresh.problem();
   const auto norms = feature_norms(problem, {fresh.values.data(), fresh.values.size()});
   detail::Json list = detail::Json::array();
@@ -246,7 +247,7 @@ detail::Json fit_json(const Result& result, const NewSamples& fresh) {
   return list;
 }
 
-std::string worst_text(const Result& result, const NewSamples& fresh) {
+std::string worst_text(const StoredResult& result, const NewSamples& fresh) {
   const Assessment found = assess_new(result, fresh);
   std::vector<CaptureError> worst = found.captures;
   std::stable_sort(worst.begin(), worst.end(),

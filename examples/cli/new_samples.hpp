@@ -9,7 +9,7 @@
 #include "kinecal/config/doubts/rising.hpp"
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/report/findings.hpp"
-#include "result.hpp"
+#include "kinecal/tools/install/stored_result.hpp"
 
 namespace kinecal::cli {
 
@@ -35,17 +35,18 @@ struct NewSampleOptions {
 };
 
 /// Reads new samples of any format, and doubts them.
-[[nodiscard]] NewSamples read_new_samples(const Result& result, const NewSampleOptions& options);
+[[nodiscard]] NewSamples read_new_samples(const StoredResult& result,
+                                          const NewSampleOptions& options);
 
 /// Noise of the calibration and the worst feature of each new sample, by error block of the problem.
-[[nodiscard]] Assessment assess_new(const Result& result, const NewSamples& fresh);
+[[nodiscard]] Assessment assess_new(const StoredResult& result, const NewSamples& fresh);
 
 /// A line for each error block: distances now, and in the calibration.
-[[nodiscard]] std::string fit_text(const Result& result, const NewSamples& fresh);
+[[nodiscard]] std::string fit_text(const StoredResult& result, const NewSamples& fresh);
 /// The same as a JSON list.
-[[nodiscard]] detail::Json fit_json(const Result& result, const NewSamples& fresh);
+[[nodiscard]] detail::Json fit_json(const StoredResult& result, const NewSamples& fresh);
 
 /// The worst samples, by file and line.
-[[nodiscard]] std::string worst_text(const Result& result, const NewSamples& fresh);
+[[nodiscard]] std::string worst_text(const StoredResult& result, const NewSamples& fresh);
 
 }  // namespace kinecal::cli

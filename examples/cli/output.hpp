@@ -14,9 +14,6 @@
 
 namespace kinecal::cli {
 
-/// Copies of what a result was calibrated with, so that its folder says all.
-inline constexpr const char *kOriginalUrdf = "original.urdf", *kConfigCopy = "config.yaml";
-
 /// A URDF as it was read.
 struct UrdfFile {
   std::string name, text;

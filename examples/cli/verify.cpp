@@ -21,7 +21,7 @@ namespace {
 
 /// What is written about a check.
 struct Check {
-  const Result& result;
+  const StoredResult& result;
   const NewSamples& fresh;
   Drift drift;
   double level;
@@ -237,7 +237,7 @@ std::string json(const Check& check) {
 }  // namespace
 
 int verify(const RecheckOptions& options) {
-  const Result result = read_result(options.result);
+  const StoredResult result = read_result(options.result);
   if (!options.report.empty()) check_output(options.report, options.samples, true);
   const NewSamples fresh =
       read_new_samples(result, {options.samples, options.cameras, options.recorded});

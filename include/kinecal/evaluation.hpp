@@ -11,6 +11,7 @@
 #include "kinecal/evaluation/problem.hpp"
 #include "kinecal/evaluation/rows/batch_rows.hpp"
 #include "kinecal/evaluation/rows/block_rows.hpp"
+#include "kinecal/evaluation/rows/error_free.hpp"
 #include "kinecal/evaluation/rows/feature_rows.hpp"
 #include "kinecal/evaluation/rows/plane_rows.hpp"
 #include "kinecal/evaluation/sums/feature_wrenches.hpp"

@@ -4,6 +4,7 @@
 
 #include "kinecal/parameters/chain_parameters.hpp"
 #include "kinecal/parameters/free_parameters.hpp"
+#include "kinecal/parameters/joint_parameters.hpp"
 #include "kinecal/parameters/own_parameters.hpp"
 #include "kinecal/parameters/parameter.hpp"
 #include "kinecal/parameters/parameter_table.hpp"

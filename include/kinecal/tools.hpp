@@ -19,6 +19,7 @@
 #include "kinecal/tools/install/install.hpp"
 #include "kinecal/tools/install/launch_names.hpp"
 #include "kinecal/tools/install/result_folder.hpp"
+#include "kinecal/tools/install/stored_result.hpp"
 #include "kinecal/tools/simulation/photographs.hpp"
 #include "kinecal/tools/simulation/pose_samples.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "kinecal/geometry/rpy.hpp"
+#include "kinecal/parameters/joint_parameters.hpp"
 
 namespace kinecal::detail {
 
@@ -44,16 +45,6 @@ std::vector<ParameterInfo> own_parameters(const BlockConfig& block) {
   return frames;
 }
 
-inline void add_if_new(ParameterTable& table, const std::string& name, const std::string& unit) {
-  if (table.find(name) < 0) table.add({.name = name, .unit = unit});
-}
-
-inline void add_frame(ParameterTable& table, const std::string& frame) {
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    add_if_new(table, parameter_name(frame, kFrameAxes[axis]), axis < 3 ? "m" : "rad");
-  }
-}
-
 /// Adds the offset of a joint, or reports why it cannot have one.
 inline void add_joint(ParameterTable& table, const Robot& robot, const std::string& name,
                       const SourceLocation& place, Diagnostics& diagnostics) {
@@ -69,7 +60,7 @@ inline void add_joint(ParameterTable& table, const Robot& robot, const std::stri
                                          name, joint.mimic->joint, drive(robot, joint).joint));
     return;
   }
-  add_if_new(table, name, turns(joint.type) ? "rad" : "m");
+  add_joint_offset(table, name, joint.type);
 }
 
 /// Adds a parameter of a joint model, "elbow_gear_ratio", or reports why the joint cannot have it.
@@ -86,12 +77,12 @@ inline bool add_joint_model(ParameterTable& table, const Robot& robot, const std
       diagnostics.error(
           place, fmt::format("'{}': joint '{}' {}", name, of,
                              joint.mimic ? "mimics another; name that one" : "does not move"));
-    } else if (kJointModelRotatesOnly[k] && !turns(joint.type)) {
+    } else if (!may_have_model(joint.type, k)) {
       diagnostics.error(place, fmt::format("'{}': joint '{}' slides; only a joint that rotates has "
                                            "this parameter",
                                            name, of));
     } else {
-      add_if_new(table, name, std::string(kJointModelUnits[k]));
+      add_joint_model_parameter(table, of, k);
     }
     return true;
   }
@@ -261,7 +252,7 @@ ParameterTable parameters_from(const Config& config, const Robot& robot,
     }
     for (const FreeFrameConfig& frame : step.free_frames) {
       check_frame(frame, robot, recorded, !samples.empty(), diagnostics);
-      add_frame(table, frame.name);
+      add_parameters(table, frame.name, kFrameParameters);
     }
     add_params(table, robot, step, diagnostics);
     add_valued_joints(table, robot, step, diagnostics);

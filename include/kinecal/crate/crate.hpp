@@ -139,21 +139,15 @@ class Crate {
   /// Adds the robot's own parameters; sensors and blocks have added theirs.
   template <class P>
   static void add_parameter(ParameterTable& table) {
-    const auto add = [&](const std::string& name, std::string_view unit) {
-      if (table.find(name) < 0) table.add({.name = name, .unit = std::string(unit)});
-    };
     if constexpr (P::kKind == ParameterKind::joint_offset) {
       constexpr std::size_t i = detail::joint_index(RobotOf::kJoints, P::kOwner);
-      add(std::string(P::kOwner), turns(RobotOf::kJoints[i].type) ? "rad" : "m");
+      add_joint_offset(table, P::kOwner, RobotOf::kJoints[i].type);
     } else if constexpr (P::kKind == ParameterKind::joint_model) {
       for (const ParameterId& id : P::kIds) {
-        const auto model = std::ranges::find(kJointModelNames, id.part) - kJointModelNames.begin();
-        add(id.name(), kJointModelUnits[static_cast<std::size_t>(model)]);
+        add_joint_model_parameter(table, P::kOwner, joint_model_index(id.part));
       }
     } else if constexpr (is_frame(P::kKind)) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        add(parameter_name(P::kOwner, kFrameAxes[k]), k < 3 ? "m" : "rad");
-      }
+      add_parameters(table, P::kOwner, kFrameParameters);
     }
   }
 

@@ -5,6 +5,7 @@
 
 #include "kinecal/crate/crate_parts.hpp"
 #include "kinecal/kinematics/known_name.hpp"
+#include "kinecal/parameters/joint_parameters.hpp"
 #include "kinecal/text/sentence.hpp"
 
 namespace kinecal::detail {
@@ -106,10 +107,8 @@ struct CheckParameter<P, R, Sensors, Blocks, ParameterKind::joint_offset> {
   /// True for an offset, and for a parameter of a model that suits the joint.
   [[nodiscard]] static constexpr bool fits(const ParameterId& id) {
     if (P::kKind == ParameterKind::joint_offset) return true;
-    for (std::size_t k = 0; k < kJointModelSize; ++k) {
-      if (kJointModelNames[k] == id.part) return turns(kJoint.type) || !kJointModelRotatesOnly[k];
-    }
-    return false;
+    const std::size_t model = joint_model_index(id.part);
+    return model < kJointModelSize && may_have_model(kJoint.type, model);
   }
   using type = FirstOf<Unless<Found::kExists, JointOfOffset<P, Found>>,
                        Unless<moves(kJoint.type), MotionOfOffset<P>>,

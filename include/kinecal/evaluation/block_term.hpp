@@ -77,7 +77,7 @@ class BlockTerm final : public TermCode<S> {
              const S& weight, const Loss& loss, TermSums<S>& sums) const {
     const double weight_of_term = views.term->weight;
     S w2(weight_of_term * weight_of_term);
-    if (const S* precisions = views.numbers.precisions) {
+    if (const S* precisions = views.precisions) {
       const S factor = factor_of(precisions[i], views.term->sigma);
       w2 *= factor * factor;
     }
@@ -180,7 +180,7 @@ void BlockTerm<B, S>::evaluate(const Views& views, bool derivatives, Linearizati
   out.weight.resize(features);
   out.residual.resize(features * kSize);
   out.factor.clear();
-  if (const S* precisions = views.numbers.precisions) {
+  if (const S* precisions = views.precisions) {
     for (std::size_t i = 0; i < features; ++i) {
       out.factor.push_back(factor_of(precisions[i], views.term->sigma));
     }

@@ -125,7 +125,9 @@ void Evaluator<S>::for_each_term(std::size_t first, std::size_t end, bool deriva
         detail::prefetch(next, part);
         const Term& term = problem_.term(place.term);
         const TermState& state = terms_[static_cast<std::size_t>(place.term)];
-        detail::TermViews<S> views{&term, {}, &state.own, state.runs[l], batches.of_term(b, place)};
+        detail::TermViews<S> views{&term, {}, &state.own, state.runs[l]};
+        views.precisions = batches.of_term(b, place.precisions);
+        views.conditions = batches.of_term(b, place.conditions);
         for (std::size_t i = 0; i < term.sensors.size(); ++i) {
           views.sensors[i] = &worker.views[static_cast<std::size_t>(term.sensors[i])];
         }

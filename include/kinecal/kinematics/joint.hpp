@@ -39,6 +39,11 @@ enum class JointType {
   return turns(type) || type == JointType::prismatic;
 }
 
+/// The unit of a position of a joint that moves.
+[[nodiscard]] constexpr std::string_view position_unit(JointType type) {
+  return turns(type) ? "rad" : "m";
+}
+
 /// The position of a mimic joint: multiplier * position(joint) + offset.
 struct Mimic {
   std::string joint;        ///< the joint that it follows

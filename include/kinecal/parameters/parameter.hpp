@@ -13,6 +13,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
@@ -20,16 +21,13 @@
 
 namespace kinecal {
 
-/// The parts of a frame correction: translation, rotation vector.
-inline constexpr std::array<std::string_view, 6> kFrameAxes = {"x", "y", "z", "a", "b", "c"};
-
 /// Name of one parameter of a frame, a sensor or an error block: "head_pan_joint" + "x" ->
 /// "head_pan_joint_x".
 [[nodiscard]] inline std::string parameter_name(std::string_view owner, std::string_view part) {
   return std::string(owner) + "_" + std::string(part);
 }
 
-/// A parameter that a sensor or an error block declares.
+/// A parameter that its owner declares: a frame, a sensor, an error block.
 struct ParameterInfo {
   std::string_view name;        ///< after the owner's: "fx" of "camera_fx"
   std::string_view unit = "1";  ///< "rad", "m" or "1"
@@ -37,6 +35,21 @@ struct ParameterInfo {
   double lower = -std::numeric_limits<double>::infinity();  ///< lower bound of the value
   double upper = std::numeric_limits<double>::infinity();   ///< upper bound of the value
 };
+
+/// The parameters of a frame correction: translation, rotation vector.
+inline constexpr std::array<ParameterInfo, 6> kFrameParameters = {
+    {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"a", "rad"}, {"b", "rad"}, {"c", "rad"}}};
+/// Their names, after the frame's.
+inline constexpr auto kFrameAxes = [] {
+  std::array<std::string_view, 6> names;
+  for (std::size_t axis = 0; axis < 6; ++axis) names[axis] = kFrameParameters[axis].name;
+  return names;
+}();
+/// True for the name of one of a frame's parameters.
+[[nodiscard]] inline bool is_frame_parameter(std::string_view name, std::string_view frame) {
+  return std::any_of(kFrameAxes.begin(), kFrameAxes.end(),
+                     [&](std::string_view axis) { return name == parameter_name(frame, axis); });
+}
 
 /// A parameter of a calibration with its value and bounds.
 struct Parameter {

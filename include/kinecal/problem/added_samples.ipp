@@ -40,11 +40,6 @@ using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
   return row;
 }
 
-[[nodiscard]] inline bool has_term(const SampleLayout& layout, int term) {
-  return std::any_of(layout.terms.begin(), layout.terms.end(),
-                     [term](const TermLayout& place) { return place.term == term; });
-}
-
 }  // namespace detail
 
 KINECAL_INLINE std::optional<Sample> AnyProblem::paired(const Sample& sample) const {
@@ -122,18 +117,13 @@ KINECAL_INLINE FeatureLabel AnyProblem::feature(int term, int sample, std::ptrdi
   return labels->second.at(static_cast<std::size_t>(i));
 }
 
-KINECAL_INLINE int AnyProblem::samples_of(int term) const {
+KINECAL_INLINE int AnyProblem::samples_of(int term, std::size_t terms) const {
   int n = 0;
   for (const auto& [layout, of_layout] : layouts_) {
-    if (detail::has_term(layout, term)) n += of_layout.samples;
-  }
-  return n;
-}
-
-KINECAL_INLINE int AnyProblem::shared_samples(int term) const {
-  int n = 0;
-  for (const auto& [layout, of_layout] : layouts_) {
-    if (layout.terms.size() > 1 && detail::has_term(layout, term)) n += of_layout.samples;
+    const auto& places = layout.terms;
+    const auto is_its = [&](const detail::TermLayout& place) { return place.term == term; };
+    const bool applies = std::any_of(places.begin(), places.end(), is_its);
+    if (applies && places.size() >= terms) n += of_layout.samples;
   }
   return n;
 }

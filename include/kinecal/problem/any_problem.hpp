@@ -99,9 +99,9 @@ class AnyProblem {
     return residuals_ + static_cast<int>(priors_.size()) * Prior::kRows;
   }
   /// Number of samples to which a term applies.
-  [[nodiscard]] int samples_of(int term) const;
+  [[nodiscard]] int samples_of(int term) const { return samples_of(term, 1); }
   /// Number of samples of a term to which another term applies as well.
-  [[nodiscard]] int shared_samples(int term) const;
+  [[nodiscard]] int shared_samples(int term) const { return samples_of(term, 2); }
   /// The joint, free frame, sensor (its prefix) or error block that owns each parameter of the
   /// table; empty for a parameter without owner.
   [[nodiscard]] const std::vector<std::string>& owners() const { return owners_; }
@@ -154,6 +154,8 @@ class AnyProblem {
   [[nodiscard]] const MountedSensor& sensor(int s) const {
     return sensors_[static_cast<std::size_t>(s)];
   }
+  /// Number of samples to which a term applies, and at least so many terms in all.
+  [[nodiscard]] int samples_of(int term, std::size_t terms) const;
   void check_no_samples() const;
   void set_owners();
   void set_owner(int parameter, const std::string& owner) {

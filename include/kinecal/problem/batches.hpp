@@ -64,14 +64,6 @@ struct BatchObservation {
   [[nodiscard]] const S* joints(std::size_t chain) const { return numbers + layout->joints[chain]; }
 };
 
-/// The inputs of a term in a batch, besides the observations of its sensors.
-template <class S>
-struct BatchTerm {
-  /// Of each feature, lane by lane: 1 / sigma, or 0 if it has none of its own; nullptr: none has one.
-  const S* precisions = nullptr;
-  const S* conditions = nullptr;  ///< those that the block takes, lane by lane
-};
-
 /// All samples of one layout.
 template <class S>
 class Batches {
@@ -140,11 +132,9 @@ class Batches {
   [[nodiscard]] BatchObservation<S> observation(std::size_t batch, std::size_t sensor) const {
     return {numbers_.data() + batch * layout_.size, &*layout_.sensors[sensor]};
   }
-  /// The inputs of a term in a batch.
-  [[nodiscard]] BatchTerm<S> of_term(std::size_t batch, const TermLayout& term) const {
-    const S* numbers = numbers_.data() + batch * layout_.size;
-    return {term.precisions == kAbsent ? nullptr : numbers + term.precisions,
-            numbers + term.conditions};
+  /// Numbers of a term in a batch: TermLayout::precisions or conditions; nullptr: it has none.
+  [[nodiscard]] const S* of_term(std::size_t batch, std::size_t offset) const {
+    return offset == kAbsent ? nullptr : numbers_.data() + batch * layout_.size + offset;
   }
 
  private:

@@ -21,10 +21,7 @@ namespace kinecal::detail {
   if (p.name == owner) {
     return turns ? random_start::kJointDegrees * kDegree : random_start::kJointMetres;
   }
-  const bool is_frame = std::any_of(kFrameAxes.begin(), kFrameAxes.end(), [&](const auto axis) {
-    return p.name == parameter_name(owner, axis);
-  });
-  if (!is_frame) return 0.0;
+  if (!is_frame_parameter(p.name, owner)) return 0.0;
   return turns ? random_start::kFrameDegrees * kDegree : random_start::kFrameMetres;
 }
 

@@ -142,8 +142,7 @@ class ExactSearch {
     const Sample& sample = changing_.samples()[static_cast<std::size_t>(group.first)];
     return std::any_of(moves_.begin(), moves_.end(), [&](const Move& move) {
       const Observation* seen = sample.observation(move.sensor);
-      return seen != nullptr && seen->camera &&
-             mounted(move.sensor).sensor().delivers(Quantity::pixel);
+      return seen != nullptr && measures_pixels(mounted(move.sensor), *seen);
     });
   }
 

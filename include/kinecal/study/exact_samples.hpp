@@ -7,7 +7,7 @@
 //
 // x are the features with the same place in a sample; for blocks that compare planes, a common
 // motion of all features of a sensor.  So any sensor and error block can be simulated: only the
-// residual is needed.
+// residual is needed.  evaluation/rows/error_free.hpp takes one such step in each evaluation.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 

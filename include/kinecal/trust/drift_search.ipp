@@ -32,11 +32,7 @@ struct CleanFit {
   for (const int p : problem.touched_parameters()) {
     const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
     const std::string& name = problem.table()[p].name;
-    bool is_frame = false;
-    for (const std::string_view axis : kFrameAxes) {
-      is_frame =
-          is_frame || (problem.frames().contains(owner) && name == parameter_name(owner, axis));
-    }
+    const bool is_frame = problem.frames().contains(owner) && is_frame_parameter(name, owner);
     if (!owner.empty()) groups[{owner, is_frame}].push_back(p);
   }
   std::vector<Mover> all;

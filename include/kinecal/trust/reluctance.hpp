@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <string>
-#include <string_view>
 
 #include "kinecal/problem/any_problem.hpp"
 
@@ -16,8 +14,7 @@ namespace kinecal::detail {
   const std::string& name = problem.table()[parameter].name;
   const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
   if (name == owner) return 2;
-  const auto is_axis = [&](std::string_view axis) { return name == parameter_name(owner, axis); };
-  return std::any_of(kFrameAxes.begin(), kFrameAxes.end(), is_axis) ? 0 : 1;
+  return is_frame_parameter(name, owner) ? 0 : 1;
 }
 
 }  // namespace kinecal::detail

@@ -103,11 +103,12 @@ inline bool report_absurd(const UsedJoint& joint, std::span<const Sample> sample
     if (absurd.add(joint.samples[i])) first = q;
   }
   if (absurd.count == 0) return false;
-  diagnostics.error(place_of(samples, absurd.first),
-                    fmt::format("position of '{}' is {:.6g} {}{}; {}; correct or remove the sample",
-                                joint.joint.name, first, turning ? "rad" : "m", absurd.others(),
-                                joint.limits ? "its limits are " + joint.limits_text()
-                                             : "no joint reaches that"));
+  diagnostics.error(
+      place_of(samples, absurd.first),
+      fmt::format(
+          "position of '{}' is {:.6g} {}{}; {}; correct or remove the sample", joint.joint.name,
+          first, position_unit(joint.joint.type), absurd.others(),
+          joint.limits ? "its limits are " + joint.limits_text() : "no joint reaches that"));
   return true;
 }
 
@@ -129,7 +130,7 @@ inline void report_outside(const UsedJoint& joint, std::span<const Sample> sampl
   const auto text = [&](const Occurrences& found, double most) {
     return fmt::format("position of '{}' is outside its limits {}{}, by up to {:.3g} {}",
                        joint.joint.name, joint.limits_text(), found.others(), most,
-                       turns(joint.joint.type) ? "rad" : "m");
+                       position_unit(joint.joint.type));
   };
   if (far.count > 0) {
     const std::optional<double> turn = turn_into_limits(joint);

@@ -29,7 +29,7 @@ double UsedJoint::range() const {
 }
 
 std::string UsedJoint::limits_text() const {
-  const char* unit = turns(joint.type) ? "rad" : "m";
+  const std::string_view unit = position_unit(joint.type);
   if (limits->lower == -limits->upper) return fmt::format("±{:.4g} {}", limits->upper, unit);
   return fmt::format("[{:.4g}, {:.4g}] {}", limits->lower, limits->upper, unit);
 }

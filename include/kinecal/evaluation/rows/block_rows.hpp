@@ -2,37 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
 #include <tuple>
 
 #include "kinecal/errors/error_block.hpp"
+#include "kinecal/evaluation/rows/error_free.hpp"
 #include "kinecal/evaluation/rows/plane_rows.hpp"
 #include "kinecal/evaluation/sums/local_sums.hpp"
 #include "kinecal/problem/term.hpp"
 
 namespace kinecal::detail {
-
-/// The shortest step of V variables that makes r + D x zero, or the smallest r if V < M; lane by
-/// lane.  Zero for variables that do not affect r.
-template <class S, int M, int V>
-[[nodiscard]] Eigen::Matrix<S, V, 1> shortest_step(const Eigen::Matrix<S, M, 1>& residual,
-                                                   const Eigen::Matrix<S, M, V>& derivatives) {
-  Eigen::Matrix<S, V, 1> step;
-  for (int i = 0; i < kLanes<S>; ++i) {
-    const Eigen::Matrix<double, M, 1> r = lane_of(residual, i);
-    const Eigen::Matrix<double, M, V> d = lane_of(derivatives, i);
-    Eigen::Matrix<double, V, 1> x;
-    if constexpr (M <= V) {
-      x = d.transpose() * Eigen::Matrix<double, M, M>(d * d.transpose()).ldlt().solve(r);
-    } else {
-      x = Eigen::Matrix<double, V, V>(d.transpose() * d).ldlt().solve(d.transpose() * r);
-    }
-    for (int k = 0; k < V; ++k) set_lane(step(k), i, -x(k));
-  }
-  return step;
-}
 
 /// Computes the rows of features of an error block of type B.
 template <ErrorBlock B, class S>
@@ -83,7 +63,7 @@ class BlockRows {
   }
   [[nodiscard]] static ConditionsOf<B, S> conditions(const Views& views) {
     ConditionsOf<B, S> all;
-    std::copy_n(views.numbers.conditions, all.size(), all.begin());
+    std::copy_n(views.conditions, all.size(), all.begin());
     return all;
   }
   /// Adds the columns of the block's own parameters.
@@ -179,37 +159,10 @@ class BlockRows {
     while (measuring + 1 < kBodies && !views[measuring].code().measures()) ++measuring;
     const auto r = call_jets(block, values, views);
     unrolled<kBodies>([&](auto s) {
-      if (s == measuring) move<s>(r, values[s], moved);
+      if (s == measuring) move_measurement<kInputs[s], kFirst[s]>(r, values[s], moved);
     });
     values[measuring] = moved.data();
   }
-  template <std::size_t I, class R>
-  static void move(const R& r, const Vector3<S>* values, std::array<Vector3<S>, 4>& moved) {
-    std::copy_n(values, Vectors<I>::kValues, moved.begin());
-    constexpr Quantity kInput = kInputs[I];
-    // A ray measures the direction, a reading the number.
-    constexpr int kFrom =
-        kFirst[I] + (kInput == Quantity::ray || kInput == Quantity::reading ? 3 : 0);
-    constexpr int kCount = kInput == Quantity::pose ? 6 : kInput == Quantity::reading ? 1 : 3;
-    const Eigen::Matrix<S, kCount, 1> step =
-        shortest_step<S, kSize, kCount>(values_of(r), derivatives_by<kCount>(r, kFrom));
-    if constexpr (kInput == Quantity::reading) {
-      moved[1].x() += step(0);
-    } else if constexpr (kInput == Quantity::pose) {
-      moved[0] += step.template head<3>();
-      for (int i = 0; i < kLanes<S>; ++i) {  // exp() branches
-        const Matrix3<double> rotation =
-            exp(Vector3<double>(lane(step(3), i), lane(step(4), i), lane(step(5), i)));
-        for (std::size_t c = 1; c < 4; ++c) {
-          const Vector3<double> turned = rotation * lane_of(moved[c], i);
-          for (int k = 0; k < 3; ++k) set_lane(moved[c](k), i, turned(k));
-        }
-      }
-    } else {
-      moved[kInput == Quantity::ray ? 1 : 0] += step;
-    }
-  }
-
   /// A point of the first sensor, seen by the second one, a camera.
   template <bool kDerivatives>
   static void pixel_rows(const B& block, const Views& views, std::size_t i, Rows& rows) {

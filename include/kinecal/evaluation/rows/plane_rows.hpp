@@ -37,7 +37,7 @@ class PlaneLane {
     }
     ConditionsOf<B, double> conditions{};
     for (std::size_t i = 0; i < conditions.size(); ++i) {
-      conditions[i] = kinecal::lane(views.numbers.conditions[i], lane);
+      conditions[i] = kinecal::lane(views.conditions[i], lane);
     }
     const OwnOf<B, J> own = own_jets<kOwn, J, LaneOf<S>>(views.own->values, 12);
     residual_ = call_block<B, J>(block, own, conditions, planes[0], planes[1]);

@@ -42,7 +42,9 @@ struct TermViews {
   std::array<const SensorView<S>*, kMostBodies> sensors{};  ///< of the term, in its order
   const OwnParameters* own = nullptr;                       ///< of the block itself
   std::span<const FeatureRun> runs;                         ///< of the features, in their order
-  BatchTerm<S> numbers = {};                                ///< its further inputs in the batch
+  /// Of each feature, lane by lane: 1 / sigma, or 0 if it has none of its own; nullptr: none has one.
+  const S* precisions = nullptr;
+  const S* conditions = nullptr;  ///< those that the block takes, lane by lane
 
   [[nodiscard]] const SensorView<S>& operator[](std::size_t s) const { return *sensors[s]; }
 

@@ -27,6 +27,9 @@ struct Calibration;
 struct CalibrationResult;
 class ParameterTable;
 
+/// Copies of what a result was calibrated with, so that its folder says all.
+inline constexpr const char *kOriginalUrdf = "original.urdf", *kConfigCopy = "config.yaml";
+
 /// Options for result files.
 struct ResultFileOptions {
   OffsetStyle offsets = OffsetStyle::rising;  ///< where the URDF holds joint offsets

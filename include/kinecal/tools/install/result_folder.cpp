@@ -89,8 +89,9 @@ namespace {
 /// Reads whether the calibration converged, and the first reason against using it.
 void read_report(const std::filesystem::path& report, ResultFolder& result) {
   if (!std::filesystem::exists(report)) return;
+  result.report = {report.filename().string(), read_text_file(report)};
   try {
-    const JsonValue file = JsonValue::parse(read_text_file(report));
+    const JsonValue file = JsonValue::parse(result.report.content);
     if (!file.find("converged")) throw JsonError("does not say whether the result converged");
     result.converged = file.flag("converged");
     if (file.text_or("verdict", {}) != "do not use") return;

@@ -1,5 +1,9 @@
 // A result, read back from the folder that calibrate wrote, to be held against new samples or
-// another result.
+// another result: the files that result_folder.hpp reads, with what they were calibrated from.
+//
+//   report.json     values, covariance, noise, poses, the verdict
+//   original.urdf   the robot before the calibration
+//   config.yaml     the configuration
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -14,7 +18,7 @@
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/trust/drift.hpp"
 
-namespace kinecal::cli {
+namespace kinecal {
 
 /// Distances of the features of an error block in the calibration, metres or pixels.
 struct FittedBlock {
@@ -24,30 +28,33 @@ struct FittedBlock {
 
 /// Two frames, the pose of one in the other being what the robot needs.
 struct PoseInQuestion {
-  FrameOnRobot frame, in;
+  FrameOnRobot frame;     ///< whose pose
+  FrameOnRobot in;        ///< in which
   double position = 0.0;  ///< standard deviation of the position, metres
 };
 
 /// A result and what it was calibrated with.
-struct Result {
-  std::string folder;   ///< as the user gave it
-  std::string report;   ///< path of report.json, for messages
-  std::string verdict;  ///< "good" or "use with care"
-  Robot robot;          ///< of the original URDF
-  std::string urdf_text, urdf;
-  Config config;
-  std::map<std::string, double> values;  ///< of calibration.yaml
-  std::vector<std::string> parameters;   ///< those that were free
-  std::vector<std::vector<double>> covariance;
+struct StoredResult {
+  std::string folder;                           ///< as the user gave it
+  std::string report;                           ///< path of report.json, for messages
+  std::string verdict;                          ///< "good" or "use with care"
+  Robot robot;                                  ///< of the original URDF
+  std::string urdf_text;                        ///< the original URDF
+  std::string urdf;                             ///< its path
+  Config config;                                ///< with which it was calibrated
+  std::map<std::string, double> values;         ///< of calibration.yaml
+  std::vector<std::string> parameters;          ///< those that were free
+  std::vector<std::vector<double>> covariance;  ///< of them: rows of the lower triangle
+  /// Combinations of parameters without effect: names and factors.
   std::vector<std::vector<std::pair<std::string, double>>> undetermined;
-  std::vector<BlockNoise> noise;
+  std::vector<BlockNoise> noise;              ///< of each error block
   std::map<std::string, FittedBlock> fitted;  ///< by error block
-  std::optional<PoseInQuestion> pose;
-  RecordedPoses poses;
+  std::optional<PoseInQuestion> pose;         ///< the one that the robot needs, if that is known
+  RecordedPoses poses;                        ///< those of the samples
   std::map<std::string, double> deviations;  ///< of calibrated parameters; infinite: not determined
   std::map<std::string, std::string> units;  ///< of calibrated parameters
-  std::map<std::string, double>
-      added_rising;  ///< by which calibrated.urdf changes what drivers read
+  /// <calibration rising> of calibrated.urdf less that of the original one, by joint; not zero.
+  std::map<std::string, double> added_rising;
 
   /// Values of all parameters of a table; of those that the result does not have, zero.
   [[nodiscard]] std::vector<double> values_of(const ParameterTable& table) const;
@@ -60,6 +67,6 @@ struct Result {
 
 /// Reads a result.
 /// @throws InputError  with the file and what to do if it is not one, incomplete, or was changed
-[[nodiscard]] Result read_result(const std::string& folder);
+[[nodiscard]] StoredResult read_result(const std::string& folder);
 
-}  // namespace kinecal::cli
+}  // namespace kinecal

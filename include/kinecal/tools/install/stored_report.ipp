@@ -1,0 +1,128 @@
+// Reads report.json into a StoredResult: values, covariance, noise, poses, the verdict.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+
+#include "kinecal/files/json/json_value.hpp"
+#include "kinecal/tools/install/stored_result.hpp"
+#include "kinecal/trust/judge.hpp"
+
+namespace kinecal::detail {
+
+inline void read_covariance(const JsonValue& report, StoredResult& result) {
+  const JsonValue covariance = report.at("covariance");
+  result.parameters = covariance.texts("parameters");
+  for (const JsonValue& row : covariance.list("lower")) {
+    result.covariance.push_back(row.as_numbers());
+    if (result.covariance.back().size() != result.covariance.size()) {
+      throw JsonError("'covariance.lower' is not a lower triangle");
+    }
+  }
+  if (result.covariance.size() != result.parameters.size()) {
+    throw JsonError(fmt::format("it has {} rows of a covariance of {} parameters",
+                                result.covariance.size(), result.parameters.size()));
+  }
+  for (const JsonValue& combination : covariance.list("undetermined")) {
+    auto& of = result.undetermined.emplace_back();
+    for (const auto& [name, factor] : combination.fields())
+      of.emplace_back(name, factor.as_number());
+  }
+}
+
+inline void read_noise(const JsonValue& report, StoredResult& result) {
+  for (const JsonValue& entry : report.list("noise")) {
+    BlockNoise noise;
+    noise.block = entry.text("name");
+    noise.unit = entry.text("unit");
+    noise.features = static_cast<int>(entry.integer("features"));
+    noise.components = static_cast<int>(entry.integer("components"));
+    noise.freedom = entry.number("freedom");
+    noise.sigma = entry.number("sigma");
+    if (entry.find("held_out")) result.fitted[noise.block].held_out = entry.number("held_out");
+    result.noise.push_back(noise);
+  }
+  for (const JsonValue& entry : report.list("error_blocks")) {
+    const std::string name = entry.text("name");
+    for (const BlockNoise& noise : result.noise) {
+      if (noise.block != name) continue;
+      result.fitted[name].distance =
+          std::sqrt(static_cast<double>(noise.components)) * entry.at("after").number("rms");
+    }
+  }
+}
+
+inline void read_poses(const JsonValue& report, StoredResult& result) {
+  const JsonValue poses = report.at("poses");
+  result.poses.joints = poses.texts("joints");
+  for (const JsonValue& row : poses.list("positions")) {
+    result.poses.positions.push_back(row.as_numbers());
+    if (result.poses.positions.back().size() != result.poses.joints.size()) {
+      throw JsonError("it has a pose with a wrong number of joints");
+    }
+  }
+  const auto pose = report.find("pose");
+  if (!pose) return;
+  const auto frame = [&](const char* name, const char* link) {
+    FrameOnRobot of{pose->text(link)};
+    if (pose->text(name) != of.link) of.frame = pose->text(name);
+    return of;
+  };
+  result.pose = {frame("frame", "link"), frame("in", "in_link"), pose->number("position")};
+}
+
+/// Reads the deviations.  The values of report.json must be those of calibration.yaml.
+inline void read_parameters(const JsonValue& report, const std::string& values_file,
+                            StoredResult& result) {
+  for (const JsonValue& entry : report.list("parameters")) {
+    const std::string name = entry.text("name");
+    const double value = entry.number("value");
+    result.deviations[name] =
+        entry.find("sigma") ? entry.number("sigma") : std::numeric_limits<double>::infinity();
+    result.units[name] = entry.text("unit");
+    const auto found = result.values.find(name);
+    constexpr double kSame = 1e-12;
+    if (found != result.values.end() &&
+        std::abs(found->second - value) <= kSame * (1.0 + std::abs(value))) {
+      continue;
+    }
+    throw InputError(fmt::format(
+        "{}: '{}' is {} there and {} in report.json; one of them was changed or is of another run, "
+        "so calibrate again",
+        values_file, name,
+        found == result.values.end() ? "missing" : fmt::format("{}", found->second), value));
+  }
+}
+
+/// Reads what the images of cameras were taken for.
+inline void read_images(const JsonValue& report, Config& config) {
+  const JsonValue images = report.at("images");
+  for (StepConfig& step : config.steps) {
+    for (ModelConfig& model : step.models) {
+      if (!images.find(model.name)) continue;
+      model.image = images.text(model.name) == "raw" ? ImageKind::raw : ImageKind::rectified;
+    }
+  }
+}
+
+/// Reads the rest of report.json.
+/// @param values_file  path of calibration.yaml, for messages
+/// @throws JsonError  if something is missing or is not what it should be
+inline void read_calibration(const std::string& content, const std::string& values_file,
+                             StoredResult& result) {
+  const JsonValue report = JsonValue::parse(content);
+  result.verdict = report.text("verdict");
+  if (result.verdict == to_string(Grade::do_not_use)) {
+    throw InputError(result.report + ": this result was judged 'do not use'; calibrate again");
+  }
+  read_parameters(report, values_file, result);
+  read_covariance(report, result);
+  read_noise(report, result);
+  read_poses(report, result);
+  read_images(report, result.config);
+}
+
+}  // namespace kinecal::detail
