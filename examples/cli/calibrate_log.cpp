@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -33,10 +34,10 @@ constexpr const char* kSums = "sums";  ///< folder of checkpoints, in that of th
 
 /// What is known of all files before the work begins.
 struct LogContent {
-  int samples = 0;
-  std::vector<int> residuals;  ///< of each step, priors once per sample
-  std::vector<FreeSet> free;   ///< of each step: what any file determines
-  int doubts = 0;              ///< about the files after the first
+  std::int64_t samples = 0;
+  std::vector<std::int64_t> residuals;  ///< of each step, priors once per sample
+  std::vector<FreeSet> free;            ///< of each step: what any file determines
+  int doubts = 0;                       ///< about the files after the first
 };
 
 /// Size, begin and end of a file, or of all files of a folder: enough to see that it is another one,
@@ -235,19 +236,19 @@ class LogRun {
     LogContent content;
     const int size = first_.calibration.table.size();
     for (const std::vector<double>& of : all) {
-      content.samples += static_cast<int>(of[0]);
+      content.samples += static_cast<std::int64_t>(of[0]);
       if (&of != &all.front()) content.doubts += static_cast<int>(of[1]);
     }
     for (int step = 0; step < steps(); ++step) {
       const std::size_t at =
           2 + static_cast<std::size_t>(step) * (1 + static_cast<std::size_t>(size));
       const int priors = Prior::kRows * static_cast<int>(problem_of(step).priors().size());
-      int residuals = priors * content.samples;
+      std::int64_t residuals = priors * content.samples;
       // In the order of the configuration; then what only other files determine.
       std::vector<int> free =
           first_.calibration.steps[static_cast<std::size_t>(step)].free.parameters();
       for (const std::vector<double>& of : all) {
-        residuals += static_cast<int>(of[at]) - priors;
+        residuals += static_cast<std::int64_t>(of[at]) - priors;
         for (int p = 0; p < size; ++p) {
           const bool freed = of[at + 1 + static_cast<std::size_t>(p)] != 0.0;
           if (freed && std::find(free.begin(), free.end(), p) == free.end()) free.push_back(p);

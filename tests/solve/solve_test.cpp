@@ -448,8 +448,9 @@ TEST(Solve, WithoutAStepThatLowersTheCostItHasNotConverged) {
         solve(problem, free_of(problem.table(), {"camera_joint_x"}), values, options);
     EXPECT_FALSE(result.converged);
     EXPECT_THAT(result.termination,
-                testing::StartsWith("did not converge: no step lowered the cost, though chi-square "
-                                    "could still fall by about "));
+                testing::StartsWith(
+                    "did not converge: no step lowered the cost any further, though chi-square "
+                    "could still fall by about "));
     EXPECT_DOUBLE_EQ(result.final_cost, result.initial_cost);
     EXPECT_TRUE(values.isZero(0.0));
   }

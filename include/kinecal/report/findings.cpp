@@ -147,8 +147,10 @@ Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedR
 
 std::string findings_text(const Findings& findings) {
   std::string text = detail::verdict_text(findings);
-  text += fmt::format("\nRobot '{}', {} sample{}", findings.robot, findings.sources.size(),
-                      findings.sources.size() == 1 ? "" : "s");
+  const std::int64_t samples = findings.result.steps.empty() ? std::ssize(findings.sources)
+                                                             : findings.result.steps.back().samples;
+  text +=
+      fmt::format("\nRobot '{}', {} sample{}", findings.robot, samples, samples == 1 ? "" : "s");
   if (!findings.left_out.empty()) text += fmt::format(", {} left out", findings.left_out.size());
   text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_table(findings);
   for (const Assessment& step : findings.assessments) {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/text/counted.hpp"
 
 namespace kinecal {
 
@@ -81,10 +82,13 @@ std::string solving_text(const CalibrationResult& result) {
     iterations += step.iterations;
     if (step.form != CostForm::compressed) form = fmt::format(", {} cost", to_string(step.form));
   }
-  const double millions_a_second = seconds > 0.0 ? 1e-6 * samples / seconds : 0.0;
-  return fmt::format("solving {:.4f} s ({} iterations, {:.3g} million samples a second, {}{})",
-                     seconds, iterations, millions_a_second,
-                     evaluation_of_library().instruction_set, form);
+  const std::string iterated = counted(static_cast<std::size_t>(iterations), "iteration");
+  const std::string_view set = evaluation_of_library().instruction_set;
+  if (iterations == 0 || !(seconds > 0.0)) {
+    return fmt::format("solving {:.4f} s ({}, {}{})", seconds, iterated, set, form);
+  }
+  return fmt::format("solving {:.4f} s ({}, {:.3g} million samples a second, {}{})", seconds,
+                     iterated, 1e-6 * samples / seconds, set, form);
 }
 
 std::string observability_text(const std::string& step, const Observability& observability,

@@ -34,8 +34,8 @@ using ShardExchange = std::function<std::vector<std::vector<double>>(
 struct Shards {
   const AnyProblem* problem = nullptr;  ///< without samples: parameters, sensors and terms
   int count = 0;                        ///< number of shards
-  int samples = 0;                      ///< of all shards
-  int num_residuals = 0;                ///< of all features; a prior counts once per sample
+  std::int64_t samples = 0;             ///< of all shards
+  std::int64_t num_residuals = 0;       ///< of all features; a prior counts once per sample
   /// The problem with the samples of a shard; the reader decides whether to keep it or read it
   /// again.
   std::function<std::shared_ptr<const AnyProblem>(int shard)> read = {};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -48,10 +49,10 @@ struct StepResult {
   double initial_cost = 0.0;             ///< 1/2 sum rho(|w r|^2) at the start
   double final_cost = 0.0;               ///< the same at the end
   double seconds = 0.0;                  ///< wall time
-  int num_residuals = 0;                 ///< components; a prior counts once per sample
+  std::int64_t num_residuals = 0;        ///< components; a prior counts once per sample
   int num_parameters = 0;                ///< free parameters
   CostForm form = CostForm::compressed;  ///< the one that was used
-  int samples = 0;                       ///< of the problem
+  std::int64_t samples = 0;              ///< of the problem
   int evaluations = 0;                   ///< how often all samples were evaluated
   StartSummary starts = {};              ///< of solve_from_starts(), if there were several
   std::vector<double> costs = {};  ///< after each iteration, from the start; if losses are not

@@ -79,33 +79,33 @@ inline void clamp_to_bounds(const ParameterTable& table, const FreeSet& free,
       {values.data(), static_cast<std::size_t>(values.size())});
   // The first rows of the equivalent residual are A^-T g, with H = A^T A.
   const Eigen::VectorXd projected = EquivalentResidual(normal).residual.head(inside.size());
-  const int spare = std::max(1, result.num_residuals - result.num_parameters);
+  const auto spare =
+      static_cast<double>(std::max<std::int64_t>(1, result.num_residuals - result.num_parameters));
   constexpr double kRounding = 1e-12;  // of what one unit of a parameter adds to a residual
   const double rounding = kRounding * kRounding * normal.hessian.diagonal().maxCoeff() / spare;
   const double variance = std::max(2.0 * normal.cost / spare, rounding);
   return variance > 0.0 ? projected.squaredNorm() / variance : 0.0;
 }
 
-/// Decides whether a solve that did not fail has converged.  One that ran out of iterations, or
-/// made no step, has converged if the possible decrease is negligible against the noise: Ceres also
-/// stops at the smallest of rejected steps and calls it convergence.
+/// Decides whether a solve that did not fail has converged: the decrease that is still possible must be
+/// negligible against the noise.  What Ceres says is no proof: it also stops at the smallest of rejected steps,
+/// or where a valley bends so much that steps hardly lower the cost, and calls both convergence.
 inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evaluator_of,
                               const Eigen::VectorXd& values, const Minimum& last,
                               StepResult& result) {
   constexpr double kNegligible =
       1e-3;  // of chi-square, whose noise is sqrt(2 (residuals - parameters))
-  const bool claimed = last.converged && !last.stuck;
   const double decrease =
-      claimed ? 0.0 : possible_decrease(evaluator, evaluator_of, values, result);
+      last.proven ? 0.0 : possible_decrease(evaluator, evaluator_of, values, result);
   result.converged = decrease < kNegligible;
   std::ostringstream what;
   what.precision(2);
   what << (result.converged ? "converged: " : "did not converge: ");
-  if (claimed || (last.converged && result.converged)) {
+  if (last.converged && result.converged) {
     what << last.message;
   } else if (last.converged) {
-    what << "no step lowered the cost, though chi-square could still fall by about " << decrease
-         << "; start elsewhere, or check the derivatives of error blocks of your own";
+    what << "no step lowered the cost any further, though chi-square could still fall by about "
+         << decrease << "; start elsewhere, or check the derivatives of error blocks of your own";
   } else {
     what << result.iterations << (result.iterations == 1 ? " iteration is" : " iterations are")
          << " used up, ";

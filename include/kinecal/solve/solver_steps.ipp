@@ -83,8 +83,7 @@ inline void set_steps(Steps steps, ceres::Solver::Options& options) {
 /// The outcome of several runs of Ceres.
 struct Minimum {
   bool usable = false, converged = false;
-  bool moved = false;              ///< a step was successful since the start
-  bool stuck = false;              ///< none was, though a Gauss-Newton step predicts a decrease
+  bool proven = false;             ///< a Gauss-Newton step promises no decrease at the end
   std::string message;             ///< of the last run
   double cost = 0.0;               ///< at the end of the last run
   std::vector<double> costs = {};  ///< of each iteration of all runs
@@ -102,13 +101,12 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
       by_callback ? "a Gauss-Newton step promises no decrease of the cost" : summary.message;
   minimum.cost = summary.final_cost;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  minimum.proven = by_callback;
   StandingCost standing;
   for (const ceres::IterationSummary& iteration : summary.iterations) {
-    const bool moved = standing.add(iteration);
+    standing.add(iteration);
     minimum.costs.push_back(standing.cost());
-    minimum.moved = minimum.moved || (moved && iteration.iteration > 0);
   }
-  minimum.stuck = !minimum.moved && !by_callback;
   minimum.seconds += summary.total_time_in_seconds;
 }
 
@@ -123,7 +121,6 @@ inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const So
   solver.callbacks.push_back(&callback);
   const std::vector<double> start = x;
   const std::size_t costs = minimum.costs.size();
-  minimum.moved = false;
   constexpr int kMostCareful = 20;  // iterations
   for (const Steps steps : {Steps::careful, Steps::bold}) {
     const bool is_bold = steps == Steps::bold;
@@ -131,7 +128,6 @@ inline void take_steps(ceres::Problem& problem, std::vector<double>& x, const So
       if (options.max_num_iterations <= kMostCareful) return;
       std::copy(start.begin(), start.end(), x.begin());
       minimum.costs.resize(costs);
-      minimum.moved = false;
     }
     set_steps(steps, solver);
     solver.max_num_iterations =

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,12 +22,12 @@ struct Statistics {
 
 /// One error block before and after a calibration.
 struct BlockStatistics {
-  std::string name;   ///< of the error block or prior
-  std::string type;   ///< "chain3d_to_chain3d"
-  std::string unit;   ///< of the residual: "m", "px" or "1"
-  int count = 0;      ///< number of features
-  Statistics before;  ///< at the initial values
-  Statistics after;   ///< at the final values
+  std::string name;        ///< of the error block or prior
+  std::string type;        ///< "chain3d_to_chain3d"
+  std::string unit;        ///< of the residual: "m", "px" or "1"
+  std::int64_t count = 0;  ///< number of features
+  Statistics before;       ///< at the initial values
+  Statistics after;        ///< at the final values
 };
 
 /// Statistics of the residuals of one error block.

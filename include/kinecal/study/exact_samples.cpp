@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/study/measurement_noise.hpp"
 #include "kinecal/study/sample_rows.ipp"
 
 namespace kinecal {

@@ -10,11 +10,6 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// True if the features of an observation are pixels.
-[[nodiscard]] bool measures_pixels(const MountedSensor& sensor, const Observation& seen) {
-  return seen.camera && sensor.sensor().delivers(Quantity::pixel);
-}
-
 /// Errors of a point of a depth camera: along the columns, the rows and the ray.
 [[nodiscard]] std::vector<FeatureChange> errors_of_depth(const AnySensor& sensor,
                                                          const Observation& seen,

@@ -30,6 +30,15 @@ struct MeasurementNoise {
   double joint = 7e-5;     ///< radians or metres
 };
 
+namespace detail {
+
+/// True if the features of an observation are pixels.
+[[nodiscard]] inline bool measures_pixels(const MountedSensor& sensor, const Observation& seen) {
+  return seen.camera && sensor.sensor().delivers(Quantity::pixel);
+}
+
+}  // namespace detail
+
 /// A small change of a feature: of its point, and of its orientation as a rotation vector.
 struct FeatureChange {
   Vector3<double> point = Vector3<double>::Zero();     ///< (3) metres or pixels

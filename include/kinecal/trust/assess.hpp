@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,7 +42,7 @@ struct Assessment {
   std::vector<IdleGroup> idle;            ///< whose parameters improve nothing
   std::vector<PriorPull> pulls;           ///< priors that the samples contradict
   std::optional<PoseUncertainty> pose;    ///< of the frames that the first error block compares
-  int rows = 0;                           ///< residuals, without priors
+  std::int64_t rows = 0;                  ///< residuals, without priors
 
   /// Standard deviation of a parameter of the table; nullopt if the step does not free it.
   [[nodiscard]] std::optional<double> deviation(int parameter) const;

@@ -24,7 +24,7 @@ namespace detail {
     const Term& term = problem.term(t);
     const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
     const double median = DistanceBins::median(block.bins.col(2)) * term.weight;
-    noise.push_back(block_noise(term, static_cast<int>(block.figures(BlockSums::features)),
+    noise.push_back(block_noise(term, static_cast<std::int64_t>(block.figures(BlockSums::features)),
                                 block.figures(BlockSums::weighted),
                                 inverse.cwiseProduct(block.information).sum(),
                                 robust_sigma({median}, term.feature_size)));
@@ -39,7 +39,7 @@ namespace detail {
     const Term& term = problem.term(t);
     const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
     all.push_back({term.name, term.options.type, term.options.unit,
-                   static_cast<int>(block.figures(BlockSums::features)),
+                   static_cast<std::int64_t>(block.figures(BlockSums::features)),
                    block.statistics(BlockSums::mean_before, 0, term.feature_size),
                    block.statistics(BlockSums::mean_after, 1, term.feature_size)});
   }
@@ -110,7 +110,7 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
   of.parameters = inside.parameters();
   const Coordinates by = detail::coordinates_of(detail::shard_information(shards, inside, after));
   const detail::ShardSums sums = detail::all_sums(shards, inside, before, after, found.misfits);
-  of.rows = static_cast<int>(detail::rows_of(problem, sums));
+  of.rows = static_cast<std::int64_t>(detail::rows_of(problem, sums));
   Eigen::MatrixXd information = sums.priors;
   for (const detail::BlockSums& block : sums.blocks) information += block.information;
   of.noise = detail::noise_of(problem, sums, detail::inverse_in(by, information));

@@ -40,9 +40,10 @@ struct JudgedResult {
   std::vector<Assessment> assessments;  ///< of its steps
   Judgement judgement;                  ///< the verdict
   std::vector<LeftOutSample> left_out;  ///< those that the caller excluded first
-  std::vector<std::string> sources;     ///< source location of each sample of the problems
-  std::vector<int> numbers;             ///< from 1, among all samples, of each of them
-  std::map<int, std::string> causes;    ///< likely ones of bad samples, by number in the problem
+  /// Source location of each sample of the problems; empty for samples in shards.
+  std::vector<std::string> sources;
+  std::vector<int> numbers;           ///< from 1, among all samples, of each of these
+  std::map<int, std::string> causes;  ///< likely ones of bad samples, by number in the problem
 
   /// Standard deviation of a parameter in the last step that frees it; nullopt if none does.
   /// @param parameter  index in the table

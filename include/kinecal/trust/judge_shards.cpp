@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include "kinecal/trust/assess_shards.hpp"
@@ -25,9 +24,6 @@ class ShardProcedure {
 
   [[nodiscard]] JudgedResult run() {
     JudgedResult judged = noise_.settle(calibration_.first, [&] { return fit(); });
-    judged.sources.resize(static_cast<std::size_t>(calibration_.num_samples));
-    judged.numbers.resize(judged.sources.size());
-    std::iota(judged.numbers.begin(), judged.numbers.end(), 1);
     judged.judgement =
         judge(calibration_.first, judged.result, judged.assessments, options_.doubts);
     judge_misfits(judged.judgement);

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -21,9 +22,10 @@ struct ShardedCalibration {
   Calibration first;  ///< of the samples of the first shard, where the solution starts
   std::span<const Sample> samples;  ///< of the first shard
   std::vector<std::string> names;   ///< of the shards, for messages: their files
-  int num_samples = 0;              ///< of all shards
-  std::vector<int> num_residuals;   ///< of each step, in all shards; a prior counts once per sample
-  std::vector<FreeSet> free;        ///< of each step: what the samples of any shard determine
+  std::int64_t num_samples = 0;     ///< of all shards
+  std::vector<std::int64_t>
+      num_residuals;          ///< of each step, in all shards; a prior counts once per sample
+  std::vector<FreeSet> free;  ///< of each step: what the samples of any shard determine
   std::function<std::vector<Sample>(int shard)> read;  ///< the samples of a shard but the first
   ShardExchange exchange = {};  ///< empty: all are computed here, one after another
 };

@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,15 +17,15 @@ namespace kinecal {
 
 /// The noise of one error block.
 struct BlockNoise {
-  std::string block;        ///< name of the error block
-  std::string unit;         ///< of the residual: "m", "px" or "1"
-  int features = 0;         ///< compared features
-  int components = 1;       ///< residuals of a feature
-  double freedom = 0.0;     ///< rows minus those that parameters use up
-  double given = 0.0;       ///< sigma of the configuration, in `unit`; 0: none
-  double sigma = 0.0;       ///< standard deviation of a residual component, in `unit`
-  double robust = 0.0;      ///< the same from the median
-  double unit_sigma = 1.0;  ///< residual in `unit` of a weighted residual of one
+  std::string block;          ///< name of the error block
+  std::string unit;           ///< of the residual: "m", "px" or "1"
+  std::int64_t features = 0;  ///< compared features
+  int components = 1;         ///< residuals of a feature
+  double freedom = 0.0;       ///< rows minus those that parameters use up
+  double given = 0.0;         ///< sigma of the configuration, in `unit`; 0: none
+  double sigma = 0.0;         ///< standard deviation of a residual component, in `unit`
+  double robust = 0.0;        ///< the same from the median
+  double unit_sigma = 1.0;    ///< residual in `unit` of a weighted residual of one
 
   /// Standard deviation of a weighted residual component: 1 if the given sigma is right.
   [[nodiscard]] double weighted() const { return sigma / unit_sigma; }
@@ -41,7 +42,7 @@ namespace detail {
 /// @param squares   sum of the squared weighted residuals, with their losses
 /// @param leverage  trace of J H^-1 J^T
 /// @param robust    standard deviation of the weighted residuals: see robust_sigma()
-[[nodiscard]] BlockNoise block_noise(const Term& term, int features, double squares,
+[[nodiscard]] BlockNoise block_noise(const Term& term, std::int64_t features, double squares,
                                      double leverage, double robust);
 }  // namespace detail
 
