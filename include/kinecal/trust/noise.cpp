@@ -30,8 +30,8 @@ double detail::tail_factor(std::vector<double> distances, int components, double
   return std::clamp(*at / expected, 1.0, kMost);
 }
 
-BlockNoise detail::block_noise(const Term& term, int features, double squares, double leverage,
-                               double robust) {
+BlockNoise detail::block_noise(const Term& term, std::int64_t features, double squares,
+                               double leverage, double robust) {
   BlockNoise of;
   of.block = term.name;
   of.unit = term.options.unit;
