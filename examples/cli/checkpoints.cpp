@@ -10,6 +10,7 @@
 
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/results/output_file.hpp"
 
 namespace kinecal::cli {
 
