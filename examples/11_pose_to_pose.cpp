@@ -69,7 +69,7 @@ int main() {
   // Residuals are in units of the noise, so 1 RMS remains of each component, less what the
   // parameters fit.
   const BlockStatistics& fit = result.blocks.front();
-  const double components = 6.0 * fit.count;
+  const double components = 6.0 * static_cast<double>(fit.count);
   const double noise = std::sqrt(1.0 - static_cast<double>(result.calibrated.size()) / components);
   std::printf("weighted residual: %.1f RMS before, %.2f after; noise alone gives %.2f\n",
               fit.before.rms, fit.after.rms, noise);
