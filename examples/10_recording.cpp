@@ -46,8 +46,9 @@ int main(int argc, char** argv) {
     const CrateResult<HandEye> result = calibrate(crate, recording.samples);
     const BlockStatistics& hand_eye = result.blocks.front();
     std::printf("%s\n", result.termination.c_str());
-    std::printf("hand_eye: %d points, median %.2f mm before, %.2f mm after\n", hand_eye.count,
-                1e3 * hand_eye.before.median, 1e3 * hand_eye.after.median);
+    std::printf("hand_eye: %d points, median %.2f mm before, %.2f mm after\n",
+                static_cast<int>(hand_eye.count), 1e3 * hand_eye.before.median,
+                1e3 * hand_eye.after.median);
     for (const int i : result.calibrated) {
       const Parameter& parameter = result.table[i];
       std::printf("  %-24s %9.5f %s\n", parameter.name.c_str(), parameter.value,

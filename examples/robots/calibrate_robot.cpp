@@ -65,7 +65,7 @@ Calibration calibration_of(const RobotExample& example, const std::vector<Sample
 /// An error block on held-out samples.
 struct HeldOut {
   std::string name, unit;
-  int features = 0;
+  std::int64_t features = 0;
   double by_urdf = 0.0, calibrated = 0.0,
          noise = 0.0;   ///< rms of components; noise: with the true values
   double metres = 1.0;  ///< per unit of the residual
