@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "support/noisy_scene.hpp"
 
 namespace kinecal {
@@ -9,7 +12,10 @@ namespace {
 
 double effect_in(test::NoisyScene& scene) {
   const auto evaluator = scene.solved().evaluator(scene.free());
-  return design_effect(scene.solved(), scene.linear(*evaluator));
+  const LinearFit fit = scene.linear(*evaluator);
+  return gradient_variance(scene.solved(), fit, each_its_own(scene.samples.size()),
+                           information(fit, fit.loss), fit.prior_hessian)
+      .effect;
 }
 
 TEST(DesignEffect, IsOneIfFeaturesErrIndependently) {
@@ -69,6 +75,102 @@ TEST(DesignEffect, MakesUncertaintyCoverTheTruthOfJointsThatDoNotRepeat) {
   EXPECT_GT(share(inside), 0.90);
   EXPECT_LT(share(inside), 0.98);
   EXPECT_LT(share(without), 0.85);
+}
+
+/// Reads each pose several times, with little noise of the sensors between the readings.
+void read_again(test::NoisyScene& scene, int readings, unsigned seed) {
+  std::mt19937 random(seed + 9000);
+  std::normal_distribution<double> noise(0.0, 0.02 * test::kPointNoise), joint(0.0, 1e-5);
+  const std::vector<Sample> once = scene.samples;
+  for (int reading = 1; reading < readings; ++reading) {
+    for (Sample sample : once) {
+      for (double& position : sample.joint_positions) position += joint(random);
+      for (Feature& feature : sample.observations[0].features) {
+        for (int k = 0; k < 3; ++k) feature.point(k) += noise(random);
+      }
+      scene.samples.push_back(std::move(sample));
+    }
+  }
+}
+
+TEST(PoseGroups, AreReadingsOfOnePose) {
+  test::NoisyScene scene(20);
+  scene.solve();
+  EXPECT_EQ(pose_groups(scene.solved(), scene.samples).count, 20);
+  read_again(scene, 3, 1);
+  const PoseGroups groups = pose_groups(scene.solved(), scene.samples);
+  EXPECT_EQ(groups.count, 20);
+  EXPECT_DOUBLE_EQ(groups.readings(), 3.0);
+  for (std::size_t i = 0; i < scene.samples.size(); ++i) {
+    EXPECT_EQ(groups.of_sample[i], static_cast<int>(i % 20));
+  }
+  const std::vector<int> fold = folds_of(scene.samples, groups, 5);
+  for (std::size_t i = 20; i < fold.size(); ++i) EXPECT_EQ(fold[i], fold[i % 20]);
+}
+
+TEST(PoseGroups, OfJointsThatMoveNothingAreNotOne) {
+  test::NoisyScene scene(20);
+  scene.solve();
+  for (Sample& sample : scene.samples) {
+    for (double& position : sample.joint_positions) position = 0.1;
+  }
+  EXPECT_EQ(pose_groups(scene.solved(), scene.samples).count, 20) << "one pose determines nothing";
+}
+
+/// Share of the true values within 1.96 standard deviations, and the mean deviation relative to once.
+struct Coverage {
+  int inside = 0, all = 0;
+  double deviations = 0.0;
+  void add(const test::NoisyScene& scene, const Assessment& found) {
+    for (std::size_t c = 0; c < found.parameters.size(); ++c, ++all) {
+      const int p = found.parameters[c];
+      const double deviation = found.uncertainty.deviation(static_cast<int>(c));
+      deviations += std::log(deviation);
+      inside += std::abs(scene.result.table[p].value - scene.truth(p)) < 1.96 * deviation;
+    }
+  }
+  [[nodiscard]] double share() const { return static_cast<double>(inside) / all; }
+};
+
+TEST(PoseGroups, ReadingEachPoseFiveTimesSaysNothingMoreOfTheRobot) {
+  Coverage once, five;
+  for (unsigned run = 0; run < 60; ++run) {
+    test::NoisyScene scene(30, run);
+    scene.options.sigma = {};
+    once.add(scene, scene.solve_and_assess({.folds = 0}));
+    read_again(scene, 5, run);
+    five.add(scene, scene.solve_and_assess({.folds = 0}));
+  }
+  EXPECT_GT(once.share(), 0.92);
+  EXPECT_LT(once.share(), 0.98);
+  EXPECT_GT(five.share(), 0.90);
+  EXPECT_LT(five.share(), 0.98);
+  EXPECT_NEAR(std::exp((five.deviations - once.deviations) / once.all), 1.0, 0.1);
+}
+
+/// Features of a sample err along one direction of the target together: some parameters suffer more.
+TEST(PoseGroups, EachParameterHasItsOwnShareOfWhatErrsTogether) {
+  std::vector<int> inside(test::kNoisyFree.size(), 0);
+  constexpr int kRuns = 200;
+  for (unsigned run = 0; run < kRuns; ++run) {
+    test::NoisyScene scene(60, run);
+    std::mt19937 random(run + 5000);
+    std::normal_distribution<double> shift(0.0, 3.0 * test::kPointNoise);
+    for (Sample& sample : scene.samples) {
+      const double depth = shift(random);
+      for (Feature& feature : sample.observations[0].features) feature.point.z() += depth;
+    }
+    const Assessment found = scene.solve_and_assess({.folds = 0});
+    for (std::size_t c = 0; c < found.parameters.size(); ++c) {
+      const int p = found.parameters[c];
+      inside[c] += std::abs(scene.result.table[p].value - scene.truth(p)) <
+                   1.96 * found.uncertainty.deviation(static_cast<int>(c));
+    }
+  }
+  for (std::size_t c = 0; c < inside.size(); ++c) {
+    EXPECT_GT(inside[c], 0.88 * kRuns) << test::kNoisyFree[c];
+    EXPECT_LT(inside[c], 0.99 * kRuns) << test::kNoisyFree[c];
+  }
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 TEST(HeldOut, IsTheErrorOfFitsThatDidNotSeeTheFold) {
   test::NoisyScene scene(20);
   const Assessment found = scene.solve_and_assess({.folds = 5});
-  const std::vector<int> fold = folds_of(scene.samples, 5);
+  const std::vector<int> fold = folds_of(scene.samples, each_its_own(scene.samples.size()), 5);
   double squares = 0.0;
   for (int k = 0; k < 5; ++k) {
     std::set<std::size_t> left_out;
@@ -33,9 +33,9 @@ TEST(HeldOut, IsTheErrorOfFitsThatDidNotSeeTheFold) {
 
 TEST(HeldOut, FoldsDoNotDependOnTheOrderOfSamples) {
   test::NoisyScene scene(23);
-  const std::vector<int> fold = folds_of(scene.samples, 5);
+  const std::vector<int> fold = folds_of(scene.samples, each_its_own(scene.samples.size()), 5);
   std::vector<Sample> reversed(scene.samples.rbegin(), scene.samples.rend());
-  std::vector<int> again = folds_of(reversed, 5);
+  std::vector<int> again = folds_of(reversed, each_its_own(reversed.size()), 5);
   std::reverse(again.begin(), again.end());
   EXPECT_EQ(fold, again);
   for (int k = 0; k < 5; ++k) {

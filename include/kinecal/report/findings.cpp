@@ -35,10 +35,13 @@ namespace detail {
                text(block.after.max), noise->freedom > 0.0 ? text(noise->sigma) : "-",
                noise->given > 0.0 ? text(noise->given) : "-"});
   }
-  const double effect =
-      findings.assessments.empty() ? 1.0 : findings.assessments.back().uncertainty.design_effect;
+  std::string note;
+  if (!findings.assessments.empty()) {
+    const Assessment& last = findings.assessments.back();
+    note = design_effect_note(last.uncertainty.design_effect, last.readings);
+  }
   return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
-         table.str() + design_effect_note(effect);
+         table.str() + note;
 }
 
 std::string cause_text(const Findings& findings, int sample) {

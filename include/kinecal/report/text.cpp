@@ -40,8 +40,16 @@ std::string reading_unit(const std::string& unit) {
   return unit == "m" ? "mm" : unit == "1" ? "-" : unit;
 }
 
-std::string design_effect_note(double effect) {
+std::string design_effect_note(double effect, double readings) {
   if (effect <= 1.0) return "";
+  constexpr double kRepeated = 1.2;
+  if (readings > kRepeated) {
+    return fmt::format(
+        "  Each pose was read {:.1f} times in the mean, and readings of a pose err together: +- "
+        "are {:.1f}\n"
+        "  times as large as if they erred independently; other poses say more\n",
+        readings, std::sqrt(effect));
+  }
   return fmt::format(
       "  Features of one sample err together, as if joints did not repeat: +- are {:.1f} times as\n"
       "  large as if they erred independently\n",

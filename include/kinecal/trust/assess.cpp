@@ -65,21 +65,23 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, std::span<cons
   const auto evaluator = problem.evaluator(inside);
   const LinearFit fit =
       linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
-  found.rows = static_cast<int>(fit.residual.size());
+  found.rows = fit.residual.size();
+  const PoseGroups poses = pose_groups(problem, samples);
+  found.readings = poses.readings();
   const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
-  found.uncertainty = uncertainty(problem, fit, found.noise);
+  found.uncertainty = uncertainty(problem, fit, found.noise, poses);
   detail::mark_undetermined(problem, inside, fit.coordinates, found.uncertainty);
   found.pulls = prior_pulls(problem, inside, values, fit, inverse, found.uncertainty);
   found.weak = weak_parameters(problem, inside, found.uncertainty);
   found.captures = capture_errors(problem, fit);
   found.change = recording_change(problem, inside, fit);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
-  const int folds = std::min(options.folds, static_cast<int>(samples.size()));
+  const int folds = std::min(options.folds, poses.count);
   if (folds >= 2) {
     try {
       found.held_out =
-          held_out_errors(*evaluator, values, fit, folds_of(samples, folds), options.meter);
+          held_out_errors(*evaluator, values, fit, folds_of(samples, poses, folds), options.meter);
     } catch (const std::domain_error&) {  // without a fold, a point ends up behind a camera
       for (int t = 0; t < problem.num_terms(); ++t) {
         const Term& term = problem.term(t);

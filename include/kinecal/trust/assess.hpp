@@ -43,6 +43,7 @@ struct Assessment {
   std::vector<PriorPull> pulls;           ///< priors that the samples contradict
   std::optional<PoseUncertainty> pose;    ///< of the frames that the first error block compares
   std::int64_t rows = 0;                  ///< residuals, without priors
+  double readings = 1.0;                  ///< samples per pose: see pose_groups()
 
   /// Standard deviation of a parameter of the table; nullopt if the step does not free it.
   [[nodiscard]] std::optional<double> deviation(int parameter) const;

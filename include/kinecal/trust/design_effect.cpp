@@ -1,10 +1,11 @@
-// Computing the design effect.
+// Computing the variance of grouped gradients.
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/design_effect.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "kinecal/solve/spectrum.hpp"
 
@@ -13,13 +14,27 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// Sums over one sample, or over all.
+/// (I - M)^-1/2 g.  A direction that only this group determines has no residual left and adds nothing.
+[[nodiscard]] Eigen::VectorXd restored(const Eigen::MatrixXd& share, const Eigen::VectorXd& g) {
+  constexpr double kSmall = 0.1;
+  if (share.trace() < kSmall) {  // its power series
+    const Eigen::VectorXd first = share * g, second = share * first, third = share * second;
+    return g + 0.5 * first + 0.375 * second + 0.3125 * third;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(share);
+  constexpr double kAlone = 1e-6;
+  const Eigen::ArrayXd factor = (1.0 + kAlone - spectrum.eigenvalues().array()).max(kAlone).rsqrt();
+  return spectrum.eigenvectors() *
+         (factor * (spectrum.eigenvectors().transpose() * g).array()).matrix();
+}
+
+/// Sums over one group, and over all.
 struct GradientSums {
-  Eigen::VectorXd together;  ///< gradient of all features of a sample
-  Eigen::MatrixXd share;     ///< of the sample in the information
-  double of_features = 0.0;  ///< squares of the gradients of single features
-  double of_samples = 0.0;   ///< the same of whole samples
-  double chance = 0.0;       ///< variance of of_samples if features err independently, relative
+  Eigen::VectorXd together;             ///< gradient of all features of a group
+  Eigen::MatrixXd share;                ///< of the group in the information
+  std::vector<Eigen::VectorXd> groups;  ///< x of each group
+  double of_features = 0.0;             ///< squares of the gradients of single features
+  double chance = 0.0;  ///< variance of trace S if features err independently, relative
 
   /// @param rows  derivatives of a block's residuals, in whitened coordinates
   /// @param size  residuals of a feature
@@ -34,50 +49,83 @@ struct GradientSums {
     together.noalias() += rows.transpose() * weighted;
     share.noalias() += rows.transpose() * loss.asDiagonal() * rows;
   }
-  /// Adds the sample and starts another one.
-  void end_sample() {
-    const Eigen::Index n = share.rows();
-    // A direction that only this sample determines has no residual left and adds nothing.
-    constexpr double kAlone = 1e-6;
-    const Eigen::MatrixXd others = (1.0 + kAlone) * Eigen::MatrixXd::Identity(n, n) - share;
-    of_samples += together.dot(others.ldlt().solve(together));
+  /// Adds the group and starts another one.
+  void end_group() {
+    groups.push_back(restored(share, together));
     chance += 2.0 * share.squaredNorm();
     together.setZero();
     share.setZero();
   }
 };
 
+/// The blocks of rows, pose after pose.
+[[nodiscard]] std::vector<const RowBlock*> by_pose(const LinearFit& fit, const PoseGroups& poses) {
+  std::vector<const RowBlock*> blocks;
+  for (const RowBlock& block : fit.blocks) blocks.push_back(&block);
+  std::stable_sort(blocks.begin(), blocks.end(), [&](const RowBlock* a, const RowBlock* b) {
+    return poses.of_sample[static_cast<std::size_t>(a->sample)] <
+           poses.of_sample[static_cast<std::size_t>(b->sample)];
+  });
+  return blocks;
+}
+
+/// S, shrunk towards a target as far as its own scatter demands.
+[[nodiscard]] Eigen::MatrixXd shrunk(const std::vector<Eigen::VectorXd>& groups,
+                                     const Eigen::MatrixXd& target) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(target.rows(), target.cols());
+  double fourth = 0.0;
+  for (const Eigen::VectorXd& x : groups) {
+    sum.noalias() += x * x.transpose();
+    fourth += x.squaredNorm() * x.squaredNorm();
+  }
+  const double scatter = fourth - sum.squaredNorm() / static_cast<double>(groups.size());
+  const double distance = (sum - target).squaredNorm();
+  const double weight = distance > scatter ? scatter / distance : 1.0;  // of the target
+  return weight * target + (1.0 - weight) * sum;
+}
+
 }  // namespace
 }  // namespace detail
 
-double design_effect(const AnyProblem& problem, const LinearFit& fit) {
+GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& fit,
+                                   const PoseGroups& poses, const Eigen::MatrixXd& independent,
+                                   const Eigen::MatrixXd& of_priors) {
   const Eigen::Index n = fit.size();
   const detail::Spectrum spectrum(information(fit, fit.loss));
   const Eigen::Index rank = n - spectrum.null;
-  if (rank == 0) return 1.0;
+  if (rank == 0) return {independent};
   const Eigen::MatrixXd whitening = spectrum.scale.cwiseInverse().asDiagonal() *
                                     spectrum.vectors.rightCols(rank) *
                                     spectrum.singular.tail(rank).cwiseInverse().asDiagonal();
-  detail::GradientSums sums{Eigen::VectorXd::Zero(rank), Eigen::MatrixXd::Zero(rank, rank)};
-  int sample = -1;
+  detail::GradientSums sums{Eigen::VectorXd::Zero(rank), Eigen::MatrixXd::Zero(rank, rank), {}};
+  int pose = -1;
   double directions = 0.0;
-  for (const RowBlock& block : fit.blocks) {
-    if (block.sample != sample && sample >= 0) sums.end_sample();
-    sample = block.sample;
-    const Eigen::MatrixXd rows = fit.jacobian.middleRows(block.first, block.size) * whitening;
-    const Eigen::VectorXd loss = fit.loss.segment(block.first, block.size);
+  for (const RowBlock* block : detail::by_pose(fit, poses)) {
+    const int of_block = poses.of_sample[static_cast<std::size_t>(block->sample)];
+    if (of_block != pose && pose >= 0) sums.end_group();
+    pose = of_block;
+    const Eigen::MatrixXd rows = fit.jacobian.middleRows(block->first, block->size) * whitening;
+    const Eigen::VectorXd loss = fit.loss.segment(block->first, block->size);
     directions += (loss.asDiagonal() * rows).cwiseProduct(rows).sum();
-    sums.add(rows, fit.residual.segment(block.first, block.size), loss,
-             problem.term(block.term).feature_size);
+    sums.add(rows, fit.residual.segment(block->first, block->size), loss,
+             problem.term(block->term).feature_size);
   }
-  if (sample >= 0) sums.end_sample();
+  if (pose < 0) return {independent};
+  sums.end_group();
   const double count = static_cast<double>(fit.residual.size());
-  const double independent =
+  const double of_features =
       sums.of_features * count / std::max(1.0, count - static_cast<double>(rank));
-  if (!(independent > 0.0)) return 1.0;
-  const double effect = sums.of_samples / independent;
+  if (!(of_features > 0.0)) return {independent};
+  double of_groups = 0.0;
+  for (const Eigen::VectorXd& x : sums.groups) of_groups += x.squaredNorm();
+  double effect = of_groups / of_features;
   const double chance = std::sqrt(sums.chance) / directions;
-  return effect > 1.0 + 3.0 * chance ? effect : 1.0;
+  if (effect <= 1.0 + 3.0 * chance) effect = 1.0;
+  const Eigen::MatrixXd back = spectrum.scale.asDiagonal() * spectrum.vectors.rightCols(rank) *
+                               spectrum.singular.tail(rank).asDiagonal();
+  const Eigen::MatrixXd of_rows = whitening.transpose() * (independent - of_priors) * whitening;
+  return {back * detail::shrunk(sums.groups, effect * of_rows) * back.transpose() + of_priors,
+          effect};
 }
 
 }  // namespace kinecal

@@ -32,7 +32,7 @@ struct SquaredDistances {
 }  // namespace
 }  // namespace detail
 
-std::vector<int> folds_of(std::span<const Sample> samples, int folds) {
+std::vector<int> folds_of(std::span<const Sample> samples, const PoseGroups& poses, int folds) {
   std::vector<std::size_t> order(samples.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto key = [&](std::size_t i) {
@@ -47,9 +47,12 @@ std::vector<int> folds_of(std::span<const Sample> samples, int folds) {
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
-  std::vector<int> fold(samples.size());
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    fold[order[n]] = static_cast<int>(n % static_cast<std::size_t>(folds));
+  std::vector<int> of_pose(static_cast<std::size_t>(poses.count), -1), fold(samples.size());
+  int dealt = 0;
+  for (const std::size_t i : order) {
+    int& of = of_pose[static_cast<std::size_t>(poses.of_sample[i])];
+    if (of < 0) of = dealt++ % folds;
+    fold[i] = of;
   }
   return fold;
 }

@@ -13,6 +13,7 @@
 #include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/samples/sample.hpp"
 #include "kinecal/solve/linear_fit.hpp"
+#include "kinecal/trust/pose_groups.hpp"
 
 namespace kinecal {
 
@@ -25,9 +26,11 @@ struct HeldOutError {
   double held_out = 0.0;  ///< the same, each feature held out once
 };
 
-/// The fold of each sample, 0 to folds - 1.  Samples are dealt in the order of their joint
-/// positions, so folds do not depend on the order of samples, and each covers all poses.
-[[nodiscard]] std::vector<int> folds_of(std::span<const Sample> samples, int folds);
+/// The fold of each sample, 0 to folds - 1.  Poses are dealt in the order of their joint positions, so
+/// folds do not depend on the order of samples, each covers all of the workspace, and readings of one pose
+/// are in one fold.
+[[nodiscard]] std::vector<int> folds_of(std::span<const Sample> samples, const PoseGroups& poses,
+                                        int folds);
 
 /// Fitted and held-out error of each error block.
 /// @param values  the solution: where `fit` was linearized

@@ -24,7 +24,7 @@ void judge_determined(const Assessment& step, bool last, Judgement& judgement) {
 
 void judge_freedom(const Assessment& step, Judgement& judgement) {
   const double parameters = std::max(1, step.uncertainty.determined);
-  const double freedom = static_cast<double>(step.rows) - parameters;
+  const double freedom = static_cast<double>(step.rows) / step.readings - parameters;
   if (freedom >= parameters) return;
   judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,
                 "step '" + step.step + "': " + std::to_string(step.rows) +

@@ -22,7 +22,7 @@ struct RobustSums {
 
 [[nodiscard]] inline RobustSums robust_sums(const AnyProblem& problem, const LinearFit& fit) {
   const Eigen::Index n = fit.size();
-  RobustSums sums{fit.prior_hessian, fit.prior_hessian};
+  RobustSums sums{fit.prior_hessian, Eigen::MatrixXd::Zero(n, n)};
   for (const RowBlock& block : fit.blocks) {
     const Term& term = problem.term(block.term);
     const int size = term.feature_size;
@@ -38,6 +38,7 @@ struct RobustSums {
   }
   const double rows = static_cast<double>(fit.residual.size());
   sums.gradients *= rows / std::max(1.0, rows - static_cast<double>(n));
+  sums.gradients += fit.prior_hessian;
   return sums;
 }
 
@@ -84,7 +85,7 @@ void mark_undetermined(const AnyProblem& problem, const FreeSet& free, const Coo
 }  // namespace detail
 
 Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
-                        const std::vector<BlockNoise>& noise) {
+                        const std::vector<BlockNoise>& noise, const PoseGroups& poses) {
   const bool robust = (fit.loss.array() != 1.0).any();
   Eigen::MatrixXd hessian, middle;
   if (robust) {
@@ -97,11 +98,13 @@ Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
   }
   const Eigen::MatrixXd inverse = detail::Spectrum(hessian).pseudo_inverse();
   const Coordinates& by = fit.coordinates;
-  const double effect = design_effect(problem, fit);
-  const Eigen::MatrixXd coordinates = effect * inverse * middle * inverse;
+  const double prior_variance = robust ? 1.0 : kinecal::prior_variance(noise);
+  const GradientVariance grouped =
+      gradient_variance(problem, fit, poses, middle, prior_variance * fit.prior_hessian);
+  const Eigen::MatrixXd coordinates = inverse * grouped.variance * inverse;
   const Eigen::MatrixXd covariance = by.basis * coordinates * by.basis.transpose();
   return {static_cast<int>(coordinates.rows()), covariance, detail::deviations(covariance, by.lost),
-          effect};
+          grouped.effect};
 }
 
 std::vector<Correlation> high_correlations(const Uncertainty& known, double limit) {

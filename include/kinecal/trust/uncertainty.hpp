@@ -6,7 +6,7 @@
 // else that of all blocks: without sigmas, weights are only ratios.  One common s gives s^2 H^-1.
 // With robust losses it is the sandwich of M-estimators: A^-1 B A^-1 with A the Hessian including
 // rho'', B the sum of g g^T over features, g their gradients.  Both assume that features err
-// independently; if those of a sample do not, C is multiplied by the design effect.
+// independently; V and B are replaced as far as those of a pose do not (design_effect.hpp).
 // Source: Huber, Robust Statistics, 1981, 6.3.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -15,6 +15,7 @@
 
 #include "kinecal/trust/noise.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
+#include "kinecal/trust/pose_groups.hpp"
 
 namespace kinecal {
 
@@ -25,14 +26,17 @@ struct Uncertainty {
                            ///< directions
   /// Standard deviation of each free parameter; infinite if samples and priors do not determine it.
   PlainMatrix deviation;
-  /// Factor of the covariance if features of a sample err together: see design_effect().
+  /// Factor of the covariance as features of a pose err together, in the mean of all parameters: see
+  /// gradient_variance().
   double design_effect = 1.0;
 };
 
 /// Covariance of the free parameters.
 /// @param noise  of each error block: see estimate_noise()
+/// @param poses  of the problem's samples
 [[nodiscard]] Uncertainty uncertainty(const AnyProblem& problem, const LinearFit& fit,
-                                      const std::vector<BlockNoise>& noise);
+                                      const std::vector<BlockNoise>& noise,
+                                      const PoseGroups& poses);
 
 namespace detail {
 /// Standard deviations from a covariance; infinite if more than a little of a parameter is

@@ -1,0 +1,74 @@
+// Grouping samples by pose.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/pose_groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <string>
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Names of the joints that move a sensor or target of the problem, and how well robots repeat them.
+[[nodiscard]] std::map<std::string, double> repeatable_joints(const AnyProblem& problem) {
+  constexpr double kRadians = 1e-3, kMetres = 2e-4;
+  std::map<std::string, double> joints;
+  for (const MountedSensor& sensor : problem.sensors()) {
+    for (const RuntimeChain& chain : sensor.chains()) {
+      for (const ChainJoint& joint : chain.joints) {
+        if (joint.type == JointType::fixed) continue;
+        joints[joint.drive.joint] = turns(joint.type) ? kRadians : kMetres;
+      }
+    }
+  }
+  return joints;
+}
+
+}  // namespace
+}  // namespace detail
+
+PoseGroups each_its_own(std::size_t samples) {
+  PoseGroups groups{std::vector<int>(samples), static_cast<int>(samples)};
+  std::iota(groups.of_sample.begin(), groups.of_sample.end(), 0);
+  return groups;
+}
+
+PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples) {
+  const std::map<std::string, double> joints = detail::repeatable_joints(problem);
+  if (joints.empty()) return each_its_own(samples.size());
+  /// Positions in units of repeatability; a joint that is missing is far away from all others.
+  constexpr double kMissing = 1e9;
+  struct Pose {
+    Eigen::VectorXd at;
+    int number;
+  };
+  std::multimap<double, Pose> poses;  // by the first joint's position
+  PoseGroups groups;
+  for (const Sample& sample : samples) {
+    Eigen::VectorXd at(std::ssize(joints));
+    Eigen::Index i = 0;
+    for (const auto& [name, repeats] : joints) {
+      const auto position = sample.position(name);
+      at(i++) = position && std::isfinite(*position) ? *position / repeats : kMissing;
+    }
+    const auto known = std::find_if(
+        poses.lower_bound(at(0) - 1.0), poses.upper_bound(at(0) + 1.0), [&](const auto& pose) {
+          return (pose.second.at - at).template lpNorm<Eigen::Infinity>() <= 1.0;
+        });
+    if (known != poses.upper_bound(at(0) + 1.0)) {
+      groups.of_sample.push_back(known->second.number);
+    } else {
+      groups.of_sample.push_back(groups.count);
+      poses.emplace(at(0), Pose{at, groups.count++});
+    }
+  }
+  if (groups.count < 2) return each_its_own(samples.size());
+  return groups;
+}
+
+}  // namespace kinecal

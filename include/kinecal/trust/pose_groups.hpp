@@ -1,0 +1,36 @@
+// Which samples are readings of one pose of the robot.
+//
+// Readings of a pose share what the robot did there: where its joints really stopped, how the target bent.
+// They say how well the sensors repeat and little of the robot, so they count as one: in folds, in degrees
+// of freedom, and in the covariance.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kinecal/problem/any_problem.hpp"
+#include "kinecal/samples/sample.hpp"
+
+namespace kinecal {
+
+/// Samples by pose.
+struct PoseGroups {
+  std::vector<int> of_sample;  ///< number of its pose, from 0, in the order of the samples
+  int count = 0;               ///< number of poses
+
+  /// Samples per pose, in the mean.
+  [[nodiscard]] double readings() const {
+    return count > 0 ? static_cast<double>(of_sample.size()) / count : 1.0;
+  }
+};
+
+/// Each sample is a pose of its own.
+[[nodiscard]] PoseGroups each_its_own(std::size_t samples);
+
+/// Samples in which every joint that moves a sensor or target of the problem is where it was in another,
+/// within what robots repeat: 1 mrad, 0.2 mm.  Without such joints each sample is a pose of its own.
+/// @param samples  those of the problem, in their order
+[[nodiscard]] PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples);
+
+}  // namespace kinecal
