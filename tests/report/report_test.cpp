@@ -159,7 +159,7 @@ TEST(TextReport, SaysWhatSolvingTook) {
             "solving 0.0020 s (10 iterations, 1.2 million samples a second, " + set + ")");
   r.steps[1].form = CostForm::stacked;
   EXPECT_THAT(solving_text(r), HasSubstr(set + ", stacked cost)"));
-  EXPECT_THAT(solving_text({}), HasSubstr("solving 0.0000 s (0 iterations, 0 million"));
+  EXPECT_THAT(solving_text({}), HasSubstr("solving 0.0000 s (0 iterations, x86-64"));
 }
 
 TEST(TextReport, NamesUnobservableCombinationsAndWhatToHold) {

@@ -322,7 +322,8 @@ TEST(Solve, WithoutIterationsLeftItHasConvergedIfTheNoiseIsLargerThanWhatIsLeft)
   const std::vector<Sample> samples = noisy_samples(20, 1e-3);
   const StepResult all = solved_in(1000, samples, 1.0);
   ASSERT_TRUE(all.converged) << all.termination;
-  const double variance = 2.0 * all.final_cost / (all.num_residuals - all.num_parameters);
+  const double variance =
+      2.0 * all.final_cost / static_cast<double>(all.num_residuals - all.num_parameters);
   int refused = 0, accepted = 0;
   for (int most = 1; most < all.iterations; ++most) {
     const StepResult cut = solved_in(most, samples, 1.0);

@@ -150,8 +150,8 @@ Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedR
 
 std::string findings_text(const Findings& findings) {
   std::string text = detail::verdict_text(findings);
-  const std::int64_t samples = findings.result.steps.empty() ? std::ssize(findings.sources)
-                                                             : findings.result.steps.back().samples;
+  std::int64_t samples = std::ssize(findings.sources);  // none are kept of samples in shards
+  if (samples == 0 && !findings.result.steps.empty()) samples = findings.result.steps[0].samples;
   text +=
       fmt::format("\nRobot '{}', {} sample{}", findings.robot, samples, samples == 1 ? "" : "s");
   if (!findings.left_out.empty()) text += fmt::format(", {} left out", findings.left_out.size());

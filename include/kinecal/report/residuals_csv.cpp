@@ -19,8 +19,9 @@ std::string residuals_csv(const Calibration& calibration, const Findings& findin
     const auto visit = [&](int t, int sample, const TermResiduals& residuals) {
       const Term& term = problem.term(t);
       const int size = term.feature_size;
-      const std::string before = fmt::format("{},{},{}", detail::csv_cell(term.name),
-                                             findings.numbers[static_cast<std::size_t>(sample)],
+      const auto at = static_cast<std::size_t>(sample);
+      const int number = at < findings.numbers.size() ? findings.numbers[at] : sample + 1;
+      const std::string before = fmt::format("{},{},{}", detail::csv_cell(term.name), number,
                                              detail::csv_cell(problem.source(sample)));
       for (Eigen::Index row = 0; row < residuals.residual.size(); row += size) {
         const auto r = residuals.residual.segment(row, size);
