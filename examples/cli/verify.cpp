@@ -88,10 +88,11 @@ PoseChange change_of_pose(const Check& check, const Mover& mover) {
 std::string pose_text(const Check& check, const Mover& mover) {
   const PoseChange change = change_of_pose(check, mover);
   if (change.poses == 0) return "";
-  return fmt::format("So '{}' in '{}' is off by {} and {}, {} at the worst of these poses\n",
+  const std::string rotation =
+      change.rotation > 0.0 ? " and " + reading(change.rotation, "rad") : "";
+  return fmt::format("So '{}' in '{}' is off by {}{}, {} at the worst of these poses\n",
                      check.result.pose->frame.name(), check.result.pose->in.name(),
-                     reading(change.position, "m"), reading(change.rotation, "rad"),
-                     reading(change.worst_position, "m"));
+                     reading(change.position, "m"), rotation, reading(change.worst_position, "m"));
 }
 
 std::string source_of(const Check& check, int sample) {

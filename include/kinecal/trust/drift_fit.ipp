@@ -40,6 +40,11 @@ class DriftFit {
     }
     return rows;
   }
+  /// True if some residual depends on a parameter: the orientation of a point does not matter.
+  [[nodiscard]] bool matters(int parameter) const {
+    constexpr double kNothing = 1e-6;  // of the noise, for a change by one metre or radian
+    return start_.fit.jacobian.col(free_.column(parameter)).norm() > kNothing;
+  }
   /// Degrees of freedom of the noise, by the error blocks' shares of the residuals (Welch).
   [[nodiscard]] double noise_freedom() const {
     std::vector<double> rows(state_.noise.size(), 0.0);

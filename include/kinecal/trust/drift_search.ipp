@@ -46,7 +46,12 @@ struct CleanFit {
 class DriftSearch {
  public:
   DriftSearch(const AnyProblem& problem, const CalibratedState& state, double level)
-      : problem_(problem), fit_(problem, state), movers_(hypotheses(problem)), level_(level) {}
+      : problem_(problem), fit_(problem, state), movers_(hypotheses(problem)), level_(level) {
+    for (Mover& mover : movers_) {
+      std::erase_if(mover.parameters, [&](int p) { return !fit_.matters(p); });
+    }
+    std::erase_if(movers_, [](const Mover& mover) { return mover.parameters.empty(); });
+  }
 
   [[nodiscard]] double noise_freedom() const { return fit_.noise_freedom(); }
   [[nodiscard]] const std::vector<Mover>& movers() const { return movers_; }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 
 #include "support/arm_scene.hpp"
 
@@ -73,7 +74,9 @@ TEST_F(LikelyCauses, AWrongScaleIsFoundInAFitThatIsNotBad) {
   const auto scales = [&] {
     Diagnostics diagnostics;
     const Calibration calibration = assemble(config(), robot, samples, diagnostics);
-    return wrong_scales(config(), robot, samples, calibrate(calibration).table);
+    const CalibrationResult result = calibrate(calibration);
+    return wrong_scales(config(), robot, samples, result.table,
+                        assess(calibration, result, samples).back());
   };
   EXPECT_THAT(scales(), IsEmpty());
   for (Sample& sample : samples) {
@@ -94,6 +97,36 @@ TEST_F(LikelyCauses, LengthsThatAreFreeDoNotShrinkWithThePoints) {
     sample.observations[0].features[0].point.setZero();
   }
   EXPECT_THAT(causes(), IsEmpty());
+}
+
+TEST_F(LikelyCauses, AScaleThatFreeLengthsAbsorbIsNamedByTheirChange) {
+  replace(
+      config_text, "free_frames:\n",
+      "free_frames:\n - {name: lift, x: true, y: true, z: true}\n"
+      " - {name: elbow, x: true, y: true, z: true}\n - {name: roll, x: true, y: true, z: true}\n"
+      " - {name: flex, x: true, y: true, z: true}\n - {name: flange, x: true, y: true, z: true}\n");
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1e-4);
+  for (Sample& sample : samples) {
+    for (Observation& seen : sample.observations) seen.features.resize(1);
+    sample.observations[0].features[0].point.setZero();
+    for (int k = 0; k < 3; ++k) sample.observations[1].features[0].point(k) += noise(random);
+  }
+  const Robot robot = parse_urdf(urdf, "arm.urdf");
+  const auto scales = [&](const std::vector<Sample>& measured) {
+    Diagnostics diagnostics;
+    const Calibration calibration = assemble(config(), robot, measured, diagnostics);
+    const CalibrationResult result = calibrate(calibration);
+    return wrong_scales(config(), robot, measured, result.table,
+                        assess(calibration, result, measured).back());
+  };
+  EXPECT_THAT(scales(samples), IsEmpty());
+  for (Sample& sample : samples) sample.observations[1].features[0].point *= 1.04;
+  EXPECT_THAT(
+      scales(samples),
+      testing::ElementsAre(testing::ContainsRegex(
+          "with the points of 'tracker' multiplied by 0\\.96[0-9]*, the lengths of the robot "
+          "change by [0-9.]+ mm \\(RMS\\) in place of [0-9.]+ mm")));
 }
 
 TEST_F(LikelyCauses, AxesOfPointsAreNamed) {

@@ -17,10 +17,11 @@
 
 namespace kinecal::detail {
 
-/// A solved calibration: its cost and its error blocks.
+/// A solved calibration: its cost, its error blocks and all parameters.
 struct SolvedSamples {
   double cost = 0.0;
   std::vector<BlockStatistics> blocks;
+  ParameterTable table;
 };
 
 /// How to solve hypotheses.
@@ -50,7 +51,7 @@ struct CauseSolver {
   if (!quiet.errors.empty() || calibration.steps.empty()) return std::nullopt;
   const CalibrationResult result = solver.solve(calibration);
   if (result.steps.empty() || !std::isfinite(result.steps.back().final_cost)) return std::nullopt;
-  return SolvedSamples{result.steps.back().final_cost, result.blocks};
+  return SolvedSamples{result.steps.back().final_cost, result.blocks, result.table};
 }
 
 [[nodiscard]] inline Calibrator plain_calibrator() {

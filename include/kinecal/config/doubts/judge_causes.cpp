@@ -36,8 +36,8 @@ void judge_causes(const CalibrationInput& input, JudgedResult& judged) {
     }
     return;
   }
-  for (const std::string& scale :
-       wrong_scales(input.config, input.robot, input.samples, judged.result.table)) {
+  for (const std::string& scale : wrong_scales(input.config, input.robot, input.samples,
+                                               judged.result.table, judged.assessments.back())) {
     judged.judgement.add(Grade::use_with_care, scale + "; are its lengths right?");
   }
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "kinecal/config/doubts/absorbed_scale.ipp"
 #include "kinecal/config/doubts/cause_solver.ipp"
 #include "kinecal/config/doubts/hypotheses.ipp"
 #include "kinecal/config/doubts/some_samples.ipp"
@@ -20,7 +21,8 @@ namespace {
 
 /// A mistake explains a bad fit if undoing it leaves this fraction of the cost.
 constexpr double kExplains = 0.1;
-/// A scale of points is wrong, even if the fit is not bad, if correcting it halves the noise.
+/// A scale of points is wrong if correcting it halves the noise: it is one number of a continuum, and noise that
+/// stays is no argument against it.
 constexpr double kExplainsScale = 0.25;
 
 /// The scale of a model's points that fits best: a board with larger squares than configured.  Fits
@@ -30,14 +32,7 @@ constexpr double kExplainsScale = 0.25;
                                                const std::string& model, const SolvedSamples& now,
                                                double explains) {
   const auto fit = [&](double x) {
-    std::vector<Sample> scaled = samples;
-    for (Sample& sample : scaled) {
-      for (Observation& seen : sample.observations) {
-        if (seen.sensor != model) continue;
-        for (Feature& feature : seen.features) feature.point *= std::exp(x);
-      }
-    }
-    return solve_samples(solver, solver.config, scaled);
+    return solve_samples(solver, solver.config, with_scaled(samples, model, std::exp(x)));
   };
   constexpr double kFirst = 0.1, kFurthest = 1.1, kEnough = 1e-3;
   constexpr int kSteps = 8;
@@ -123,7 +118,7 @@ std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
                                (now ? detail::fall_of(*now, *then) : "the samples can be solved")});
   }
   if (now) {
-    for (detail::Cause& cause : detail::scale_causes(solver, some, *now, detail::kExplains)) {
+    for (detail::Cause& cause : detail::scale_causes(solver, some, *now, detail::kExplainsScale)) {
       found.push_back(std::move(cause));
     }
   }
@@ -132,7 +127,7 @@ std::vector<std::string> likely_causes(const Config& config, const Robot& robot,
 
 std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
                                       std::span<const Sample> samples,
-                                      const ParameterTable& solution) {
+                                      const ParameterTable& solution, const Assessment& last) {
   const detail::CauseSolver solver{config, robot, detail::plain_calibrator(), &solution};
   const std::vector<Sample> some = detail::some_of(samples);
   const auto now = detail::solve_samples(solver, config, some);
@@ -140,7 +135,18 @@ std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
     return block.after.mean < 1e-6;  // metres or pixels: simulated without noise
   };
   if (!now || std::all_of(now->blocks.begin(), now->blocks.end(), is_exact)) return {};
-  return detail::sentences(detail::scale_causes(solver, some, *now, detail::kExplainsScale));
+  std::vector<detail::Cause> found =
+      detail::scale_causes(solver, some, *now, detail::kExplainsScale);
+  if (!found.empty()) return detail::sentences(std::move(found));
+  const std::vector<detail::FreeLength> lengths = detail::free_lengths(robot, solution, last);
+  if (lengths.size() < 2) return {};
+  const std::set<std::string> pixels = pixel_models(config);
+  for (const ModelConfig& model : detail::models_of(config)) {
+    if (pixels.contains(model.name)) continue;
+    auto scaled = detail::absorbed_scale(solver, some, model.name, *now, lengths);
+    if (scaled) found.push_back(*std::move(scaled));
+  }
+  return detail::sentences(std::move(found));
 }
 
 }  // namespace kinecal

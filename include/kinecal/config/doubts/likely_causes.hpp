@@ -14,6 +14,7 @@
 #include "kinecal/config/config.hpp"
 #include "kinecal/kinematics/robot.hpp"
 #include "kinecal/solve/calibrate.hpp"
+#include "kinecal/trust/assess.hpp"
 
 namespace kinecal {
 
@@ -31,12 +32,15 @@ using Calibrator = std::function<CalibrationResult(const Calibration&)>;
                                                      std::span<const Sample> samples,
                                                      const Calibrator& solve = {});
 
-/// Sentences about models whose points, at another scale, halve the noise of a fit that is not bad:
-/// a board with larger squares than configured.  Empty for most calibrations.
+/// Sentences about models whose points have another scale, in a fit that is not bad: a board with larger
+/// squares than configured.  At the right scale the noise is half as large, or free lengths, which have
+/// absorbed the scale, all change by less.  Empty for most calibrations.
 /// @param samples   the fitted samples
 /// @param solution  the parameters that fit them; the start
+/// @param last      the assessment of the last step
 [[nodiscard]] std::vector<std::string> wrong_scales(const Config& config, const Robot& robot,
                                                     std::span<const Sample> samples,
-                                                    const ParameterTable& solution);
+                                                    const ParameterTable& solution,
+                                                    const Assessment& last);
 
 }  // namespace kinecal
