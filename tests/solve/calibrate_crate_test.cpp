@@ -68,6 +68,30 @@ TEST(CalibrateCrate, FindsWhatWasPutIn) {
   EXPECT_LE((mount - Vector3<double>(truth[2], truth[3], truth[4])).norm(), 1e-10);
 }
 
+TEST(CalibrateCrate, SearchesForTheFrameOfATrackerWhereTheStartFails) {
+  using Stand = FrameOffset<"stand", Axes::all>;
+  using OnAStand = Crate<Tracked, Stand>;
+  const std::vector<double> truth = {0.02, -0.03, 0.004, -0.005, 0.006};
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal;
+  for (int run = 0; run < 20; ++run) {
+    std::vector<Sample> samples = exact_samples(truth, 12);
+    Vector3<double> axis(normal(random), normal(random), normal(random));
+    const Pose<double> stand{exp(Vector3<double>(3.0 * axis.normalized())),
+                             {normal(random), normal(random), normal(random)}};
+    for (Sample& sample : samples) {
+      for (Feature& feature : sample.observations[1].features) {
+        feature.frame = "stand";
+        feature.point = stand.rotation.transpose() * (feature.point - stand.translation);
+      }
+    }
+    const auto result = calibrate(OnAStand(), samples);
+    ASSERT_TRUE(result.converged) << result.termination;
+    EXPECT_LT(result.steps[0].final_cost, 1e-15) << "run " << run;
+    EXPECT_NEAR(result.value<Elbow>(), truth[1], 1e-7);
+  }
+}
+
 TEST(CalibrateCrate, APriorHoldsASingleParameterOfAJointModelOrASensor) {
   using Gear = JointModelParameters<"elbow", "gear_ratio">;
   using Depth = DepthCorrection<"camera">;

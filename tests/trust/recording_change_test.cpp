@@ -43,6 +43,22 @@ TEST(RecordingChange, OfAJointIsFoundWithItsPlace) {
   EXPECT_LT(found->noise_left, 0.3);
 }
 
+TEST(RecordingChange, ThatIsADriftIsFoundWithItsSize) {
+  test::NoisyScene scene(40);
+  for (std::size_t s = 0; s < scene.samples.size(); ++s) {
+    Sample& sample = scene.samples[s];
+    const auto at = std::find(sample.joint_names.begin(), sample.joint_names.end(), "elbow");
+    sample.joint_positions[static_cast<std::size_t>(at - sample.joint_names.begin())] +=
+        0.04 * static_cast<double>(s) / 39.0;
+  }
+  const auto found = change_in(scene);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->owner, "elbow");
+  EXPECT_TRUE(found->drifts);
+  EXPECT_NEAR(found->radians, 0.04, 0.004);
+  EXPECT_LT(found->noise_left, 0.4);
+}
+
 TEST(RecordingChange, OfTheLastSamplesIsABadCapture) {
   test::NoisyScene scene(40);
   slip(scene, "elbow", 39, 0.03);

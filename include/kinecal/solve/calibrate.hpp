@@ -75,7 +75,8 @@ void merge_statistics(std::vector<BlockStatistics>& all, std::vector<BlockStatis
 }  // namespace detail
 
 /// A calibration of one step: the problem with these samples.  Free parameters that affect none of
-/// the residuals keep their initial values.
+/// the residuals keep their initial values.  Where the start fails, poses of virtual frames and of fixed joints
+/// that are free in all axes are searched for.
 /// @param problem  without samples
 /// @throws SampleError  naming the sample and what is missing or wrong in it
 /// @throws std::invalid_argument  if a free parameter belongs to no joint, frame or sensor, or if

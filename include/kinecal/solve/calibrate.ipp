@@ -46,6 +46,26 @@ KINECAL_INLINE void merge_statistics(std::vector<BlockStatistics>& all,
   return {std::move(kept), problem.table().size()};
 }
 
+/// The frames whose pose is searched for where the start fails: virtual ones, and fixed joints of which all
+/// axes are free, a bracket or a stand.
+[[nodiscard]] inline std::vector<UnknownFrame> doubtful_frames(const AnyProblem& problem,
+                                                               const FreeSet& free) {
+  std::vector<UnknownFrame> frames;
+  for (const std::string& name : problem.frames()) {
+    UnknownFrame frame{.name = name, .has_guess = true};
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      const int p = problem.table().find(parameter_name(name, kFrameAxes[axis]));
+      if (p >= 0 && free.column(p) >= 0) frame.axes[axis] = p;
+    }
+    const Robot& robot = problem.robot();
+    const bool on_robot = robot.has_joint(name);
+    if (on_robot && robot.joint(name).type != JointType::fixed) continue;
+    const auto held = std::count(frame.axes.begin(), frame.axes.end(), -1);
+    if (frame.turns() && (!on_robot || held == 0)) frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
 }  // namespace detail
 
 KINECAL_INLINE void CalibrationStep::set_sigma(int term, double sigma) {
@@ -139,9 +159,14 @@ KINECAL_INLINE Calibration make_calibration(std::unique_ptr<AnyProblem> problem,
     throw std::invalid_argument("no sample has usable features of all sensors of an error block");
   }
   FreeSet columns = detail::affecting(*problem, free);
+  std::vector<UnknownFrame> doubtful = detail::doubtful_frames(*problem, columns);
   Calibration calibration{problem->table(), {}};
-  calibration.steps.push_back(
-      {step, SolveOptions{}.max_num_iterations, std::move(problem), std::move(columns), {}});
+  calibration.steps.push_back({step,
+                               SolveOptions{}.max_num_iterations,
+                               std::move(problem),
+                               std::move(columns),
+                               {},
+                               std::move(doubtful)});
   return calibration;
 }
 

@@ -26,64 +26,86 @@ namespace detail {
   return !(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()));
 }
 
-/// J^T W J and J^T W r of the samples from some sample on.
-struct TailSums {
-  int sample = 0;  ///< the first one
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
+/// J^T W J and J^T W r with samples weighted by the course of a change: u is 0 before it and 1 after it, or rises
+/// from -1/2 to 1/2.
+struct CourseSums {
+  int sample = 0;               ///< the first one after the change
+  bool drifts = false;          ///< u rises
+  Eigen::MatrixXd information;  ///< sum of u J^T W J
+  Eigen::MatrixXd squared;      ///< sum of u^2 J^T W J
+  Eigen::VectorXd gradient;     ///< sum of u J^T W r
 };
 
 /// The sums from some samples on, at up to 64 places; skips the first and the last samples, whose
-/// change is indistinguishable from a bad capture.
-[[nodiscard]] inline std::vector<TailSums> tail_sums(const LinearFit& fit, int samples) {
+/// change is indistinguishable from a bad capture.  Then those of a drift.
+[[nodiscard]] inline std::vector<CourseSums> course_sums(const LinearFit& fit, int samples) {
   constexpr int kParts = 64, kFew = 3;
   const Eigen::Index n = fit.size();
   const int parts = std::min(kParts, samples);
-  std::vector<TailSums> sums(static_cast<std::size_t>(parts),
-                             {0, Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
+  const CourseSums none{0, false, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
+                        Eigen::VectorXd::Zero(n)};
+  std::vector<CourseSums> sums(static_cast<std::size_t>(parts), none);
   for (int p = 0; p < parts; ++p) {
     sums[static_cast<std::size_t>(p)].sample =
         static_cast<int>((static_cast<long>(p) * samples + parts - 1) / parts);
   }
+  CourseSums drift = none;
+  drift.drifts = true;
   for (const RowBlock& block : fit.blocks) {
     const auto part = static_cast<std::size_t>(static_cast<long>(block.sample) * parts / samples);
     const auto rows = fit.jacobian.middleRows(block.first, block.size);
     const auto weights = fit.loss.segment(block.first, block.size);
-    sums[part].information += rows.transpose() * weights.asDiagonal() * rows;
-    sums[part].gradient +=
+    const Eigen::MatrixXd information = rows.transpose() * weights.asDiagonal() * rows;
+    const Eigen::VectorXd gradient =
         rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size));
+    sums[part].information += information;
+    sums[part].gradient += gradient;
+    const double u = static_cast<double>(block.sample) / std::max(1, samples - 1) - 0.5;
+    drift.information += u * information;
+    drift.squared += u * u * information;
+    drift.gradient += u * gradient;
   }
   for (std::size_t p = sums.size(); p-- > 1;) {
     sums[p - 1].information += sums[p].information;
     sums[p - 1].gradient += sums[p].gradient;
   }
-  std::erase_if(sums, [&](const TailSums& tail) {
-    return tail.sample < kFew || tail.sample > samples - kFew;
+  for (CourseSums& step : sums) step.squared = step.information;
+  std::erase_if(sums, [&](const CourseSums& step) {
+    return step.sample < kFew || step.sample > samples - kFew;
   });
+  sums.push_back(std::move(drift));
   return sums;
 }
 
-/// The share by which the sum of squares falls with changing parameters, times that sum.  Skips
-/// changes that other parameters could explain just as well: if the samples before and after have
+/// The share by which the sum of squares falls with changing parameters, times that sum, and the change.
+struct Fall {
+  double squares = 0.0;
+  Eigen::VectorXd change;  ///< (parameters)
+};
+
+/// Skips changes that other parameters could explain just as well: if the samples before and after have
 /// nothing in common, there are many.  Also skips parameters without effect on the samples after
 /// the change.
 /// @param by     (coordinates x parameters) of the owner
 /// @param whole  (parameters) diagonal of their information in all samples
-[[nodiscard]] inline double fall_of(const TailSums& tail, const Eigen::MatrixXd& inverse,
-                                    const Eigen::MatrixXd& by, const Eigen::VectorXd& whole) {
+[[nodiscard]] inline Fall fall_of(const CourseSums& course, const Eigen::MatrixXd& inverse,
+                                  const Eigen::MatrixXd& by, const Eigen::VectorXd& whole) {
   constexpr double kOwn = 1e-3;   // least share of a change's effect that others cannot explain
   constexpr double kNone = 1e-9;  // of the information in all samples: less is rounding
-  const Eigen::MatrixXd cross = by.transpose() * tail.information;
-  const Eigen::MatrixXd all = cross * by;
+  const Eigen::MatrixXd cross = by.transpose() * course.information;
+  const Eigen::MatrixXd all = by.transpose() * course.squared * by;
   const Eigen::VectorXd scale = all.diagonal().binaryExpr(
       whole, [](double a, double w) { return a > kNone * w ? 1.0 / std::sqrt(a) : 0.0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(
       scale.asDiagonal() * (all - cross * inverse * cross.transpose()) * scale.asDiagonal());
   const Eigen::VectorXd gradient =
-      own.eigenvectors().transpose() * scale.cwiseProduct(by.transpose() * tail.gradient);
-  double fall = 0.0;
+      own.eigenvectors().transpose() * scale.cwiseProduct(by.transpose() * course.gradient);
+  Fall fall{0.0, Eigen::VectorXd::Zero(gradient.size())};
   for (Eigen::Index i = 0; i < gradient.size(); ++i) {
-    if (own.eigenvalues()(i) > kOwn) fall += gradient(i) * gradient(i) / own.eigenvalues()(i);
+    const double value = own.eigenvalues()(i);
+    if (value <= kOwn) continue;
+    fall.squares += gradient(i) * gradient(i) / value;
+    fall.change -= scale.cwiseProduct(own.eigenvectors().col(i)) * (gradient(i) / value);
   }
   return fall;
 }
@@ -116,19 +138,28 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
   const Eigen::MatrixXd inverse = detail::Spectrum(all).pseudo_inverse();
   const Eigen::MatrixXd to_coordinates =
       fit.coordinates.basis.completeOrthogonalDecomposition().pseudoInverse();
-  const std::vector<detail::TailSums> tails = detail::tail_sums(fit, problem.num_samples());
-  const double tests = static_cast<double>(tails.size() * columns.size());
+  const std::vector<detail::CourseSums> courses = detail::course_sums(fit, problem.num_samples());
+  const double tests = static_cast<double>(courses.size() * columns.size());
   std::optional<RecordingChange> best;
   for (const auto& [owner, of_owner] : columns) {
     const int q = static_cast<int>(of_owner.size());
     if (freedom - q < 2.0 * q) continue;
     const Eigen::MatrixXd by = to_coordinates(Eigen::all, of_owner);
     const Eigen::VectorXd whole = (by.transpose() * all * by).diagonal();
-    for (const detail::TailSums& tail : tails) {
-      const double x = std::clamp(detail::fall_of(tail, inverse, by, whole) / squares, 0.0, 1.0);
+    for (const detail::CourseSums& course : courses) {
+      const detail::Fall fall = detail::fall_of(course, inverse, by, whole);
+      const double x = std::clamp(fall.squares / squares, 0.0, 1.0);
       const double left = std::sqrt((1.0 - x) * freedom / (freedom - q));
       if (left > kLeft || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
-      if (!best || left < best->noise_left) best = RecordingChange{owner, tail.sample, left};
+      if (best && left >= best->noise_left) continue;
+      best = RecordingChange{owner, course.sample, left, course.drifts};
+      for (int i = 0; i < q; ++i) {
+        const int p =
+            free.parameters()[static_cast<std::size_t>(of_owner[static_cast<std::size_t>(i)])];
+        const std::string& unit = problem.table()[p].unit;
+        double& length = unit == "m" ? best->metres : best->radians;
+        if (unit == "m" || unit == "rad") length = std::hypot(length, fall.change(i));
+      }
     }
   }
   return best;

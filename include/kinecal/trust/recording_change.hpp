@@ -1,7 +1,7 @@
-// A change while samples were recorded: a tracker was touched, a joint slipped.
+// A change while samples were recorded: a tracker was touched, a joint slipped; or a drift: it warmed up.
 //
-// Let a joint, frame or sensor have other parameters from sample k on; the sum of squares falls by
-// the share x.  Without a change, x has the beta distribution (q / 2, (freedom - q) / 2), q the
+// Let a joint, frame or sensor have other parameters from sample k on, or parameters that change in
+// proportion to the number of the sample; the sum of squares falls by the share x.  Without a change, x has the beta distribution (q / 2, (freedom - q) / 2), q the
 // number of its parameters.  A change is reported if chance is excluded over all owners and k, and
 // if the noise falls by half: deflection and the like also vary over the workspace.
 // Source: Chow, Tests of Equality Between Sets of Coefficients in Two Linear Regressions, 1960.
@@ -20,6 +20,9 @@ struct RecordingChange {
   std::string owner;        ///< joint, frame, sensor or error block that changed
   int sample = 0;           ///< first one after the change, by number in the problem
   double noise_left = 1.0;  ///< ratio of the noise with the change to that without
+  bool drifts = false;      ///< it changes evenly from the first sample to the last
+  double metres = 0.0;      ///< length of the change of its parameters in metres, in all
+  double radians = 0.0;     ///< the same of those in radians
 };
 
 /// The change that explains the residuals best; nullopt if none does.  Samples must be in recording
