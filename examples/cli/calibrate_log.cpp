@@ -40,24 +40,32 @@ struct LogContent {
   int doubts = 0;                       ///< about the files after the first
 };
 
-/// Size, begin and end of a file, or of all files of a folder: enough to see that it is another one,
-/// without reading it all.
-std::string ends_of(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) {
+/// Size and some places of a file, or of all files of a folder: enough to see that it is another one, without
+/// reading it all.
+/// @param when  also when it was changed: an edit may be anywhere
+std::string traits_of(const std::filesystem::path& path, bool when) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
     std::set<std::filesystem::path> files;
     for (const auto& file : std::filesystem::directory_iterator(path)) files.insert(file.path());
     std::string all;
-    for (const std::filesystem::path& file : files) all += ends_of(file);
+    for (const std::filesystem::path& file : files) all += traits_of(file, when);
     return all;
   }
-  constexpr std::streamoff kEnd = 65536;
+  constexpr std::streamoff kPlace = 16384, kPlaces = 16;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file.tellg();
-  std::string ends(static_cast<std::size_t>(std::clamp(size, std::streamoff{0}, kEnd)), '\0');
   std::string text = fmt::format("{} {} ", path.filename().string(), size);
-  for (const std::streamoff at : {std::streamoff{0}, std::max(std::streamoff{0}, size - kEnd)}) {
-    file.seekg(at).read(ends.data(), static_cast<std::streamsize>(ends.size()));
-    text += sha256_text(ends);
+  std::string place(static_cast<std::size_t>(std::clamp(size, std::streamoff{0}, kPlace)), '\0');
+  for (std::streamoff i = 0; i < kPlaces; ++i) {
+    const std::streamoff last = std::max(std::streamoff{0}, size - kPlace);
+    file.seekg(last * i / (kPlaces - 1))
+        .read(place.data(), static_cast<std::streamsize>(place.size()));
+    text += sha256_text(place);
+  }
+  if (when) {
+    text += fmt::format(" {}",
+                        std::filesystem::last_write_time(path, error).time_since_epoch().count());
   }
   return text;
 }
@@ -97,10 +105,14 @@ class LogRun {
   LogRun(const ResultOptions& options, const Processes& processes)
       : options_(options), processes_(processes) {
     processes_.alike([&] { read_first(); });
-    const std::string identity = identity_of_input();
-    processes_.require_same(identity, "{one} reads other input files than {first}");
-    checkpoints_.emplace(std::filesystem::path(options.output) / kSums, identity);
-    content_ = check_files();
+    processes_.require_same(identity_of_input(false), "{one} reads other input files than {first}");
+    checkpoints_.emplace(std::filesystem::path(options.output) / kSums, identity_of_input(true));
+    try {
+      content_ = check_files();
+    } catch (const InputError&) {
+      if (processes_.size() == 1) checkpoints_->forget_new();
+      throw;
+    }
   }
 
   /// Solves, assesses and judges.
@@ -142,6 +154,7 @@ class LogRun {
   [[nodiscard]] int steps() const { return static_cast<int>(first_.config.steps.size()); }
 
   void read_first() {
+    if (options_.output.empty()) throw InputError("--output is required");
     check_files_differ(options_.samples);
     check_results(options_);
     first_ = read(0);
@@ -151,7 +164,7 @@ class LogRun {
   /// Numbers of all files: this process computes those of every so manieth, unless they are on disk.
   /// All are the same in each process, so each of them comes to the same result by itself.
   [[nodiscard]] std::vector<std::vector<double>> exchange(const std::string& what,
-                                                          const NumbersOfShard& numbers_of) const {
+                                                          const NumbersOfShard& numbers_of) {
     processes_.require_same(sha256_text(what),
                             "{one} is at other values than {first}: their processors or libraries "
                             "differ, so they cannot share one calibration");
@@ -188,12 +201,16 @@ class LogRun {
   }
 
   /// What makes sums those of this calibration.
-  [[nodiscard]] std::string identity_of_input() const {
+  /// @param when  also when files were changed, which differs between nodes
+  [[nodiscard]] std::string identity_of_input(bool when) const {
     std::string text = KINECAL_VERSION + first_.urdf_text + first_.config_text;
-    for (const std::vector<std::string>* list : {&options_.cameras, &options_.hold}) {
-      for (const std::string& item : *list) text += '\n' + item;
+    text += fmt::format(" {}", static_cast<int>(options_.recorded));
+    for (const std::string& joint : options_.hold) text += '\n' + joint;
+    for (const std::string& camera : options_.cameras) {
+      text += '\n' + camera.substr(0, camera.find('='));
+      text += traits_of(camera.substr(camera.find('=') + 1), when);
     }
-    for (const std::string& file : options_.samples) text += '\n' + ends_of(file);
+    for (const std::string& file : options_.samples) text += '\n' + traits_of(file, when);
     return sha256_text(text);
   }
 
@@ -231,7 +248,7 @@ class LogRun {
     }
   }
 
-  [[nodiscard]] LogContent check_files() const {
+  [[nodiscard]] LogContent check_files() {
     const auto all = exchange("files", [&](int file) { return numbers_of_file(file); });
     LogContent content;
     const int size = first_.calibration.table.size();
@@ -283,11 +300,11 @@ class LogRun {
   LogContent content_;
 };
 
-/// Removes the checkpoints, and the folder of the result if nothing else is in it.
+/// Removes the checkpoints, and the folder of the result if nothing is in it.
 void forget(const std::string& output) {
   std::error_code ignored;
-  std::filesystem::remove_all(std::filesystem::path(output) / kSums, ignored);
-  std::filesystem::remove(output, ignored);
+  Checkpoints::forget_all(std::filesystem::path(output) / kSums);
+  if (std::filesystem::is_empty(output, ignored)) std::filesystem::remove(output, ignored);
 }
 
 /// Prints and writes what the first process has found.
@@ -317,27 +334,20 @@ int report(const ResultOptions& options, const LogRun& run, const Findings& find
 int calibrate_log_in(const Processes& processes, const ResultOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Interruption interruption;
-  try {
-    LogRun run(options, processes);
-    const Findings findings = run.calibrate();
-    if (processes.rank() > 0) return kDone;
-    const int code = report(options, run, findings);
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    fmt::print("{} of {}, {:.3f} s: {}\n",
-               counted(static_cast<std::size_t>(run.content().samples), "sample"),
-               counted(options.samples.size(), "file"), taken.count(),
-               solving_text(findings.result));
-    return code;
-  } catch (const InputError&) {
-    if (processes.size() == 1) forget(options.output);  // else what others have finished stays
-    throw;
-  }
+  LogRun run(options, processes);
+  const Findings findings = run.calibrate();
+  if (processes.rank() > 0) return kDone;
+  const int code = report(options, run, findings);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  fmt::print("{} of {}, {:.3f} s: {}\n",
+             counted(static_cast<std::size_t>(run.content().samples), "sample"),
+             counted(options.samples.size(), "file"), taken.count(), solving_text(findings.result));
+  return code;
 }
 
 }  // namespace
 
 int calibrate_log(const ResultOptions& options) {
-  if (options.output.empty()) throw InputError("--output is required");
   const Processes processes;
   return processes.run([&] { return calibrate_log_in(processes, options); });
 }

@@ -4,7 +4,10 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <fstream>
+#include <iterator>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -13,10 +16,20 @@
 #include "kinecal/files/results/output_file.hpp"
 
 namespace kinecal::cli {
+namespace {
+
+constexpr std::size_t kDigits = 24;    // of a file's name
+constexpr std::size_t kChecksum = 64;  // characters
+
+}  // namespace
 
 Checkpoints::Checkpoints(std::filesystem::path folder, std::string identity)
     : folder_(std::move(folder)), identity_(std::move(identity)) {
   std::error_code error;
+  for (std::filesystem::path path = folder_; !path.empty() && !std::filesystem::exists(path, error);
+       path = path.parent_path()) {
+    created_.push_back(path);
+  }
   std::filesystem::create_directories(folder_, error);
   if (!std::filesystem::is_directory(folder_)) {
     throw OutputError(folder_.string() + ": cannot be made: " + error.message());
@@ -24,46 +37,66 @@ Checkpoints::Checkpoints(std::filesystem::path folder, std::string identity)
 }
 
 std::filesystem::path Checkpoints::file_of(const std::string& what, int shard) const {
-  constexpr std::size_t kDigits = 24;
   return folder_ /
          fmt::format("{}.{}", sha256_text(identity_ + '\n' + what).substr(0, kDigits), shard);
 }
 
-// A file is the number of its numbers, and these: one that a failing disk has cut off is computed again.
+// A file is the checksum of its numbers, in hexadecimal digits, and these: one that a failing disk has cut off or
+// filled with something else is computed again.
 
 std::optional<std::vector<double>> Checkpoints::find(const std::string& what, int shard) const {
-  std::ifstream file(file_of(what, shard), std::ios::binary | std::ios::ate);
-  if (!file) return std::nullopt;
-  const auto size = static_cast<std::size_t>(file.tellg());
-  double count = 0.0;
-  file.seekg(0).read(reinterpret_cast<char*>(&count), sizeof count);
-  if (!file || static_cast<double>(size) != (count + 1.0) * sizeof(double)) return std::nullopt;
-  std::vector<double> numbers(static_cast<std::size_t>(count));
-  file.read(reinterpret_cast<char*>(numbers.data()),
-            static_cast<std::streamsize>(numbers.size() * sizeof(double)));
-  if (!file) return std::nullopt;
+  const std::filesystem::path path = file_of(what, shard);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(file), {}};
+  if (!file || content.size() < kChecksum) return std::nullopt;
+  const std::string_view bytes = std::string_view(content).substr(kChecksum);
+  if (bytes.size() % sizeof(double) != 0 || !content.starts_with(sha256_text(bytes))) {
+    return std::nullopt;
+  }
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
   return numbers;
 }
 
-void Checkpoints::keep(const std::string& what, int shard,
-                       const std::vector<double>& numbers) const {
+void Checkpoints::keep(const std::string& what, int shard, const std::vector<double>& numbers) {
   const std::filesystem::path path = file_of(what, shard);
   std::filesystem::path temporary = path;
   temporary += fmt::format(".{}", getpid());
+  const std::string_view bytes(reinterpret_cast<const char*>(numbers.data()),
+                               numbers.size() * sizeof(double));
   std::ofstream file(temporary, std::ios::binary);
-  const auto count = static_cast<double>(numbers.size());
-  file.write(reinterpret_cast<const char*>(&count), sizeof count);
-  file.write(reinterpret_cast<const char*>(numbers.data()),
-             static_cast<std::streamsize>(numbers.size() * sizeof(double)));
+  file << sha256_text(bytes) << bytes;
   file.close();
-  std::error_code error = std::make_error_code(std::errc::no_space_on_device);
+  std::error_code error = std::make_error_code(std::errc::io_error);
   if (file) std::filesystem::rename(temporary, path, error);
-  if (file && !error) return;
+  if (file && !error) {
+    new_.push_back(path);
+    return;
+  }
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
   throw OutputError(folder_.string() +
                     ": a checkpoint cannot be written (is the disk full?); what " +
                     "is finished is kept, the same command resumes it");
+}
+
+void Checkpoints::forget_new() {
+  std::error_code ignored;
+  for (const std::filesystem::path& file : new_) std::filesystem::remove(file, ignored);
+  new_.clear();
+  for (const std::filesystem::path& folder : created_) std::filesystem::remove(folder, ignored);
+}
+
+void Checkpoints::forget_all(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const auto& file : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = file.path().filename().string();
+    const auto digits = name.find_first_not_of("0123456789abcdef");
+    if (digits == kDigits && name[digits] == '.') std::filesystem::remove(file.path(), ignored);
+  }
+  if (std::filesystem::is_empty(folder, ignored)) std::filesystem::remove(folder, ignored);
 }
 
 }  // namespace kinecal::cli

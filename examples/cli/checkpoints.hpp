@@ -9,7 +9,7 @@
 
 namespace kinecal::cli {
 
-/// A folder with a file for each shard and each set of numbers.
+/// A folder with a file for each shard and each set of numbers.  Other files in it are left alone.
 class Checkpoints {
  public:
   /// @param identity  of the input: numbers of another input are never taken for these
@@ -20,13 +20,21 @@ class Checkpoints {
   [[nodiscard]] std::optional<std::vector<double>> find(const std::string& what, int shard) const;
 
   /// @throws OutputError  if they cannot be written
-  void keep(const std::string& what, int shard, const std::vector<double>& numbers) const;
+  void keep(const std::string& what, int shard, const std::vector<double>& numbers);
+
+  /// Removes those that this run has written, and folders that are empty then: the input was wrong.
+  void forget_new();
+  /// Removes all of them, and folders that are empty then: the result is written.
+  static void forget_all(const std::filesystem::path& folder);
 
  private:
   [[nodiscard]] std::filesystem::path file_of(const std::string& what, int shard) const;
 
   std::filesystem::path folder_;
   std::string identity_;
+  std::vector<std::filesystem::path> new_;  ///< files that this run has written
+  std::vector<std::filesystem::path>
+      created_;  ///< folders that it has created, the inner ones first
 };
 
 }  // namespace kinecal::cli

@@ -8,9 +8,9 @@ namespace {
 
 volatile std::sig_atomic_t stop_asked = 0;
 
-extern "C" void ask_to_stop(int) {
+extern "C" void ask_to_stop(int signal) {
   stop_asked = 1;
-  std::signal(SIGINT, SIG_DFL);
+  std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
@@ -20,11 +20,11 @@ Interruption::Interruption() {
   struct sigaction action {};
   action.sa_handler = ask_to_stop;  // without SA_RESTART: reading a line ends, too
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
 Interruption::~Interruption() {
-  std::signal(SIGINT, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
 }
 
 bool Interruption::is_asked() {

@@ -1,10 +1,10 @@
-// Ctrl-C: a command shuts down cleanly instead of being killed.
+// Ctrl-C or SIGTERM: a command shuts down cleanly instead of being killed.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 namespace kinecal::cli {
 
-/// While one exists, the first Ctrl-C asks the command to end, and stops waiting for a line of
+/// While one exists, the first Ctrl-C or SIGTERM asks the command to end, and stops waiting for a line of
 /// standard input; the second one ends the program.
 class Interruption {
  public:

@@ -284,7 +284,9 @@ int study_in(const Processes& processes, const StudyOptions& options) {
     poses = poses_of_study(options, input->samples.size());
     if (options.output.empty()) return;
     output.emplace(options.output);
-    if (options.force && processes.rank() == 0) StudyJournal::remove(options.output);
+    if (options.force && processes.rank() == 0) {  // an interrupted --force goes on
+      StudyJournal::remove(options.output, identity(options, *input, poses));
+    }
   });
   const std::string identity_of_study = identity(options, *input, poses);
   processes.require_same(identity_of_study, "{one} reads other input files than {first}");
@@ -293,6 +295,7 @@ int study_in(const Processes& processes, const StudyOptions& options) {
   if (output) {
     journal.emplace(options.output, identity_of_study, processes.rank());
     done = journal->read();
+    (void)processes.gather("");  // nobody adds to a journal before all have read them
   }
   if (!done.empty() && processes.rank() == 0) {
     fmt::print(stderr, "note: {} calibrations were done before\n", done.size());

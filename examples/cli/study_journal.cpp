@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "kinecal/files/checksum.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
@@ -29,12 +30,21 @@ std::vector<std::filesystem::path> journals_in(const std::filesystem::path& fold
   return all;
 }
 
-/// The trial of a line; nullopt if the line was cut off.
+constexpr std::size_t kChecksum = 16;  // characters
+
+std::string checksum_of(const std::string& content) {
+  return sha256_text(content).substr(0, kChecksum);
+}
+
+/// The trial of a line; nullopt if the line was cut off or changed.
 std::optional<StudyTrial> trial_of(const std::string& line) {
   constexpr std::string_view kEnd = ",end";
-  if (!line.ends_with(kEnd)) return std::nullopt;
+  constexpr std::size_t kAfter = 1 + kChecksum + kEnd.size();
+  if (!line.ends_with(kEnd) || line.size() < kAfter) return std::nullopt;
+  const std::string content = line.substr(0, line.size() - kAfter);
+  if (line.substr(content.size() + 1, kChecksum) != checksum_of(content)) return std::nullopt;
   std::vector<double> numbers;
-  std::istringstream words(line.substr(0, line.size() - kEnd.size()));
+  std::istringstream words(content);
   for (std::string word; std::getline(words, word, ',');) {
     double number = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -63,7 +73,8 @@ std::optional<StudyTrial> trial_of(const std::string& line) {
 }  // namespace
 
 std::string journal_line(const StudyTrial& trial) {
-  return fmt::format("{},{},end\n", trial.seconds, trial_line(trial));
+  const std::string content = fmt::format("{},{}", trial.seconds, trial_line(trial));
+  return content + "," + checksum_of(content) + ",end\n";
 }
 
 void read_journal(const std::string& text, StudyTrials& trials) {
@@ -98,7 +109,7 @@ StudyJournal::StudyJournal(std::filesystem::path folder, std::string identity, i
   for (const std::filesystem::path& path : journals_in(folder_)) {
     std::ifstream file(path);
     std::string first;
-    if (!std::getline(file, first) || first == identity_) continue;
+    if (!std::getline(file, first) || identity_.starts_with(first)) continue;  // or cut off
     throw InputError(path.string() +
                      ": is of another study, which was interrupted; finish that one, use --force "
                      "to forget it, or choose another folder");
@@ -125,8 +136,13 @@ void StudyJournal::add(const StudyTrial& trial) {
   if (!file_) throw OutputError(own_.string() + ": cannot be written");
 }
 
-void StudyJournal::remove(const std::filesystem::path& folder) {
-  for (const std::filesystem::path& path : journals_in(folder)) std::filesystem::remove(path);
+void StudyJournal::remove(const std::filesystem::path& folder, const std::string& but) {
+  for (const std::filesystem::path& path : journals_in(folder)) {
+    std::ifstream file(path);
+    std::string first;
+    if (!but.empty() && std::getline(file, first) && first == "# " + but) continue;
+    std::filesystem::remove(path);
+  }
 }
 
 }  // namespace kinecal::cli

@@ -31,8 +31,8 @@ class StudyJournal {
   /// @throws OutputError  if it cannot be written
   void add(const StudyTrial& trial);
 
-  /// Removes the journals of a folder.
-  static void remove(const std::filesystem::path& folder);
+  /// Removes the journals of a folder, but those of the study with this identity.
+  static void remove(const std::filesystem::path& folder, const std::string& but = {});
 
  private:
   std::filesystem::path folder_;

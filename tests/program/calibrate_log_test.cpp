@@ -201,14 +201,56 @@ TEST_F(CalibrateLog, CtrlCEndsItAndTheSameCommandGoesOn) {
   EXPECT_TRUE(fs::exists(folder_ / "out/calibration.yaml"));
 }
 
-TEST_F(CalibrateLog, ACheckpointThatWasCutOffIsComputedAgain) {
+TEST_F(CalibrateLog, ACheckpointThatIsDamagedIsComputedAgain) {
   ASSERT_EQ(log("--threads 1 --output one").code, 0);
   ASSERT_NE(stopped_by(SIGKILL).code, 0);
+  bool cut = true;
   for (const auto& file : fs::directory_iterator(folder_ / "out/sums")) {
-    fs::resize_file(file, fs::file_size(file) / 2);
+    const auto size = fs::file_size(file);
+    fs::resize_file(file, size / 2);
+    if (!cut) fs::resize_file(file, size);  // zeros, as after a power failure
+    cut = !cut;
   }
   EXPECT_EQ(log("--threads 1 --output out").code, 0);
   expect_same_files("one", "out");
+}
+
+TEST_F(CalibrateLog, ChangedCamerasAndFilesAreNotTakenForTheOldOnes) {
+  ASSERT_EQ(log("--threads 1 --output one").code, 0);
+  ASSERT_NE(stopped_by(SIGKILL).code, 0);
+  std::string text = read("c_.yaml");
+  text.replace(text.find("position: [") + 11, 1, "0");  // the size and the ends stay the same
+  write("c_.yaml", text);
+  const Outcome edited = log("--threads 1 --output out");
+  EXPECT_EQ(run(test::kinecal_program() + " calibrate-log" + kInput +
+                "a.yaml b.yaml c_.yaml --threads 1 --output fresh")
+                .code,
+            edited.code);
+  if (edited.code == 0) expect_same_files("fresh", "out");
+}
+
+TEST_F(CalibrateLog, WhatIsNotItsOwnIsLeftAlone) {
+  fs::create_directories(folder_ / "mine/sums");
+  write("mine/sums/thesis.txt", "precious");
+  EXPECT_EQ(
+      run(test::kinecal_program() + " calibrate-log" + kInput + "a.yaml no.yaml --output mine")
+          .code,
+      1);
+  EXPECT_EQ(read("mine/sums/thesis.txt"), "precious");
+  ASSERT_EQ(log("--threads 1 --output mine").code, 0);
+  EXPECT_EQ(read("mine/sums/thesis.txt"), "precious");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "mine/sums"), {}), 1);
+}
+
+TEST_F(CalibrateLog, AMissingFileDoesNotRemoveWhatWasFinished) {
+  ASSERT_NE(stopped_by(SIGKILL).code, 0);
+  const auto count = [&] {
+    return std::distance(fs::directory_iterator(folder_ / "out/sums"), fs::directory_iterator());
+  };
+  const auto before = count();
+  fs::rename(folder_ / "b.yaml", folder_ / "elsewhere.yaml");
+  EXPECT_EQ(log("--threads 1 --output out").code, 1);
+  EXPECT_EQ(count(), before);
 }
 
 TEST_F(CalibrateLog, NamesWhatIsWrongWithAFileAndWritesNothing) {

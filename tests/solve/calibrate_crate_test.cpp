@@ -69,8 +69,7 @@ TEST(CalibrateCrate, FindsWhatWasPutIn) {
 }
 
 TEST(CalibrateCrate, SearchesForTheFrameOfATrackerWhereTheStartFails) {
-  using Stand = FrameOffset<"stand", Axes::all>;
-  using OnAStand = Crate<Tracked, Stand>;
+  using OnAStand = Crate<Tracked, VirtualFrame<"stand">>;
   const std::vector<double> truth = {0.02, -0.03, 0.004, -0.005, 0.006};
   std::mt19937 random(9);
   std::normal_distribution<double> normal;

@@ -118,7 +118,7 @@ TEST(PoseGroups, OfJointsThatMoveNothingAreNotOne) {
 }
 
 /// Share of the true values within 1.96 standard deviations, and the mean deviation relative to once.
-struct Coverage {
+struct GroupCoverage {
   int inside = 0, all = 0;
   double deviations = 0.0;
   void add(const test::NoisyScene& scene, const Assessment& found) {
@@ -133,7 +133,7 @@ struct Coverage {
 };
 
 TEST(PoseGroups, ReadingEachPoseFiveTimesSaysNothingMoreOfTheRobot) {
-  Coverage once, five;
+  GroupCoverage once, five;
   for (unsigned run = 0; run < 60; ++run) {
     test::NoisyScene scene(30, run);
     scene.options.sigma = {};
@@ -148,11 +148,12 @@ TEST(PoseGroups, ReadingEachPoseFiveTimesSaysNothingMoreOfTheRobot) {
   EXPECT_NEAR(std::exp((five.deviations - once.deviations) / once.all), 1.0, 0.1);
 }
 
-/// Features of a sample err along one direction of the target together: some parameters suffer more.
+/// The features of a sample are shifted along the target together, so some parameters suffer more.  Shrinking lets
+/// the others have a part of it: their +- are larger than they need be, but not by much.
 TEST(PoseGroups, EachParameterHasItsOwnShareOfWhatErrsTogether) {
-  std::vector<int> inside(test::kNoisyFree.size(), 0);
-  constexpr int kRuns = 200;
-  for (unsigned run = 0; run < kRuns; ++run) {
+  const std::size_t count = test::kNoisyFree.size();
+  std::vector<double> errors(count, 0.0), variances(count, 0.0);
+  for (unsigned run = 0; run < 100; ++run) {
     test::NoisyScene scene(60, run);
     std::mt19937 random(run + 5000);
     std::normal_distribution<double> shift(0.0, 3.0 * test::kPointNoise);
@@ -161,15 +162,16 @@ TEST(PoseGroups, EachParameterHasItsOwnShareOfWhatErrsTogether) {
       for (Feature& feature : sample.observations[0].features) feature.point.z() += depth;
     }
     const Assessment found = scene.solve_and_assess({.folds = 0});
-    for (std::size_t c = 0; c < found.parameters.size(); ++c) {
+    for (std::size_t c = 0; c < count; ++c) {
       const int p = found.parameters[c];
-      inside[c] += std::abs(scene.result.table[p].value - scene.truth(p)) <
-                   1.96 * found.uncertainty.deviation(static_cast<int>(c));
+      errors[c] += std::pow(scene.result.table[p].value - scene.truth(p), 2);
+      variances[c] += std::pow(found.uncertainty.deviation(static_cast<int>(c)), 2);
     }
   }
-  for (std::size_t c = 0; c < inside.size(); ++c) {
-    EXPECT_GT(inside[c], 0.88 * kRuns) << test::kNoisyFree[c];
-    EXPECT_LT(inside[c], 0.99 * kRuns) << test::kNoisyFree[c];
+  for (std::size_t c = 0; c < count; ++c) {
+    const double times = std::sqrt(variances[c] / errors[c]);
+    EXPECT_GT(times, 0.85) << test::kNoisyFree[c];
+    EXPECT_LT(times, 2.0) << test::kNoisyFree[c];
   }
 }
 
