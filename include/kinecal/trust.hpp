@@ -24,6 +24,7 @@
 #include "kinecal/trust/plain_matrix.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "kinecal/trust/pose_elsewhere.hpp"
+#include "kinecal/trust/pose_groups.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 #include "kinecal/trust/prior_pulls.hpp"
 #include "kinecal/trust/recording_change.hpp"
