@@ -148,6 +148,8 @@ class LogRun {
 
   [[nodiscard]] const Input& first() const { return first_; }
   [[nodiscard]] const LogContent& content() const { return content_; }
+  /// When there is a verdict.
+  void forget_checkpoints() { checkpoints_->forget_all(); }
 
  private:
   [[nodiscard]] int files() const { return static_cast<int>(options_.samples.size()); }
@@ -161,7 +163,7 @@ class LogRun {
     print_or_throw(first_.diagnostics);
   }
 
-  /// Numbers of all files: this process computes those of every so manieth, unless they are on disk.
+  /// Numbers of all files: each process computes those of every n-th one, unless they are on disk.
   /// All are the same in each process, so each of them comes to the same result by itself.
   [[nodiscard]] std::vector<std::vector<double>> exchange(const std::string& what,
                                                           const NumbersOfShard& numbers_of) {
@@ -300,20 +302,13 @@ class LogRun {
   LogContent content_;
 };
 
-/// Removes the checkpoints, and the folder of the result if nothing is in it.
-void forget(const std::string& output) {
-  std::error_code ignored;
-  Checkpoints::forget_all(std::filesystem::path(output) / kSums);
-  if (std::filesystem::is_empty(output, ignored)) std::filesystem::remove(output, ignored);
-}
-
 /// Prints and writes what the first process has found.
-int report(const ResultOptions& options, const LogRun& run, const Findings& findings) {
+int report(const ResultOptions& options, LogRun& run, const Findings& findings) {
   fmt::print("{}", summary_text(findings));
   std::fflush(stdout);
   const CalibrationResult& result = findings.result;
   if (findings.judgement.verdict == Grade::do_not_use) {
-    forget(options.output);
+    run.forget_checkpoints();
     fmt::print(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
                result.steps.empty() ? "" : result.steps.back().name,
                findings.judgement.reasons.front());
@@ -326,7 +321,7 @@ int report(const ResultOptions& options, const LogRun& run, const Findings& find
   std::erase_if(all, [](const OutputFile& file) { return file.name == "residuals.csv"; });
   OutputFolder folder(options.output);
   write(folder, with_copies(options, first, std::move(all)));
-  forget(options.output);
+  run.forget_checkpoints();
   return kDone;
 }
 

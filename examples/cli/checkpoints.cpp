@@ -4,9 +4,9 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -14,6 +14,7 @@
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/results/output_file.hpp"
+#include "kinecal/files/text_file.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -48,9 +49,8 @@ std::optional<std::vector<double>> Checkpoints::find(const std::string& what, in
   const std::filesystem::path path = file_of(what, shard);
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(file), {}};
-  if (!file || content.size() < kChecksum) return std::nullopt;
+  const std::string content = detail::read_text_file(path.string());
+  if (content.size() < kChecksum) return std::nullopt;
   const std::string_view bytes = std::string_view(content).substr(kChecksum);
   if (bytes.size() % sizeof(double) != 0 || !content.starts_with(sha256_text(bytes))) {
     return std::nullopt;
@@ -60,26 +60,27 @@ std::optional<std::vector<double>> Checkpoints::find(const std::string& what, in
   return numbers;
 }
 
+// Not by OutputFolder, which looks through the folder at each call: there may be many thousand files.
 void Checkpoints::keep(const std::string& what, int shard, const std::vector<double>& numbers) {
   const std::filesystem::path path = file_of(what, shard);
   std::filesystem::path temporary = path;
   temporary += fmt::format(".{}", getpid());
   const std::string_view bytes(reinterpret_cast<const char*>(numbers.data()),
                                numbers.size() * sizeof(double));
+  errno = 0;
   std::ofstream file(temporary, std::ios::binary);
   file << sha256_text(bytes) << bytes;
   file.close();
-  std::error_code error = std::make_error_code(std::errc::io_error);
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (file && !error) {
+  std::error_code error(file ? 0 : (errno != 0 ? errno : EIO), std::generic_category());
+  if (!error) std::filesystem::rename(temporary, path, error);
+  if (!error) {
     new_.push_back(path);
     return;
   }
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
-  throw OutputError(folder_.string() +
-                    ": a checkpoint cannot be written (is the disk full?); what " +
-                    "is finished is kept, the same command resumes it");
+  throw OutputError(folder_.string() + ": a checkpoint cannot be written: " + error.message() +
+                    "; what is finished is kept, the same command resumes it");
 }
 
 void Checkpoints::forget_new() {
@@ -89,14 +90,15 @@ void Checkpoints::forget_new() {
   for (const std::filesystem::path& folder : created_) std::filesystem::remove(folder, ignored);
 }
 
-void Checkpoints::forget_all(const std::filesystem::path& folder) {
+void Checkpoints::forget_all() {
   std::error_code ignored;
-  for (const auto& file : std::filesystem::directory_iterator(folder, ignored)) {
+  for (const auto& file : std::filesystem::directory_iterator(folder_, ignored)) {
     const std::string name = file.path().filename().string();
     const auto digits = name.find_first_not_of("0123456789abcdef");
     if (digits == kDigits && name[digits] == '.') std::filesystem::remove(file.path(), ignored);
   }
-  if (std::filesystem::is_empty(folder, ignored)) std::filesystem::remove(folder, ignored);
+  std::filesystem::remove(folder_, ignored);
+  for (const std::filesystem::path& folder : created_) std::filesystem::remove(folder, ignored);
 }
 
 }  // namespace kinecal::cli

@@ -24,8 +24,9 @@ class Checkpoints {
 
   /// Removes those that this run has written, and folders that are empty then: the input was wrong.
   void forget_new();
-  /// Removes all of them, and folders that are empty then: the result is written.
-  static void forget_all(const std::filesystem::path& folder);
+  /// Removes all of them, also those of other inputs; then, if they are empty, its folder and those that this
+  /// run has created around it.
+  void forget_all();
 
  private:
   [[nodiscard]] std::filesystem::path file_of(const std::string& what, int shard) const;

@@ -14,7 +14,6 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
-#include <numeric>
 #include <string_view>
 
 #include "commands.hpp"
@@ -62,11 +61,10 @@ const KinecalMpi* join(int started) {
   void* const symbol = plugin != nullptr ? dlsym(plugin, "kinecal_mpi_join") : nullptr;
   if (symbol == nullptr) {
     const char* const why = dlerror();
-    throw InputError(
-        fmt::format("this is one of {} processes, which share the work by kinecal_mpi.so; it "
-                    "cannot be loaded: {} "
-                    "(apt install libopenmpi3)",
-                    started, why != nullptr ? why : "not a plug-in of kinecal"));
+    throw InputError(fmt::format(
+        "this is one of {} processes, which share the work by kinecal_mpi.so; it cannot be loaded: "
+        "{} (apt install libopenmpi3)",
+        started, why != nullptr ? why : "not a plug-in of kinecal"));
   }
   const KinecalMpi* const mpi = reinterpret_cast<decltype(&kinecal_mpi_join)>(symbol)();
   if (std::string_view(mpi->version) != KINECAL_VERSION) {

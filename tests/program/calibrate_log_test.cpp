@@ -237,6 +237,13 @@ TEST_F(CalibrateLog, WhatIsNotItsOwnIsLeftAlone) {
           .code,
       1);
   EXPECT_EQ(read("mine/sums/thesis.txt"), "precious");
+  fs::create_directories(folder_ / "empty");
+  EXPECT_EQ(
+      run(test::kinecal_program() + " calibrate-log" + kInput + "a.yaml no.yaml --output empty")
+          .code,
+      1);
+  EXPECT_TRUE(fs::exists(folder_ / "empty"));
+  EXPECT_FALSE(fs::exists(folder_ / "empty/sums"));
   ASSERT_EQ(log("--threads 1 --output mine").code, 0);
   EXPECT_EQ(read("mine/sums/thesis.txt"), "precious");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "mine/sums"), {}), 1);
