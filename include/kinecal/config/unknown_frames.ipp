@@ -63,21 +63,16 @@ namespace kinecal::detail {
   std::vector<UnknownFrame> unknown;
   for (const FreeFrameConfig& frame : step.free_frames) {
     if (found_before.contains(frame.name)) continue;
-    UnknownFrame found{frame.name};
-    found.has_guess = is_given(config, step, frame.name);
+    bool has_guess = is_given(config, step, frame.name);
     if (robot.has_joint(frame.name)) {
       const Joint& joint = robot.joint(frame.name);
       if (!may_be_anywhere(joint, frame, step)) continue;
-      found.has_guess = found.has_guess || !joint.origin.rotation.isIdentity() ||
-                        !joint.origin.translation.isZero();
+      has_guess =
+          has_guess || !joint.origin.rotation.isIdentity() || !joint.origin.translation.isZero();
     }
-    bool any = false;
-    for (std::size_t k = 0; k < 6; ++k) {
-      const int parameter = table.find(parameter_name(frame.name, kFrameAxes[k]));
-      if (free.column(parameter) < 0) continue;
-      found.axes[k] = parameter;
-      any = true;
-    }
+    UnknownFrame found = unknown_frame(frame.name, table, free, has_guess);
+    const bool any =
+        std::any_of(found.axes.begin(), found.axes.end(), [](int p) { return p >= 0; });
     if (any) unknown.push_back(std::move(found));
   }
   const bool turns = std::any_of(unknown.begin(), unknown.end(),

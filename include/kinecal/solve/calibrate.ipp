@@ -52,11 +52,7 @@ KINECAL_INLINE void merge_statistics(std::vector<BlockStatistics>& all,
                                                                const FreeSet& free) {
   std::vector<UnknownFrame> frames;
   for (const std::string& name : problem.frames()) {
-    UnknownFrame frame{.name = name, .has_guess = true};
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      const int p = problem.table().find(parameter_name(name, kFrameAxes[axis]));
-      if (p >= 0 && free.column(p) >= 0) frame.axes[axis] = p;
-    }
+    UnknownFrame frame = unknown_frame(name, problem.table(), free, true);
     const Robot& robot = problem.robot();
     const bool on_robot = robot.has_joint(name);
     if (on_robot && robot.joint(name).type != JointType::fixed) continue;

@@ -19,7 +19,7 @@
 
 namespace kinecal {
 
-/// A free frame whose pose may be unknown.
+/// A free frame whose pose may be unknown: see unknown_frame().
 struct UnknownFrame {
   std::string name;  ///< joint of the robot or virtual frame
   /// Table indices of x y z a b c; -1: this axis is held.
@@ -33,6 +33,10 @@ struct UnknownFrame {
 };
 
 namespace detail {
+
+/// A frame with the indices of its free axes.
+[[nodiscard]] UnknownFrame unknown_frame(const std::string& name, const ParameterTable& table,
+                                         const FreeSet& free, bool has_guess);
 
 /// A minimum that fits of frames reached.
 struct FittedFrames {

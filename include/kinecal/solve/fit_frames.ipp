@@ -11,6 +11,16 @@ namespace kinecal::detail {
 
 inline constexpr int kGrid = 60, kRounds = 5;
 
+KINECAL_INLINE UnknownFrame unknown_frame(const std::string& name, const ParameterTable& table,
+                                          const FreeSet& free, bool has_guess) {
+  UnknownFrame frame{.name = name, .has_guess = has_guess};
+  for (std::size_t k = 0; k < 6; ++k) {
+    const int parameter = table.find(parameter_name(name, kFrameAxes[k]));
+    if (free.column(parameter) >= 0) frame.axes[k] = parameter;
+  }
+  return frame;
+}
+
 KINECAL_INLINE Vector3<double> rotation_of(const UnknownFrame& frame,
                                            const Eigen::VectorXd& values) {
   Vector3<double> vector = Vector3<double>::Zero();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kinecal/trust/design_effect.hpp"
+#include "kinecal/trust/gradient_variance.hpp"
 #include "kinecal/trust/loss_curvature.ipp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/weak_parameters.hpp"

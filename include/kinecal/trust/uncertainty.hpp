@@ -6,7 +6,7 @@
 // else that of all blocks: without sigmas, weights are only ratios.  One common s gives s^2 H^-1.
 // With robust losses it is the sandwich of M-estimators: A^-1 B A^-1 with A the Hessian including
 // rho'', B the sum of g g^T over features, g their gradients.  Both assume that features err
-// independently; V and B are replaced as far as those of a pose do not (design_effect.hpp).
+// independently; V and B are replaced as far as those of a pose do not (gradient_variance.hpp).
 // Source: Huber, Robust Statistics, 1981, 6.3.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

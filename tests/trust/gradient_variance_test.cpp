@@ -1,4 +1,4 @@
-#include "kinecal/trust/design_effect.hpp"
+#include "kinecal/trust/gradient_variance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ double effect_in(test::NoisyScene& scene) {
       .effect;
 }
 
-TEST(DesignEffect, IsOneIfFeaturesErrIndependently) {
+TEST(GradientVariance, IsOneIfFeaturesErrIndependently) {
   int more = 0;
   for (unsigned seed = 0; seed < 40; ++seed) {
     test::NoisyScene scene(25, seed);
@@ -28,7 +28,7 @@ TEST(DesignEffect, IsOneIfFeaturesErrIndependently) {
   EXPECT_LE(more, 1);
 }
 
-TEST(DesignEffect, IsTheNumberOfCopiesOfEachFeature) {
+TEST(GradientVariance, IsTheNumberOfCopiesOfEachFeature) {
   double sum = 0.0;
   for (unsigned seed = 0; seed < 20; ++seed) {
     test::NoisyScene scene(40, seed);
@@ -55,7 +55,7 @@ void disturb(test::NoisyScene& scene, unsigned seed) {
   }
 }
 
-TEST(DesignEffect, MakesUncertaintyCoverTheTruthOfJointsThatDoNotRepeat) {
+TEST(GradientVariance, MakesUncertaintyCoverTheTruthOfJointsThatDoNotRepeat) {
   int inside = 0, without = 0, all = 0;
   for (unsigned run = 0; run < 60; ++run) {
     test::NoisyScene scene(40, run);
@@ -150,7 +150,7 @@ TEST(PoseGroups, ReadingEachPoseFiveTimesSaysNothingMoreOfTheRobot) {
 
 /// The features of a sample are shifted along the target together, so some parameters suffer more.  Shrinking lets
 /// the others have a part of it: their +- are larger than they need be, but not by much.
-TEST(PoseGroups, EachParameterHasItsOwnShareOfWhatErrsTogether) {
+TEST(GradientVariance, EachParameterHasItsOwnShareOfWhatErrsTogether) {
   const std::size_t count = test::kNoisyFree.size();
   std::vector<double> errors(count, 0.0), variances(count, 0.0);
   for (unsigned run = 0; run < 100; ++run) {

@@ -1,6 +1,6 @@
 // Computing the variance of grouped gradients.
 // SPDX-License-Identifier: Apache-2.0
-#include "kinecal/trust/design_effect.hpp"
+#include "kinecal/trust/gradient_variance.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
