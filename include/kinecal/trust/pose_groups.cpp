@@ -41,10 +41,9 @@ PoseGroups each_its_own(std::size_t samples) {
 PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples) {
   const std::map<std::string, double> joints = detail::repeatable_joints(problem);
   if (joints.empty()) return each_its_own(samples.size());
-  /// Positions in units of repeatability; a joint that is missing is far away from all others.
-  constexpr double kMissing = 1e9;
+  constexpr double kMissing = 1e9;  // a joint that is missing is far away from all others
   struct Pose {
-    Eigen::VectorXd at;
+    Eigen::VectorXd at;  // positions in units of repeatability
     int number;
   };
   std::multimap<double, Pose> poses;  // by the first joint's position
@@ -56,11 +55,11 @@ PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> sample
       const auto position = sample.position(name);
       at(i++) = position && std::isfinite(*position) ? *position / repeats : kMissing;
     }
-    const auto known = std::find_if(
-        poses.lower_bound(at(0) - 1.0), poses.upper_bound(at(0) + 1.0), [&](const auto& pose) {
-          return (pose.second.at - at).template lpNorm<Eigen::Infinity>() <= 1.0;
-        });
-    if (known != poses.upper_bound(at(0) + 1.0)) {
+    const auto end = poses.upper_bound(at(0) + 1.0);
+    const auto known = std::find_if(poses.lower_bound(at(0) - 1.0), end, [&](const auto& pose) {
+      return (pose.second.at - at).template lpNorm<Eigen::Infinity>() <= 1.0;
+    });
+    if (known != end) {
       groups.of_sample.push_back(known->second.number);
     } else {
       groups.of_sample.push_back(groups.count);

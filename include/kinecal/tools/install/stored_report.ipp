@@ -38,7 +38,7 @@ inline void read_noise(const JsonValue& report, StoredResult& result) {
     BlockNoise noise;
     noise.block = entry.text("name");
     noise.unit = entry.text("unit");
-    noise.features = static_cast<int>(entry.integer("features"));
+    noise.features = entry.integer("features");
     noise.components = static_cast<int>(entry.integer("components"));
     noise.freedom = entry.number("freedom");
     noise.sigma = entry.number("sigma");
