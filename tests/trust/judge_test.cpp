@@ -66,6 +66,17 @@ TEST(Judge, NamesASigmaInAnotherUnit) {
   expect(judged.judgement(), Grade::good, "");
 }
 
+TEST(Judge, NamesWhatChangedOrDriftedWithItsSize) {
+  Judged judged;
+  judged.assessments[0].change = RecordingChange{"stand", 12, 0.4, true, 0.0113, 0.01};
+  expect(judged.judgement(), Grade::use_with_care,
+         "'stand' drifts by 11.3 mm and 0.573 deg from the first sample to the last: with an even "
+         "drift, the noise falls to 40 %");
+  judged.assessments[0].change = RecordingChange{"stand", 12, 0.2, false, 0.05, 6e-15};
+  expect(judged.judgement(), Grade::do_not_use,
+         "'stand' seems to have changed by 50 mm during the recording, before ");
+}
+
 TEST(Judge, NamesPriorsThatTheSamplesContradict) {
   Judged judged;
   judged.assessments[0].pulls = {

@@ -10,11 +10,12 @@
 
 namespace kinecal::detail {
 
-/// "10.2 mm and 0.57 deg"
+/// "10.2 mm and 0.57 deg"; without what is only rounding.
 [[nodiscard]] inline std::string size_of(const RecordingChange& change) {
+  constexpr double kRounding = 1e-7;  // metres or radians
   std::string text;
-  if (change.metres > 0.0) text = reading(1e3 * change.metres, "1") + " mm";
-  if (change.radians > 0.0) {
+  if (change.metres > kRounding) text = reading(1e3 * change.metres, "1") + " mm";
+  if (change.radians > kRounding) {
     text += (text.empty() ? "" : " and ") +
             reading(change.radians * 180.0 / std::numbers::pi, "1") + " deg";
   }

@@ -36,6 +36,7 @@ void judge_causes(const CalibrationInput& input, JudgedResult& judged) {
     }
     return;
   }
+  if (judged.assessments.back().change) return;  // lengths have absorbed that, too
   for (const std::string& scale : wrong_scales(input.config, input.robot, input.samples,
                                                judged.result.table, judged.assessments.back())) {
     judged.judgement.add(Grade::use_with_care, scale + "; are its lengths right?");
