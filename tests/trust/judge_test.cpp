@@ -56,6 +56,36 @@ TEST(Judge, ComparesTheNoiseWithTheSigmaThatWasGiven) {
   }
 }
 
+/// A sensor better than the model, a tracker of 20 um, is no reason to refuse.
+TEST(Judge, TakesASigmaAsAClaimAboutResiduals) {
+  Judged judged;
+  judged.noise().given = 2e-5;
+  judged.noise().sigma = judged.noise().robust = 3.5e-4;
+  judged.assessments[0].held_out.clear();
+  expect(judged.judgement(), Grade::use_with_care, "sigma is that of a residual");
+}
+
+TEST(Judge, ExpectsSmallerResidualsOfASmallRobot) {
+  for (const auto& [size, verdict] : {std::pair(2.0, Grade::good), {0.3, Grade::use_with_care}}) {
+    Judged judged;
+    judged.noise().given = 0.0;
+    judged.noise().sigma = judged.noise().robust = 2.5e-3;
+    judged.assessments[0].held_out.clear();
+    judged.assessments[0].size = size;
+    expect(judged.judgement(), verdict, "residuals show distances of");
+  }
+}
+
+TEST(Judge, NamesAJointThatExplainsTheResiduals) {
+  Judged judged;
+  judged.assessments[0].pattern = ResidualPattern{
+      .owner = "elbow", .course = ErrorCourse::backlash, .size = 0.0175, .noise_left = 0.4};
+  expect(judged.judgement(), Grade::use_with_care,
+         "with a backlash of 'elbow' of 1 deg, the noise falls to 40 %");
+  judged.assessments[0].change = RecordingChange{"stand", 12, 0.3, false, 0.05, 0.0};
+  expect(judged.judgement(), Grade::do_not_use, "'stand' seems to have changed");
+}
+
 TEST(Judge, NamesASigmaInAnotherUnit) {
   Judged judged;
   judged.noise().given = 1.0;

@@ -38,7 +38,8 @@ namespace detail {
   std::string note;
   if (!findings.assessments.empty()) {
     const Assessment& last = findings.assessments.back();
-    note = design_effect_note(last.uncertainty.design_effect, last.readings);
+    note =
+        design_effect_note(last.uncertainty.design_effect, last.readings, last.neighbours.together);
   }
   return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
          table.str() + note;

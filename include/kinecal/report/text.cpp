@@ -40,9 +40,16 @@ std::string reading_unit(const std::string& unit) {
   return unit == "m" ? "mm" : unit == "1" ? "-" : unit;
 }
 
-std::string design_effect_note(double effect, double readings) {
+std::string design_effect_note(double effect, double readings, int alike) {
   if (effect <= 1.0) return "";
   constexpr double kRepeated = 1.2;
+  if (alike > 1) {
+    return fmt::format(
+        "  Residuals of consecutive samples are alike, so {} poses count as one: +- are {:.1f} "
+        "times as\n"
+        "  large as if they erred independently; record poses in a random order\n",
+        alike, std::sqrt(effect));
+  }
   if (readings > kRepeated) {
     return fmt::format(
         "  Each pose was read {:.1f} times in the mean, and readings of a pose err together: +- "

@@ -40,7 +40,9 @@ class TextTable {
 [[nodiscard]] std::string reading_unit(const std::string& unit);
 
 /// The effect of a design effect on the +-; empty if it is one.
-[[nodiscard]] std::string design_effect_note(double effect, double readings = 1.0);
+/// @param readings  samples per pose
+/// @param alike     consecutive poses that count as one
+[[nodiscard]] std::string design_effect_note(double effect, double readings = 1.0, int alike = 1);
 
 /// Two lines for each step: what it did and why it stopped.
 [[nodiscard]] std::string step_lines(const CalibrationResult& result);

@@ -10,6 +10,9 @@
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/inside_bounds.ipp"
+#include "kinecal/trust/plausible_change.ipp"
+#include "kinecal/trust/ruined.hpp"
+#include "kinecal/trust/workspace_map.hpp"
 
 namespace kinecal {
 
@@ -66,22 +69,38 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, std::span<cons
   const LinearFit fit =
       linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
   found.rows = fit.residual.size();
-  const PoseGroups poses = pose_groups(problem, samples);
-  found.readings = poses.readings();
+  const PoseGroups single = pose_groups(problem, samples);
+  found.readings = single.readings();
+  found.neighbours = neighbours(problem, fit, single);
+  const PoseGroups poses = joined(single, found.neighbours.together);
+  found.size = detail::robot_size(problem);
   const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
   found.uncertainty = uncertainty(problem, fit, found.noise, poses);
   detail::mark_undetermined(problem, inside, fit.coordinates, found.uncertainty);
   found.pulls = prior_pulls(problem, inside, values, fit, inverse, found.uncertainty);
   found.weak = weak_parameters(problem, inside, found.uncertainty);
-  found.captures = capture_errors(problem, fit);
+  found.captures = capture_errors(problem, fit, single);
+  found.noise_without_bad = noise_without_bad(fit, found.captures);
   found.change = recording_change(problem, inside, fit);
+  found.pattern = residual_pattern(problem, inside, fit, values, samples, poses);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
   const int folds = std::min(options.folds, poses.count);
   if (folds >= 2) {
     try {
       found.held_out =
           held_out_errors(*evaluator, values, fit, folds_of(samples, poses, folds), options.meter);
+      const std::vector<int> regions = pose_regions(problem, samples, poses);
+      if (!regions.empty()) {
+        const auto of_regions = held_out_errors(*evaluator, values, fit, regions);
+        for (std::size_t t = 0; t < of_regions.size(); ++t) {
+          found.held_out[t].region = of_regions[t].held_out;
+          fprintf(stderr, "REGION %s fitted %g held %g region %g noise %g\n",
+                  found.held_out[t].block.c_str(), found.held_out[t].fitted,
+                  found.held_out[t].held_out, found.held_out[t].region,
+                  found.noise[t].sigma * std::sqrt(found.noise[t].components));
+        }
+      }
     } catch (const std::domain_error&) {  // without a fold, a point ends up behind a camera
       for (int t = 0; t < problem.num_terms(); ++t) {
         const Term& term = problem.term(t);
@@ -93,6 +112,16 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, std::span<cons
   if (const auto frames = compared_frames(problem, samples)) {
     found.pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty, samples,
                                   frames->first, frames->second);
+  }
+  if (found.pose) {
+    constexpr int kPoses = 64;
+    std::vector<double> deviations;
+    for (const KnownPoint& point : workspace_map(problem, found, values, kPoses)) {
+      deviations.push_back(point.deviation);
+    }
+    const auto middle = deviations.begin() + std::ssize(deviations) / 2;
+    std::nth_element(deviations.begin(), middle, deviations.end());
+    if (!deviations.empty()) found.elsewhere = *middle;
   }
   return found;
 }

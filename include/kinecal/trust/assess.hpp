@@ -11,10 +11,12 @@
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/held_out.hpp"
+#include "kinecal/trust/neighbours.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
 #include "kinecal/trust/prior_pulls.hpp"
 #include "kinecal/trust/recording_change.hpp"
+#include "kinecal/trust/residual_pattern.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 
 namespace kinecal {
@@ -38,12 +40,17 @@ struct Assessment {
   WeakParameters weak;                 ///< poorly determined ones of `parameters`
   std::vector<HeldOutError> held_out;  ///< of each error block; empty if there are too few samples
   std::vector<CaptureError> captures;  ///< of each sample
-  std::optional<RecordingChange> change;  ///< during the recording
-  std::vector<IdleGroup> idle;            ///< whose parameters improve nothing
-  std::vector<PriorPull> pulls;           ///< priors that the samples contradict
-  std::optional<PoseUncertainty> pose;    ///< of the frames that the first error block compares
-  std::int64_t rows = 0;                  ///< residuals, without priors
-  double readings = 1.0;                  ///< samples per pose: see pose_groups()
+  double noise_without_bad = 1.0;      ///< ratio to that of all samples
+  std::optional<RecordingChange> change;   ///< during the recording
+  std::optional<ResidualPattern> pattern;  ///< that the model does not contain
+  std::vector<IdleGroup> idle;             ///< whose parameters improve nothing
+  std::vector<PriorPull> pulls;            ///< priors that the samples contradict
+  std::optional<PoseUncertainty> pose;     ///< of the frames that the first error block compares
+  double elsewhere = 0.0;  ///< +- of that position over the limits of the joints, median, metres
+  std::int64_t rows = 0;   ///< residuals, without priors
+  double readings = 1.0;   ///< samples per pose: see pose_groups()
+  Neighbours neighbours;   ///< whether consecutive poses err alike
+  double size = 0.0;       ///< of the robot: longest chain, sum of its links, metres
 
   /// Standard deviation of a parameter of the table; nullopt if the step does not free it.
   [[nodiscard]] std::optional<double> deviation(int parameter) const;

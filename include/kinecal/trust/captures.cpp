@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/influence.ipp"
+#include "kinecal/trust/least_trimmed_squares.ipp"
 #include "kinecal/trust/noise.hpp"
 #include "kinecal/trust/observability.hpp"
 
@@ -17,8 +19,11 @@ namespace {
 /// The search for bad captures on the rows of one problem.
 class CaptureSearch {
  public:
-  CaptureSearch(const AnyProblem& problem, const LinearFit& fit)
-      : problem_(problem), fit_(fit), bad_(static_cast<std::size_t>(problem.num_samples()), false) {
+  CaptureSearch(const AnyProblem& problem, const LinearFit& fit, const PoseGroups& poses)
+      : problem_(problem),
+        fit_(fit),
+        poses_(poses),
+        bad_(static_cast<std::size_t>(problem.num_samples()), false) {
     for (const RowBlock& block : fit.blocks) {
       const int size = problem.term(block.term).feature_size;
       for (Eigen::Index row = 0; row < block.size; row += size) {
@@ -29,18 +34,14 @@ class CaptureSearch {
   }
 
   [[nodiscard]] std::vector<CaptureError> find() {
-    fit_without(bad_);
+    fit_robustly();
     mark();
-    if (std::find(bad_.begin(), bad_.end(), true) != bad_.end()) {
-      fit_robustly();
-      mark();
-      constexpr int kRefits = 10;
-      for (int round = 0; round < kRefits; ++round) {
-        const std::vector<bool> before = bad_;
-        fit_without(bad_);
-        mark(Tail::as_seen);
-        if (bad_ == before) break;
-      }
+    constexpr int kRefits = 10;
+    for (int round = 0; round < kRefits; ++round) {
+      const std::vector<bool> before = bad_;
+      fit_without(bad_);
+      mark(Tail::as_seen);
+      if (bad_ == before) break;
     }
     return worst();
   }
@@ -73,9 +74,9 @@ class CaptureSearch {
       sigma_.push_back(sigma / std::sqrt(freedom));
     }
   }
-  /// The share of rows that parameters do not use up.
+  /// The share of rows that parameters do not use up; readings of a pose count once.
   [[nodiscard]] double freedom(double rows) const {
-    const double n = static_cast<double>(fit_.size());
+    const double n = static_cast<double>(fit_.size()) * poses_.readings();
     return rows > 2.0 * n ? 1.0 - n / rows : 0.5;
   }
 
@@ -98,18 +99,16 @@ class CaptureSearch {
     solve(weights);
     set_sigmas(freedom(rows));
   }
-  /// M-estimates with the scale of the median.
+  /// M-estimates with the scale of the median, from a start that bad captures do not affect.
   void fit_robustly() {
-    bad_.assign(bad_.size(), false);
+    residual_ = fit_.residual + fit_.jacobian * least_trimmed_squares(fit_, poses_);
     set_sigmas(1.0);
-    constexpr int kCauchy = 12, kTukey = 12;
-    for (int i = 0; i < kCauchy + kTukey; ++i) {
+    constexpr int kIterations = 12;
+    for (int i = 0; i < kIterations; ++i) {
       Eigen::VectorXd weights = fit_.loss;
       for (const FeatureRows& f : features_) {
-        const Loss loss =
-            i < kCauchy ? Loss{LossType::cauchy, 2.385} : Loss{LossType::tukey, 4.685};
         const double s = distance(f) / sigma_of(f), squared = s * s / f.size;
-        weights.segment(f.row, f.size) *= loss(squared).derivative;
+        weights.segment(f.row, f.size) *= Loss{LossType::tukey, 4.685}(squared).derivative;
       }
       solve(weights);
       set_sigmas(freedom(static_cast<double>(fit_.residual.size())));
@@ -126,18 +125,30 @@ class CaptureSearch {
     const bool in = !bad_[static_cast<std::size_t>(f.sample)];
     return distance(f) / (sigma_of(f) * std::sqrt(in ? 1.0 - leverage : 1.0 + leverage));
   }
-  [[nodiscard]] double limit(const FeatureRows& f) const {
-    constexpr double kFalse = 1e-3;  // share of good data sets with a false alarm
-    const double t = std::log(static_cast<double>(features_.size()) / kFalse), k = f.size;
-    const double factor = tail_counts_ ? tail_[static_cast<std::size_t>(f.term)] : 1.0;
-    return factor * std::sqrt(k + 2.0 * std::sqrt(k * t) + 2.0 * t);
-  }
   /// Assumes equal noise in all directions, or uses the observed tail of the features that fit.
   /// The latter only when bad captures are no longer among them.
   enum class Tail { normal, as_seen };
 
+  /// In standard deviations; beyond it a feature is bad.
+  [[nodiscard]] double limit(const FeatureRows& f) const {
+    return limit_[static_cast<std::size_t>(f.term)];
+  }
+  void set_limits(Tail tail) {
+    constexpr double kFalse = 1e-3;       // share of good data sets with a false alarm
+    constexpr double kEfficiency = 0.37;  // of the median, as an estimate of the noise
+    const double rows = static_cast<double>(fit_.residual.size());
+    const double b = std::max(2.0, kEfficiency * rows * freedom(rows) / poses_.readings());
+    limit_.assign(tail_.size(), 0.0);
+    for (std::size_t t = 0; t < tail_.size(); ++t) {
+      const double k = problem_.term(static_cast<int>(t)).feature_size;
+      const double chance = kFalse / static_cast<double>(features_.size());
+      const double factor = tail == Tail::as_seen ? tail_[t] : 1.0;
+      limit_[t] = factor * std::sqrt(k * f_exceeded(k, b, chance));
+    }
+  }
   void mark(Tail tail = Tail::normal) {
-    tail_counts_ = tail == Tail::as_seen;
+    if (features_.empty()) return;
+    set_limits(tail);
     std::vector<bool> bad(bad_.size(), false);
     for (const FeatureRows& f : features_) {
       if (times(f) > limit(f)) bad[static_cast<std::size_t>(f.sample)] = true;
@@ -172,20 +183,22 @@ class CaptureSearch {
 
   const AnyProblem& problem_;
   const LinearFit& fit_;
+  const PoseGroups& poses_;
   std::vector<FeatureRows> features_;
   std::vector<bool> bad_;      ///< by sample
   std::vector<double> sigma_;  ///< of weighted residual components, by term
   std::vector<double> tail_;   ///< factor of the limit, by term: see tail_factor()
-  bool tail_counts_ = false;
-  Eigen::VectorXd residual_;  ///< of the present fit
-  Eigen::MatrixXd inverse_;   ///< of its information
+  std::vector<double> limit_;  ///< of `times`, by term
+  Eigen::VectorXd residual_;   ///< of the present fit
+  Eigen::MatrixXd inverse_;    ///< of its information
 };
 
 }  // namespace
 }  // namespace detail
 
-std::vector<CaptureError> capture_errors(const AnyProblem& problem, const LinearFit& fit) {
-  std::vector<CaptureError> captures = detail::CaptureSearch(problem, fit).find();
+std::vector<CaptureError> capture_errors(const AnyProblem& problem, const LinearFit& fit,
+                                         const PoseGroups& poses) {
+  std::vector<CaptureError> captures = detail::CaptureSearch(problem, fit, poses).find();
   detail::set_influences(fit, captures);
   return captures;
 }

@@ -4,19 +4,20 @@
 //
 //   d^2 / (s^2 (1 - h))  for samples in the fit,   d^2 / (s^2 (1 + h))  for others,   h the leverage
 //
-// which is chi-square with k components.  A sample is bad if one of its features exceeds
-// k + 2 sqrt(k t) + 2 t, t = log(features / 1e-3): this happens by chance in 1 of 1000 data sets.
-// The fit is first found robustly (M-estimates: Cauchy, then Tukey, from the median), then by least
-// squares without the bad samples, until the set is stable.  The result does not depend on the
-// order of samples.
-// Source: Laurent, Massart, Adaptive Estimation of a Quadratic Functional, 2000, lemma 1 (the
-// bound); Rousseeuw, Leroy, Robust Regression and Outlier Detection, 1987.
+// which is k F, F of the F distribution with k and 0.37 (rows - parameters) degrees of freedom: 0.37 is the
+// efficiency of the median, from which s comes.  A sample is bad if one of its features exceeds what
+// happens by chance in 1 of 1000 data sets.  The fit is first found robustly (least trimmed squares, then
+// M-estimates by Tukey), then by least squares without the bad samples, until the set is stable.  The
+// result does not depend on the order of samples.
+// Source: Rousseeuw, Leroy, Robust Regression and Outlier Detection, 1987; Yohai, High Breakdown-Point and
+// High Efficiency Robust Estimates for Regression, 1987.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
 
 #include "kinecal/solve/linear_fit.hpp"
+#include "kinecal/trust/pose_groups.hpp"
 
 namespace kinecal {
 
@@ -36,7 +37,9 @@ struct CaptureError {
 
 /// The worst feature of each sample, by number of the sample.
 /// @param fit  of all samples, at its solution
+/// @param poses  of its samples: readings of a pose err together
 [[nodiscard]] std::vector<CaptureError> capture_errors(const AnyProblem& problem,
-                                                       const LinearFit& fit);
+                                                       const LinearFit& fit,
+                                                       const PoseGroups& poses);
 
 }  // namespace kinecal

@@ -34,6 +34,11 @@ double f_tail(double f, double a, double b) {
   return cdf(complement(ratio, f));
 }
 
+double f_exceeded(double a, double b, double probability) {
+  const boost::math::fisher_f_distribution<double, detail::QuietMath> ratio(a, b);
+  return quantile(complement(ratio, probability));
+}
+
 double chi_square_exceeded(double freedom, double probability) {
   const boost::math::chi_squared_distribution<double, detail::QuietMath> sum(freedom);
   return quantile(complement(sum, probability));

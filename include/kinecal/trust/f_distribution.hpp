@@ -11,6 +11,12 @@ namespace kinecal {
 /// @param b  those of the denominator, positive; if infinite, a F is chi-square
 [[nodiscard]] double f_tail(double f, double a, double b);
 
+/// The F that is exceeded with a probability.
+/// @param a            degrees of freedom of the numerator, positive
+/// @param b            those of the denominator, positive
+/// @param probability  above 0, below 1
+[[nodiscard]] double f_exceeded(double a, double b, double probability);
+
 /// The sum of `freedom` squares of unit variance that is exceeded with a probability.
 /// @param freedom      degrees of freedom, positive
 /// @param probability  above 0, below 1

@@ -24,6 +24,7 @@ struct HeldOutError {
   int features = 0;       ///< of all folds
   double fitted = 0.0;    ///< root of the mean squared distance of features, all samples fitted
   double held_out = 0.0;  ///< the same, each feature held out once
+  double region = 0.0;    ///< the same, held out with all samples of its region; 0: not computed
 };
 
 /// The fold of each sample, 0 to folds - 1.  Poses are dealt in the order of their joint positions, so

@@ -8,6 +8,7 @@
 #include "kinecal/trust/judge_change.ipp"
 #include "kinecal/trust/judge_noise.ipp"
 #include "kinecal/trust/plausible_change.ipp"
+#include "kinecal/trust/ruined.hpp"
 
 namespace kinecal {
 
@@ -34,6 +35,17 @@ void judge_freedom(const Assessment& step, Judgement& judgement) {
                     " parameters; record more samples");
 }
 
+/// Samples of other regions may fit worse: the model lacks something that matters there.
+void judge_region(const HeldOutError& error, double expected, Judgement& judgement) {
+  constexpr double kTimes = 3.0;
+  if (!(error.region > kTimes * std::max(expected, error.held_out))) return;
+  judgement.add(Grade::use_with_care, "error block '" + error.block +
+                                          "': " + reading(error.region, error.unit) +
+                                          " on samples of a region that was held out, " +
+                                          reading(error.fitted, error.unit) +
+                                          " on fitted ones; use it near these samples only");
+}
+
 void judge_held_out(const Assessment& step, Judgement& judgement) {
   constexpr Limits kTimes{1.5, 3.0};
   for (std::size_t t = 0; t < step.held_out.size(); ++t) {
@@ -43,6 +55,7 @@ void judge_held_out(const Assessment& step, Judgement& judgement) {
     const double expected = std::max(noise, error.fitted);
     if (error.features == 0 || !(expected > 0.0)) continue;
     const double times = error.held_out / expected;
+    judge_region(error, expected, judgement);
     if (!kTimes.exceeded(times)) continue;
     judgement.add(kTimes.grade(times),
                   "error block '" + error.block + "': " + reading(error.held_out, error.unit) +
@@ -63,6 +76,7 @@ void judge_share(int bad, int samples, const std::string& where, const std::stri
 }
 
 void judge_captures(const Assessment& step, const AnyProblem& problem, Judgement& judgement) {
+  if (explains_more(step)) return;  // than leaving samples out
   const auto bad = std::count_if(step.captures.begin(), step.captures.end(),
                                  [](const CaptureError& error) { return error.bad; });
   judge_share(static_cast<int>(bad), problem.num_samples(), "step '" + step.step + "': ", "",
@@ -131,6 +145,13 @@ void judge_pose(const Assessment& step, Judgement& judgement) {
                       " depends on a combination of parameters that these samples do not "
                       "determine; see 'cannot be determined'");
   }
+  if (step.elsewhere > kPosition.care && !kPosition.exceeded(step.pose->position)) {
+    judgement.add(Grade::use_with_care,
+                  pose + " is known to " + reading(step.pose->position, "m") +
+                      " at these samples, but to " + reading(step.elsewhere, "m") +
+                      " over the limits of the joints; use it near these samples only, or record "
+                      "poses that differ more");
+  }
   if (!kPosition.exceeded(step.pose->position)) return;
   judgement.add(
       kPosition.grade(step.pose->position),
@@ -159,6 +180,7 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     const CalibrationStep& step = calibration.steps[s];
     const bool last = s + 1 == assessments.size();
     if (last) detail::judge_noise(assessments[s], judgement);  // earlier steps fit less
+    if (last) detail::judge_directions(assessments[s], judgement);
     detail::judge_determined(assessments[s], last, judgement);
     detail::judge_freedom(assessments[s], judgement);
     if (last) detail::judge_held_out(assessments[s], judgement);

@@ -1,4 +1,4 @@
-// Judging a change during the recording.
+// Judging what residuals depend on: a change during the recording, a joint.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,8 +22,50 @@ namespace kinecal::detail {
   return text;
 }
 
+/// "with a backlash of 'elbow' of 1 deg"
+[[nodiscard]] inline std::string error_of(const ResidualPattern& pattern) {
+  const std::string size = pattern.turns
+                               ? reading(pattern.size * 180.0 / std::numbers::pi, "1") + " deg"
+                               : reading(1e3 * pattern.size, "1") + " mm";
+  const std::string owner = "'" + pattern.owner + "'", factor = reading(pattern.factor, "1");
+  switch (pattern.course) {
+    case ErrorCourse::zero:
+      return "with a zero of " + owner + " that is " + size + " off (it is held)";
+    case ErrorCourse::gear:
+      return "with a gear of " + owner + " of " + factor + ", an error of up to " + size;
+    case ErrorCourse::turn:
+      return "with an error of " + owner + " of " + size +
+             " that returns once a turn (an eccentric encoder, or a link beside it that is held)";
+    case ErrorCourse::backlash:
+      return "with a backlash of " + owner + " of " + size;
+    case ErrorCourse::sag:
+      return "if " + owner + " sags by up to " + size + " under the weight of the arm";
+    case ErrorCourse::lag:
+      return "if the joints had " + reading(1e2 * pattern.size, "1") +
+             " % of the way from the sample before still to go (stamps differ, or samples were "
+             "taken before the robot stood)";
+    case ErrorCourse::rounding:
+      return "positions of " + owner + " are rounded to multiples of " + size +
+             "; without rounding";
+    case ErrorCourse::axis:
+      break;
+  }
+  return "with the " + std::string(1, "xyz"[pattern.axis]) + " of sensor " + owner +
+         " multiplied by " + factor;
+}
+
+/// A pattern that explains more than a change during the recording.
+[[nodiscard]] inline bool judge_pattern(const Assessment& step, Judgement& judgement) {
+  if (!step.pattern) return false;
+  if (step.change && step.change->noise_left <= step.pattern->noise_left) return false;
+  judgement.add(Grade::use_with_care, error_of(*step.pattern) + ", the noise falls to " +
+                                          reading(1e2 * step.pattern->noise_left, "1") +
+                                          " %; the model does not contain that");
+  return true;
+}
+
 inline void judge_change(const Assessment& step, const AnyProblem& problem, Judgement& judgement) {
-  if (!step.change) return;
+  if (judge_pattern(step, judgement) || !step.change) return;
   constexpr double kThird = 1.0 / 3.0;
   const RecordingChange& change = *step.change;
   const std::string noise = reading(1e2 * change.noise_left, "1") + " %";

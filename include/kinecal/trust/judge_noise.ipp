@@ -18,24 +18,58 @@ namespace kinecal::detail {
   return unit == "px" ? 30.0 : std::numeric_limits<double>::infinity();
 }
 
+/// Limits of the distance of a feature, in `unit`; those in metres shrink with a robot smaller than a metre.
+[[nodiscard]] inline Limits distance_limits(const std::string& unit, double size) {
+  constexpr double kMetre = 1.0;
+  if (unit == "px") return {4.0, 12.0};
+  const double part = size > 0.0 ? std::min(1.0, size / kMetre) : 1.0;
+  return {0.008 * part, 0.02 * part};
+}
+
+/// A sigma is a claim about residuals.  They may be larger because the model is not as good as the sensors: that
+/// is no reason to refuse a fit that is good enough without a sigma.
+[[nodiscard]] inline Grade grade_of_sigma(double times, double distance, const Limits& distances) {
+  constexpr double kRefuse = 10.0, kGoodEnough = 0.25;
+  return times < kRefuse || distance < kGoodEnough * distances.care ? Grade::use_with_care
+                                                                    : Grade::do_not_use;
+}
+
+/// Noise of one direction: a sensor that is bad in one axis, or joints that do not repeat.
+inline void judge_directions(const Assessment& step, Judgement& judgement) {
+  constexpr double kTimes = 5.0;
+  for (const BlockNoise& noise : step.noise) {
+    if (!(noise.across > 0.0) || !(noise.along > kTimes * noise.across)) continue;
+    judgement.add(Grade::use_with_care, "error block '" + noise.block + "': residuals scatter by " +
+                                            reading(noise.along, noise.unit) +
+                                            " in one direction and by " +
+                                            reading(noise.across, noise.unit) +
+                                            " across it; is an axis of a sensor bad?");
+  }
+}
+
 inline void judge_noise(const Assessment& step, Judgement& judgement) {
-  constexpr Limits kTimes{3.0, 10.0}, kMetres{0.008, 0.02}, kPixels{4.0, 12.0};
+  constexpr double kTimes = 3.0;
   for (const BlockNoise& noise : step.noise) {
     if (noise.features == 0 || noise.freedom <= 0.0) continue;
     // Use both estimates: a few bad captures raise one, a wrong model raises both.
     const double sigma = std::min(noise.sigma, noise.robust);
+    const double distance = sigma * std::sqrt(noise.components);
+    const Limits limits = distance_limits(noise.unit, step.size);
     const std::string shown = "residuals show " + reading(sigma, noise.unit);
     if (noise.given > 0.0) {
       const double times = sigma / noise.given;
       const bool in_other_unit = times < 0.02 && noise.given > most_sigma(noise.unit);
-      if (!kTimes.exceeded(times) && !in_other_unit) continue;
+      if (!(times > kTimes) && !in_other_unit) continue;
       const std::string unit = noise.unit == "px" ? "pixels" : "metres";
-      judgement.add(in_other_unit ? Grade::do_not_use : kTimes.grade(times),
+      const Grade grade = grade_of_sigma(times, distance, limits);
+      judgement.add(in_other_unit ? Grade::do_not_use : grade,
                     "error block '" + noise.block + "': sigma " + reading(noise.given, noise.unit) +
-                        " given, " + shown + (in_other_unit ? "; sigma must be in " + unit : ""));
+                        " given, " + shown +
+                        (in_other_unit ? "; sigma must be in " + unit
+                         : grade == Grade::use_with_care
+                             ? "; sigma is that of a residual, errors of the robot included"
+                             : "; the model does not fit these samples"));
     } else if (noise.unit == "m" || noise.unit == "px") {
-      const Limits& limits = noise.unit == "m" ? kMetres : kPixels;
-      const double distance = sigma * std::sqrt(noise.components);
       if (!limits.exceeded(distance)) continue;
       judgement.add(limits.grade(distance),
                     "error block '" + noise.block + "': residuals show distances of " +

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/noise.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -48,6 +49,22 @@ BlockNoise detail::block_noise(const Term& term, std::int64_t features, double s
   return of;
 }
 
+void detail::set_directions(const Eigen::MatrixXd& residuals, BlockNoise& noise) {
+  constexpr Eigen::Index kFew = 20;
+  if (noise.components < 2 || noise.components > 3 || residuals.cols() < kFew) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> scatter(residuals * residuals.transpose());
+  const Eigen::MatrixXd along = scatter.eigenvectors().transpose() * residuals;
+  const auto sigma = [&](Eigen::Index row) {
+    std::vector<double> distances(static_cast<std::size_t>(along.cols()));
+    for (Eigen::Index i = 0; i < along.cols(); ++i) {
+      distances[static_cast<std::size_t>(i)] = std::abs(along(row, i));
+    }
+    return noise.unit_sigma * robust_sigma(distances, 1);
+  };
+  noise.along = sigma(along.rows() - 1);
+  noise.across = sigma(along.rows() - 2);
+}
+
 double prior_variance(const std::vector<BlockNoise>& noise) {
   double squares = 0.0, freedom = 0.0;
   bool given = true;
@@ -85,6 +102,15 @@ std::vector<BlockNoise> estimate_noise(const AnyProblem& problem, const LinearFi
     noise.push_back(detail::block_noise(term, static_cast<int>(distances[t].size()), squares[t],
                                         leverages[t],
                                         robust_sigma(distances[t], term.feature_size)));
+    Eigen::MatrixXd residuals(term.feature_size, std::ssize(distances[t]));
+    Eigen::Index column = 0;
+    for (const RowBlock& block : fit.blocks) {
+      if (block.term != static_cast<int>(t)) continue;
+      for (Eigen::Index row = 0; row < block.size; row += term.feature_size) {
+        residuals.col(column++) = fit.residual.segment(block.first + row, term.feature_size);
+      }
+    }
+    detail::set_directions(residuals, noise.back());
   }
   return noise;
 }

@@ -25,6 +25,8 @@ struct BlockNoise {
   double given = 0.0;         ///< sigma of the configuration, in `unit`; 0: none
   double sigma = 0.0;         ///< standard deviation of a residual component, in `unit`
   double robust = 0.0;        ///< the same from the median
+  double along = 0.0;         ///< robust, in the direction of the largest scatter, in `unit`
+  double across = 0.0;        ///< the same in that of the second largest; 0: not computed
   double unit_sigma = 1.0;    ///< residual in `unit` of a weighted residual of one
 
   /// Standard deviation of a weighted residual component: 1 if the given sigma is right.
@@ -55,6 +57,12 @@ namespace detail {
 /// Variance of the weighted residuals of priors: 1 if weights are one over standard deviations,
 /// else that of all error blocks.
 [[nodiscard]] double prior_variance(const std::vector<BlockNoise>& noise);
+
+namespace detail {
+/// Sets `along` and `across` of noise whose features have two or three components.
+/// @param residuals  (components x features) weighted
+void set_directions(const Eigen::MatrixXd& residuals, BlockNoise& noise);
+}  // namespace detail
 
 /// Standard deviation of the components, from the median of the distances of features.
 /// @param distances   norm of each feature's residual

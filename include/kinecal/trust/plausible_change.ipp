@@ -20,10 +20,30 @@ struct Limits {
   }
 };
 
-/// The largest plausible change of a parameter; a frame that was searched for, or that is not in
-/// the URDF, may be anywhere.
-[[nodiscard]] inline Limits plausible_change(const CalibrationStep& step, int parameter) {
-  const AnyProblem& problem = *step.problem;
+/// Length of the longest chain from the base to a sensor, metres: sum of its links.
+[[nodiscard]] inline double robot_size(const AnyProblem& problem) {
+  double longest = 0.0;
+  for (const MountedSensor& sensor : problem.sensors()) {
+    for (const RuntimeChain& chain : sensor.chains()) {
+      double length = chain.tail.translation.norm();
+      for (const ChainJoint& joint : chain.joints) length += joint.fixed.translation.norm();
+      longest = std::max(longest, length);
+    }
+  }
+  return longest;
+}
+
+/// The largest plausible change of the frame of a joint that moves, metres: a seventh of the link before it.
+/// Robots are built more precisely than their mounts.
+[[nodiscard]] inline Limits plausible_length_change(const AnyProblem& problem, const Joint& joint) {
+  constexpr double kMost = 0.05, kOfLink = 0.15, kOfRobot = 0.03, kRefused = 6.0;
+  const double length = kOfLink * joint.origin.translation.norm();
+  const double care = std::min(kMost, std::max(length, kOfRobot * robot_size(problem)));
+  return {care, kRefused * kMost};
+}
+
+/// The largest plausible change of a parameter; a frame that is not in the URDF may be anywhere.
+[[nodiscard]] inline Limits plausible_change(const AnyProblem& problem, int parameter) {
   constexpr double kNever = 1e300, kDegree = std::numbers::pi / 180.0;
   const Parameter& p = problem.table()[parameter];
   const std::string& owner = problem.owners()[static_cast<std::size_t>(parameter)];
@@ -31,18 +51,25 @@ struct Limits {
     if (p.unit == "m") return {0.1, 0.5};
     return {15.0 * kDegree, 45.0 * kDegree};
   }
-  const bool searched = std::any_of(
-      step.unknown_frames.begin(), step.unknown_frames.end(),
-      [&](const UnknownFrame& frame) { return frame.name == owner && !frame.has_guess; });
-  if (searched) return {kNever, kNever};
-  if (problem.robot().has_joint(owner)) {  // robots are built more precisely than their mounts
-    const bool moving = moves(problem.robot().joint(owner).type);
-    if (p.unit == "m") return moving ? Limits{0.05, 0.3} : Limits{0.2, 1.0};
+  if (problem.robot().has_joint(owner)) {
+    const Joint& joint = problem.robot().joint(owner);
+    const bool moving = moves(joint.type);
+    if (p.unit == "m") return moving ? plausible_length_change(problem, joint) : Limits{0.2, 1.0};
     return moving ? Limits{15.0 * kDegree, 60.0 * kDegree} : Limits{30.0 * kDegree, kNever};
   }
   if (problem.frames().contains(owner)) return {kNever, kNever};
   if (p.unit == "m") return {0.1, kNever};
   return p.unit == "1" ? Limits{0.09, 0.3} : Limits{kNever, kNever};
+}
+
+/// The same in a step: a frame that was searched for may be anywhere, too.
+[[nodiscard]] inline Limits plausible_change(const CalibrationStep& step, int parameter) {
+  constexpr double kNever = 1e300;
+  const std::string& owner = step.problem->owners()[static_cast<std::size_t>(parameter)];
+  const bool searched = std::any_of(
+      step.unknown_frames.begin(), step.unknown_frames.end(),
+      [&](const UnknownFrame& frame) { return frame.name == owner && !frame.has_guess; });
+  return searched ? Limits{kNever, kNever} : plausible_change(*step.problem, parameter);
 }
 
 }  // namespace kinecal::detail

@@ -33,4 +33,12 @@ struct PoseGroups {
 /// @param samples  those of the problem, in their order
 [[nodiscard]] PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples);
 
+/// Four regions of poses, of as many poses each: halved at the median of the joint that moves most, and each half
+/// again.  Empty if no joint moves or if there are fewer than 20 poses.
+/// @param poses  of the samples: a pose is in one region
+/// @returns      the region of each sample, 0 to 3
+[[nodiscard]] std::vector<int> pose_regions(const AnyProblem& problem,
+                                            std::span<const Sample> samples,
+                                            const PoseGroups& poses);
+
 }  // namespace kinecal

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/recording_change.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -10,21 +9,11 @@
 #include <vector>
 
 #include "kinecal/solve/spectrum.hpp"
+#include "kinecal/trust/unexplained.hpp"
 
 namespace kinecal {
 
 namespace detail {
-
-/// True if residuals are only rounding, in their own units: simulated samples without noise.
-[[nodiscard]] inline bool is_exact(const AnyProblem& problem, const LinearFit& fit) {
-  constexpr double kRounding = 1e-7;
-  double squares = 0.0;
-  for (const RowBlock& block : fit.blocks) {
-    const double weight = problem.term(block.term).weight;
-    squares += fit.residual.segment(block.first, block.size).squaredNorm() / (weight * weight);
-  }
-  return !(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()));
-}
 
 /// J^T W J and J^T W r with samples weighted by the course of a change: u is 0 before it and 1 after it, or rises
 /// from -1/2 to 1/2.
@@ -77,48 +66,18 @@ struct CourseSums {
   return sums;
 }
 
-/// The share by which the sum of squares falls with changing parameters, times that sum, and the change.
-struct Fall {
-  double squares = 0.0;
-  Eigen::VectorXd change;  ///< (parameters)
-};
-
-/// Skips changes that other parameters could explain just as well: if the samples before and after have
-/// nothing in common, there are many.  Also skips parameters without effect on the samples after
-/// the change.
+/// The fall with parameters that follow a course.  Skips parameters without effect on the samples after the
+/// change.
 /// @param by     (coordinates x parameters) of the owner
 /// @param whole  (parameters) diagonal of their information in all samples
 [[nodiscard]] inline Fall fall_of(const CourseSums& course, const Eigen::MatrixXd& inverse,
                                   const Eigen::MatrixXd& by, const Eigen::VectorXd& whole) {
-  constexpr double kOwn = 1e-3;   // least share of a change's effect that others cannot explain
   constexpr double kNone = 1e-9;  // of the information in all samples: less is rounding
   const Eigen::MatrixXd cross = by.transpose() * course.information;
   const Eigen::MatrixXd all = by.transpose() * course.squared * by;
   const Eigen::VectorXd scale = all.diagonal().binaryExpr(
       whole, [](double a, double w) { return a > kNone * w ? 1.0 / std::sqrt(a) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(
-      scale.asDiagonal() * (all - cross * inverse * cross.transpose()) * scale.asDiagonal());
-  const Eigen::VectorXd gradient =
-      own.eigenvectors().transpose() * scale.cwiseProduct(by.transpose() * course.gradient);
-  Fall fall{0.0, Eigen::VectorXd::Zero(gradient.size())};
-  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
-    const double value = own.eigenvalues()(i);
-    if (value <= kOwn) continue;
-    fall.squares += gradient(i) * gradient(i) / value;
-    fall.change -= scale.cwiseProduct(own.eigenvectors().col(i)) * (gradient(i) / value);
-  }
-  return fall;
-}
-
-/// Probability of a share above x by chance; rounds q up to an even number.
-[[nodiscard]] inline double chance_of_share(double x, int q, double freedom) {
-  const double b = 0.5 * (freedom - q);
-  double term = 1.0, sum = 0.0;
-  for (int j = 0; j < (q + 1) / 2; ++j) {
-    sum += term;
-    term *= x * (b + j) / (j + 1);
-  }
-  return std::pow(1.0 - x, b) * sum;
+  return fall_of({all, cross, by.transpose() * course.gradient}, scale, inverse);
 }
 
 }  // namespace detail
@@ -127,7 +86,7 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
                                                 const LinearFit& fit) {
   const double squares = fit.loss.dot(fit.residual.cwiseAbs2());
   const double freedom = static_cast<double>(fit.residual.size() - fit.size());
-  constexpr double kLeft = 0.5, kChance = 1e-6;
+  constexpr double kLeft = 0.8, kChance = 1e-6;
   if (detail::is_exact(problem, fit)) return {};
   std::map<std::string, std::vector<int>> columns;
   for (int c = 0; c < free.size(); ++c) {
@@ -152,6 +111,8 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
       const double left = std::sqrt((1.0 - x) * freedom / (freedom - q));
       if (left > kLeft || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
       if (best && left >= best->noise_left) continue;
+      if (detail::implausible(problem, free, fit.coordinates.basis * fall.others, of_owner))
+        continue;
       best = RecordingChange{owner, course.sample, left, course.drifts};
       for (int i = 0; i < q; ++i) {
         const int p =

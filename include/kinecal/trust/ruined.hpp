@@ -2,8 +2,8 @@
 //
 // A sample is ruined if it is bad (captures.hpp) in the fit of the samples that are not.  Ruined
 // samples are left out and the others fitted again, until none is found.  If more than a quarter of
-// a fit's samples would be ruined, the model is more likely wrong, and none is left out.  The
-// result does not depend on the order of samples.
+// a fit's samples would be ruined, or if a change during the recording or the error of a joint explains
+// as much, the model is more likely wrong, and none is left out.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -12,6 +12,14 @@
 #include "kinecal/trust/assess.hpp"
 
 namespace kinecal {
+
+/// Ratio of the noise without the bad samples to that of all; 1 if none is bad.
+[[nodiscard]] double noise_without_bad(const LinearFit& fit,
+                                       const std::vector<CaptureError>& captures);
+
+/// True if a change during the recording, or a pattern of residuals, explains more than leaving out bad samples
+/// does: they are no matter of single samples.
+[[nodiscard]] bool explains_more(const Assessment& last);
 
 /// The ruined samples of a fit, in their order; empty if there are none, or too many.
 [[nodiscard]] std::vector<CaptureError> ruined_captures(const Assessment& last);

@@ -3,6 +3,7 @@
 #include "kinecal/config/doubts/judge_causes.hpp"
 
 #include "kinecal/config/doubts/check_offsets.hpp"
+#include "kinecal/config/doubts/held_frame.ipp"
 #include "kinecal/config/doubts/likely_causes.hpp"
 #include "kinecal/files/results/result_files.hpp"
 
@@ -37,6 +38,9 @@ void judge_causes(const CalibrationInput& input, JudgedResult& judged) {
     return;
   }
   if (judged.assessments.back().change) return;  // lengths have absorbed that, too
+  if (const auto held = detail::held_frame(input, judged)) {
+    judged.judgement.add(Grade::use_with_care, *held);
+  }
   for (const std::string& scale : wrong_scales(input.config, input.robot, input.samples,
                                                judged.result.table, judged.assessments.back())) {
     judged.judgement.add(Grade::use_with_care, scale + "; are its lengths right?");

@@ -8,7 +8,8 @@
 namespace kinecal {
 
 /// Adds cameras and joint offsets that cannot be, and mistakes that explain a bad fit: with them a result is
-/// not to be used.  To a good fit it adds lengths that another scale of a target explains better.
+/// not to be used.  To a good fit it adds lengths that another scale of a target explains better, and a
+/// frame that is held and explains residuals.
 /// @param input   the calibration of the result, with the samples that were used
 /// @param judged  its result
 void judge_causes(const CalibrationInput& input, JudgedResult& judged);

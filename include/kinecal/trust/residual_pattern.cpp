@@ -1,0 +1,182 @@
+// Finds patterns of residuals.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/residual_pattern.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "kinecal/trust/joint_courses.ipp"
+#include "kinecal/trust/sample_slopes.ipp"
+#include "kinecal/trust/unexplained.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+constexpr ErrorCourse kJointCourses[] = {ErrorCourse::zero, ErrorCourse::gear, ErrorCourse::turn,
+                                         ErrorCourse::backlash, ErrorCourse::sag};
+
+/// An error's columns beside those of a fit: slopes of the residuals times the error's course.
+class ErrorColumns {
+ public:
+  ErrorColumns(const LinearFit& fit, const Eigen::VectorXd& slope, Eigen::Index samples)
+      : squared_(Eigen::VectorXd::Zero(samples)),
+        gradient_(Eigen::VectorXd::Zero(samples)),
+        cross_(Eigen::MatrixXd::Zero(samples, fit.size())) {
+    for (const RowBlock& block : fit.blocks) {
+      const auto d = slope.segment(block.first, block.size);
+      const Eigen::VectorXd w = d.cwiseProduct(fit.loss.segment(block.first, block.size));
+      squared_(block.sample) += w.dot(d);
+      gradient_(block.sample) += w.dot(fit.residual.segment(block.first, block.size));
+      cross_.row(block.sample) += w.transpose() * fit.jacobian.middleRows(block.first, block.size);
+    }
+  }
+
+  /// Sum of the squared slopes, with losses.
+  [[nodiscard]] double squares() const { return squared_.sum(); }
+  /// @param course  (samples x columns) of the error
+  [[nodiscard]] Fall fall(const Eigen::MatrixXd& course, const Eigen::MatrixXd& inverse) const {
+    const AddedColumns added{course.transpose() * squared_.asDiagonal() * course,
+                             course.transpose() * cross_, course.transpose() * gradient_};
+    const Eigen::VectorXd scale = added.squared.diagonal().unaryExpr(
+        [](double a) { return a > 0.0 ? 1.0 / std::sqrt(a) : 0.0; });
+    return fall_of(added, scale, inverse);
+  }
+
+ private:
+  Eigen::VectorXd squared_, gradient_;  // by sample: d^T W d, d^T W r of its rows
+  Eigen::MatrixXd cross_;               // (samples x coordinates) d^T W J
+};
+
+/// Residuals minus parameters; a pose has no more than six that are independent.
+[[nodiscard]] double freedom_of(const LinearFit& fit, const PoseGroups& poses) {
+  constexpr double kMost = 6.0;
+  std::vector<double> rows(static_cast<std::size_t>(poses.count), 0.0);
+  for (const RowBlock& block : fit.blocks) {
+    const int pose = poses.of_sample[static_cast<std::size_t>(block.sample)];
+    rows[static_cast<std::size_t>(pose)] += static_cast<double>(block.size);
+  }
+  double sum = 0.0;
+  for (const double of : rows) sum += std::min(kMost, of);
+  return sum - static_cast<double>(fit.size());
+}
+
+/// The search over all patterns.
+class PatternSearch {
+ public:
+  PatternSearch(const FittedSamples& fitted, const PoseGroups& poses)
+      : fitted_(fitted),
+        freedom_(freedom_of(fitted.fit, poses)),
+        squares_(fitted.fit.loss.dot(fitted.fit.residual.cwiseAbs2())),
+        inverse_(Spectrum(information(fitted.fit, fitted.fit.loss)).pseudo_inverse()),
+        tracks_(joint_tracks(fitted.problem, fitted.samples)) {}
+
+  [[nodiscard]] std::optional<ResidualPattern> find() {
+    constexpr double kFew = 6.0;
+    if (freedom_ < kFew || is_exact(fitted_.problem, fitted_.fit)) return {};
+    const std::size_t axes = 3 * fitted_.problem.sensors().size();
+    tests_ = static_cast<double>(tracks_.size() * std::size(kJointCourses) + 1 + axes);
+    try_joints();
+    try_rounding();
+    for (const MountedSensor& sensor : fitted_.problem.sensors()) {
+      for (int axis = 0; axis < 3; ++axis) try_axis(sensor.mount().name, axis);
+    }
+    return best_;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Index samples() const { return std::ssize(fitted_.samples); }
+
+  void try_joints() {
+    Eigen::VectorXd lag = Eigen::VectorXd::Zero(fitted_.fit.residual.size());
+    for (const auto& [name, track] : tracks_) {
+      const Eigen::VectorXd slope = fitted_.by_joint(name);
+      if (slope.size() == 0) continue;
+      const ErrorColumns columns(fitted_.fit, slope, samples());
+      const double step = rounding_step(track);
+      const double squares = columns.squares() * step * step / 12.0;
+      if (squares > 0.0) rounding_ += squares;
+      if (squares > of_rounded_) {
+        of_rounded_ = squares;
+        rounded_ = {.owner = name, .course = ErrorCourse::rounding, .size = step};
+        rounded_.turns = track.turns;
+      }
+      for (const ErrorCourse course : kJointCourses) {
+        const Eigen::MatrixXd u = course_of(course, track);
+        if (u.cols() == 0) continue;
+        const Fall fall = columns.fall(u, inverse_);
+        ResidualPattern pattern{.owner = name, .course = course, .turns = track.turns};
+        pattern.size = (u * fall.change).cwiseAbs().maxCoeff();
+        if (course == ErrorCourse::gear) pattern.factor = 1.0 + fall.change(0);
+        if (course == ErrorCourse::backlash) pattern.size *= 2.0;
+        consider(pattern, fall);
+      }
+      const Eigen::VectorXd to_go = course_of(ErrorCourse::lag, track).col(0);
+      for (const RowBlock& block : fitted_.fit.blocks) {
+        lag.segment(block.first, block.size) +=
+            to_go(block.sample) * slope.segment(block.first, block.size);
+      }
+    }
+    const Fall fall = constant(lag);
+    consider({.owner = "", .course = ErrorCourse::lag, .size = fall.change(0)}, fall);
+  }
+  /// Rounded positions, if they make about as much noise as there is.
+  void try_rounding() {
+    constexpr double kLeast = 0.3, kMost = 2.0;  // of the sum of squares
+    if (!(rounding_ > kLeast * squares_) || !(rounding_ < kMost * squares_)) return;
+    rounded_.noise_left = std::sqrt(std::max(0.0, 1.0 - rounding_ / squares_));
+    if (!best_ || rounded_.noise_left < best_->noise_left) best_ = rounded_;
+  }
+  void try_axis(const std::string& sensor, int axis) {
+    const Eigen::VectorXd slope = fitted_.by_axis(sensor, axis);
+    if (slope.size() == 0 || slope.isZero()) return;
+    const Fall fall = constant(slope);
+    ResidualPattern pattern{.owner = sensor, .course = ErrorCourse::axis, .axis = axis};
+    pattern.factor = 1.0 + fall.change(0);
+    consider(pattern, fall);
+  }
+  /// With an error that is the same in all samples.
+  [[nodiscard]] Fall constant(const Eigen::VectorXd& slope) const {
+    return ErrorColumns(fitted_.fit, slope, samples())
+        .fall(Eigen::MatrixXd::Ones(samples(), 1), inverse_);
+  }
+
+  void consider(ResidualPattern pattern, const Fall& fall) {
+    constexpr double kLeft = 0.8, kChance = 1e-6, kSimpler = 0.03;
+    const auto q = static_cast<int>(fall.change.size());
+    const double x = std::clamp(fall.squares / squares_, 0.0, 1.0);
+    const double left = std::sqrt((1.0 - x) * freedom_ / (freedom_ - q));
+    if (left > kLeft || tests_ * chance_of_share(x, q, freedom_) > kChance) return;
+    const bool more = best_ && best_->owner == pattern.owner && q > 1;
+    if (best_ && left > best_->noise_left - (more ? kSimpler : 0.0)) return;
+    const Eigen::VectorXd others = fitted_.fit.coordinates.basis * fall.others;
+    if (implausible(fitted_.problem, fitted_.free, others)) return;
+    pattern.noise_left = left;
+    best_ = pattern;
+  }
+
+  FittedSamples fitted_;
+  double freedom_, squares_;
+  Eigen::MatrixXd inverse_;
+  std::map<std::string, JointTrack> tracks_;
+  double tests_ = 1.0;
+  ResidualPattern rounded_;  ///< the joint whose rounding makes the most noise
+  double of_rounded_ = 0.0,
+         rounding_ = 0.0;  ///< squares by its rounding, and by that of all joints
+  std::optional<ResidualPattern> best_;
+};
+
+}  // namespace
+}  // namespace detail
+
+std::optional<ResidualPattern> residual_pattern(const AnyProblem& problem, const FreeSet& free,
+                                                const LinearFit& fit,
+                                                std::span<const double> values,
+                                                std::span<const Sample> samples,
+                                                const PoseGroups& poses) {
+  return detail::PatternSearch({problem, free, fit, values, samples}, poses).find();
+}
+
+}  // namespace kinecal

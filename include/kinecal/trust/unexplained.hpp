@@ -1,0 +1,90 @@
+// Whether columns that the model does not contain explain its residuals: the fall of the sum of squares if they
+// are added to a fit.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "kinecal/solve/linear_fit.hpp"
+#include "kinecal/trust/plausible_change.ipp"
+
+namespace kinecal::detail {
+
+/// Sums over the rows of a fit (J, r, loss W) and added columns X.
+struct AddedColumns {
+  Eigen::MatrixXd squared;   ///< (added x added) X^T W X
+  Eigen::MatrixXd cross;     ///< (added x coordinates) X^T W J
+  Eigen::VectorXd gradient;  ///< (added) X^T W r
+};
+
+/// What added columns explain.
+struct Fall {
+  double squares = 0.0;    ///< by which the sum of squares falls
+  Eigen::VectorXd change;  ///< (added) their coefficients
+  Eigen::VectorXd others;  ///< (coordinates) by which the model's own parameters move then
+};
+
+/// Skips combinations of added columns that the model's own parameters explain just as well.
+/// @param scale    (added) one over the length of each column; zero: skipped
+/// @param inverse  of J^T W J
+[[nodiscard]] inline Fall fall_of(const AddedColumns& added, const Eigen::VectorXd& scale,
+                                  const Eigen::MatrixXd& inverse) {
+  constexpr double kOwn = 1e-3;  // least share of a column's effect that others cannot explain
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(
+      scale.asDiagonal() * (added.squared - added.cross * inverse * added.cross.transpose()) *
+      scale.asDiagonal());
+  const Eigen::VectorXd gradient =
+      own.eigenvectors().transpose() * scale.cwiseProduct(added.gradient);
+  Fall fall{0.0, Eigen::VectorXd::Zero(gradient.size()), {}};
+  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+    const double value = own.eigenvalues()(i);
+    if (value <= kOwn) continue;
+    fall.squares += gradient(i) * gradient(i) / value;
+    fall.change -= scale.cwiseProduct(own.eigenvectors().col(i)) * (gradient(i) / value);
+  }
+  fall.others = -inverse * (added.cross.transpose() * fall.change);
+  return fall;
+}
+
+/// True if added columns move the model's own parameters farther than robots are wrong.  The samples then
+/// have so little in common that anything fits, and the fall is no evidence.
+/// @param moves   (free) of the free parameters
+/// @param except  columns of `free` that may move
+[[nodiscard]] inline bool implausible(const AnyProblem& problem, const FreeSet& free,
+                                      const Eigen::VectorXd& moves,
+                                      const std::vector<int>& except = {}) {
+  for (int c = 0; c < free.size(); ++c) {
+    if (std::find(except.begin(), except.end(), c) != except.end()) continue;
+    const int p = free.parameters()[static_cast<std::size_t>(c)];
+    if (plausible_change(problem, p).exceeded(std::abs(moves(c)))) return true;
+  }
+  return false;
+}
+
+/// Probability that q columns explain a share above x of the sum of squares by chance; rounds q up to an even
+/// number.
+[[nodiscard]] inline double chance_of_share(double x, int q, double freedom) {
+  const double b = 0.5 * (freedom - q);
+  double term = 1.0, sum = 0.0;
+  for (int j = 0; j < (q + 1) / 2; ++j) {
+    sum += term;
+    term *= x * (b + j) / (j + 1);
+  }
+  return std::pow(1.0 - x, b) * sum;
+}
+
+/// True if residuals are only rounding, in their own units: simulated samples without noise.
+[[nodiscard]] inline bool is_exact(const AnyProblem& problem, const LinearFit& fit) {
+  constexpr double kRounding = 1e-7;
+  double squares = 0.0;
+  for (const RowBlock& block : fit.blocks) {
+    const double weight = problem.term(block.term).weight;
+    squares += fit.residual.segment(block.first, block.size).squaredNorm() / (weight * weight);
+  }
+  return !(squares > kRounding * kRounding * static_cast<double>(fit.residual.size()));
+}
+
+}  // namespace kinecal::detail
