@@ -62,7 +62,10 @@ KINECAL_INLINE std::optional<UndefinedResidual> evaluate(const AnyProblem& probl
 
 KINECAL_INLINE std::optional<UndefinedResidual> undefined_residual(const AnyProblem& problem,
                                                                    std::span<const double> values) {
-  return evaluate(problem, values, nullptr, [](int, int, const TermResiduals&) {});
+  const RowVisitor none = [](int, int, const TermResiduals&) {};
+  const FreeSet touched(problem.touched_parameters(), problem.table().size());
+  const auto undefined = evaluate(problem, values, nullptr, none);
+  return undefined ? undefined : evaluate(problem, values, &touched, none);
 }
 
 KINECAL_INLINE NormalEquations normal_equations(const AnyProblem& problem,

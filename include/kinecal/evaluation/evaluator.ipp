@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -63,10 +65,11 @@ std::optional<UndefinedResidual> Evaluator<S>::evaluate(std::span<const double> 
     code.evaluate(views, derivatives, at, rows_);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       rows_.unpack(views.runs, views.term->feature_size, static_cast<int>(i), columns, residuals_);
-      if (residuals_.residual.allFinite()) {
+      const bool has_value = residuals_.residual.allFinite();
+      if (has_value && (!derivatives || std::isfinite(residuals_.jacobian.sum()))) {
         visit(t, samples[i], residuals_);
       } else if (!undefined) {
-        undefined = UndefinedResidual{views.term->name, problem_.source(samples[i])};
+        undefined = UndefinedResidual{views.term->name, problem_.source(samples[i]), has_value};
       }
     }
   };
@@ -89,6 +92,8 @@ NormalEquations Evaluator<S>::normal_equations(std::span<const double> values, b
                          });
   NormalEquations total(columns);
   for (const NormalEquations& part : parts) total += part;
+  // An undefined derivative times any residual is not a number.
+  if (!total.gradient.allFinite()) total.cost = std::numeric_limits<double>::quiet_NaN();
   for (const PriorTerm& prior : problem_.priors()) {
     prior.evaluate(problem_.table(), values, derivatives ? &free_ : nullptr, residuals_);
     total.add_prior(prior, residuals_, problem_.num_samples(), losses);

@@ -20,7 +20,11 @@
 //   measurement(point, settings)         the part of a recorded point to keep, computed once
 //   kOwnFrame                            features are in the sensor's frame, never in a virtual one
 //   kOriented                            features have an orientation
-//   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels
+//   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels; not a number
+//                                        where the camera does not see the point
+//   sees(p)                              false where the formula of predict() gives a pixel, but the
+//                                        camera does not see the point: z <= 0 of a pinhole.  A mask
+//                                        for packets: `return p.z() > S(0.0);`
 //   calibrated(camera_info, parameters)  makes it a camera: its camera_info with corrected intrinsics;
 //                                        its settings begin with fx fy cx cy
 //   image                                a member of type ImageKind: raw or rectified images
@@ -136,6 +140,12 @@ concept PredictingSensor = requires(const M& model, const Vector3<detail::Probe>
                                     const std::array<double, kSettingsOf<M>>& settings,
                                     const std::array<detail::Probe, kParametersOf<M>>& parameters) {
   { model.predict(p, settings, parameters) } -> std::same_as<Eigen::Matrix<detail::Probe, 2, 1>>;
+};
+
+/// A camera that states which points of its frame it sees: sees(p).
+template <class M>
+concept HasFieldOfView = requires(const M& model, const Vector3<double>& p) {
+  { model.sees(p) } -> std::same_as<bool>;
 };
 
 /// A sensor.
