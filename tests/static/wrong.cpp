@@ -40,6 +40,11 @@ Chain<Every, "base", "float\?\?/ing"> floating_joint;
 // meant: head_pan_joint
 Chain<Fetch, "torso_lift_link", "head_pan_link", Names<"haed_pan_joint">> misspelt_frame;
 
+// expect: joint positions are not numbers that forward kinematics can use; use double or float, or
+auto whole_numbers(const RuntimeChain& arm, const Eigen::VectorXi& q) {
+  return forward_kinematics(arm, q);
+}
+
 // ---- chains, in crates that are used
 
 // expect: the base of this Chain is not a link of the robot; correct its name
