@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
+#include "kinecal/geometry/eigen_layout.hpp"
 #include "kinecal/parameters/parameter.hpp"
 
 namespace kinecal {
