@@ -92,10 +92,11 @@ class AnyEvaluator {
                                                                   std::span<const double> values);
 
 /// The normal equations once: see AnyEvaluator::normal_equations().
-/// @param free  the parameters to differentiate by; nullptr: the cost only
+/// @param free     the parameters to differentiate by; nullptr: the cost only
+/// @param threads  number of threads that share the work; zero: one per core
 [[nodiscard]] NormalEquations normal_equations(const AnyProblem& problem,
                                                std::span<const double> values, const FreeSet* free,
-                                               Losses losses = Losses::as_given, int threads = 1);
+                                               Losses losses = Losses::as_given, int threads = 0);
 
 /// A problem that the library evaluates in packets, as wide as its instruction set allows.
 /// Takes the same arguments as the constructor of AnyProblem.

@@ -56,7 +56,7 @@ KINECAL_INLINE std::optional<UndefinedResidual> evaluate(const AnyProblem& probl
                                                          const RowVisitor& visit,
                                                          Linearization at) {
   const FreeSet none({}, problem.table().size());
-  return problem.evaluator(free != nullptr ? *free : none)
+  return problem.evaluator(free != nullptr ? *free : none, 1)
       ->evaluate(values, free != nullptr, visit, at);
 }
 

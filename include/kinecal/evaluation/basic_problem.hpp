@@ -68,7 +68,7 @@ class BasicProblem final : public AnyProblem {
   [[nodiscard]] const std::vector<detail::Batches<S>>& batches() const { return batches_; }
 
   [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
-                                                        int threads = 1) const override;
+                                                        int threads = 0) const override;
   [[nodiscard]] std::unique_ptr<AnyProblem> without_samples() const override;
 
  private:

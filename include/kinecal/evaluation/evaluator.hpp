@@ -24,12 +24,12 @@ class Evaluator final : public AnyEvaluator {
  public:
   /// @param problem  must outlive the evaluator; do not add samples meanwhile
   /// @param free     the columns of the Jacobian
-  /// @param threads  number of threads that share the work; zero: one per core
+  /// @param threads  number of threads that share normal_equations(); zero: one per core
   /// @throws std::invalid_argument  if a free parameter does not belong to the problem
-  Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 1);
+  Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 0);
 
   Evaluator(const BasicProblem<S>&&, const FreeSet&,
-            int = 1) = delete;  ///< the evaluator would outlive it
+            int = 0) = delete;  ///< the evaluator would outlive it
 
   /// The problem that it evaluates.
   [[nodiscard]] const BasicProblem<S>& problem() const override { return problem_; }

@@ -21,7 +21,7 @@ static_assert(
 static_assert(std::is_same_v<Eigen::Index, std::ptrdiff_t>,
               "kinecal: EIGEN_DEFAULT_DENSE_INDEX_TYPE is not std::ptrdiff_t; leave it undefined");
 static_assert(sizeof(Eigen::Matrix<double, 3, 1>) == 3 * sizeof(double) &&
-                  sizeof(Eigen::VectorXd) == sizeof(double*) + sizeof(Eigen::Index),
+                  sizeof(Eigen::VectorXd) == 2 * sizeof(double*),
               "kinecal: EIGEN_MATRIX_PLUGIN or another plugin adds members to Eigen's matrices; "
               "derive a type of your own instead");
 

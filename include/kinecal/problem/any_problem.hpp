@@ -115,10 +115,10 @@ class AnyProblem {
 
   /// An evaluator of the problem.  The problem must outlive it; do not add samples meanwhile.
   /// @param free     the Jacobian's columns
-  /// @param threads  number of threads that share the work; zero: one per core
+  /// @param threads  number of threads that share normal_equations(); zero: one per core
   /// @throws std::invalid_argument  as check()
   [[nodiscard]] virtual std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
-                                                                int threads = 1) const = 0;
+                                                                int threads = 0) const = 0;
 
  protected:
   /// Movable by derived classes.

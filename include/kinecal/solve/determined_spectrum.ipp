@@ -91,7 +91,7 @@ inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::Ma
 [[nodiscard]] inline SampleInformation sample_information(const AnyProblem& problem,
                                                           const FreeSet& free,
                                                           std::span<const double> values) {
-  return {problem.evaluator(free)->normal_equations(values),
+  return {problem.evaluator(free, 1)->normal_equations(values),
           error_free_information(problem, free, values),
           prior_equations(problem, free, values).hessian};
 }

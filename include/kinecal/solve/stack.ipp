@@ -51,7 +51,7 @@ KINECAL_INLINE std::optional<Eigen::MatrixXd> Stack::covariance() const {
 
 KINECAL_INLINE Stack stack(const AnyProblem& problem, const FreeSet& free,
                            std::span<const double> values) {
-  const auto evaluator = problem.evaluator(free);
+  const auto evaluator = problem.evaluator(free, 1);
   Stack all;
   all.residual.resize(problem.num_residuals());
   all.jacobian.resize(problem.num_residuals(), free.size());

@@ -44,7 +44,7 @@ KINECAL_INLINE StackedResiduals::StackedResiduals(const AnyProblem& problem, con
       values_(std::move(values)),
       x_(x),
       losses_(losses),
-      evaluator_(problem.evaluator(free)) {
+      evaluator_(problem.evaluator(free, 1)) {
   rows_.residual.resize(problem.num_residuals());
   rows_.jacobian.resize(problem.num_residuals(), free.size());
 }

@@ -79,7 +79,7 @@ struct StackedRows {
   const std::unique_ptr<AnyProblem> problem = setup.make();
   for (const Sample& sample : measured) problem->add_sample(sample);
   const FreeSet free(setup.free, problem->table().size());
-  const std::unique_ptr<AnyEvaluator> evaluator = problem->evaluator(free);
+  const std::unique_ptr<AnyEvaluator> evaluator = problem->evaluator(free, 1);
   const PlainEquations at_truth = plain_equations(*problem, free, robot.truth);
   const Eigen::MatrixXd hessian = at_truth.hessian.matrix();
   const Eigen::VectorXd units =

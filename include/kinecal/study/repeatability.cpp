@@ -70,7 +70,7 @@ void ruin(const StudySetup& setup, const std::set<std::string>& joints, Sample& 
   const std::unique_ptr<AnyProblem> problem = setup.make();
   for (const Sample& sample : samples) problem->add_sample(sample);
   std::vector<double> sums(static_cast<std::size_t>(problem->num_terms()), 0.0), counts = sums;
-  (void)problem->evaluator(FreeSet({}, problem->table().size()))
+  (void)problem->evaluator(FreeSet({}, problem->table().size()), 1)
       ->evaluate(values, false, [&](int term, int, const TermResiduals& rows) {
         const Eigen::Index size = problem->term(term).feature_size;
         const auto t = static_cast<std::size_t>(term);

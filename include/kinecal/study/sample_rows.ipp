@@ -59,7 +59,7 @@ class ChangingSamples {
     const auto visit = [&](int term, int sample, const TermResiduals& of_term) {
       add(*problem, term, sample, of_term, rows);
     };
-    const auto undefined = problem->evaluator(free != nullptr ? *free : none)
+    const auto undefined = problem->evaluator(free != nullptr ? *free : none, 1)
                                ->evaluate(values_, free != nullptr, visit);
     if (undefined) {
       throw StudyError(undefined->source + ": error block '" + undefined->term +

@@ -62,7 +62,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, std::span<cons
   found.observability = observability(problem, free, values);
   const FreeSet inside = detail::inside_bounds(problem, free, values, found.at_bound);
   found.parameters = inside.parameters();
-  const auto evaluator = problem.evaluator(inside);
+  const auto evaluator = problem.evaluator(inside, 1);
   const LinearFit fit =
       linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
   found.rows = fit.residual.size();

@@ -120,7 +120,7 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
   found.blocks = detail::statistics_of_blocks(problem, sums);
   const std::shared_ptr<const AnyProblem> first = shards.read(0);
   if (const auto frames = compared_frames(*first, samples)) {
-    const LinearFit fit = linear_fit(*first->evaluator(inside), after, by);
+    const LinearFit fit = linear_fit(*first->evaluator(inside, 1), after, by);
     of.pose = pose_uncertainty(*first, inside, after, fit, of.uncertainty, samples, frames->first,
                                frames->second);
   }

@@ -45,7 +45,7 @@ std::optional<NextMove> OnlineCalibration::next_move(double step) const {
   const auto trials = known.make();
   for (const auto& candidate : candidates) trials->add_sample(candidate.second);
   std::vector<detail::SampleRows> rows(candidates.size());
-  (void)trials->evaluator(known.free)
+  (void)trials->evaluator(known.free, 1)
       ->evaluate(
           known.values, true,
           [&](int term, int sample, const TermResiduals& of_term) {

@@ -14,7 +14,7 @@ namespace {
 /// A step linearized at its solution.
 [[nodiscard]] LinearFit linear_fit_of(const AnyProblem& problem, const FreeSet& free,
                                       std::span<const double> values) {
-  const auto evaluator = problem.evaluator(free);
+  const auto evaluator = problem.evaluator(free, 1);
   return linear_fit(*evaluator, values, determined_coordinates(problem, free, values));
 }
 
