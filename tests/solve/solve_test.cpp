@@ -5,6 +5,7 @@
 
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
+#include "support/fisheye.hpp"
 #include "support/scene.hpp"
 
 namespace kinecal {
@@ -486,6 +487,27 @@ TEST(Solve, RefusesAStartWhoseCostOverflows) {
   const StepResult result = solve(problem, free_of(problem.table(), {"elbow"}), values);
   EXPECT_FALSE(result.converged);
   EXPECT_EQ(result.termination, "failed: the cost at the start is not finite");
+}
+
+TEST(Solve, NamesAResidualWithoutADerivative) {
+  const Robot robot("r", {{"mount", JointType::fixed, "base", "camera"},
+                          {"turn", JointType::revolute, "base", "arm", {}, {0, 0, 1}}});
+  ParameterTable table;
+  table.add({.name = "turn"});
+  Problem problem(robot, "base", table, {});
+  problem.add_sensor(ChainPoint{}, {"arm", "arm"});
+  problem.add_sensor(test::KinkedFisheye{}, {"camera", "camera"});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "camera"});
+  problem.add_sample({{"turn"},
+                      {0.0},
+                      {{"arm", {{"arm", {0, 0, 1}}}}, {"camera", {{"camera", {641, 480, 0}}}}},
+                      "a.yaml:7"});
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(1);
+  const StepResult result = solve(problem, FreeSet({0}, 1), values);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.termination,
+            "failed: a derivative of the residual of 'reprojection' is not defined at the start "
+            "for the sample at a.yaml:7");
 }
 
 TEST(Solve, RefusesAProblemWithoutSamples) {

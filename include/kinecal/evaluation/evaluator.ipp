@@ -43,7 +43,7 @@ Evaluator<S>::Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int
 }
 
 template <class S>
-void Evaluator<S>::set(std::span<const double> values) {
+void Evaluator<S>::set(ParameterValues values) {
   if (values.size() != static_cast<std::size_t>(problem_.table().size())) {
     throw std::invalid_argument(std::to_string(values.size()) + " values for a table of " +
                                 std::to_string(problem_.table().size()) + " parameters");
@@ -55,9 +55,8 @@ void Evaluator<S>::set(std::span<const double> values) {
 }
 
 template <class S>
-std::optional<UndefinedResidual> Evaluator<S>::evaluate(std::span<const double> values,
-                                                        bool derivatives, const RowVisitor& visit,
-                                                        Linearization at) {
+std::optional<UndefinedResidual> Evaluator<S>::evaluate(ParameterValues values, bool derivatives,
+                                                        const RowVisitor& visit, Linearization at) {
   std::optional<UndefinedResidual> undefined;
   const int columns = derivatives ? free_.size() : -1;
   const auto visit_batch = [&](int t, const detail::TermCode<S>& code,
@@ -78,7 +77,7 @@ std::optional<UndefinedResidual> Evaluator<S>::evaluate(std::span<const double> 
 }
 
 template <class S>
-NormalEquations Evaluator<S>::normal_equations(std::span<const double> values, bool derivatives,
+NormalEquations Evaluator<S>::normal_equations(ParameterValues values, bool derivatives,
                                                Losses losses) {
   set(values);
   const int columns = derivatives ? free_.size() : 0;

@@ -31,8 +31,7 @@ namespace detail {
 
 /// The name of a term whose loss ignores half of its features or more; empty if there is none.
 /// Such a "minimum" is a plateau.
-[[nodiscard]] inline std::string mostly_left_out(AnyEvaluator& evaluator,
-                                                 std::span<const double> values) {
+[[nodiscard]] inline std::string mostly_left_out(AnyEvaluator& evaluator, ParameterValues values) {
   const AnyProblem& problem = evaluator.problem();
   if (all_losses_convex(problem)) return {};
   struct Features {
@@ -118,16 +117,16 @@ inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evalua
 
 /// Why a step cannot start.
 [[nodiscard]] inline std::string why_undefined(const UndefinedResidual& undefined) {
-  const std::string where = "'" + undefined.term + "' is not defined at the start for the sample";
-  const std::string source = undefined.source.empty() ? "" : " at " + undefined.source;
-  if (undefined.has_value) return "failed: a derivative of the residual of " + where + source;
-  return "failed: the residual of " + where + source +
+  const std::string where =
+      "'" + undefined.term + "' is not defined at the start for the sample at " + undefined.source;
+  if (undefined.has_value) return "failed: a derivative of the residual of " + where;
+  return "failed: the residual of " + where +
          " (a point that its camera does not see, or points that span no plane)";
 }
 
 /// Sets costs and counts at the start; returns false, with the reason, if there is nothing to
 /// solve.
-inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepResult& result) {
+inline bool start(AnyEvaluator& evaluator, ParameterValues values, StepResult& result) {
   result.initial_cost = evaluator.normal_equations(values, false).cost;
   result.final_cost = result.initial_cost;
   std::optional<UndefinedResidual> undefined;

@@ -57,8 +57,7 @@ struct StackedRows {
   std::vector<double> moved;  ///< J step
 };
 
-[[nodiscard]] inline StackedRows stacked_rows(AnyEvaluator& evaluator,
-                                              std::span<const double> values,
+[[nodiscard]] inline StackedRows stacked_rows(AnyEvaluator& evaluator, ParameterValues values,
                                               const Eigen::VectorXd& step) {
   StackedRows all;
   (void)evaluator.evaluate(values, step.size() > 0, [&](int term, int, const TermResiduals& rows) {

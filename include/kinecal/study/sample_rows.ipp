@@ -32,8 +32,7 @@ struct StudyRows {
 /// Samples with changing measurements, and their residuals.
 class ChangingSamples {
  public:
-  ChangingSamples(const MakeProblem& make, std::span<const double> values,
-                  std::span<const Sample> samples)
+  ChangingSamples(const MakeProblem& make, ParameterValues values, std::span<const Sample> samples)
       : make_(make), values_(values), empty_(make()) {
     for (const Sample& sample : samples) {
       samples_.push_back(empty_->paired(sample).value_or(sample));

@@ -59,8 +59,7 @@ namespace detail {
 /// Adds the sums of all shards.
 /// @param misfits  out: see ShardAssessment
 [[nodiscard]] inline ShardSums all_sums(const Shards& shards, const FreeSet& free,
-                                        std::span<const double> before,
-                                        std::span<const double> after,
+                                        ParameterValues before, ParameterValues after,
                                         std::vector<double>& misfits) {
   const AnyProblem& problem = *shards.problem;
   const auto numbers_of = [&](int shard) {
@@ -98,9 +97,8 @@ namespace detail {
 
 }  // namespace detail
 
-ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
-                              std::span<const double> before, std::span<const double> after,
-                              std::span<const Sample> samples) {
+ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, ParameterValues before,
+                              ParameterValues after, std::span<const Sample> samples) {
   const AnyProblem& problem = *shards.problem;
   ShardAssessment found;
   Assessment& of = found.assessment;

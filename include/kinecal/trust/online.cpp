@@ -9,9 +9,8 @@
 
 namespace kinecal {
 
-OnlineCalibration::OnlineCalibration(MakeProblem make, const FreeSet& free,
-                                     std::span<const double> values, const FrameOnRobot& frame,
-                                     const FrameOnRobot& in)
+OnlineCalibration::OnlineCalibration(MakeProblem make, const FreeSet& free, ParameterValues values,
+                                     const FrameOnRobot& frame, const FrameOnRobot& in)
     : inside_(new Inside{std::move(make), free, {values.begin(), values.end()}, frame, in}) {
   inside_->problem->check(free);
   (void)detail::PoseDerivative(*inside_->problem, free, inside_->values, frame, in);
