@@ -106,9 +106,9 @@ TEST(Problem, RefusesMoreParametersThanABlockCanHave) {
 
 TEST(Problem, NamesTheNearestParameterForAMisspeltPrior) {
   Problem problem = test::scene_problem();
-  problem.add_prior("keep", {"board", 1.0, 1.0, 1.0});
-  problem.add_prior("keep", {"elbow", 1.0, 1.0, 1.0});
-  problem.add_prior("keep", {"camera_fx"});
+  problem.add_prior("board", {"board", 1.0, 1.0, 1.0});
+  problem.add_prior("elbow", {"elbow", 1.0, 1.0, 1.0});
+  problem.add_prior("focus", {"camera_fx"});
   const auto message = [&](const char* param) {
     return message_of<std::invalid_argument>([&] { problem.add_prior("keep", {param}); });
   };
@@ -125,8 +125,8 @@ TEST(Problem, RefusesAMeanOfWhatAPriorIsNotOn) {
   Problem problem = test::scene_problem();
   Prior of_joint{"elbow"}, of_frame{"board"};
   of_joint.mean[0] = of_frame.mean[1] = of_frame.mean[6] = 0.1;
-  problem.add_prior("keep", of_joint);
-  problem.add_prior("keep", of_frame);
+  problem.add_prior("elbow", of_joint);
+  problem.add_prior("board", of_frame);
   of_joint.mean[1] = of_frame.mean[0] = 0.1;
   const auto message = [&](const Prior& prior) {
     return message_of<std::invalid_argument>([&] { problem.add_prior("keep", prior); });

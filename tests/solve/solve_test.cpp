@@ -5,6 +5,7 @@
 
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
+#include "kinecal/solve/calibrate.hpp"
 #include "support/fisheye.hpp"
 #include "support/scene.hpp"
 
@@ -508,6 +509,25 @@ TEST(Solve, NamesAResidualWithoutADerivative) {
   EXPECT_EQ(result.termination,
             "failed: a derivative of the residual of 'reprojection' is not defined at the start "
             "for the sample at a.yaml:7");
+}
+
+TEST(MakeCalibration, NamesASensorThatIsObservedByNearlyThisName) {
+  auto problem = std::make_unique<Problem>(test::scene_problem());
+  problem->add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  std::vector<Sample> samples = noisy_samples(2, 1e-3);
+  for (Sample& sample : samples) {
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor == "camera") seen.sensor = "camra";
+    }
+  }
+  const FreeSet free = free_of(problem->table(), {"elbow"});
+  try {
+    (void)make_calibration(std::move(problem), free, samples);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(),
+                 "no sample has an observation of sensor 'camera'; did you mean 'camra'?");
+  }
 }
 
 TEST(Solve, RefusesAProblemWithoutSamples) {
