@@ -73,8 +73,8 @@ int main() {
   const auto one_by_one = problem_of<double>(samples);
   const FreeSet free = Tracked::free(problem.table());
   const std::vector<double> values(static_cast<std::size_t>(problem.table().size()), 0.0);
-  Evaluator<Packet> packets(problem, free), threads(problem, free, 0);
-  Evaluator<double> doubles(one_by_one, free);
+  Evaluator<Packet> packets(problem, free, 1), threads(problem, free);
+  Evaluator<double> doubles(one_by_one, free, 1);
   NormalEquations by_rows(free.size()), all(free.size()), shared(free.size()), slow(free.size());
   std::printf("%d samples, %d in a packet, %d parameters\n", kSamples, kLanes<Packet>, free.size());
   time_of("residuals and Jacobian, row by row", [&] {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/errors/block_checks.hpp"
 #include "kinecal/errors/built_in_block.hpp"
 #include "kinecal/errors/difference.hpp"
 #include "kinecal/errors/error_block.hpp"

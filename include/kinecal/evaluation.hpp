@@ -7,6 +7,7 @@
 #include "kinecal/evaluation/block_term.hpp"
 #include "kinecal/evaluation/evaluator.hpp"
 #include "kinecal/evaluation/parallel.hpp"
+#include "kinecal/evaluation/predict.hpp"
 #include "kinecal/evaluation/prefetch.hpp"
 #include "kinecal/evaluation/problem.hpp"
 #include "kinecal/evaluation/rows/batch_rows.hpp"

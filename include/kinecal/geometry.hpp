@@ -8,4 +8,5 @@
 #include "kinecal/geometry/pose.hpp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/geometry/rpy.hpp"
+#include "kinecal/geometry/scalar.hpp"
 #include "kinecal/geometry/traced.hpp"

@@ -8,3 +8,4 @@
 #include "kinecal/parameters/own_parameters.hpp"
 #include "kinecal/parameters/parameter.hpp"
 #include "kinecal/parameters/parameter_table.hpp"
+#include "kinecal/parameters/parameter_values.hpp"

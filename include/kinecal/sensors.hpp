@@ -12,3 +12,4 @@
 #include "kinecal/sensors/quantity.hpp"
 #include "kinecal/sensors/quantity_vectors.hpp"
 #include "kinecal/sensors/sensor.hpp"
+#include "kinecal/sensors/sensor_checks.hpp"

@@ -17,6 +17,7 @@
 #include "kinecal/testing/check_sensor.hpp"
 #include "kinecal/testing/check_walker.hpp"
 #include "kinecal/testing/comparison.hpp"
+#include "kinecal/testing/field_of_view.hpp"
 #include "kinecal/testing/random_input.hpp"
 #include "kinecal/testing/sensor_input.hpp"
 #include "kinecal/testing/typical_observations.hpp"

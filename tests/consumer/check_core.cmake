@@ -53,12 +53,16 @@ endif()
 set(aligned "kinecal::[a-z0-9_]+::EigenAlignedTo<.*>::kLibraryIsCompiled")
 expect_refused("more alignment" ${aligned} -DEIGEN_MAX_ALIGN_BYTES=128)
 expect_refused("no alignment" ${aligned} -DEIGEN_MAX_STATIC_ALIGN_BYTES=0)
+expect_refused("no alignment at all" ${aligned} -DEIGEN_DONT_ALIGN)
+expect_refused("memory that Eigen aligns" ${aligned} -DEIGEN_MALLOC_ALREADY_ALIGNED=0)
 expect_refused("storage by rows" "kinecal: EIGEN_DEFAULT_TO_ROW_MAJOR is defined"
                -DEIGEN_DEFAULT_TO_ROW_MAJOR)
 expect_refused("storage by rows, headers alone" "kinecal: EIGEN_DEFAULT_TO_ROW_MAJOR is defined"
                -DEIGEN_DEFAULT_TO_ROW_MAJOR -DKINECAL_HEADER_ONLY)
-expect_refused("narrow indices" "kinecal: EIGEN_DEFAULT_DENSE_INDEX_TYPE is not as wide"
-               -DEIGEN_DEFAULT_DENSE_INDEX_TYPE=int)
+foreach(index IN ITEMS int "long long")
+  expect_refused("${index} as index" "kinecal: EIGEN_DEFAULT_DENSE_INDEX_TYPE is not std::ptrdiff_t"
+                 -DEIGEN_DEFAULT_DENSE_INDEX_TYPE=${index})
+endforeach()
 
 flags_of(io)
 execute_process(COMMAND ${COMPILER} -std=c++20 ${WORK}/consumer/io.cpp ${flags}

@@ -25,6 +25,18 @@ struct DynamicSize {
     return p;
   }
 };
+struct Expression {
+  template <class S>
+  auto operator()(const Vector3<S>& a, const Vector3<S>& b) const {
+    return a - b;
+  }
+};
+struct Numbers {
+  template <class S>
+  std::array<S, 2> operator()(const PixelObservation<S>& pixel) const {
+    return {pixel.predicted.x(), pixel.predicted.y()};
+  }
+};
 struct NoCall {};
 
 /// Own parameters and conditions after the features, also for a scalar that is not templated.
@@ -55,6 +67,7 @@ static_assert(kResiduals<PlaneToPlane> == 4);
 static_assert(kSensors<PointToPixel> == 2 && kSensors<PlaneToPlane> == 2);
 static_assert(!ErrorBlock<NotTemplated>, "a block must take jets");
 static_assert(!ErrorBlock<DynamicSize>, "a residual has a fixed size");
+static_assert(!ErrorBlock<Expression> && !ErrorBlock<Numbers>, "a residual is a matrix");
 static_assert(!ErrorBlock<NoCall>);
 
 // The built-in blocks: figures worked out by hand.

@@ -23,6 +23,26 @@ TEST(ParameterTable, FindsByNameAndNamesTheNearestOne) {
   EXPECT_THROW(table.add({.name = "elbow"}), std::invalid_argument);
 }
 
+TEST(ParameterTable, RefusesNumbersThatCannotBeUsed) {
+  ParameterTable table;
+  const auto message = [&](const Parameter& parameter) -> std::string {
+    try {
+      table.add(parameter);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "nothing was thrown";
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(message({.name = "elbow", .lower = 0.2, .upper = -0.1}),
+            "parameter 'elbow': its lower bound 0.2 is above its upper bound -0.1");
+  EXPECT_EQ(message({.name = "elbow", .upper = nan}), "parameter 'elbow': a bound is not a number");
+  EXPECT_EQ(message({.name = "elbow", .initial = nan}),
+            "parameter 'elbow': its value is not a finite number");
+  EXPECT_EQ(table.size(), 0);
+  EXPECT_EQ(message({.name = "elbow", .lower = 0.1, .upper = 0.1}), "nothing was thrown");
+}
+
 TEST(FreeSet, GivesColumnsToFreeParametersOnly) {
   const FreeSet free({3, 1}, 5);
   EXPECT_EQ(free.size(), 2);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
@@ -105,9 +106,9 @@ TEST(Problem, RefusesMoreParametersThanABlockCanHave) {
 
 TEST(Problem, NamesTheNearestParameterForAMisspeltPrior) {
   Problem problem = test::scene_problem();
-  problem.add_prior("keep", {"board", 1.0, 1.0, 1.0});
-  problem.add_prior("keep", {"elbow", 1.0, 1.0, 1.0});
-  problem.add_prior("keep", {"camera_fx"});
+  problem.add_prior("board", {"board", 1.0, 1.0, 1.0});
+  problem.add_prior("elbow", {"elbow", 1.0, 1.0, 1.0});
+  problem.add_prior("focus", {"camera_fx"});
   const auto message = [&](const char* param) {
     return message_of<std::invalid_argument>([&] { problem.add_prior("keep", {param}); });
   };
@@ -124,8 +125,8 @@ TEST(Problem, RefusesAMeanOfWhatAPriorIsNotOn) {
   Problem problem = test::scene_problem();
   Prior of_joint{"elbow"}, of_frame{"board"};
   of_joint.mean[0] = of_frame.mean[1] = of_frame.mean[6] = 0.1;
-  problem.add_prior("keep", of_joint);
-  problem.add_prior("keep", of_frame);
+  problem.add_prior("elbow", of_joint);
+  problem.add_prior("board", of_frame);
   of_joint.mean[1] = of_frame.mean[0] = 0.1;
   const auto message = [&](const Prior& prior) {
     return message_of<std::invalid_argument>([&] { problem.add_prior("keep", prior); });
@@ -323,6 +324,69 @@ TEST(Problem, CountsTheSameInPacketsAndInDoubles) {
 }
 
 /// What points into the problem goes where it goes.
+TEST(Problem, RefusesTwoBlocksOrPriorsOfOneName) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  problem.add_prior("b", {.param = "elbow"});
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+              problem.add_block("b", PointToPixel{}, {"arm", "eye"});
+            }),
+            "two error blocks have the name 'b'; rename one of them");
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { problem.add_prior("b", {.param = "wrist"}); }),
+            "two priors have the name 'b'; rename one of them");
+}
+
+TEST(Problem, RefusesNumbersThatCannotBeUsed) {
+  Problem problem = test::scene_problem();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto message = [&](const TermOptions& options) {
+    return message_of<std::invalid_argument>([&] {
+      problem.add_block("b", PointToPoint{}, {"camera", "arm"}, options);
+    });
+  };
+  EXPECT_EQ(message({.scale = nan}),
+            "error block 'b': scale is nan; it must be finite and not negative");
+  EXPECT_EQ(message({.sigma = nan}), "error block 'b': sigma is nan; it must be positive");
+  EXPECT_EQ(message({.sigma = 0.0}), "error block 'b': sigma is 0; it must be positive");
+  EXPECT_EQ(message({.loss = {LossType::huber, -1.0}}),
+            "error block 'b': the scale of its loss is -1; it must be positive");
+  EXPECT_EQ(message_of<std::invalid_argument>(
+                [&] { problem.add_prior("p", {.param = "elbow", .joint_scale = nan}); }),
+            "error block 'p': a scale is nan; it must be finite");
+  EXPECT_EQ(problem.num_terms(), 0);
+  ParameterTable table = test::scene_table();
+  table["elbow"].value = nan;
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+              Problem(test::mobile_manipulator(), "base_link", table, test::kSceneFrames);
+            }),
+            "parameter 'elbow': its value is not a finite number");
+}
+
+TEST(Problem, RefusesAFreeFrameThatNothingMoves) {
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+              Problem(test::mobile_manipulator(), "base_link", test::scene_table(),
+                      {"camra_joint"});
+            }),
+            "free frame 'camra_joint' is not a joint of the robot, and no parameter of it "
+            "(camra_joint_x ... camra_joint_c) is in the table; did you mean 'camera_joint'?");
+}
+
+TEST(Problem, NamesASampleWithoutASourceByItsNumber) {
+  Problem problem = test::scene_problem();
+  problem.add_block("b", PointToPoint{}, {"camera", "arm"});
+  Sample sample = samples(1)[0];
+  sample.source.clear();
+  problem.add_sample(sample);
+  EXPECT_EQ(problem.source(0), "sample 0");
+  Sample twice = sample;
+  twice.observations.push_back(twice.observations[0]);
+  EXPECT_EQ(message_of<SampleError>([&] { problem.add_sample(twice); }),
+            "sample 1: it has two observations of sensor '" + twice.observations[0].sensor + "'");
+  sample.joint_names.pop_back();
+  EXPECT_THAT(message_of<SampleError>([&] { problem.add_sample(sample); }),
+              testing::StartsWith("sample 1: it has "));
+}
+
 TEST(Problem, MayBeMoved) {
   Problem problem = four_blocks();
   for (const Sample& sample : samples(5)) problem.add_sample(sample);

@@ -5,6 +5,8 @@
 
 #include "kinecal/errors.hpp"
 #include "kinecal/evaluation/problem.hpp"
+#include "kinecal/solve/calibrate.hpp"
+#include "support/fisheye.hpp"
 #include "support/scene.hpp"
 
 namespace kinecal {
@@ -486,6 +488,46 @@ TEST(Solve, RefusesAStartWhoseCostOverflows) {
   const StepResult result = solve(problem, free_of(problem.table(), {"elbow"}), values);
   EXPECT_FALSE(result.converged);
   EXPECT_EQ(result.termination, "failed: the cost at the start is not finite");
+}
+
+TEST(Solve, NamesAResidualWithoutADerivative) {
+  const Robot robot("r", {{"mount", JointType::fixed, "base", "camera"},
+                          {"turn", JointType::revolute, "base", "arm", {}, {0, 0, 1}}});
+  ParameterTable table;
+  table.add({.name = "turn"});
+  Problem problem(robot, "base", table, {});
+  problem.add_sensor(ChainPoint{}, {"arm", "arm"});
+  problem.add_sensor(test::KinkedFisheye{}, {"camera", "camera"});
+  problem.add_block("reprojection", PointToPixel{}, {"arm", "camera"});
+  problem.add_sample({{"turn"},
+                      {0.0},
+                      {{"arm", {{"arm", {0, 0, 1}}}}, {"camera", {{"camera", {641, 480, 0}}}}},
+                      "a.yaml:7"});
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(1);
+  const StepResult result = solve(problem, FreeSet({0}, 1), values);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.termination,
+            "failed: a derivative of the residual of 'reprojection' is not defined at the start "
+            "for the sample at a.yaml:7");
+}
+
+TEST(MakeCalibration, NamesASensorThatIsObservedByNearlyThisName) {
+  auto problem = std::make_unique<Problem>(test::scene_problem());
+  problem->add_block("hand_eye", PointToPoint{}, {"camera", "arm"}, {});
+  std::vector<Sample> samples = noisy_samples(2, 1e-3);
+  for (Sample& sample : samples) {
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor == "camera") seen.sensor = "camra";
+    }
+  }
+  const FreeSet free = free_of(problem->table(), {"elbow"});
+  try {
+    (void)make_calibration(std::move(problem), free, samples);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(),
+                 "no sample has an observation of sensor 'camera'; did you mean 'camra'?");
+  }
 }
 
 TEST(Solve, RefusesAProblemWithoutSamples) {

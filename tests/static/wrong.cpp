@@ -7,7 +7,10 @@
 #include "kinecal/errors/point_to_pixel.hpp"
 #include "kinecal/errors/point_to_plane.hpp"
 #include "kinecal/errors/point_to_point.hpp"
+#include "kinecal/evaluation/problem.hpp"
+#include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/solve/calibrate_crate.hpp"
+#include "kinecal/testing/check_block.hpp"
 #include "robots/every_joint.hpp"
 #include "robots/fetch_example.hpp"
 
@@ -185,6 +188,15 @@ struct AnySize {
 };
 Crate<Head, Block<"ground", AnySize, "camera">> residual_of_any_size;
 
+// expect: the residual of this error block is not a vector of fixed size in the scalar of its
+struct OtherScalar {
+  template <class S>
+  Vector3<double> operator()(const Ray<S>&) const {
+    return Vector3<double>::Zero();
+  }
+};
+Crate<Head, Block<"ground", OtherScalar, "camera">> residual_in_double;
+
 // expect: no sensors deliver the arguments of this error block; write template <class S>
 struct OfFlags {
   template <class S>
@@ -292,6 +304,88 @@ auto calibrate_misspelt_prior() {
   return calibrate(
       Crate<Arm, Head, FrameOffset<"head_pan_joint">, HandEye, PriorOn<"p", "head_pan_jont">>(),
       {});
+}
+
+// ---- functions, whose bodies come last
+
+// expect: the residual of this error block is not a vector of fixed size in the scalar of its
+struct Expression {
+  template <class S>
+  auto operator()(const Vector3<S>& a, const Vector3<S>& b) const {
+    return a - b;
+  }
+};
+void add_expression(Problem& problem) {
+  problem.add_block("difference", Expression{}, {"a", "b"});
+}
+
+// expect: the residual of this error block is not a vector of fixed size in the scalar of its
+struct Numbers {
+  template <class S>
+  std::array<S, 2> operator()(const PixelObservation<S>& pixel) const {
+    return {pixel.predicted.x(), pixel.predicted.y()};
+  }
+};
+void add_numbers(Problem& problem) {
+  problem.add_block("pixels", Numbers{}, {"a", "b"});
+}
+
+// expect: the residual of this error block is not a vector of fixed size in the scalar of its
+struct OneNumber {
+  template <class S>
+  S operator()(const Pose<S>& pose) const {
+    return pose.translation.z();
+  }
+};
+Verdict check_one_number() {
+  return check_block(OneNumber{});
+}
+
+// expect: this sensor has no name; write in it static constexpr std::string_view kType
+struct Nameless {
+  template <class S, class Q>
+  Vector3<S> place(const Measurement<Nameless, Q>& m, const std::array<S, 0>&) const {
+    return m.point.template cast<S>();
+  }
+};
+void add_nameless(Problem& problem) {
+  problem.add_sensor(Nameless{}, {"a", "link"});
+}
+
+// expect: place() of this sensor does not return a Vector3<S>, Ray<S>, Pose<S> or Reading<S>
+struct PlacesExpression {
+  static constexpr std::string_view kType = "places_expression";
+  template <class S, class Q>
+  auto place(const Measurement<PlacesExpression, Q>& m, const std::array<S, 0>&) const {
+    return 2.0 * m.point;
+  }
+};
+void add_places_expression(Problem& problem) {
+  problem.add_sensor(PlacesExpression{}, {"a", "link"});
+}
+
+// expect: predict() of this sensor does not return an Eigen::Matrix<S, 2, 1>
+struct PredictsExpression : ChainPoint {
+  template <class S, class Q>
+  auto predict(const Vector3<S>& p, const std::array<Q, 0>&, const std::array<S, 0>&) const {
+    return p.template head<2>() / p.z();
+  }
+};
+void add_predicts_expression(Problem& problem) {
+  problem.add_sensor(PredictsExpression{}, {"a", "link"});
+}
+
+// expect: this sensor has neither place(measurement, parameters) nor predict(point,
+struct DoesNothing {
+  static constexpr std::string_view kType = "does_nothing";
+};
+void add_does_nothing(Problem& problem) {
+  problem.add_sensor(DoesNothing{}, {"a", "link"});
+}
+
+// expect: joint positions are not numbers that forward kinematics can use; use double or float, or
+auto whole_numbers(const RuntimeChain& arm, const Eigen::VectorXi& q) {
+  return forward_kinematics(arm, q);
 }
 
 }  // namespace kinecal

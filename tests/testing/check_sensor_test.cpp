@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinecal/sensors.hpp"
+#include "support/fisheye.hpp"
 #include "support/open_scene.hpp"
 
 namespace kinecal {
@@ -140,6 +141,41 @@ TEST(CheckSensor, FindsARayThatMissesThePoint) {
                  "go through the point\npoint:\n"));
   EXPECT_THAT(check_sensor(FixedFocus{}).text,
               StartsWith("sensor 'fixed_focus', predict(): derivatives disagree"));
+}
+
+/// Projects points in front of it and behind it alike.
+struct SeesBehind {
+  static constexpr std::string_view kType = "sees_behind";
+
+  template <class S, class Q>
+  Eigen::Matrix<S, 2, 1> predict(const Vector3<S>& p, const std::array<Q, 0>&,
+                                 const std::array<S, 0>&) const {
+    return {500.0 * p.x() / p.z(), 500.0 * p.y() / p.z()};
+  }
+};
+/// The same, seeing only what is in front of it.
+struct SeesInFront : SeesBehind {
+  template <class S>
+  auto sees(const Vector3<S>& p) const {
+    return p.z() > S(0.0);
+  }
+};
+
+TEST(CheckSensor, LooksAllAroundACameraAndAlongItsAxis) {
+  EXPECT_EQ(check_sensor(test::Fisheye{}), kLawsHold);
+  EXPECT_EQ(check_sensor(SeesInFront{}), kLawsHold);
+  EXPECT_THAT(
+      check_sensor(SeesBehind{}).text,
+      StartsWith("sensor 'sees_behind', predict(): a point and the opposite one, behind the "
+                 "camera, have the same pixel; state which points the camera sees: "
+                 "sees(p)\nrecorded:\n"));
+  EXPECT_THAT(check_sensor(test::HollowFisheye{}).text,
+              StartsWith("sensor 'hollow_fisheye', predict(): it is not a number on the axis"));
+  EXPECT_THAT(check_sensor(test::KinkedFisheye{}).text,
+              StartsWith("sensor 'kinked_fisheye', predict(): a derivative is not a number, though "
+                         "the value is one\nby jets:\n"));
+  EXPECT_THAT(check_sensor(test::StraightFisheye{}).text,
+              StartsWith("sensor 'straight_fisheye', predict(): derivatives disagree"));
 }
 
 }  // namespace

@@ -3,46 +3,9 @@
 #pragma once
 
 #include "kinecal/crate/parameter_checks.hpp"
+#include "kinecal/errors/block_checks.hpp"
 
 namespace kinecal::detail {
-
-template <class Residual, bool kIsTemplated = false>
-struct ResidualOfBlock {
-  static_assert(kIsTemplated,
-                "kinecal: this error block is not a residual templated on its scalar; write "
-                "template <class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const");
-};
-template <class Residual, bool kIsVector = false>
-struct VectorOfBlock {
-  static_assert(kIsVector,
-                "kinecal: the residual of this error block is not a vector of fixed size in the "
-                "scalar of its arguments; return an Eigen::Matrix<S, N, 1>");
-};
-template <class Residual, bool kAreDelivered = false>
-struct ArgumentsOfBlock {
-  static_assert(kAreDelivered,
-                "kinecal: no sensors deliver the arguments of this error block; write template "
-                "<class S> Eigen::Matrix<S, N, 1> operator()(const Vector3<S>& p) const, or "
-                "declare its Inputs");
-};
-
-/// The result has the scalar of the points.
-template <class R, class S>
-concept InScalar = std::same_as<typename std::remove_cvref_t<R>::Scalar, S>;
-/// A block that can be called with points in a scalar.
-template <class B, class S>
-concept CalledWithPoints = requires(const B& block, const Vector3<S>& p) {
-  { block(p) } -> InScalar<S>;
-}
-|| requires(const B& block, const Vector3<S>& p) {
-  { block(p, p) } -> InScalar<S>;
-};
-
-/// What is wrong with a block that is not an ErrorBlock.
-template <class B>
-using WhyNoBlock = std::conditional_t<
-    CalledWithPoints<B, Probe>, VectorOfBlock<B>,
-    std::conditional_t<CalledWithPoints<B, double>, ResidualOfBlock<B>, ArgumentsOfBlock<B>>>;
 
 /// @tparam Found  the result of LookedUp: Known or DidYouMean
 template <class Block, FixedString Sensor, class Found, bool kIsInCrate = false>

@@ -101,11 +101,13 @@ template <Quantity Q, class S>
 using Argument = typename ArgumentOf<Q, S>::type;
 
 template <class R>
-inline constexpr bool kIsFixedColumn = (R::RowsAtCompileTime > 0) && (R::ColsAtCompileTime == 1);
+inline constexpr bool kIsResidualVector = false;
+template <int N>
+inline constexpr bool kIsResidualVector<Eigen::Matrix<Probe, N, 1>> = N > 0;
 /// A vector of fixed size in the scalar of the points.  A block that is not templated returns
-/// another scalar.
+/// another scalar; one that returns `auto` may return an expression.
 template <class R>
-concept ResidualVector = std::same_as<typename R::Scalar, Probe> && kIsFixedColumn<R>;
+concept ResidualVector = kIsResidualVector<std::remove_const_t<R>>;
 
 }  // namespace detail
 
@@ -164,27 +166,43 @@ using ResultOfCall =
                                                std::declval<ConditionsOf<B, Probe>>())),
                     Arguments...>::type;
 
-/// A block that takes these arguments.
-template <class B, class... Arguments>
-concept Callable = ResidualVector<ResultOfCall<B, Arguments...>>;
-
+/// The result of a block for its inputs; no type if it does not take them.
 template <class B, class Inputs>
-inline constexpr bool kTakes = false;
+struct ResultFor {};
 template <class B, Quantity... Qs>
-inline constexpr bool kTakes<B, Takes<Qs...>> = Callable<B, Argument<Qs, Probe>...>;
+requires requires {
+  typename ResultOfCall<B, Argument<Qs, Probe>...>;
+}
+struct ResultFor<B, Takes<Qs...>> : std::type_identity<ResultOfCall<B, Argument<Qs, Probe>...>> {};
 /// Evaluation keeps the point: a block receives only the pixel.
 template <class B>
-inline constexpr bool kTakes<B, Takes<Quantity::point, Quantity::pixel>> =
-    Callable<B, PixelObservation<Probe>>;
+requires requires {
+  typename ResultOfCall<B, PixelObservation<Probe>>;
+}
+struct ResultFor<B, Takes<Quantity::point, Quantity::pixel>>
+    : std::type_identity<ResultOfCall<B, PixelObservation<Probe>>> {};
+
+/// A block that takes these inputs, whatever it returns.
+template <class B, class Inputs>
+concept TakesInputs = requires {
+  typename ResultFor<B, Inputs>::type;
+};
+/// A block that returns a residual for these inputs.
+template <class B, class Inputs>
+concept ReturnsResidualFor = ResidualVector<typename ResultFor<B, Inputs>::type>;
 
 struct NoInputs {};
 template <class B, class... Candidates>
 struct FirstTaken {
   using type = NoInputs;
+  static constexpr bool kTakesSome = false;  ///< of the candidates, whatever it returns
 };
 template <class B, class First, class... Rest>
 struct FirstTaken<B, First, Rest...>
-    : std::conditional_t<kTakes<B, First>, std::type_identity<First>, FirstTaken<B, Rest...>> {};
+    : std::conditional_t<ReturnsResidualFor<B, First>, std::type_identity<First>,
+                         FirstTaken<B, Rest...>> {
+  static constexpr bool kTakesSome = TakesInputs<B, First> || FirstTaken<B, Rest...>::kTakesSome;
+};
 
 template <class B>
 struct InputsOf
@@ -200,11 +218,19 @@ requires requires {
 }
 struct InputsOf<B> : FirstTaken<B, typename B::Inputs> {};
 
+/// The block returns a residual for what some sensors deliver.
+template <class B>
+concept IsResidualOfSensors = !std::same_as<typename InputsOf<B>::type, NoInputs>;
+/// A block that is called with what sensors deliver returns an Eigen::Matrix<S, N, 1> of fixed size,
+/// in the scalar S of its arguments: no expression (auto), array or number.
+template <class B>
+concept ReturnsVectorOfFixedSize = IsResidualOfSensors<B> || !InputsOf<B>::kTakesSome;
+
 }  // namespace detail
 
 /// A residual of the observations of one to four sensors.
 template <class B>
-concept ErrorBlock = !std::same_as<typename detail::InputsOf<B>::type, detail::NoInputs>;
+concept ErrorBlock = detail::ReturnsVectorOfFixedSize<B> && detail::IsResidualOfSensors<B>;
 
 /// The own parameters of a block, with their initial values.
 template <class B>
@@ -240,21 +266,9 @@ template <class B>
 concept PlanePairBlock =
     std::same_as<typename detail::InputsOf<B>::type, Takes<Quantity::plane, Quantity::plane>>;
 
-namespace detail {
-
-template <class B, Quantity... Qs>
-[[nodiscard]] consteval int residuals(Takes<Qs...>) {
-  if constexpr (PixelBlock<B>) {
-    return ResultOfCall<B, PixelObservation<Probe>>::RowsAtCompileTime;
-  } else {
-    return ResultOfCall<B, Argument<Qs, Probe>...>::RowsAtCompileTime;
-  }
-}
-
-}  // namespace detail
-
 /// Number of residuals of one feature, or of one pair of planes.
 template <ErrorBlock B>
-inline constexpr int kResiduals = detail::residuals<B>(typename detail::InputsOf<B>::type{});
+inline constexpr int kResiduals =
+    detail::ResultFor<B, typename detail::InputsOf<B>::type>::type::RowsAtCompileTime;
 
 }  // namespace kinecal

@@ -20,7 +20,7 @@ namespace kinecal {
 ///
 ///   cost = 1/2 sum rho(|w r|^2)    gradient = sum rho' w^2 J^T r    hessian = sum rho' w^2 J^T J
 struct NormalEquations {
-  double cost = 0.0;         ///< not finite if a residual is undefined
+  double cost = 0.0;         ///< not finite if a residual or its derivative is undefined
   Eigen::VectorXd gradient;  ///< (parameters); empty if only the cost was requested
   Eigen::MatrixXd hessian;   ///< (parameters x parameters), symmetric
 
@@ -36,10 +36,12 @@ struct NormalEquations {
                  Losses losses);
 };
 
-/// A residual that is undefined, such as that of a point behind a camera.
+/// A residual that is undefined, such as that of a point behind a camera; or that has no derivative there, such
+/// as a distance at zero.
 struct UndefinedResidual {
-  std::string term,  ///< name of the error block
-      source;        ///< source location of the sample
+  std::string term,        ///< name of the error block
+      source;              ///< source location of the sample
+  bool has_value = false;  ///< only its derivative is undefined
 };
 
 /// Receives the residuals of one term in one sample.
@@ -60,17 +62,18 @@ class AnyEvaluator {
   /// @param values       of all parameters of the table
   /// @param derivatives  compute the Jacobian, too
   /// @param at           where derivatives are taken
-  /// @returns  the first undefined residual, if any; undefined residuals are not visited
+  /// @returns  the first undefined residual, if any; undefined residuals are not visited, nor are those
+  ///           with an undefined derivative if derivatives are computed
   /// @throws std::invalid_argument  if the number of values is not that of the table's parameters
-  virtual std::optional<UndefinedResidual> evaluate(std::span<const double> values,
-                                                    bool derivatives, const RowVisitor& visit,
+  virtual std::optional<UndefinedResidual> evaluate(ParameterValues values, bool derivatives,
+                                                    const RowVisitor& visit,
                                                     Linearization at = Linearization::measured) = 0;
 
   /// The cost and, with derivatives, gradient and Gauss-Newton Hessian.
   /// @param values  of all parameters of the table
-  /// @returns  sums; their cost is not finite if a residual is undefined
+  /// @returns  sums; their cost is not finite if a residual is undefined, or one of the derivatives
   /// @throws std::invalid_argument  if the number of values is not that of the table's parameters
-  [[nodiscard]] virtual NormalEquations normal_equations(std::span<const double> values,
+  [[nodiscard]] virtual NormalEquations normal_equations(ParameterValues values,
                                                          bool derivatives = true,
                                                          Losses losses = Losses::as_given) = 0;
 };
@@ -78,20 +81,21 @@ class AnyEvaluator {
 /// Evaluates all residuals once: see AnyEvaluator::evaluate().
 /// @param free  the columns of the Jacobian; nullptr: residuals only
 [[nodiscard]] std::optional<UndefinedResidual> evaluate(const AnyProblem& problem,
-                                                        std::span<const double> values,
-                                                        const FreeSet* free,
+                                                        ParameterValues values, const FreeSet* free,
                                                         const RowVisitor& visit,
                                                         Linearization at = Linearization::measured);
 
-/// The first residual that is undefined at these values, if any.
+/// The first residual that is undefined at these values, if any; else the first whose derivative by
+/// some parameter is.
 [[nodiscard]] std::optional<UndefinedResidual> undefined_residual(const AnyProblem& problem,
-                                                                  std::span<const double> values);
+                                                                  ParameterValues values);
 
 /// The normal equations once: see AnyEvaluator::normal_equations().
-/// @param free  the parameters to differentiate by; nullptr: the cost only
-[[nodiscard]] NormalEquations normal_equations(const AnyProblem& problem,
-                                               std::span<const double> values, const FreeSet* free,
-                                               Losses losses = Losses::as_given, int threads = 1);
+/// @param free     the parameters to differentiate by; nullptr: the cost only
+/// @param threads  number of threads that share the work; zero: one per core
+[[nodiscard]] NormalEquations normal_equations(const AnyProblem& problem, ParameterValues values,
+                                               const FreeSet* free,
+                                               Losses losses = Losses::as_given, int threads = 0);
 
 /// A problem that the library evaluates in packets, as wide as its instruction set allows.
 /// Takes the same arguments as the constructor of AnyProblem.

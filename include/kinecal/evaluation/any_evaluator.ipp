@@ -51,23 +51,25 @@ KINECAL_INLINE Evaluation evaluation_of_library() {
 }
 
 KINECAL_INLINE std::optional<UndefinedResidual> evaluate(const AnyProblem& problem,
-                                                         std::span<const double> values,
+                                                         ParameterValues values,
                                                          const FreeSet* free,
                                                          const RowVisitor& visit,
                                                          Linearization at) {
   const FreeSet none({}, problem.table().size());
-  return problem.evaluator(free != nullptr ? *free : none)
+  return problem.evaluator(free != nullptr ? *free : none, 1)
       ->evaluate(values, free != nullptr, visit, at);
 }
 
 KINECAL_INLINE std::optional<UndefinedResidual> undefined_residual(const AnyProblem& problem,
-                                                                   std::span<const double> values) {
-  return evaluate(problem, values, nullptr, [](int, int, const TermResiduals&) {});
+                                                                   ParameterValues values) {
+  const RowVisitor none = [](int, int, const TermResiduals&) {};
+  const FreeSet touched(problem.touched_parameters(), problem.table().size());
+  const auto undefined = evaluate(problem, values, nullptr, none);
+  return undefined ? undefined : evaluate(problem, values, &touched, none);
 }
 
-KINECAL_INLINE NormalEquations normal_equations(const AnyProblem& problem,
-                                                std::span<const double> values, const FreeSet* free,
-                                                Losses losses, int threads) {
+KINECAL_INLINE NormalEquations normal_equations(const AnyProblem& problem, ParameterValues values,
+                                                const FreeSet* free, Losses losses, int threads) {
   const FreeSet none({}, problem.table().size());
   return problem.evaluator(free != nullptr ? *free : none, threads)
       ->normal_equations(values, free != nullptr, losses);

@@ -5,9 +5,11 @@
 
 #include <stdexcept>
 
+#include "kinecal/errors/block_checks.hpp"
 #include "kinecal/evaluation/block_term.hpp"
 #include "kinecal/evaluation/evaluator.hpp"
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/sensors/sensor_checks.hpp"
 
 namespace kinecal {
 
@@ -24,12 +26,13 @@ class BasicProblem final : public AnyProblem {
   /// Adds a sensor.
   /// @param walks  compiled walks along its chains, if any
   /// @throws  as AnyProblem::add_built_in()
-  template <Sensor M>
+  template <class M>
   void add_sensor(const M& sensor, const Mount& mount,
                   const std::vector<detail::CompiledWalk<S>>& walks = {}) {
+    [[maybe_unused]] const detail::CheckSensorType<M> check_of_type{};
     if constexpr (detail::kIsOneOf<M, BuiltInSensor>) {
       add_built_in(sensor, mount);
-    } else {
+    } else if constexpr (Sensor<M>) {
       add_sensor_of_type(sensor, mount);
     }
     set_walks(walks);
@@ -39,12 +42,13 @@ class BasicProblem final : public AnyProblem {
 
   /// Adds an error block between sensors that have been added.
   /// @throws  as AnyProblem::add_built_in()
-  template <ErrorBlock B>
+  template <class B>
   void add_block(const std::string& name, const B& block, const std::vector<std::string>& sensors,
                  const TermOptions& options = {}) {
+    [[maybe_unused]] const detail::CheckErrorBlock<B> check_of_type{};
     if constexpr (detail::kIsOneOf<B, BuiltInBlock>) {
       add_built_in(name, block, sensors, options);
-    } else {
+    } else if constexpr (ErrorBlock<B>) {
       add_block_of_type(name, block, sensors, options);
     }
   }
@@ -64,7 +68,7 @@ class BasicProblem final : public AnyProblem {
   [[nodiscard]] const std::vector<detail::Batches<S>>& batches() const { return batches_; }
 
   [[nodiscard]] std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
-                                                        int threads = 1) const override;
+                                                        int threads = 0) const override;
   [[nodiscard]] std::unique_ptr<AnyProblem> without_samples() const override;
 
  private:

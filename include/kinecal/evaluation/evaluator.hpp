@@ -24,12 +24,12 @@ class Evaluator final : public AnyEvaluator {
  public:
   /// @param problem  must outlive the evaluator; do not add samples meanwhile
   /// @param free     the columns of the Jacobian
-  /// @param threads  number of threads that share the work; zero: one per core
+  /// @param threads  number of threads that share normal_equations(); zero: one per core
   /// @throws std::invalid_argument  if a free parameter does not belong to the problem
-  Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 1);
+  Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int threads = 0);
 
   Evaluator(const BasicProblem<S>&&, const FreeSet&,
-            int = 1) = delete;  ///< the evaluator would outlive it
+            int = 0) = delete;  ///< the evaluator would outlive it
 
   /// The problem that it evaluates.
   [[nodiscard]] const BasicProblem<S>& problem() const override { return problem_; }
@@ -40,17 +40,16 @@ class Evaluator final : public AnyEvaluator {
   /// @param values       of all parameters of the table
   /// @param derivatives  fill the twists of the views, too
   template <class Visit>
-  void for_each_term(std::span<const double> values, bool derivatives, Visit&& visit) {
+  void for_each_term(ParameterValues values, bool derivatives, Visit&& visit) {
     set(values);
     for_each_term(0, num_batches_, derivatives, workers_[0], visit);
   }
 
-  std::optional<UndefinedResidual> evaluate(std::span<const double> values, bool derivatives,
+  std::optional<UndefinedResidual> evaluate(ParameterValues values, bool derivatives,
                                             const RowVisitor& visit,
                                             Linearization at = Linearization::measured) override;
 
-  [[nodiscard]] NormalEquations normal_equations(std::span<const double> values,
-                                                 bool derivatives = true,
+  [[nodiscard]] NormalEquations normal_equations(ParameterValues values, bool derivatives = true,
                                                  Losses losses = Losses::as_given) override;
 
  private:
@@ -68,7 +67,7 @@ class Evaluator final : public AnyEvaluator {
     std::vector<std::vector<detail::FeatureRun>> runs;  ///< of the features of each layout
   };
 
-  void set(std::span<const double> values);
+  void set(ParameterValues values);
 
   /// Number of batches in a piece; it does not depend on the number of threads.
   [[nodiscard]] std::size_t piece_size() const {

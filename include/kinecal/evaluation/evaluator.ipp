@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -41,7 +43,7 @@ Evaluator<S>::Evaluator(const BasicProblem<S>& problem, const FreeSet& free, int
 }
 
 template <class S>
-void Evaluator<S>::set(std::span<const double> values) {
+void Evaluator<S>::set(ParameterValues values) {
   if (values.size() != static_cast<std::size_t>(problem_.table().size())) {
     throw std::invalid_argument(std::to_string(values.size()) + " values for a table of " +
                                 std::to_string(problem_.table().size()) + " parameters");
@@ -53,9 +55,8 @@ void Evaluator<S>::set(std::span<const double> values) {
 }
 
 template <class S>
-std::optional<UndefinedResidual> Evaluator<S>::evaluate(std::span<const double> values,
-                                                        bool derivatives, const RowVisitor& visit,
-                                                        Linearization at) {
+std::optional<UndefinedResidual> Evaluator<S>::evaluate(ParameterValues values, bool derivatives,
+                                                        const RowVisitor& visit, Linearization at) {
   std::optional<UndefinedResidual> undefined;
   const int columns = derivatives ? free_.size() : -1;
   const auto visit_batch = [&](int t, const detail::TermCode<S>& code,
@@ -63,10 +64,11 @@ std::optional<UndefinedResidual> Evaluator<S>::evaluate(std::span<const double> 
     code.evaluate(views, derivatives, at, rows_);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       rows_.unpack(views.runs, views.term->feature_size, static_cast<int>(i), columns, residuals_);
-      if (residuals_.residual.allFinite()) {
+      const bool has_value = residuals_.residual.allFinite();
+      if (has_value && (!derivatives || std::isfinite(residuals_.jacobian.sum()))) {
         visit(t, samples[i], residuals_);
       } else if (!undefined) {
-        undefined = UndefinedResidual{views.term->name, problem_.source(samples[i])};
+        undefined = UndefinedResidual{views.term->name, problem_.source(samples[i]), has_value};
       }
     }
   };
@@ -75,7 +77,7 @@ std::optional<UndefinedResidual> Evaluator<S>::evaluate(std::span<const double> 
 }
 
 template <class S>
-NormalEquations Evaluator<S>::normal_equations(std::span<const double> values, bool derivatives,
+NormalEquations Evaluator<S>::normal_equations(ParameterValues values, bool derivatives,
                                                Losses losses) {
   set(values);
   const int columns = derivatives ? free_.size() : 0;
@@ -89,6 +91,8 @@ NormalEquations Evaluator<S>::normal_equations(std::span<const double> values, b
                          });
   NormalEquations total(columns);
   for (const NormalEquations& part : parts) total += part;
+  // An undefined derivative times any residual is not a number.
+  if (!total.gradient.allFinite()) total.cost = std::numeric_limits<double>::quiet_NaN();
   for (const PriorTerm& prior : problem_.priors()) {
     prior.evaluate(problem_.table(), values, derivatives ? &free_ : nullptr, residuals_);
     total.add_prior(prior, residuals_, problem_.num_samples(), losses);

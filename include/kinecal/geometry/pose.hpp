@@ -7,16 +7,17 @@
 
 #include "kinecal/geometry/packet.hpp"
 #include "kinecal/geometry/rotation.hpp"
+#include "kinecal/geometry/scalar.hpp"
 
 namespace kinecal {
 
 /// M v for a matrix and a vector of different scalars.
 template <class S, class U>
 [[nodiscard]] auto rotated(const Matrix3<S>& m, const Vector3<U>& v) {
-  using R = decltype(m(0, 0) * v(0));
-  return Vector3<R>(m(0, 0) * v(0) + m(0, 1) * v(1) + m(0, 2) * v(2),
-                    m(1, 0) * v(0) + m(1, 1) * v(1) + m(1, 2) * v(2),
-                    m(2, 0) * v(0) + m(2, 1) * v(1) + m(2, 2) * v(2));
+  using R = Product<S, U>;
+  return Vector3<R>(sum_of_products<R>(m(0, 0), v(0), m(0, 1), v(1), m(0, 2), v(2)),
+                    sum_of_products<R>(m(1, 0), v(0), m(1, 1), v(1), m(1, 2), v(2)),
+                    sum_of_products<R>(m(2, 0), v(0), m(2, 1), v(1), m(2, 2), v(2)));
 }
 
 /// A rotation followed by a translation: p -> rotation p + translation.
@@ -42,14 +43,14 @@ struct Pose {
   template <class U>
   [[nodiscard]] auto operator*(const Vector3<U>& p) const {
     auto moved = rotated(rotation, p);
-    for (int r = 0; r < 3; ++r) moved(r) = moved(r) + translation(r);
+    for (int r = 0; r < 3; ++r) moved(r) = Product<S, U>(moved(r) + translation(r));
     return moved;
   }
 
   /// a_T_c = a_T_b * b_T_c.
   template <class U>
   [[nodiscard]] auto operator*(const Pose<U>& other) const {
-    using R = decltype(rotation(0, 0) * other.rotation(0, 0));
+    using R = Product<S, U>;
     Pose<R> product;
     for (int c = 0; c < 3; ++c) {
       const Vector3<U> column(other.rotation(0, c), other.rotation(1, c), other.rotation(2, c));

@@ -13,8 +13,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
+
+#include "kinecal/geometry/eigen_layout.hpp"
 
 namespace kinecal {
 
@@ -28,8 +29,8 @@ using Matrix3 = Eigen::Matrix<S, 3, 3>;
 /// a x b.  Eigen's own version needs a module that takes longer to include than all of geometry/.
 template <class S>
 [[nodiscard]] Vector3<S> cross(const Vector3<S>& a, const Vector3<S>& b) {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
-          a.x() * b.y() - a.y() * b.x()};
+  return {S(S(a.y() * b.z()) - S(a.z() * b.y())), S(S(a.z() * b.x()) - S(a.x() * b.z())),
+          S(S(a.x() * b.y()) - S(a.y() * b.x()))};
 }
 
 /// The matrix [w]x with [w]x p = w x p.

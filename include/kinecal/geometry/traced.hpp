@@ -11,8 +11,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
+
+#include "kinecal/geometry/eigen_layout.hpp"
 
 namespace kinecal {
 

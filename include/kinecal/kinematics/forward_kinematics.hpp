@@ -5,8 +5,8 @@
 //   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, q.size());
 //   geometric_jacobian(arm, q, jacobian);
 //
-// q(i) is the position of joint i of the chain, radians or metres, in any scalar: double, packet,
-// Jet, ceres::Jet.  joint_names() gives the order.  Each moving joint has its own position, even
+// q(i) is the position of joint i of the chain, radians or metres, in any Scalar: double, float,
+// packet, Jet, ceres::Jet, Eigen::AutoDiffScalar.  joint_names() gives the order.  Each moving joint has its own position, even
 // one that mimics another.  A corrected fixed joint is in the chain, but its q(i) is ignored.
 // Nothing is allocated.
 // SPDX-License-Identifier: Apache-2.0
@@ -68,6 +68,14 @@ struct JacobianWalker : PoseWalker<S> {
   }
 };
 
+template <class S>
+constexpr void check_scalar() {
+  static_assert(Scalar<S>,
+                "kinecal: joint positions are not numbers that forward kinematics can use; use "
+                "double or float, or a type with + - *, also with double, and sin and cos beside "
+                "it (geometry/scalar.hpp)");
+}
+
 /// @throws std::invalid_argument  if `size` is not the number of a chain's joints
 template <class Chain>
 void check_size(const Chain& chain, Eigen::Index size, const char* what) {
@@ -89,13 +97,14 @@ template <class Chain>
 
 /// Forward kinematics: base_T_tip of a chain.
 /// @param chain        a RuntimeChain or a Chain
-/// @param q            (joints of the chain) positions, radians or metres; any scalar
+/// @param q            (joints of the chain) positions, radians or metres; any Scalar
 /// @param corrections  JointCorrection of each joint of the chain, by index
 /// @throws std::invalid_argument  if q has another size
 template <class Chain, class Derived, class Corrected = detail::NoCorrections>
 [[nodiscard]] Pose<typename Derived::Scalar> forward_kinematics(const Chain& chain,
                                                                 const Eigen::MatrixBase<Derived>& q,
                                                                 const Corrected& corrections = {}) {
+  detail::check_scalar<typename Derived::Scalar>();
   detail::check_size(chain, q.size(), "joint positions");
   PoseWalker<typename Derived::Scalar> walker;
   walk(chain, detail::JointStatesAt<Derived>{q.derived()}, corrections, walker);
@@ -103,7 +112,7 @@ template <class Chain, class Derived, class Corrected = detail::NoCorrections>
 }
 
 /// The geometric Jacobian of the tip: how its origin moves and how it rotates, in the base.
-/// @param q         (joints of the chain) positions, radians or metres; any scalar
+/// @param q         (joints of the chain) positions, radians or metres; any Scalar
 /// @param jacobian  out (6 x joints): linear velocity of the tip's origin, metres per radian or
 ///                  metre; then angular velocity.  Columns of fixed joints are zero.
 /// @returns         base_T_tip
@@ -114,6 +123,7 @@ Pose<typename Derived::Scalar> geometric_jacobian(const Chain& chain,
                                                   const Eigen::MatrixBase<Derived>& q,
                                                   J&& jacobian) {
   using S = typename Derived::Scalar;
+  detail::check_scalar<S>();
   detail::check_size(chain, q.size(), "joint positions");
   detail::check_size(chain, jacobian.cols(), "columns of a Jacobian");
   detail::JacobianWalker<S, std::remove_reference_t<J>> walker(jacobian);

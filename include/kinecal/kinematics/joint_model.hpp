@@ -129,7 +129,7 @@ template <class S>
 /// @param position  of the joint as measured, radians or metres
 template <class Drive, class S>
 [[nodiscard]] S driving_position(const Drive& drive, const S& position) {
-  return (position - drive.offset) / drive.multiplier;
+  return S((position - drive.offset) / drive.multiplier);
 }
 
 /// The state of a joint with models.
@@ -140,7 +140,7 @@ template <class Drive, class S>
 template <class Drive, class S, class U>
 [[nodiscard]] auto modelled_state(const Drive& drive, const JointState<S>& measured,
                                   const JointState<U>& offset, const OfJointModels<U>& values) {
-  using R = decltype(measured.cos * offset.cos);
+  using R = Product<S, U>;
   OfJointModels<R> all;
   for (std::size_t k = 0; k < all.size(); ++k) all[k] = R(values[k]);
   const R change = joint_model_change(R(driving_position(drive, measured.position)), all);

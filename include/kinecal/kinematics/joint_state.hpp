@@ -21,22 +21,22 @@ struct JointState {
   S sin{0.0};       ///< of the position; unused by prismatic joints
 
   /// The opposite motion.
-  [[nodiscard]] JointState inverse() const { return {-position, cos, -sin}; }
+  [[nodiscard]] JointState inverse() const { return {S(-position), cos, S(-sin)}; }
 };
 
 /// The motion to a position, radians or metres.
 template <class S>
 [[nodiscard]] JointState<S> make_joint_state(const S& position) {
   using std::cos, std::sin;
-  return {position, cos(position), sin(position)};
+  return {position, S(cos(position)), S(sin(position))};
 }
 
 /// Two motions in sequence: positions add up.
 template <class S, class U>
 [[nodiscard]] auto operator+(const JointState<S>& a, const JointState<U>& b) {
-  using R = decltype(a.cos * b.cos);
-  return JointState<R>{a.position + b.position, a.cos * b.cos - a.sin * b.sin,
-                       a.sin * b.cos + a.cos * b.sin};
+  using R = Product<S, U>;
+  return JointState<R>{R(a.position + b.position), R(a.cos * b.cos - a.sin * b.sin),
+                       R(a.sin * b.cos + a.cos * b.sin)};
 }
 
 /// (3 x 3) rotation by a motion about a unit axis a: cos I + sin [a]x + (1 - cos) a a^T.
@@ -46,9 +46,11 @@ template <class S>
   const S& s = motion.sin;
   const S d = S(1.0) - c;
   Matrix3<S> r;
-  r << c + d * (a.x() * a.x()), d * (a.x() * a.y()) - s * a.z(), d * (a.x() * a.z()) + s * a.y(),
-      d * (a.x() * a.y()) + s * a.z(), c + d * (a.y() * a.y()), d * (a.y() * a.z()) - s * a.x(),
-      d * (a.x() * a.z()) - s * a.y(), d * (a.y() * a.z()) + s * a.x(), c + d * (a.z() * a.z());
+  r << S(c + d * (a.x() * a.x())), S(d * (a.x() * a.y()) - s * a.z()),
+      S(d * (a.x() * a.z()) + s * a.y()), S(d * (a.x() * a.y()) + s * a.z()),
+      S(c + d * (a.y() * a.y())), S(d * (a.y() * a.z()) - s * a.x()),
+      S(d * (a.x() * a.z()) - s * a.y()), S(d * (a.y() * a.z()) + s * a.x()),
+      S(c + d * (a.z() * a.z()));
   return r;
 }
 
@@ -60,7 +62,7 @@ template <class S>
   Pose<S> pose;
   if (turns(type)) pose.rotation = axis_rotation(axis, motion);
   if (type == JointType::prismatic) {
-    for (int i = 0; i < 3; ++i) pose.translation(i) = motion.position * axis(i);
+    for (int i = 0; i < 3; ++i) pose.translation(i) = S(motion.position * axis(i));
   }
   return pose;
 }
@@ -73,7 +75,7 @@ void turn_about(Matrix3<S>& rotation, const Vector3<double>& axis, const JointSt
   for (int row = 0; row < 3; ++row) {
     const Vector3<S> r = rotation.row(row);
     for (int c = 0; c < 3; ++c) {
-      rotation(row, c) = r(0) * turn(0, c) + r(1) * turn(1, c) + r(2) * turn(2, c);
+      rotation(row, c) = sum_of_products<S>(r(0), turn(0, c), r(1), turn(1, c), r(2), turn(2, c));
     }
   }
 }
@@ -85,8 +87,8 @@ void turn_columns(Matrix3<S>& rotation, const JointState<U>& motion) {
   constexpr int kI = (K + 1) % 3, kJ = (K + 2) % 3;
   for (int row = 0; row < 3; ++row) {
     const S x = rotation(row, kI), y = rotation(row, kJ);
-    rotation(row, kI) = x * motion.cos + y * motion.sin;
-    rotation(row, kJ) = y * motion.cos - x * motion.sin;
+    rotation(row, kI) = S(S(x * motion.cos) + S(y * motion.sin));
+    rotation(row, kJ) = S(S(y * motion.cos) - S(x * motion.sin));
   }
 }
 }  // namespace detail

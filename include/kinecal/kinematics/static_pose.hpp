@@ -25,9 +25,9 @@ template <class C, std::size_t K, class S>
   if constexpr (C::at(K) == 1.0) {
     return x;
   } else if constexpr (C::at(K) == -1.0) {
-    return -x;
+    return S(-x);
   } else {
-    return x * C::at(K);
+    return S(x * C::at(K));
   }
 }
 
@@ -40,7 +40,7 @@ void add_times(S& sum, const S& x) {
   } else if constexpr (C::at(K) == -1.0) {
     sum -= x;
   } else {
-    sum += x * C::at(K);
+    sum += S(x * C::at(K));
   }
 }
 

@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "kinecal/linkage.hpp"
+#include "kinecal/geometry/eigen_layout.hpp"
 #include "kinecal/parameters/parameter.hpp"
+#include "kinecal/parameters/parameter_values.hpp"
 
 namespace kinecal {
 
@@ -21,7 +22,8 @@ class ParameterTable {
  public:
   /// Adds a parameter.
   /// @returns  its index
-  /// @throws std::invalid_argument  if the table already has the name
+  /// @throws std::invalid_argument  if the table already has the name, or a number of the parameter
+  ///                                cannot be used
   int add(const Parameter& parameter);
 
   /// Number of parameters.
@@ -62,6 +64,11 @@ class ParameterTable {
   std::vector<Parameter> parameters_;
   std::map<std::string, int> indices_;
 };
+
+namespace detail {
+/// @throws std::invalid_argument  if a value is not finite, or the bounds exclude all values
+void check(const Parameter& parameter);
+}  // namespace detail
 
 /// Adds the parameters that a sensor or error block declares, unless the table already has them.
 void add_parameters(ParameterTable& table, std::string_view owner,

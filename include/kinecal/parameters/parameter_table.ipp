@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -10,7 +12,24 @@
 
 namespace kinecal {
 
+KINECAL_INLINE void detail::check(const Parameter& parameter) {
+  const auto [name, unit, initial, value, lower, upper] = parameter;
+  const std::string whose = "parameter '" + name + "'";
+  if (!std::isfinite(initial) || !std::isfinite(value)) {
+    throw std::invalid_argument(whose + ": its value is not a finite number");
+  }
+  if (std::isnan(lower) || std::isnan(upper)) {
+    throw std::invalid_argument(whose + ": a bound is not a number");
+  }
+  if (lower > upper) {
+    std::ostringstream message;
+    message << whose << ": its lower bound " << lower << " is above its upper bound " << upper;
+    throw std::invalid_argument(message.str());
+  }
+}
+
 KINECAL_INLINE int ParameterTable::add(const Parameter& parameter) {
+  detail::check(parameter);
   const int index = size();
   if (!indices_.emplace(parameter.name, index).second) {
     throw std::invalid_argument("parameter '" + parameter.name + "' occurs twice");

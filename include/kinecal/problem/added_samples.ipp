@@ -6,19 +6,13 @@
 #include <map>
 
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/problem/input_checks.ipp"
 #include "kinecal/problem/term_applies.ipp"
 #include "kinecal/samples/paired_features.hpp"
 
 namespace kinecal {
 
 namespace detail {
-
-inline void check_positions(const Sample& sample) {
-  const std::size_t names = sample.joint_names.size(), positions = sample.joint_positions.size();
-  if (names == positions) return;
-  throw SampleError("it has " + std::to_string(names) + " joint names, but positions of " +
-                    std::to_string(positions));
-}
 
 /// Features that terms compare in a sample, by index of the term.
 using ComparedFeatures = std::map<int, std::vector<std::size_t>>;
@@ -58,8 +52,10 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
   detail::Observed observed(sensors_.size());
   detail::ComparedFeatures compared;
   detail::SampleRow row;
+  const std::string source =
+      sample.source.empty() ? "sample " + std::to_string(num_samples()) : sample.source;
   try {
-    detail::check_positions(sample);
+    detail::check_lists(sample);
     in_order = paired(sample);
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const Observation* observation =
@@ -73,9 +69,9 @@ KINECAL_INLINE void AnyProblem::add_sample(const Sample& sample) {
     }
     row = detail::row_of(terms_, compared, sample, observed);
   } catch (const SampleError& e) {
-    throw SampleError(sample.source + ": " + e.what());
+    throw SampleError(source + ": " + e.what());
   }
-  AddedSample added{sample.source};
+  AddedSample added{source};
   for (const auto& [t, features] : compared) {
     added.residuals += static_cast<int>(features.size()) * term(t).feature_size;
     const std::string& first = sensor(term(t).sensors.front()).mount().name;

@@ -31,7 +31,9 @@ class AnyProblem {
   /// A problem without sensors, terms and samples.
   /// @param base    the link in which the sensors are compared
   /// @param frames  names of the free frames: joints of the robot or virtual frames
-  /// @throws RobotError  if the link does not exist
+  /// @throws RobotError             if the link does not exist
+  /// @throws std::invalid_argument  if a parameter is not a number or has no value within its
+  ///                                bounds, or a frame is neither a joint nor has parameters
   AnyProblem(Robot robot, std::string base, ParameterTable table, std::set<std::string> frames);
   virtual ~AnyProblem() = default;
 
@@ -41,7 +43,8 @@ class AnyProblem {
   virtual void add_built_in(const BuiltInSensor& sensor, const Mount& mount) = 0;
 
   /// Adds an error block of a built-in type between sensors that have been added.
-  /// @throws std::invalid_argument  if a sensor does not exist, their number or kind is wrong, or
+  /// @throws std::invalid_argument  if a sensor does not exist, their number or kind is wrong, another
+  ///                                block has the name, a number of the options cannot be used, or
   ///                                the table does not have a parameter of the block
   /// @throws std::logic_error       if samples have been added already
   virtual void add_built_in(const std::string& name, const BuiltInBlock& block,
@@ -88,7 +91,7 @@ class AnyProblem {
   }
   /// Number of samples that were added.
   [[nodiscard]] int num_samples() const { return static_cast<int>(samples_.size()); }
-  /// Source location of a sample: "samples.yaml:37".
+  /// Source location of a sample: "samples.yaml:37"; "sample 4", from 0, if it has none.
   [[nodiscard]] const std::string& source(int sample) const {
     return samples_[static_cast<std::size_t>(sample)].source;
   }
@@ -115,10 +118,10 @@ class AnyProblem {
 
   /// An evaluator of the problem.  The problem must outlive it; do not add samples meanwhile.
   /// @param free     the Jacobian's columns
-  /// @param threads  number of threads that share the work; zero: one per core
+  /// @param threads  number of threads that share normal_equations(); zero: one per core
   /// @throws std::invalid_argument  as check()
   [[nodiscard]] virtual std::unique_ptr<AnyEvaluator> evaluator(const FreeSet& free,
-                                                                int threads = 1) const = 0;
+                                                                int threads = 0) const = 0;
 
  protected:
   /// Movable by derived classes.

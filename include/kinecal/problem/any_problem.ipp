@@ -8,6 +8,7 @@
 
 #include "kinecal/problem/added_samples.ipp"
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/problem/input_checks.ipp"
 #include "kinecal/problem/parameter_owners.ipp"
 
 namespace kinecal {
@@ -19,6 +20,8 @@ KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTa
       table_(std::move(table)),
       frames_(std::move(frames)) {
   (void)robot_.parent_joint(base_);
+  for (const Parameter& parameter : table_) detail::check(parameter);
+  detail::check_frames(robot_, table_, frames_);
   set_owners();
 }
 
@@ -64,6 +67,12 @@ KINECAL_INLINE void AnyProblem::add_term(Term term, const std::vector<std::strin
                                          std::span<const ParameterInfo> own) {
   check_no_samples();
   const std::string block = "error block '" + term.name + "'";
+  for (const Term& known : terms_) {
+    if (known.name == term.name)
+      throw std::invalid_argument("two error blocks have the name '" + term.name +
+                                  "'; rename one of them");
+  }
+  detail::check_options(block, term.options);
   for (const std::string& name : sensors) term.sensors.push_back(sensor_index(name));
   if (sensors.size() != term.quantities.size()) {
     throw std::invalid_argument(block + " takes " + std::to_string(term.quantities.size()) +

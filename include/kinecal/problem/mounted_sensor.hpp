@@ -59,7 +59,7 @@ class MountedSensor {
 
   /// The values of its own parameters; 0 where the table does not have one.
   /// @param values  of all parameters of the table
-  [[nodiscard]] std::vector<double> own_values(std::span<const double> values) const;
+  [[nodiscard]] std::vector<double> own_values(ParameterValues values) const;
 
   /// What the sensor observed in a sample, as numbers.
   /// @throws SampleError  with what is missing or wrong

@@ -41,7 +41,7 @@ KINECAL_INLINE MountedSensor::MountedSensor(const Robot& robot, const std::strin
   }
 }
 
-KINECAL_INLINE std::vector<double> MountedSensor::own_values(std::span<const double> values) const {
+KINECAL_INLINE std::vector<double> MountedSensor::own_values(ParameterValues values) const {
   std::vector<double> own;
   for (const int p : parameters_) own.push_back(p < 0 ? 0.0 : values[static_cast<std::size_t>(p)]);
   return own;

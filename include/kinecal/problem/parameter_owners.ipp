@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/problem/any_problem.hpp"
+#include "kinecal/problem/input_checks.ipp"
 
 namespace kinecal {
 
@@ -31,6 +32,13 @@ KINECAL_INLINE void AnyProblem::set_owners() {
 
 KINECAL_INLINE void AnyProblem::add_prior(const std::string& name, const Prior& prior,
                                           const TermOptions& options) {
+  const std::string whose = "error block '" + name + "'";
+  for (const PriorTerm& known : priors_) {
+    if (known.name == name)
+      throw std::invalid_argument("two priors have the name '" + name + "'; rename one of them");
+  }
+  detail::check_options(whose, options);
+  detail::check_prior(whose, prior);
   const auto rows = prior.parameters(table_);
   if (std::all_of(rows.begin(), rows.end(), [](int parameter) { return parameter < 0; })) {
     std::vector<std::string> names(frames_.begin(), frames_.end());

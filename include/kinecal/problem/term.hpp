@@ -95,7 +95,7 @@ struct PriorTerm {
   /// Its unweighted residuals; they count once for each sample.
   /// @param values  of all parameters of the table
   /// @param free    the columns of the Jacobian; nullptr: residuals only
-  void evaluate(const ParameterTable& table, std::span<const double> values, const FreeSet* free,
+  void evaluate(const ParameterTable& table, ParameterValues values, const FreeSet* free,
                 TermResiduals& out) const;
 };
 

@@ -6,7 +6,7 @@
 
 namespace kinecal {
 
-KINECAL_INLINE void PriorTerm::evaluate(const ParameterTable& table, std::span<const double> values,
+KINECAL_INLINE void PriorTerm::evaluate(const ParameterTable& table, ParameterValues values,
                                         const FreeSet* free, TermResiduals& out) const {
   out.resize(Prior::kRows, free != nullptr ? free->size() : -1);
   const auto parameters = prior.parameters(table);

@@ -48,7 +48,8 @@ class AnySensor {
   [[nodiscard]] virtual Vector3<double> place(const Vector3<double>& measured,
                                               std::span<const double> settings,
                                               std::span<const double> own = {}) const = 0;
-  /// The pixel at which a camera sees a point of its frame; NaN for a sensor that does not predict.
+  /// The pixel at which a camera sees a point of its frame; NaN if it does not see the point, or does
+  /// not predict.
   /// @param p    (3) metres
   /// @param own  as above
   [[nodiscard]] virtual Eigen::Vector2d predict(const Vector3<double>& p,
@@ -130,8 +131,10 @@ class SensorOfType final : public AnySensor {
   }
   [[nodiscard]] Eigen::Vector2d predict(const Vector3<double>& p, std::span<const double> settings,
                                         std::span<const double> own) const override {
+    bool seen = PredictingSensor<M>;
+    if constexpr (HasFieldOfView<M>) seen = model_.sees(p);
     if constexpr (PredictingSensor<M>) {
-      return model_.predict(p, array_of<kSettingsOf<M>>(settings), values(settings, own));
+      if (seen) return model_.predict(p, array_of<kSettingsOf<M>>(settings), values(settings, own));
     }
     return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   }

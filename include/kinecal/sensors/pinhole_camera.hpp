@@ -6,7 +6,7 @@
 //   u = fx0 (1 + fx) x' + cx0 (1 + cx)      v = fy0 (1 + fy) y' + cy0 (1 + cy)
 //
 // Parameters, in this order: fx fy cx cy (relative).  The distortion (plumb_bob: k1 k2 p1 p2 k3) is
-// not calibrated.  Defined for Z > 0.
+// not calibrated.  It sees points with Z > 0.
 //
 // K and D describe a raw image, P alone a rectified one.  The point is in the frame of that image:
 // P belongs to the rectified camera, which R rotates against the raw one.
@@ -57,7 +57,13 @@ struct PinholeCamera {
                                   raw ? ImageKind::raw : ImageKind::rectified);
   }
 
-  /// The pixel at which a point appears.
+  /// True for points in front of the camera; lane by lane.
+  /// @param p  (3) point, metres, in the camera's optical frame
+  template <class S>
+  [[nodiscard]] static auto sees(const Vector3<S>& p) {
+    return p.z() > S(0.0);
+  }
+  /// The pixel at which a point appears, if sees() is true.
   /// @param p  (3) point, metres, in the camera's optical frame
   /// @param s  (9) settings
   /// @param v  (4) fx fy cx cy: relative corrections of the recorded intrinsics

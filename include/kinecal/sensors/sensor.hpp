@@ -20,7 +20,11 @@
 //   measurement(point, settings)         the part of a recorded point to keep, computed once
 //   kOwnFrame                            features are in the sensor's frame, never in a virtual one
 //   kOriented                            features have an orientation
-//   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels
+//   predict(p, settings, parameters)     the pixel of a point in its frame: (2) pixels; not a number
+//                                        where the camera does not see the point
+//   sees(p)                              false where the formula of predict() gives a pixel, but the
+//                                        camera does not see the point: z <= 0 of a pinhole.  A mask
+//                                        for packets: `return p.z() > S(0.0);`
 //   calibrated(camera_info, parameters)  makes it a camera: its camera_info with corrected intrinsics;
 //                                        its settings begin with fx fy cx cy
 //   image                                a member of type ImageKind: raw or rectified images
@@ -121,6 +125,10 @@ concept PlacesOne = requires {
   typename Placed<M>;
 }
 &&std::same_as<Placed<M>, typename VectorsOf<Q>::template Type<Probe>>;
+template <class M, class S = Probe>
+using Predicted = decltype(std::declval<const M&>().predict(
+    std::declval<const Vector3<S>&>(), std::declval<const std::array<double, kSettingsOf<M>>&>(),
+    std::declval<const std::array<S, kParametersOf<M>>&>()));
 
 }  // namespace detail
 
@@ -132,18 +140,40 @@ concept PlacingSensor =
 
 /// A camera that predicts the pixel of a point: predict(p, settings, parameters).
 template <class M>
-concept PredictingSensor = requires(const M& model, const Vector3<detail::Probe>& p,
-                                    const std::array<double, kSettingsOf<M>>& settings,
-                                    const std::array<detail::Probe, kParametersOf<M>>& parameters) {
-  { model.predict(p, settings, parameters) } -> std::same_as<Eigen::Matrix<detail::Probe, 2, 1>>;
+concept PredictingSensor = requires {
+  typename detail::Predicted<M>;
+}
+&&std::same_as<detail::Predicted<M>, Eigen::Matrix<detail::Probe, 2, 1>>;
+
+/// A camera that states which points of its frame it sees: sees(p).
+template <class M>
+concept HasFieldOfView = requires(const M& model, const Vector3<double>& p) {
+  { model.sees(p) } -> std::same_as<bool>;
 };
+
+namespace detail {
+
+/// place(), if it takes a measurement, returns a quantity: no expression (auto), array or number.
+template <class M>
+concept PlacesQuantityIfAnything = PlacingSensor<M> || !requires {
+  typename Placed<M>;
+};
+/// predict(), if it takes a point, returns an Eigen::Matrix<S, 2, 1>: no expression (auto).
+template <class M>
+concept PredictsPixelIfAnything = PredictingSensor<M> || !requires {
+  typename Predicted<M>;
+};
+template <class M>
+concept HasTypeName = requires {
+  { M::kType } -> std::convertible_to<std::string_view>;
+};
+
+}  // namespace detail
 
 /// A sensor.
 template <class M>
-concept Sensor = requires {
-  { M::kType } -> std::convertible_to<std::string_view>;
-}
-&&(PlacingSensor<M> || PredictingSensor<M>);
+concept Sensor = detail::HasTypeName<M> && detail::PlacesQuantityIfAnything<M> &&
+    detail::PredictsPixelIfAnything<M> &&(PlacingSensor<M> || PredictingSensor<M>);
 
 /// The quantity that place() delivers; nullopt if a sensor only predicts.
 template <Sensor M>

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/solve/settle.hpp"
+#include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
 
@@ -146,10 +148,33 @@ KINECAL_INLINE CalibrationResult calibrate(const Calibration& calibration, const
   return result;
 }
 
+namespace detail {
+
+/// Checks that each sensor is observed, where a sensor of nearly the same name is.
+inline void check_names_of_sensors(const AnyProblem& problem, std::span<const Sample> samples) {
+  std::set<std::string> observed;
+  for (const Sample& sample : samples) {
+    for (const Observation& seen : sample.observations) observed.insert(seen.sensor);
+  }
+  std::vector<std::string> unknown(observed.begin(), observed.end());
+  for (const MountedSensor& sensor : problem.sensors()) {
+    std::erase(unknown, sensor.mount().name);
+  }
+  for (const MountedSensor& sensor : problem.sensors()) {
+    const std::string& name = sensor.mount().name;
+    if (observed.contains(name) || !nearest_name(name, unknown)) continue;
+    throw std::invalid_argument("no sample has an observation of sensor '" + name + "'" +
+                                did_you_mean(name, unknown));
+  }
+}
+
+}  // namespace detail
+
 KINECAL_INLINE Calibration make_calibration(std::unique_ptr<AnyProblem> problem,
                                             const FreeSet& free, std::span<const Sample> samples,
                                             const std::string& step) {
   problem->check(free);
+  detail::check_names_of_sensors(*problem, samples);
   for (const Sample& sample : samples) problem->add_sample(sample);
   if (problem->touched_parameters().empty()) {
     throw std::invalid_argument("no sample has usable features of all sensors of an error block");

@@ -12,7 +12,7 @@ namespace kinecal {
 
 KINECAL_INLINE void CeresBridge::add(const AnyProblem& problem, const FreeSet& free,
                                      const Eigen::VectorXd& values, Losses losses) {
-  auto evaluator = problem.evaluator(free);  // checks the free set
+  auto evaluator = problem.evaluator(free, 1);  // checks the free set
   const ParameterTable& table = problem.table();
   const std::vector<std::string>& owners = problem.owners();
   std::map<std::string, std::vector<int>> columns;

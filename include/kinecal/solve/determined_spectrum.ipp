@@ -65,7 +65,7 @@ inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::Ma
 
 /// Gradient and Hessian of a problem's priors.
 [[nodiscard]] inline NormalEquations prior_equations(const AnyProblem& problem, const FreeSet& free,
-                                                     std::span<const double> values) {
+                                                     ParameterValues values) {
   NormalEquations sums(free.size());
   TermResiduals rows;
   for (const PriorTerm& prior : problem.priors()) {
@@ -90,8 +90,8 @@ inline void take_away_null_of(const Eigen::MatrixXd& error_free, const Eigen::Ma
 /// The information of a problem's samples.
 [[nodiscard]] inline SampleInformation sample_information(const AnyProblem& problem,
                                                           const FreeSet& free,
-                                                          std::span<const double> values) {
-  return {problem.evaluator(free)->normal_equations(values),
+                                                          ParameterValues values) {
+  return {problem.evaluator(free, 1)->normal_equations(values),
           error_free_information(problem, free, values),
           prior_equations(problem, free, values).hessian};
 }

@@ -58,7 +58,7 @@ struct LinearFit {
 /// The coordinates of a problem near some values.
 /// @param values  of all parameters of the table
 [[nodiscard]] Coordinates determined_coordinates(const AnyProblem& problem, const FreeSet& free,
-                                                 std::span<const double> values);
+                                                 ParameterValues values);
 
 namespace detail {
 /// The coordinates that samples with this information determine.
@@ -71,7 +71,7 @@ namespace detail {
 /// @param coordinates  see determined_coordinates()
 /// @param derivatives  false: residuals only
 /// @throws std::domain_error  if a residual is undefined
-[[nodiscard]] LinearFit linear_fit(AnyEvaluator& evaluator, std::span<const double> values,
+[[nodiscard]] LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
                                    const Coordinates& coordinates, bool derivatives = true);
 
 /// J^T J of rows with weights, priors included.
@@ -90,7 +90,7 @@ namespace detail {
 /// Values of all parameters after a step.
 /// @param step  (coordinates)
 [[nodiscard]] Eigen::VectorXd stepped(const LinearFit& fit, const FreeSet& free,
-                                      std::span<const double> values, const Eigen::VectorXd& step);
+                                      ParameterValues values, const Eigen::VectorXd& step);
 
 /// A fit with other weights.
 struct Refit {
@@ -104,8 +104,8 @@ struct Refit {
 /// @param weights  (rows) of squared residuals
 /// @param priors   factor of the priors
 /// @param settled  stops after a step that lowers the cost by less than this fraction
-[[nodiscard]] Refit refit(AnyEvaluator& evaluator, std::span<const double> values,
-                          const LinearFit& fit, const Eigen::VectorXd& weights, double priors = 1.0,
+[[nodiscard]] Refit refit(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
+                          const Eigen::VectorXd& weights, double priors = 1.0,
                           double settled = 1e-4);
 
 }  // namespace kinecal

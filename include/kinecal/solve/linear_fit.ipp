@@ -15,7 +15,7 @@ namespace kinecal {
 namespace detail {
 
 /// Visits all rows in the order of LinearFit, by free parameters.
-inline void collect(AnyEvaluator& evaluator, std::span<const double> values, bool derivatives,
+inline void collect(AnyEvaluator& evaluator, ParameterValues values, bool derivatives,
                     std::vector<RowBlock>& blocks, std::vector<TermResiduals>& all) {
   const auto visit = [&](int term, int sample, const TermResiduals& rows) {
     if (rows.residual.size() == 0) return;
@@ -53,11 +53,11 @@ KINECAL_INLINE Coordinates coordinates_of(const SampleInformation& samples) {
 }  // namespace detail
 
 KINECAL_INLINE Coordinates determined_coordinates(const AnyProblem& problem, const FreeSet& free,
-                                                  std::span<const double> values) {
+                                                  ParameterValues values) {
   return detail::coordinates_of(detail::sample_information(problem, free, values));
 }
 
-KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, std::span<const double> values,
+KINECAL_INLINE LinearFit linear_fit(AnyEvaluator& evaluator, ParameterValues values,
                                     const Coordinates& coordinates, bool derivatives) {
   LinearFit fit;
   fit.coordinates = coordinates;
@@ -107,8 +107,7 @@ KINECAL_INLINE Eigen::VectorXd step_to_minimum(const LinearFit& fit, const Eigen
 }
 
 KINECAL_INLINE Eigen::VectorXd stepped(const LinearFit& fit, const FreeSet& free,
-                                       std::span<const double> values,
-                                       const Eigen::VectorXd& step) {
+                                       ParameterValues values, const Eigen::VectorXd& step) {
   Eigen::VectorXd all =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   const Eigen::VectorXd change = fit.coordinates.basis * step;
@@ -147,9 +146,8 @@ inline bool descend(AnyEvaluator& evaluator, const LinearFit& fit, const Eigen::
 
 }  // namespace detail
 
-KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, std::span<const double> values,
-                           const LinearFit& fit, const Eigen::VectorXd& weights, double priors,
-                           double settled) {
+KINECAL_INLINE Refit refit(AnyEvaluator& evaluator, ParameterValues values, const LinearFit& fit,
+                           const Eigen::VectorXd& weights, double priors, double settled) {
   Refit at{Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values)), fit.residual};
   const Eigen::VectorXd first = step_to_minimum(fit, weights, priors);
   bool falls = detail::descend(evaluator, fit, weights, priors, settled, first, at);

@@ -89,7 +89,7 @@ KINECAL_INLINE void wrap_angles(const AnyProblem& problem, const FreeSet& free,
 
 KINECAL_INLINE double hold_undetermined(const AnyProblem& problem, const FreeSet& free,
                                         const Eigen::VectorXd& start, Eigen::VectorXd& values) {
-  const auto evaluator = problem.evaluator(free);
+  const auto evaluator = problem.evaluator(free, 1);
   const auto cost = [&](const Eigen::VectorXd& at) {
     return evaluator->normal_equations(detail::numbers(at), false).cost;
   };

@@ -39,7 +39,7 @@ class ShardEvaluator final : public AnyEvaluator {
   [[nodiscard]] const AnyProblem& problem() const override { return *shards_.problem; }
   [[nodiscard]] const FreeSet& free() const override { return free_; }
 
-  std::optional<UndefinedResidual> evaluate(std::span<const double> values, bool derivatives,
+  std::optional<UndefinedResidual> evaluate(ParameterValues values, bool derivatives,
                                             const RowVisitor& visit, Linearization at) override {
     std::optional<UndefinedResidual> undefined;
     int before = 0;  // samples
@@ -58,7 +58,7 @@ class ShardEvaluator final : public AnyEvaluator {
 
   // Reading a shard costs more than its derivatives, so they are always computed.  The last sums
   // are kept, because Ceres asks for the cost first and for derivatives at the same point later.
-  [[nodiscard]] NormalEquations normal_equations(std::span<const double> values, bool,
+  [[nodiscard]] NormalEquations normal_equations(ParameterValues values, bool,
                                                  Losses losses) override {
     const std::string what =
         name_at(losses == Losses::convex ? "convex" : "as given", free_, values);

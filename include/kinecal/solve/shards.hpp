@@ -58,19 +58,18 @@ struct Shards {
 ///                   Unchanged if the result is not usable
 /// @param reference  values that undetermined directions return to
 [[nodiscard]] StepResult solve_shards(const Shards& shards, const FreeSet& free,
-                                      std::vector<double>& values,
-                                      std::span<const double> reference,
+                                      std::vector<double>& values, ParameterValues reference,
                                       const SolveOptions& options = {});
 
 namespace detail {
 
 /// Identifies numbers at some values: the name, then the values' bytes.
 [[nodiscard]] std::string name_at(const std::string& what, const FreeSet& free,
-                                  std::span<const double> values);
+                                  ParameterValues values);
 
 /// The information of all shards' samples.
 [[nodiscard]] SampleInformation shard_information(const Shards& shards, const FreeSet& free,
-                                                  std::span<const double> values);
+                                                  ParameterValues values);
 
 }  // namespace detail
 

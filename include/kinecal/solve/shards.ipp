@@ -57,7 +57,7 @@ inline double hold_shards(const Shards& shards, const FreeSet& free,
 }
 
 KINECAL_INLINE std::string name_at(const std::string& what, const FreeSet& free,
-                                   std::span<const double> values) {
+                                   ParameterValues values) {
   std::string name = what;
   for (const int p : free.parameters()) name += " " + std::to_string(p);
   name += '\n';
@@ -68,7 +68,7 @@ KINECAL_INLINE std::string name_at(const std::string& what, const FreeSet& free,
 }
 
 KINECAL_INLINE SampleInformation shard_information(const Shards& shards, const FreeSet& free,
-                                                   std::span<const double> values) {
+                                                   ParameterValues values) {
   const int n = free.size();
   const auto numbers_of = [&](int shard) {
     const SampleInformation of = sample_information(*shards.read(shard), free, values);
@@ -107,8 +107,7 @@ KINECAL_INLINE std::unique_ptr<AnyEvaluator> shard_evaluator(const Shards& shard
 }
 
 KINECAL_INLINE StepResult solve_shards(const Shards& shards, const FreeSet& free,
-                                       std::vector<double>& values,
-                                       std::span<const double> reference,
+                                       std::vector<double>& values, ParameterValues reference,
                                        const SolveOptions& options) {
   StepResult result;
   result.num_parameters = free.size();

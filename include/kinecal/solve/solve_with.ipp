@@ -31,8 +31,7 @@ namespace detail {
 
 /// The name of a term whose loss ignores half of its features or more; empty if there is none.
 /// Such a "minimum" is a plateau.
-[[nodiscard]] inline std::string mostly_left_out(AnyEvaluator& evaluator,
-                                                 std::span<const double> values) {
+[[nodiscard]] inline std::string mostly_left_out(AnyEvaluator& evaluator, ParameterValues values) {
   const AnyProblem& problem = evaluator.problem();
   if (all_losses_convex(problem)) return {};
   struct Features {
@@ -116,9 +115,18 @@ inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evalua
   result.termination = what.str();
 }
 
+/// Why a step cannot start.
+[[nodiscard]] inline std::string why_undefined(const UndefinedResidual& undefined) {
+  const std::string where =
+      "'" + undefined.term + "' is not defined at the start for the sample at " + undefined.source;
+  if (undefined.has_value) return "failed: a derivative of the residual of " + where;
+  return "failed: the residual of " + where +
+         " (a point that its camera does not see, or points that span no plane)";
+}
+
 /// Sets costs and counts at the start; returns false, with the reason, if there is nothing to
 /// solve.
-inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepResult& result) {
+inline bool start(AnyEvaluator& evaluator, ParameterValues values, StepResult& result) {
   result.initial_cost = evaluator.normal_equations(values, false).cost;
   result.final_cost = result.initial_cost;
   std::optional<UndefinedResidual> undefined;
@@ -126,9 +134,7 @@ inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepR
     undefined = evaluator.evaluate(values, false, [](int, int, const TermResiduals&) {});
   }
   if (undefined) {
-    result.termination = "failed: the residual of '" + undefined->term +
-                         "' is not defined at the start for the sample at " + undefined->source +
-                         " (a point behind a camera, or points that span no plane)";
+    result.termination = why_undefined(*undefined);
     return false;
   }
   if (!std::isfinite(result.initial_cost)) {
@@ -153,6 +159,7 @@ inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepR
   clamp_to_bounds(problem.table(), free, x);
   const std::span<const double> all(x.data(), static_cast<std::size_t>(x.size()));
   if (!start(*evaluator, all, result)) return result;
+  const Eigen::VectorXd from = x;
   Minimum first;
   if (!all_losses_convex(problem)) {
     first = minimize(*evaluator, evaluator_of, x, options, Losses::convex);
@@ -165,7 +172,9 @@ inline bool start(AnyEvaluator& evaluator, std::span<const double> values, StepR
   result.evaluations = first.evaluations + last.evaluations;
   constexpr double kRounding = 1e-9;  // a start at the minimum may end slightly above it
   if (!last.usable) {
-    result.termination = "failed: " + last.message;
+    const auto undefined =
+        evaluator->evaluate({from.data(), all.size()}, true, [](int, int, const TermResiduals&) {});
+    result.termination = undefined ? why_undefined(*undefined) : "failed: " + last.message;
   } else if (!std::isfinite(last.cost)) {
     result.termination = "failed: the cost is not finite";
   } else if (last.cost > result.initial_cost * (1.0 + kRounding)) {

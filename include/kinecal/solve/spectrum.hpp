@@ -20,7 +20,7 @@ inline constexpr double kUnobservable = 1e-6;
 
 /// J^T J of the error-free problem, weighted, without priors.
 [[nodiscard]] Eigen::MatrixXd error_free_information(const AnyProblem& problem, const FreeSet& free,
-                                                     std::span<const double> values);
+                                                     ParameterValues values);
 
 /// The information of samples on the free parameters, as sums.
 struct SampleInformation {

@@ -11,8 +11,7 @@
 namespace kinecal::detail {
 
 KINECAL_INLINE Eigen::MatrixXd error_free_information(const AnyProblem& problem,
-                                                      const FreeSet& free,
-                                                      std::span<const double> values) {
+                                                      const FreeSet& free, ParameterValues values) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(free.size(), free.size());
   const auto add = [&](int t, int, const TermResiduals& out) {
     const Eigen::VectorXd weights = problem.term(t).weight * out.factor;

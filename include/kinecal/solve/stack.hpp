@@ -43,14 +43,13 @@ struct Stack {
 ///                                camera; with the error block and the sample
 /// @throws std::invalid_argument  if a free parameter does not belong to the problem, or if the
 ///                                number of values is not that of the table's parameters
-[[nodiscard]] Stack stack(const AnyProblem& problem, const FreeSet& free,
-                          std::span<const double> values);
+[[nodiscard]] Stack stack(const AnyProblem& problem, const FreeSet& free, ParameterValues values);
 
 namespace detail {
 /// Writes weighted rows into a Stack of the problem's size.
 /// @param prior_factor  further factor of the priors' rows
 /// @returns  the first undefined residual, if any; then the rows are not valid
-std::optional<UndefinedResidual> stack_rows(AnyEvaluator& evaluator, std::span<const double> values,
+std::optional<UndefinedResidual> stack_rows(AnyEvaluator& evaluator, ParameterValues values,
                                             bool jacobians, double prior_factor, Stack& out);
 }  // namespace detail
 

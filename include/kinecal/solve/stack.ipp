@@ -11,7 +11,7 @@
 namespace kinecal {
 
 KINECAL_INLINE std::optional<UndefinedResidual> detail::stack_rows(AnyEvaluator& evaluator,
-                                                                   std::span<const double> values,
+                                                                   ParameterValues values,
                                                                    bool jacobians,
                                                                    double prior_factor,
                                                                    Stack& out) {
@@ -49,9 +49,8 @@ KINECAL_INLINE std::optional<Eigen::MatrixXd> Stack::covariance() const {
   return v * eigen.eigenvalues().cwiseInverse().asDiagonal() * v.transpose();
 }
 
-KINECAL_INLINE Stack stack(const AnyProblem& problem, const FreeSet& free,
-                           std::span<const double> values) {
-  const auto evaluator = problem.evaluator(free);
+KINECAL_INLINE Stack stack(const AnyProblem& problem, const FreeSet& free, ParameterValues values) {
+  const auto evaluator = problem.evaluator(free, 1);
   Stack all;
   all.residual.resize(problem.num_residuals());
   all.jacobian.resize(problem.num_residuals(), free.size());

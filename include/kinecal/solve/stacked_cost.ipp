@@ -44,7 +44,7 @@ KINECAL_INLINE StackedResiduals::StackedResiduals(const AnyProblem& problem, con
       values_(std::move(values)),
       x_(x),
       losses_(losses),
-      evaluator_(problem.evaluator(free)) {
+      evaluator_(problem.evaluator(free, 1)) {
   rows_.residual.resize(problem.num_residuals());
   rows_.jacobian.resize(problem.num_residuals(), free.size());
 }
@@ -53,7 +53,7 @@ KINECAL_INLINE void StackedResiduals::PrepareForEvaluation(bool jacobians, bool)
   for (int c = 0; c < free_.size(); ++c) {
     values_(free_.parameters()[static_cast<std::size_t>(c)]) = x_[c];
   }
-  const std::span<const double> values(values_.data(), static_cast<std::size_t>(values_.size()));
+  const ParameterValues values(values_.data(), static_cast<std::size_t>(values_.size()));
   defined_ = !detail::stack_rows(*evaluator_, values, jacobians, 1.0, rows_);
 }
 
@@ -69,7 +69,7 @@ KINECAL_INLINE void StackedResiduals::add_to(ceres::Problem& problem, double* x)
     problem.AddResidualBlock(new Rows(*this, row, size), robust, x);
     row += size;
   };
-  const std::span<const double> values(values_.data(), static_cast<std::size_t>(values_.size()));
+  const ParameterValues values(values_.data(), static_cast<std::size_t>(values_.size()));
   (void)evaluator_->evaluate(values, false, [&](int t, int, const TermResiduals& of_term) {
     const Term& term = problem_.term(t);
     const int features = static_cast<int>(of_term.residual.size()) / term.feature_size;

@@ -37,12 +37,12 @@ struct BlockStatistics {
 
 /// Norms of the unweighted residuals of every feature, for each term of a problem.
 [[nodiscard]] std::vector<std::vector<double>> feature_norms(const AnyProblem& problem,
-                                                             std::span<const double> values);
+                                                             ParameterValues values);
 
 /// Statistics of all error blocks and priors of a problem, for two sets of parameter values.
 [[nodiscard]] std::vector<BlockStatistics> block_statistics(const AnyProblem& problem,
-                                                            std::span<const double> before,
-                                                            std::span<const double> after);
+                                                            ParameterValues before,
+                                                            ParameterValues after);
 
 }  // namespace kinecal
 

@@ -29,7 +29,7 @@ KINECAL_INLINE Statistics statistics_of(std::vector<double> norms, int component
 }
 
 KINECAL_INLINE std::vector<std::vector<double>> feature_norms(const AnyProblem& problem,
-                                                              std::span<const double> values) {
+                                                              ParameterValues values) {
   std::vector<std::vector<double>> norms(static_cast<std::size_t>(problem.num_terms()));
   (void)evaluate(problem, values, nullptr, [&](int t, int, const TermResiduals& residuals) {
     const int size = problem.term(t).feature_size;
@@ -41,8 +41,8 @@ KINECAL_INLINE std::vector<std::vector<double>> feature_norms(const AnyProblem& 
 }
 
 KINECAL_INLINE std::vector<BlockStatistics> block_statistics(const AnyProblem& problem,
-                                                             std::span<const double> before,
-                                                             std::span<const double> after) {
+                                                             ParameterValues before,
+                                                             ParameterValues after) {
   std::vector<BlockStatistics> all;
   const auto norms_before = feature_norms(problem, before);
   const auto norms_after = feature_norms(problem, after);

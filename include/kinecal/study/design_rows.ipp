@@ -20,7 +20,7 @@ namespace kinecal::detail {
 /// Collects the changes of each sample's rows by each error.
 class DesignRows {
  public:
-  DesignRows(const MakeProblem& make, const FreeSet& free, std::span<const double> values,
+  DesignRows(const MakeProblem& make, const FreeSet& free, ParameterValues values,
              std::span<const Sample> samples, const MeasurementNoise& noise, Targets targets)
       : changing_(make, values, samples), noise_(noise) {
     const StudyRows rows = changing_.rows(changing_.samples(), &free);

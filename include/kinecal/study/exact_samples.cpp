@@ -184,7 +184,7 @@ class ExactSearch {
 }  // namespace
 }  // namespace detail
 
-std::vector<Sample> exact_samples(const MakeProblem& make, std::span<const double> values,
+std::vector<Sample> exact_samples(const MakeProblem& make, ParameterValues values,
                                   std::span<const Sample> samples) {
   detail::ChangingSamples changing(make, values, samples);
   detail::ExactSearch(changing).run();

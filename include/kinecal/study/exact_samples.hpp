@@ -36,8 +36,7 @@ using MakeProblem = std::function<std::unique_ptr<AnyProblem>()>;
 /// @throws StudyError   with the error block and the sample, if no measurement makes a residual
 ///                      zero
 /// @throws SampleError  if a sample does not match the problem
-[[nodiscard]] std::vector<Sample> exact_samples(const MakeProblem& make,
-                                                std::span<const double> values,
+[[nodiscard]] std::vector<Sample> exact_samples(const MakeProblem& make, ParameterValues values,
                                                 std::span<const Sample> samples);
 
 }  // namespace kinecal

@@ -57,8 +57,7 @@ struct StackedRows {
   std::vector<double> moved;  ///< J step
 };
 
-[[nodiscard]] inline StackedRows stacked_rows(AnyEvaluator& evaluator,
-                                              std::span<const double> values,
+[[nodiscard]] inline StackedRows stacked_rows(AnyEvaluator& evaluator, ParameterValues values,
                                               const Eigen::VectorXd& step) {
   StackedRows all;
   (void)evaluator.evaluate(values, step.size() > 0, [&](int term, int, const TermResiduals& rows) {
@@ -79,7 +78,7 @@ struct StackedRows {
   const std::unique_ptr<AnyProblem> problem = setup.make();
   for (const Sample& sample : measured) problem->add_sample(sample);
   const FreeSet free(setup.free, problem->table().size());
-  const std::unique_ptr<AnyEvaluator> evaluator = problem->evaluator(free);
+  const std::unique_ptr<AnyEvaluator> evaluator = problem->evaluator(free, 1);
   const PlainEquations at_truth = plain_equations(*problem, free, robot.truth);
   const Eigen::MatrixXd hessian = at_truth.hessian.matrix();
   const Eigen::VectorXd units =

@@ -66,11 +66,11 @@ void ruin(const StudySetup& setup, const std::set<std::string>& joints, Sample& 
 
 /// Mean distance of the features of the first error block that has any.
 [[nodiscard]] double mean_reprojection(const StudySetup& setup, std::span<const Sample> samples,
-                                       std::span<const double> values) {
+                                       ParameterValues values) {
   const std::unique_ptr<AnyProblem> problem = setup.make();
   for (const Sample& sample : samples) problem->add_sample(sample);
   std::vector<double> sums(static_cast<std::size_t>(problem->num_terms()), 0.0), counts = sums;
-  (void)problem->evaluator(FreeSet({}, problem->table().size()))
+  (void)problem->evaluator(FreeSet({}, problem->table().size()), 1)
       ->evaluate(values, false, [&](int term, int, const TermResiduals& rows) {
         const Eigen::Index size = problem->term(term).feature_size;
         const auto t = static_cast<std::size_t>(term);
@@ -157,7 +157,7 @@ StudyTrial run_study_job(const StudySetup& setup, const StudyRobot& robot, const
   return trial;
 }
 
-double error_before(const StudySetup& setup, std::span<const double> truth) {
+double error_before(const StudySetup& setup, ParameterValues truth) {
   const std::unique_ptr<AnyProblem> problem = setup.make();
   return pose_change({*problem, truth}, {*problem, setup.drawn}, setup.samples, setup.frame,
                      setup.in)

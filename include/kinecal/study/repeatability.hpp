@@ -100,6 +100,6 @@ struct StudyTrial {
 
 /// The error of a robot's pose without a calibration, over all poses, RMS, metres.
 /// @param truth  see study_truth()
-[[nodiscard]] double error_before(const StudySetup& setup, std::span<const double> truth);
+[[nodiscard]] double error_before(const StudySetup& setup, ParameterValues truth);
 
 }  // namespace kinecal

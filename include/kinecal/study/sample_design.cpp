@@ -17,7 +17,7 @@ namespace {
 
 /// The contribution of a problem's priors for one sample.
 [[nodiscard]] PlainMatrix prior_of_one(const MakeProblem& make, const FreeSet& free,
-                                       std::span<const double> values, const Sample& sample,
+                                       ParameterValues values, const Sample& sample,
                                        const SampleDesign& design) {
   const std::unique_ptr<AnyProblem> problem = make();
   problem->add_sample(sample);
@@ -29,9 +29,9 @@ namespace {
 }  // namespace
 }  // namespace detail
 
-StudyDesign study_design(const MakeProblem& make, const FreeSet& free,
-                         std::span<const double> values, std::span<const Sample> samples,
-                         const MeasurementNoise& noise, Targets targets) {
+StudyDesign study_design(const MakeProblem& make, const FreeSet& free, ParameterValues values,
+                         std::span<const Sample> samples, const MeasurementNoise& noise,
+                         Targets targets) {
   StudyDesign design{detail::DesignRows(make, free, values, samples, noise, targets).designs(),
                      Eigen::MatrixXd::Zero(free.size(), free.size())};
   if (!samples.empty()) {

@@ -50,8 +50,7 @@ enum class Targets {
 /// @param samples  exact ones: see exact_samples()
 /// @throws StudyError  if a residual is undefined
 [[nodiscard]] StudyDesign study_design(const MakeProblem& make, const FreeSet& free,
-                                       std::span<const double> values,
-                                       std::span<const Sample> samples,
+                                       ParameterValues values, std::span<const Sample> samples,
                                        const MeasurementNoise& noise,
                                        Targets targets = Targets::held);
 

@@ -32,8 +32,7 @@ struct StudyRows {
 /// Samples with changing measurements, and their residuals.
 class ChangingSamples {
  public:
-  ChangingSamples(const MakeProblem& make, std::span<const double> values,
-                  std::span<const Sample> samples)
+  ChangingSamples(const MakeProblem& make, ParameterValues values, std::span<const Sample> samples)
       : make_(make), values_(values), empty_(make()) {
     for (const Sample& sample : samples) {
       samples_.push_back(empty_->paired(sample).value_or(sample));
@@ -59,7 +58,7 @@ class ChangingSamples {
     const auto visit = [&](int term, int sample, const TermResiduals& of_term) {
       add(*problem, term, sample, of_term, rows);
     };
-    const auto undefined = problem->evaluator(free != nullptr ? *free : none)
+    const auto undefined = problem->evaluator(free != nullptr ? *free : none, 1)
                                ->evaluate(values_, free != nullptr, visit);
     if (undefined) {
       throw StudyError(undefined->source + ": error block '" + undefined->term +

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/errors/block_checks.hpp"
 #include "kinecal/testing/block_input.hpp"
 
 namespace kinecal {
@@ -119,16 +120,20 @@ class BlockCheck {
 ///                  initial values of its parameters.  By default two equal points, poses, planes
 ///                  or pixels, or two rays that meet.  For other arguments, or with parameters or
 ///                  conditions, there is no default, and zero is not checked.
-template <ErrorBlock B, class... Arguments>
+template <class B, class... Arguments>
 [[nodiscard]] Verdict check_block(const B& block, const Arguments&... agreeing) {
-  detail::BlockCheck<B> check(block);
+  [[maybe_unused]] const detail::CheckErrorBlock<B> check_of_type{};
   Verdict verdict;
-  if constexpr (sizeof...(Arguments) > 0) {
-    verdict = check.agreement(detail::BlockInput<B, double>::of(block, agreeing...));
-  } else {
-    verdict = check.obvious_agreement();
+  if constexpr (ErrorBlock<B>) {
+    detail::BlockCheck<B> check(block);
+    if constexpr (sizeof...(Arguments) > 0) {
+      verdict = check.agreement(detail::BlockInput<B, double>::of(block, agreeing...));
+    } else {
+      verdict = check.obvious_agreement();
+    }
+    if (verdict) verdict = check.anywhere();
   }
-  return verdict ? check.anywhere() : verdict;
+  return verdict;
 }
 
 }  // namespace kinecal

@@ -23,8 +23,7 @@ namespace {
 /// than chance, d^T C^-1 d < 2 rank.  A fit without them predicts just as well.
 /// Source: Akaike, A New Look at the Statistical Model Identification, 1974.
 [[nodiscard]] std::vector<IdleGroup> idle_groups(const AnyProblem& problem, const FreeSet& free,
-                                                 std::span<const double> values,
-                                                 const Uncertainty& known) {
+                                                 ParameterValues values, const Uncertainty& known) {
   std::map<std::string, std::vector<int>> columns;
   for (int c = 0; c < free.size(); ++c) {
     const int p = free.parameters()[static_cast<std::size_t>(c)];
@@ -59,13 +58,13 @@ std::optional<double> Assessment::deviation(int parameter) const {
   return uncertainty.deviation(at - parameters.begin());
 }
 
-Assessment assess(const AnyProblem& problem, const FreeSet& free, std::span<const double> values,
+Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
                   std::span<const Sample> samples, const AssessOptions& options) {
   Assessment found;
   found.observability = observability(problem, free, values);
   const FreeSet inside = detail::inside_bounds(problem, free, values, found.at_bound);
   found.parameters = inside.parameters();
-  const auto evaluator = problem.evaluator(inside);
+  const auto evaluator = problem.evaluator(inside, 1);
   const LinearFit fit =
       linear_fit(*evaluator, values, determined_coordinates(problem, inside, values));
   found.rows = fit.residual.size();

@@ -73,7 +73,7 @@ struct AssessOptions {
 /// @param values  of all parameters of the table: its solution
 /// @throws std::domain_error  if a residual is undefined there
 [[nodiscard]] Assessment assess(const AnyProblem& problem, const FreeSet& free,
-                                std::span<const double> values, std::span<const Sample> samples,
+                                ParameterValues values, std::span<const Sample> samples,
                                 const AssessOptions& options = {});
 
 namespace detail {

@@ -59,8 +59,7 @@ namespace detail {
 /// Adds the sums of all shards.
 /// @param misfits  out: see ShardAssessment
 [[nodiscard]] inline ShardSums all_sums(const Shards& shards, const FreeSet& free,
-                                        std::span<const double> before,
-                                        std::span<const double> after,
+                                        ParameterValues before, ParameterValues after,
                                         std::vector<double>& misfits) {
   const AnyProblem& problem = *shards.problem;
   const auto numbers_of = [&](int shard) {
@@ -98,9 +97,8 @@ namespace detail {
 
 }  // namespace detail
 
-ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
-                              std::span<const double> before, std::span<const double> after,
-                              std::span<const Sample> samples) {
+ShardAssessment assess_shards(const Shards& shards, const FreeSet& free, ParameterValues before,
+                              ParameterValues after, std::span<const Sample> samples) {
   const AnyProblem& problem = *shards.problem;
   ShardAssessment found;
   Assessment& of = found.assessment;
@@ -120,7 +118,7 @@ ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
   found.blocks = detail::statistics_of_blocks(problem, sums);
   const std::shared_ptr<const AnyProblem> first = shards.read(0);
   if (const auto frames = compared_frames(*first, samples)) {
-    const LinearFit fit = linear_fit(*first->evaluator(inside), after, by);
+    const LinearFit fit = linear_fit(*first->evaluator(inside, 1), after, by);
     of.pose = pose_uncertainty(*first, inside, after, fit, of.uncertainty, samples, frames->first,
                                frames->second);
   }

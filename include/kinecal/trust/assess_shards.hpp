@@ -31,8 +31,7 @@ struct ShardAssessment {
 /// @param after    the same at the solution
 /// @param samples  of the first shard: the compared pose is evaluated at them
 [[nodiscard]] ShardAssessment assess_shards(const Shards& shards, const FreeSet& free,
-                                            std::span<const double> before,
-                                            std::span<const double> after,
+                                            ParameterValues before, ParameterValues after,
                                             std::span<const Sample> samples);
 
 }  // namespace kinecal

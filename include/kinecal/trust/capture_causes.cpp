@@ -121,7 +121,7 @@ void add_turns(const Sample& sample, std::size_t observation, std::vector<Featur
 }  // namespace
 }  // namespace detail
 
-std::string capture_cause(const AnyProblem& problem, std::span<const double> values,
+std::string capture_cause(const AnyProblem& problem, ParameterValues values,
                           const std::vector<BlockNoise>& noise, const Sample& sample) {
   const detail::CaptureTrials trials(problem, values, noise);
   detail::TrialRows now = trials({sample}).front();

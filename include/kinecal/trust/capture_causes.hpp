@@ -28,7 +28,7 @@ namespace kinecal {
 /// @param values  of all parameters of its table, fitted to the other samples
 /// @param noise   of each error block, in their order
 /// @param sample  the bad one
-[[nodiscard]] std::string capture_cause(const AnyProblem& problem, std::span<const double> values,
+[[nodiscard]] std::string capture_cause(const AnyProblem& problem, ParameterValues values,
                                         const std::vector<BlockNoise>& noise, const Sample& sample);
 
 }  // namespace kinecal

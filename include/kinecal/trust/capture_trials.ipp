@@ -55,7 +55,7 @@ struct TrialRows {
 /// Evaluates variants of a sample.
 class CaptureTrials {
  public:
-  CaptureTrials(const AnyProblem& problem, std::span<const double> values,
+  CaptureTrials(const AnyProblem& problem, ParameterValues values,
                 const std::vector<BlockNoise>& noise)
       : problem_(problem), values_(values), noise_(noise) {}
 

@@ -44,7 +44,7 @@ void try_mover(const AnyProblem& problem, const DriftSearch& search, double leve
 }  // namespace
 }  // namespace detail
 
-CalibratedState calibrated_state(const Assessment& assessment, std::span<const double> values) {
+CalibratedState calibrated_state(const Assessment& assessment, ParameterValues values) {
   CalibratedState state{{values.begin(), values.end()},
                         assessment.parameters,
                         assessment.uncertainty.covariance,

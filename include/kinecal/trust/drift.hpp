@@ -38,7 +38,7 @@ struct CalibratedState {
 /// The state of a calibration from its assessment.
 /// @param values  of all parameters of the table: its result
 [[nodiscard]] CalibratedState calibrated_state(const Assessment& assessment,
-                                               std::span<const double> values);
+                                               ParameterValues values);
 
 /// A sample that does not fit while the others do.
 struct MissedSample {

@@ -17,7 +17,7 @@ class DriftFit {
  public:
   DriftFit(const AnyProblem& problem, const CalibratedState& state)
       : problem_(problem), state_(state), free_(free_of(problem, state)), scale_(scales()) {
-    evaluator_ = problem.evaluator(free_);
+    evaluator_ = problem.evaluator(free_, 1);
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(free_.size(), free_.size());
     std::vector<int> columns;
     for (const int p : state.parameters) columns.push_back(free_.column(p));

@@ -57,7 +57,7 @@ std::vector<int> folds_of(std::span<const Sample> samples, const PoseGroups& pos
   return fold;
 }
 
-std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator, std::span<const double> values,
+std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator, ParameterValues values,
                                           const LinearFit& fit, const std::vector<int>& fold,
                                           const ProgressMeter& meter) {
   const AnyProblem& problem = evaluator.problem();

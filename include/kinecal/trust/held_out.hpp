@@ -38,7 +38,7 @@ struct HeldOutError {
 /// @param fold    of each sample of the problem, by number
 /// @param meter   called after each fold
 [[nodiscard]] std::vector<HeldOutError> held_out_errors(AnyEvaluator& evaluator,
-                                                        std::span<const double> values,
+                                                        ParameterValues values,
                                                         const LinearFit& fit,
                                                         const std::vector<int>& fold,
                                                         const ProgressMeter& meter = {});

@@ -13,7 +13,7 @@ namespace kinecal::detail {
 
 /// The free parameters that are not at a bound.
 [[nodiscard]] inline FreeSet inside_bounds(const AnyProblem& problem, const FreeSet& free,
-                                           std::span<const double> values, std::vector<int>& held) {
+                                           ParameterValues values, std::vector<int>& held) {
   std::vector<int> inside;
   for (const int p : free.parameters()) {
     const Parameter& parameter = problem.table()[p];

@@ -8,7 +8,7 @@
 
 namespace kinecal {
 
-int measured_numbers(const AnyProblem& problem, std::span<const double> values) {
+int measured_numbers(const AnyProblem& problem, ParameterValues values) {
   constexpr Eigen::Index kOfABody = 6;
   Eigen::Index numbers = 0;
   (void)evaluate(problem, values, nullptr, [&](int, int, const TermResiduals& rows) {

@@ -16,6 +16,6 @@ namespace kinecal {
 
 /// The numbers that the samples of a problem measure.
 /// @param values  of all parameters of the table
-[[nodiscard]] int measured_numbers(const AnyProblem& problem, std::span<const double> values);
+[[nodiscard]] int measured_numbers(const AnyProblem& problem, ParameterValues values);
 
 }  // namespace kinecal

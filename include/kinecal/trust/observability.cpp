@@ -102,7 +102,7 @@ Observability detail::observability_of(const AnyProblem& problem, const FreeSet&
 }
 
 Observability observability(const AnyProblem& problem, const FreeSet& free,
-                            std::span<const double> values) {
+                            ParameterValues values) {
   if (free.size() == 0) return {};
   return detail::observability_of(problem, free, detail::sample_information(problem, free, values));
 }

@@ -36,7 +36,7 @@ struct Observability {
 /// The observability of a problem's free parameters from its samples, near given values.
 /// @param values  of all parameters of the table
 [[nodiscard]] Observability observability(const AnyProblem& problem, const FreeSet& free,
-                                          std::span<const double> values);
+                                          ParameterValues values);
 
 namespace detail {
 

@@ -9,9 +9,8 @@
 
 namespace kinecal {
 
-OnlineCalibration::OnlineCalibration(MakeProblem make, const FreeSet& free,
-                                     std::span<const double> values, const FrameOnRobot& frame,
-                                     const FrameOnRobot& in)
+OnlineCalibration::OnlineCalibration(MakeProblem make, const FreeSet& free, ParameterValues values,
+                                     const FrameOnRobot& frame, const FrameOnRobot& in)
     : inside_(new Inside{std::move(make), free, {values.begin(), values.end()}, frame, in}) {
   inside_->problem->check(free);
   (void)detail::PoseDerivative(*inside_->problem, free, inside_->values, frame, in);
@@ -45,7 +44,7 @@ std::optional<NextMove> OnlineCalibration::next_move(double step) const {
   const auto trials = known.make();
   for (const auto& candidate : candidates) trials->add_sample(candidate.second);
   std::vector<detail::SampleRows> rows(candidates.size());
-  (void)trials->evaluator(known.free)
+  (void)trials->evaluator(known.free, 1)
       ->evaluate(
           known.values, true,
           [&](int term, int sample, const TermResiduals& of_term) {

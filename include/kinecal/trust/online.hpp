@@ -62,7 +62,7 @@ class OnlineCalibration {
   /// @param frame   whose pose is wanted: the gripper
   /// @param in      the frame in which it is given: the camera
   /// @throws RobotError  if a link does not exist
-  OnlineCalibration(MakeProblem make, const FreeSet& free, std::span<const double> values,
+  OnlineCalibration(MakeProblem make, const FreeSet& free, ParameterValues values,
                     const FrameOnRobot& frame, const FrameOnRobot& in);
   ~OnlineCalibration();
   OnlineCalibration(OnlineCalibration&&) noexcept;

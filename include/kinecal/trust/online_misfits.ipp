@@ -70,7 +70,7 @@ inline bool OnlineCalibration::Inside::add_if_it_fits(const Sample& sample, Onli
   problem->add_sample(sample);
   samples.push_back(sample);
   numbers.push_back(++added);
-  auto evaluator = problem->evaluator(free);
+  auto evaluator = problem->evaluator(free, 1);
   if (!std::isfinite(evaluator->normal_equations(values, false).cost)) {
     leave_out(samples.size() - 1);  // a residual is undefined: a point behind a camera
     return false;
@@ -88,7 +88,7 @@ inline bool OnlineCalibration::Inside::add_if_it_fits(const Sample& sample, Onli
   while (const auto worst = misfit(*evaluator)) {
     state.dropped.push_back(numbers[*worst]);
     leave_out(*worst);
-    evaluator = problem->evaluator(free);
+    evaluator = problem->evaluator(free, 1);
     step_to_minimum(*evaluator);
   }
   std::erase(state.dropped, added);

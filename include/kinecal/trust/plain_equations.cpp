@@ -7,8 +7,8 @@
 namespace kinecal {
 
 PlainEquations plain_equations(const AnyProblem& problem, const FreeSet& free,
-                               std::span<const double> values) {
-  const NormalEquations normal = problem.evaluator(free)->normal_equations(values);
+                               ParameterValues values) {
+  const NormalEquations normal = problem.evaluator(free, 1)->normal_equations(values);
   return {PlainMatrix(normal.gradient), PlainMatrix(normal.hessian)};
 }
 

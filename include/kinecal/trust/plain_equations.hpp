@@ -17,6 +17,6 @@ struct PlainEquations {
 
 /// @param values  of all parameters of the table
 [[nodiscard]] PlainEquations plain_equations(const AnyProblem& problem, const FreeSet& free,
-                                             std::span<const double> values);
+                                             ParameterValues values);
 
 }  // namespace kinecal

@@ -6,8 +6,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include "kinecal/geometry/eigen_layout.hpp"
 
 namespace kinecal {
 

@@ -13,8 +13,8 @@ namespace {
 
 /// A step linearized at its solution.
 [[nodiscard]] LinearFit linear_fit_of(const AnyProblem& problem, const FreeSet& free,
-                                      std::span<const double> values) {
-  const auto evaluator = problem.evaluator(free);
+                                      ParameterValues values) {
+  const auto evaluator = problem.evaluator(free, 1);
   return linear_fit(*evaluator, values, determined_coordinates(problem, free, values));
 }
 
@@ -33,16 +33,16 @@ namespace {
 }  // namespace
 }  // namespace detail
 
-PoseUncertainty pose_at(const AnyProblem& problem, const Assessment& step,
-                        std::span<const double> values, std::span<const Sample> poses,
-                        const FrameOnRobot& frame, const FrameOnRobot& in) {
+PoseUncertainty pose_at(const AnyProblem& problem, const Assessment& step, ParameterValues values,
+                        std::span<const Sample> poses, const FrameOnRobot& frame,
+                        const FrameOnRobot& in) {
   const FreeSet free(step.parameters, problem.table().size());
   return pose_uncertainty(problem, free, values, detail::linear_fit_of(problem, free, values),
                           step.uncertainty, poses, frame, in);
 }
 
 PoseUncertainty pose_held_out(const AnyProblem& problem, const Assessment& step,
-                              std::span<const double> values, std::span<const Sample> samples,
+                              ParameterValues values, std::span<const Sample> samples,
                               const FrameOnRobot& frame, const FrameOnRobot& in) {
   const FreeSet free(step.parameters, problem.table().size());
   const LinearFit fit = detail::linear_fit_of(problem, free, values);

@@ -23,14 +23,13 @@ namespace kinecal {
 /// @param values  of all parameters of the table: the solution
 /// @param poses   samples; uses only their joint positions
 [[nodiscard]] PoseUncertainty pose_at(const AnyProblem& problem, const Assessment& step,
-                                      std::span<const double> values, std::span<const Sample> poses,
+                                      ParameterValues values, std::span<const Sample> poses,
                                       const FrameOnRobot& frame, const FrameOnRobot& in);
 
 /// The uncertainty of a pose at each sample, from the other samples.
 /// @param samples  those of the problem, in their order
 [[nodiscard]] PoseUncertainty pose_held_out(const AnyProblem& problem, const Assessment& step,
-                                            std::span<const double> values,
-                                            std::span<const Sample> samples,
+                                            ParameterValues values, std::span<const Sample> samples,
                                             const FrameOnRobot& frame, const FrameOnRobot& in);
 
 }  // namespace kinecal

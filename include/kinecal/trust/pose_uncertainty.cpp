@@ -7,7 +7,7 @@
 namespace kinecal {
 
 PoseUncertainty pose_uncertainty(const AnyProblem& problem, const FreeSet& free,
-                                 std::span<const double> values, const LinearFit& fit,
+                                 ParameterValues values, const LinearFit& fit,
                                  const Uncertainty& known, std::span<const Sample> samples,
                                  const FrameOnRobot& frame, const FrameOnRobot& in) {
   detail::PoseDerivative derivative(problem, free, values, frame, in);
@@ -21,9 +21,9 @@ PoseUncertainty pose_uncertainty(const AnyProblem& problem, const FreeSet& free,
   return variance.result(frame, in);
 }
 
-PlainMatrix position_goal(const AnyProblem& problem, const FreeSet& free,
-                          std::span<const double> values, std::span<const Sample> samples,
-                          const FrameOnRobot& frame, const FrameOnRobot& in) {
+PlainMatrix position_goal(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
+                          std::span<const Sample> samples, const FrameOnRobot& frame,
+                          const FrameOnRobot& in) {
   detail::PoseDerivative derivative(problem, free, values, frame, in);
   Eigen::MatrixXd goal = Eigen::MatrixXd::Zero(free.size(), free.size());
   double poses = 0.0;

@@ -30,8 +30,8 @@ struct FrameOnRobot {
 
 /// A robot with its parameters; needs no samples.
 struct RobotState {
-  const AnyProblem& problem;       ///< robot, base and frames
-  std::span<const double> values;  ///< of all parameters of its table
+  const AnyProblem& problem;  ///< robot, base and frames
+  ParameterValues values;     ///< of all parameters of its table
 };
 
 /// Uncertainty of the pose of a frame in another, over the poses of the samples.
@@ -52,7 +52,7 @@ struct PoseUncertainty {
 /// @param samples  poses at which it is computed; skips those that lack a joint of the chain
 /// @throws RobotError  if a link does not exist, or no chain connects the two
 [[nodiscard]] PoseUncertainty pose_uncertainty(const AnyProblem& problem, const FreeSet& free,
-                                               std::span<const double> values, const LinearFit& fit,
+                                               ParameterValues values, const LinearFit& fit,
                                                const Uncertainty& known,
                                                std::span<const Sample> samples,
                                                const FrameOnRobot& frame, const FrameOnRobot& in);
@@ -63,8 +63,7 @@ struct PoseUncertainty {
 /// @returns  (free x free), square metres by the units of the parameters
 /// @throws RobotError  as pose_uncertainty()
 [[nodiscard]] PlainMatrix position_goal(const AnyProblem& problem, const FreeSet& free,
-                                        std::span<const double> values,
-                                        std::span<const Sample> samples, const FrameOnRobot& frame,
-                                        const FrameOnRobot& in);
+                                        ParameterValues values, std::span<const Sample> samples,
+                                        const FrameOnRobot& frame, const FrameOnRobot& in);
 
 }  // namespace kinecal

@@ -28,8 +28,7 @@ namespace kinecal::detail {
 
 /// The derivative of the tip of a chain to a frame.
 [[nodiscard]] inline TipDerivative derivative_of(const AnyProblem& problem, const FreeSet& free,
-                                                 std::span<const double> values,
-                                                 const FrameOnRobot& to) {
+                                                 ParameterValues values, const FrameOnRobot& to) {
   RuntimeChain chain = make_chain(problem.robot(), problem.base(), to.link, problem.frames());
   if (!to.frame.empty()) chain = with_virtual_frame(std::move(chain), to.frame);
   return {problem, free, values, std::move(chain)};
@@ -39,7 +38,7 @@ namespace kinecal::detail {
 struct PoseDerivative {
   TipDerivative of_frame, of_in;
 
-  PoseDerivative(const AnyProblem& problem, const FreeSet& free, std::span<const double> values,
+  PoseDerivative(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
                  const FrameOnRobot& frame, const FrameOnRobot& in)
       : of_frame(derivative_of(problem, free, values, frame)),
         of_in(derivative_of(problem, free, values, in)) {}

@@ -11,7 +11,7 @@
 namespace kinecal {
 
 std::vector<PriorPull> prior_pulls(const AnyProblem& problem, const FreeSet& free,
-                                   std::span<const double> values, const LinearFit& fit,
+                                   ParameterValues values, const LinearFit& fit,
                                    const Eigen::MatrixXd& inverse, const Uncertainty& known) {
   constexpr double kMost = 4.0;    // standard deviations
   constexpr double kOfUse = 0.01;  // of useful_deviation(): 0.05 degrees, 0.2 mm, 0.05 %

@@ -30,8 +30,7 @@ struct PriorPull {
 /// @param values   of all parameters of the table: the solution
 /// @param inverse  (coordinates x coordinates) of the information of `fit`, priors included
 [[nodiscard]] std::vector<PriorPull> prior_pulls(const AnyProblem& problem, const FreeSet& free,
-                                                 std::span<const double> values,
-                                                 const LinearFit& fit,
+                                                 ParameterValues values, const LinearFit& fit,
                                                  const Eigen::MatrixXd& inverse,
                                                  const Uncertainty& known);
 

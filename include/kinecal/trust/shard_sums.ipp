@@ -164,8 +164,7 @@ inline void add_features(const Term& term, const TermResiduals& rows, ShardSums&
 }
 
 [[nodiscard]] inline ShardSums sums_of(const AnyProblem& problem, const FreeSet& free,
-                                       std::span<const double> before,
-                                       std::span<const double> after) {
+                                       ParameterValues before, ParameterValues after) {
   ShardSums sums(free.size(), problem.num_terms());
   const auto block = [&](int t) -> BlockSums& { return sums.blocks[static_cast<std::size_t>(t)]; };
   (void)evaluate(problem, before, nullptr, [&](int t, int, const TermResiduals& rows) {

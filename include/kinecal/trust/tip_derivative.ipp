@@ -15,7 +15,7 @@ namespace kinecal::detail {
 /// The derivative of a chain's tip by the free parameters, at any pose.
 class TipDerivative {
  public:
-  TipDerivative(const AnyProblem& problem, const FreeSet& free, std::span<const double> values,
+  TipDerivative(const AnyProblem& problem, const FreeSet& free, ParameterValues values,
                 RuntimeChain chain)
       : chain_(std::move(chain)),
         parameters_(chain_parameters(chain_, problem.table())),

@@ -72,7 +72,7 @@ namespace {
 }  // namespace detail
 
 std::vector<KnownPoint> workspace_map(const AnyProblem& problem, const Assessment& step,
-                                      std::span<const double> values, int poses) {
+                                      ParameterValues values, int poses) {
   if (!step.pose || step.parameters.empty()) return {};
   const auto chain_to = [&](const std::string& link, const std::string& frame) {
     RuntimeChain chain = make_chain(problem.robot(), problem.base(), link, problem.frames());

@@ -27,7 +27,7 @@ struct KnownPoint {
 /// Source: Halton, On the efficiency of certain quasi-random sequences of points, 1960, for the
 /// poses.
 [[nodiscard]] std::vector<KnownPoint> workspace_map(const AnyProblem& problem,
-                                                    const Assessment& step,
-                                                    std::span<const double> values, int poses);
+                                                    const Assessment& step, ParameterValues values,
+                                                    int poses);
 
 }  // namespace kinecal

@@ -67,7 +67,7 @@ struct FitOfSamples {
     const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
     const auto blocks = block_statistics(*step.problem, all, all);
     if (blocks.empty()) return std::nullopt;
-    return FitOfSamples{normal_equations(*step.problem, all, nullptr).cost,
+    return FitOfSamples{normal_equations(*step.problem, all, nullptr, Losses::as_given, 1).cost,
                         blocks.front().after.mean, blocks.front().unit};
   }
   step.free = FreeSet(std::move(free), calibration.table.size());

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 
 #include "kinecal/errors/error_block.hpp"
@@ -197,10 +196,7 @@ class BlockRows {
       for (const auto& by_own : pixel.by_own) rows.by_own[rows.own++] = by_pixel * by_own;
       add_own(views, r, 2, rows);
     }
-    const S behind(std::numeric_limits<double>::quiet_NaN());
-    for (int m = 0; m < kSize; ++m) {
-      rows.residual(m) = select(p_camera.z() > S(0.0), rows.residual(m), behind);
-    }
+    for (int m = 0; m < kSize; ++m) rows.residual(m) += pixel.unseen;
   }
 };
 

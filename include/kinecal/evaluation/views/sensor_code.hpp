@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -15,7 +16,8 @@ namespace kinecal::detail {
 /// The pixel of a point in a camera, with derivatives.
 template <class S>
 struct PredictedPixel {
-  Eigen::Matrix<S, 2, 1> value;                ///< (2) pixels
+  Eigen::Matrix<S, 2, 1> value;  ///< (2) pixels
+  S unseen;  ///< added to residuals: zero, or NaN where the camera does not see the point
   Eigen::Matrix<S, 2, 3> by_point;             ///< pixels per metre, in the camera's frame
   std::vector<Eigen::Matrix<S, 2, 1>> by_own;  ///< by each free parameter
 };
@@ -105,12 +107,14 @@ class SensorCodeOf final : public SensorCode<S> {
     if constexpr (PredictingSensor<M>) {
       if (!derivatives) {
         out.value = model_.predict(p, settings(seen), own_constants<kOwn, S>(own));
+        out.unseen = unseen(p, out.value);
         return;
       }
       using J = Jet<S, 3 + static_cast<int>(kOwn)>;
       const auto pixel =
           model_.predict(point_jets<J>(p, 0), settings(seen), own_jets<kOwn, J, S>(own, 3));
       out.value = values_of(pixel);
+      out.unseen = unseen(p, out.value);
       out.by_point = derivatives_by<3>(pixel, 0);
       out.by_own.resize(chosen.size());
       for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -137,6 +141,14 @@ class SensorCodeOf final : public SensorCode<S> {
     Measurement<M, S> m{.point = point(seen, i), .settings = settings(seen)};
     if constexpr (kIsOriented<M>) std::copy_n(seen.measured(i) + 3, 9, m.rotation.data());
     return m;
+  }
+  /// Zero, or NaN where the camera does not see a point or its pixel is not a finite number.
+  [[nodiscard]] S unseen(const Vector3<S>& p, const Eigen::Matrix<S, 2, 1>& pixel) const {
+    if constexpr (HasFieldOfView<M>) {
+      return select(model_.sees(p), S(0.0), S(std::numeric_limits<double>::quiet_NaN()));
+    } else {
+      return S(0.0) * (pixel.x() + pixel.y());
+    }
   }
 
   M model_;

@@ -27,7 +27,7 @@ struct SensorState {
 
   /// Takes over new values.
   /// @param values  of all parameters of the table
-  void set(const MountedSensor& sensor, std::span<const double> values);
+  void set(const MountedSensor& sensor, ParameterValues values);
 };
 
 }  // namespace kinecal::detail

@@ -16,7 +16,7 @@ KINECAL_INLINE SensorState::SensorState(const MountedSensor& sensor, const FreeS
   }
 }
 
-KINECAL_INLINE void SensorState::set(const MountedSensor& sensor, std::span<const double> values) {
+KINECAL_INLINE void SensorState::set(const MountedSensor& sensor, ParameterValues values) {
   for (std::size_t c = 0; c < corrections.size(); ++c) {
     set_corrections(sensor.chain_parameters()[c], values, corrections[c]);
   }

@@ -27,7 +27,7 @@ class ThreadFinders {
       : make_(options.finders),
         camera_of_(std::move(camera_of)),
         cameras_(cameras),
-        finders_(static_cast<std::size_t>(options.threads)) {}
+        finders_(static_cast<std::size_t>(number_of_threads(options.threads))) {}
 
   [[nodiscard]] const CameraFinders& of(int thread) {
     CameraFinders& own = finders_[static_cast<std::size_t>(thread)];
@@ -115,7 +115,7 @@ std::vector<Look> look_at(const std::vector<PosedImage>& images,
   std::mutex metering;
   int done = 0;
   std::vector<Look> looks(images.size());
-  detail::for_each_piece(count, options.threads, [&](int i, int thread) {
+  detail::for_each_piece(count, detail::number_of_threads(options.threads), [&](int i, int thread) {
     const PosedImage& image = images[static_cast<std::size_t>(i)];
     RecordedView view;
     try {
@@ -140,8 +140,9 @@ std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& opt
   std::vector<Look> looks(recording.standstills());
   std::vector<RecordedStandstill> batch;  // those in memory
   std::size_t bytes = 0;                  // of their messages
+  const int threads = detail::number_of_threads(options.threads);
   const auto finish_batch = [&] {
-    detail::for_each_piece(static_cast<int>(batch.size()), options.threads, [&](int i, int thread) {
+    detail::for_each_piece(static_cast<int>(batch.size()), threads, [&](int i, int thread) {
       RecordedStandstill& standstill = batch[static_cast<std::size_t>(i)];
       std::vector<RecordedView> views;
       for (std::size_t c = 0; c < cameras; ++c) views.push_back(recording.view(standstill, c));
@@ -158,7 +159,7 @@ std::vector<Look> look_at(const RecordedViews& recording, const LookOptions& opt
         constexpr std::size_t kMost = std::size_t{1} << 29;
         bytes += standstill.bytes;
         batch.push_back(std::move(standstill));
-        if (static_cast<int>(batch.size()) >= options.threads || bytes > kMost) finish_batch();
+        if (static_cast<int>(batch.size()) >= threads || bytes > kMost) finish_batch();
       },
       options.meter);
   finish_batch();

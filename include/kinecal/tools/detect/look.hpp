@@ -21,7 +21,7 @@ using MakeFinders = std::function<std::vector<ViewFinder>()>;
 /// How views are looked at.
 struct LookOptions {
   MakeFinders finders;
-  int threads = 1;
+  int threads = 0;           ///< zero: one per core
   bool thumbnails = false;   ///< whether they are wanted
   ProgressMeter meter = {};  ///< called now and then
 };
