@@ -2,6 +2,7 @@
 #include "interruption.hpp"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace kinecal::cli {
 namespace {
