@@ -10,6 +10,7 @@
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/inside_bounds.ipp"
+#include "kinecal/trust/joint_effects.ipp"
 
 namespace kinecal {
 
@@ -70,6 +71,8 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, std::span<cons
   found.readings = poses.readings();
   const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
+  found.common = common_noise(fit, detail::joint_effects(problem, values, samples, inside, fit),
+                              poses, found.noise);
   found.uncertainty = uncertainty(problem, fit, found.noise, poses);
   detail::mark_undetermined(problem, inside, fit.coordinates, found.uncertainty);
   found.pulls = prior_pulls(problem, inside, values, fit, inverse, found.uncertainty);
