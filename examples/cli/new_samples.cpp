@@ -22,15 +22,23 @@
 namespace kinecal::cli {
 namespace {
 
-/// The configuration with the offset of each joint in its last step: each may have moved.
-Config with_all_joints(const StoredResult& result, const std::vector<detail::UsedJoint>& joints) {
+/// The configuration with all that may have moved in its last step: the offset of each joint that moves,
+/// the frame of each fixed one.
+Config with_possible_movers(const StoredResult& result) {
   Config config = result.config;
   StepConfig& step = config.steps.back();
-  for (const detail::UsedJoint& used : joints) {
-    const auto free = free_parameters(step);
-    const auto same = [&](const FreeParamConfig& param) { return param.name == used.joint.name; };
-    if (std::any_of(free.begin(), free.end(), same)) continue;
-    step.free_params.push_back({used.joint.name, step.place});
+  for (const Joint* joint : detail::joints_between(config, result.robot)) {
+    if (joint->mimic) continue;  // the joint that it follows is there as well
+    if (moves(joint->type)) {
+      const auto free = free_parameters(step);
+      const auto same = [&](const FreeParamConfig& param) { return param.name == joint->name; };
+      if (std::any_of(free.begin(), free.end(), same)) continue;
+      step.free_params.push_back({joint->name, step.place});
+    } else {
+      const auto same = [&](const FreeFrameConfig& frame) { return frame.name == joint->name; };
+      if (std::any_of(step.free_frames.begin(), step.free_frames.end(), same)) continue;
+      step.free_frames.push_back({joint->name, {true, true, true, true, true, true}, step.place});
+    }
   }
   return config;
 }
@@ -43,9 +51,8 @@ void doubt(const StoredResult& result, std::span<const Sample> samples,
 }
 
 void assemble_new(const StoredResult& result, NewSamples& fresh) {
-  const auto joints = detail::used_joints(result.config, result.robot, fresh.samples);
   Diagnostics quiet;  // what a configuration leaves free is not of interest here
-  fresh.calibration = assemble(with_all_joints(result, joints), result.robot, fresh.samples, quiet);
+  fresh.calibration = assemble(with_possible_movers(result), result.robot, fresh.samples, quiet);
   fresh.diagnostics.errors.insert(fresh.diagnostics.errors.end(), quiet.errors.begin(),
                                   quiet.errors.end());
   if (!fresh.diagnostics.errors.empty()) return;
@@ -85,6 +92,47 @@ bool take_off(const StoredResult& result, const AnyProblem& problem, std::vector
   return changes;
 }
 
+/// How well new samples are explained.
+struct Explanation {
+  enum Kind { holds, one_moved, nothing_single, undefined } kind = undefined;
+  double score = std::numeric_limits<double>::infinity();  ///< see Drift
+
+  /// True if this is clearly the better one.
+  [[nodiscard]] bool beats(const Explanation& other) const {
+    constexpr double kClearly = 6.0;  // likelihood ratio of 20
+    return kind != other.kind ? kind < other.kind : score + kClearly < other.score;
+  }
+};
+
+Explanation explanation(const StoredResult& result, const NewSamples& fresh, double level) {
+  if (!std::isfinite(fresh.misfit)) return {};
+  const Drift drift =
+      check_drift(fresh.problem(), fresh.samples, result.state(fresh.problem().table()), {level});
+  const bool moved = !drift.movers.empty() && drift.movers.front().explains;
+  return {drift.holds ? Explanation::holds
+          : moved     ? Explanation::one_moved
+                      : Explanation::nothing_single,
+          drift.score};
+}
+
+/// "taken as recorded before the result was installed (--samples-recorded): after it, ..."
+std::string assumption(bool after, const Explanation& taken, const Explanation& other) {
+  std::string text =
+      fmt::format("taken as recorded {} the result was installed (--samples-recorded)",
+                  after ? "after" : "before");
+  const char* otherwise = after ? "before" : "after";
+  if (other.kind == Explanation::undefined) {
+    return text + fmt::format(": {} it, a recorded point would be behind a camera", otherwise);
+  }
+  if (taken.kind == other.kind) {
+    return text + fmt::format(": {} it, the samples would be less likely", otherwise);
+  }
+  return text + fmt::format(": {} it, {}", otherwise,
+                            other.kind == Explanation::one_moved
+                                ? "something would have moved"
+                                : "nothing single would explain the residuals");
+}
+
 /// Decides whether the result was in force when the samples were recorded.
 void choose_recorded(const StoredResult& result, const NewSampleOptions& options,
                      NewSamples& fresh) {
@@ -93,21 +141,24 @@ void choose_recorded(const StoredResult& result, const NewSampleOptions& options
   if (!take_off(result, fresh.problem(), with.samples)) return;
   assemble_new(result, with);
   if (!with.diagnostics.errors.empty()) return;
-  constexpr double kClearly = 0.8;  // of the residuals; else nothing was installed
-  const double ratio = std::sqrt(with.misfit / fresh.misfit);
-  const bool takes_with =
-      options.recorded ? *options.recorded == Recorded::after : ratio < kClearly;
-  fresh.assumed = fmt::format("taken as recorded {} the result was installed (--samples-recorded)",
-                              takes_with ? "after" : "before");
-  const double other = takes_with ? 1.0 / ratio : ratio;
-  constexpr double kSame = 1.05;
-  if (!options.recorded && other < kSame) {
-    fresh.assumed.clear();  // it does not matter
-  } else if (std::isfinite(other)) {
-    fresh.assumed += fmt::format(": {} it, residuals would be {:.1f} times as large",
-                                 takes_with ? "before" : "after", other);
+  bool after = false;
+  if (options.recorded) {
+    after = *options.recorded == Recorded::after;
+    fresh.assumed = fmt::format("recorded {} the result was installed, as --samples-recorded says",
+                                after ? "after" : "before");
+  } else {
+    const Explanation before = explanation(result, fresh, options.level);
+    const Explanation then = explanation(result, with, options.level);
+    after = then.beats(before);
+    if (after || before.beats(then)) {
+      fresh.assumed = after ? assumption(after, then, before) : assumption(after, before, then);
+    } else if (before.kind != Explanation::holds) {
+      fresh.assumed =
+          "the samples do not show whether they were recorded before or after the result was "
+          "installed: give --samples-recorded before or after; taken as before";
+    }
   }
-  if (!takes_with) return;
+  if (!after) return;
   fresh.samples = std::move(with.samples);
   fresh.calibration = std::move(with.calibration);
   fresh.values = std::move(with.values);

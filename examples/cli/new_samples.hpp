@@ -16,7 +16,7 @@ namespace kinecal::cli {
 /// New samples and how they fit a result.
 struct NewSamples {
   std::vector<Sample> samples;
-  Calibration calibration;     ///< of the result's configuration, with the offset of each joint
+  Calibration calibration;     ///< of the result's configuration, with all that may have moved
   std::vector<double> values;  ///< of the result
   double misfit = 0.0;      ///< mean square of all residuals, in standard deviations of the noise
   std::string assumed;      ///< which URDF was in force, if that matters; a sentence
@@ -30,8 +30,9 @@ struct NewSamples {
 struct NewSampleOptions {
   std::vector<std::string> samples, cameras;  ///< files; NAME=FILE
   /// before, after: without or with calibrated.urdf and the calibrated cameras in force; nullopt: what
-  /// fits better.
+  /// explains the samples better.
   std::optional<Recorded> recorded = {};
+  double level = 0.01;  ///< share of false alarms
 };
 
 /// Reads new samples of any format, and doubts them.

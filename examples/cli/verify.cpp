@@ -173,6 +173,10 @@ std::string movers_text(const Check& check) {
     const Mover& mover = drift.movers[static_cast<std::size_t>(i)];
     text += fmt::format("  {}{}: {}\n", i == 0 ? "" : "or ", name_of(check, mover),
                         change_text(check, mover));
+    for (const std::string& same : mover.same) {
+      text += fmt::format("     or '{}', which moves all that these samples show in the same way\n",
+                          same);
+    }
   }
   if (drift.alike > kListed) text += fmt::format("  or {} others\n", drift.alike - kListed);
   if (drift.alike > 1) {
@@ -200,6 +204,7 @@ detail::Json json(const Check& check, const Mover& mover, bool alike) {
   const PoseChange pose = change_of_pose(check, mover);
   return {{"owner", mover.owner},
           {"is_frame", mover.is_frame},
+          {"same", mover.same},
           {"explains", mover.explains},
           {"alike", alike},
           {"statistic", mover.statistic},
@@ -241,7 +246,7 @@ int verify(const RecheckOptions& options) {
   const StoredResult result = read_result(options.result);
   if (!options.report.empty()) check_output(options.report, options.samples, true);
   const NewSamples fresh =
-      read_new_samples(result, {options.samples, options.cameras, options.recorded});
+      read_new_samples(result, {options.samples, options.cameras, options.recorded, options.level});
   print(fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return kBadInput;
   if (!std::isfinite(fresh.misfit)) {
@@ -249,10 +254,10 @@ int verify(const RecheckOptions& options) {
         "verdict: does not hold\n  - with this result, a recorded point is behind a camera\n");
     return kNotUsable;
   }
-  const Check check{
-      result, fresh,
-      check_drift(fresh.problem(), result.state(fresh.problem().table()), {options.level}),
-      options.level};
+  const Check check{result, fresh,
+                    check_drift(fresh.problem(), fresh.samples,
+                                result.state(fresh.problem().table()), {options.level}),
+                    options.level};
   std::string text = verdict_text(check);
   if (result.verdict != "good") {
     text += fmt::format("  - the result itself was judged '{}'\n", result.verdict);

@@ -7,6 +7,7 @@
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "kinecal/trust/capture_causes.hpp"
 #include "kinecal/trust/captures.hpp"
+#include "kinecal/trust/common_noise.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/drift.hpp"
 #include "kinecal/trust/estimated_noise.hpp"

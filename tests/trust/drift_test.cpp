@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "support/noisy_scene.hpp"
+#include "support/repeated_scene.hpp"
+#include "support/repetitions.hpp"
 
 namespace kinecal {
 namespace {
@@ -41,7 +43,8 @@ struct Recheck {
   [[nodiscard]] Drift check(double level = 0.01) const {
     const auto problem = scene.problem(samples);
     const Eigen::VectorXd values = scene.values();
-    return check_drift(*problem, calibrated_state(assessment, scene.span(values)), {level});
+    return check_drift(*problem, samples, calibrated_state(assessment, scene.span(values)),
+                       {level});
   }
 };
 
@@ -59,6 +62,38 @@ TEST(Drift, RaisesFalseAlarmsAtTheStatedRate) {
   RecordProperty("alarms", alarms);
   EXPECT_LE(alarms, 20 + 13);
   EXPECT_GE(alarms, 4);
+}
+
+TEST(Drift, RaisesFalseAlarmsAtTheStatedRateIfFeaturesErrTogether) {
+  const int runs = test::repetitions(20, 4);
+  int all = 0, alarms = 0;
+  for (const test::SampleKind& kind : test::kSampleKinds) {
+    int of_kind = 0;
+    for (int run = 0; run < runs; ++run, ++all) {
+      of_kind += test::check_again(kind, static_cast<unsigned>(run), 0.05).holds ? 0 : 1;
+    }
+    alarms += of_kind;
+    EXPECT_LE(of_kind, test::binomial_band(runs, 0.05, 1e-3).most) << kind.name;
+  }
+  EXPECT_LE(alarms, test::binomial_band(all, 0.05, 1e-3).most);
+}
+
+TEST(Drift, IsFoundAndNamedWhereFeaturesErrTogether) {
+  const int runs = test::repetitions(20, 4);
+  int found = 0, named = 0;
+  for (int run = 0; run < runs; ++run) {
+    test::RepeatedScene scene(test::kSampleKinds[1], static_cast<unsigned>(run));
+    scene.truth("elbow") += 1e-3;  // ten times what joints repeat
+    scene.record(9000 + static_cast<unsigned>(run));
+    const Drift drift = scene.check(0.01);
+    found += drift.holds ? 0 : 1;
+    for (int i = 0; i < drift.alike; ++i) {
+      const Mover& mover = drift.movers[static_cast<std::size_t>(i)];
+      named += mover.owner == "elbow" && !mover.is_frame ? 1 : 0;
+    }
+  }
+  EXPECT_GE(found, runs - 1);
+  EXPECT_GE(named, runs - 1);
 }
 
 TEST(Drift, IsFoundAndNamedForAJoint) {

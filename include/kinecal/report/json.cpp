@@ -67,8 +67,18 @@ namespace detail {
           {"features", noise.features},
           {"components", noise.components},
           {"freedom", noise.freedom},
+          {"own_sigma", noise.own > 0.0 ? Json(noise.own) : Json()},
+          {"own_freedom", noise.own > 0.0 ? Json(noise.own_freedom) : Json()},
           {"fitted", error == nullptr ? Json() : Json(error->fitted)},
           {"held_out", error == nullptr ? Json() : Json(error->held_out)}};
+}
+
+[[nodiscard]] inline Json json(const CommonNoise& common) {
+  return {{"separable", common.separable},
+          {"repeats", common.repeats},
+          {"freedom", common.freedom},
+          {"scatter", common.scatter},
+          {"effect", common.effect}};
 }
 
 [[nodiscard]] inline Json json(const LeftOutSample& sample) {
@@ -136,6 +146,7 @@ std::string json_report(const Findings& findings) {
                                {"error_blocks", json_list(result.blocks, write)},
                                {"noise", json_list(last.noise, noise)},
                                {"design_effect", last.uncertainty.design_effect},
+                               {"common_noise", detail::json(last.common)},
                                {"parameters", json_list(result.calibrated, parameter)},
                                {"pose", last.pose ? detail::json(*last.pose) : detail::Json()},
                                {"observability", json_list(findings.assessments, observability)},

@@ -10,6 +10,7 @@
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/inside_bounds.ipp"
+#include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/plausible_change.ipp"
 #include "kinecal/trust/ruined.hpp"
 #include "kinecal/trust/workspace_map.hpp"
@@ -75,6 +76,8 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.size = detail::robot_size(problem);
   const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
+  const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
+  found.common = common_noise(fit, effects, single, found.noise);
   found.uncertainty = uncertainty(problem, fit, found.noise, poses);
   detail::mark_undetermined(problem, inside, fit.coordinates, found.uncertainty);
   found.pulls = prior_pulls(problem, inside, values, fit, inverse, found.uncertainty);
@@ -82,7 +85,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.captures = capture_errors(problem, fit, single);
   found.noise_without_bad = noise_without_bad(fit, found.captures);
   found.change = recording_change(problem, inside, fit);
-  found.pattern = residual_pattern(problem, inside, fit, values, samples, poses);
+  found.pattern = residual_pattern(problem, inside, fit, values, samples, poses, effects);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
   const int folds = std::min(options.folds, poses.count);
   if (folds >= 2) {

@@ -10,6 +10,7 @@
 
 #include "kinecal/solve/calibrate.hpp"
 #include "kinecal/trust/captures.hpp"
+#include "kinecal/trust/common_noise.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/neighbours.hpp"
 #include "kinecal/trust/observability.hpp"
@@ -34,6 +35,7 @@ struct Assessment {
   std::string step;                    ///< its name
   Observability observability;         ///< of all free parameters
   std::vector<BlockNoise> noise;       ///< of each error block
+  CommonNoise common;                  ///< that features of a pose share
   std::vector<int> parameters;         ///< table indices: columns of the uncertainty
   std::vector<int> at_bound;           ///< table indices of free parameters that ended at a bound
   Uncertainty uncertainty;             ///< of `parameters`

@@ -49,7 +49,8 @@ CalibratedState calibrated_state(const Assessment& assessment, ParameterValues v
                         assessment.parameters,
                         assessment.uncertainty.covariance,
                         {},
-                        assessment.noise};
+                        assessment.noise,
+                        assessment.common};
   const Observability& observability = assessment.observability;
   if (assessment.uncertainty.determined < std::ssize(assessment.parameters)) {
     state.undetermined = observability.unobservable;
@@ -57,18 +58,19 @@ CalibratedState calibrated_state(const Assessment& assessment, ParameterValues v
   return state;
 }
 
-Drift check_drift(const AnyProblem& problem, const CalibratedState& state,
-                  const DriftOptions& options) {
-  const detail::DriftSearch search(problem, state, options.level);
+Drift check_drift(const AnyProblem& problem, std::span<const Sample> samples,
+                  const CalibratedState& state, const DriftOptions& options) {
+  const detail::DriftSearch search(problem, samples, state, options.level);
   const detail::CleanFit still = search.clean_fit({});
   Drift drift{.statistic = still.at.statistic,
               .freedom = still.freedom,
-              .noise_freedom = search.noise_freedom(),
+              .noise_freedom = still.at.freedom,
               .probability = still.probability,
+              .score = still.score(),
               .missed = still.missed,
               .movers = {}};
   drift.holds = drift.probability >= options.level;
-  if (drift.holds && drift.missed.empty()) return drift;
+  if (drift.holds) return drift;
   for (Mover mover : search.movers()) {
     detail::try_mover(problem, search, options.level, mover);
     if (mover.freedom >= 1.0) drift.movers.push_back(mover);
@@ -76,15 +78,10 @@ Drift check_drift(const AnyProblem& problem, const CalibratedState& state,
   std::stable_sort(drift.movers.begin(), drift.movers.end(), [](const Mover& a, const Mover& b) {
     return a.explains != b.explains ? a.explains : a.score < b.score;
   });
+  if (drift.movers.empty()) return drift;
   constexpr double kTold = 6.0;  // likelihood ratio of 20
   const auto best = drift.movers.begin();
-  // The one sample that looks bad may be the only one that shows what moved.
-  if (drift.holds && (best == drift.movers.end() || !best->explains || !best->missed.empty() ||
-                      best->score > still.score() - kTold)) {
-    drift.movers.clear();
-    return drift;
-  }
-  drift.holds = false;
+  drift.score = best->explains ? best->score : std::min(drift.score, best->score);
   for (const Mover& mover : drift.movers) {
     if (mover.explains == best->explains && mover.score < best->score + kTold) ++drift.alike;
   }

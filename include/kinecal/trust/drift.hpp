@@ -5,15 +5,19 @@
 //
 //   X = r^T (S + J C J^T)^-1 r = min over u of |S^-1/2 r(B u)|^2 + |u|^2      C = B B^T
 //
-// is chi-square with the number of residuals as degrees of freedom.  S and C are estimates, so
-// X / freedom is compared with F.  Undetermined directions cost nothing.
+// is chi-square with the number of residuals as degrees of freedom.  Features of a pose share the errors
+// of the joints, which are in S (common_noise.hpp); if the calibration could not separate them, all
+// features of a pose count as one.  S and C are estimates, so X / freedom is compared with F, with
+// the fewer degrees of freedom the more the poses of the calibration scatter.  Undetermined directions
+// cost nothing.
 // The hypothesis "the elbow has moved" frees its parameters; if it is false, X falls only by
 // chi-square of their number.  Half of the false alarms are for X itself, half for the largest of
-// these falls.  Hypotheses are compared by X + 2 rank.  One new sample in five may be a bad
-// capture: it is left out if the others hold without it and it is further off than one in a
-// thousand.
+// these falls.  Hypotheses are compared by X + 2 rank; those that move all features alike are one.
+// One new sample in five may be a bad capture: it is left out if the others hold without it and it
+// is further off than chance at the level.
 // Source: Akaike, A New Look at the Statistical Model
-// Identification, 1974; Welch, The Generalization of Student's Problem, 1947 (freedom of S).
+// Identification, 1974; Welch, The Generalization of Student's Problem, 1947 (freedom of S);
+// Satterthwaite, 1946 (scatter).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -33,6 +37,7 @@ struct CalibratedState {
   PlainMatrix covariance;                 ///< (parameters x parameters), units of the parameters
   std::vector<Combination> undetermined;  ///< what neither samples nor priors determined
   std::vector<BlockNoise> noise;          ///< of each error block, by name
+  CommonNoise common = {};                ///< that features of a pose share
 };
 
 /// The state of a calibration from its assessment.
@@ -52,6 +57,7 @@ struct Mover {
   std::string owner;                      ///< "elbow_flex_joint"
   bool is_frame = false;                  ///< its frame, not the offset of the joint
   std::vector<int> parameters;            ///< table indices
+  std::vector<std::string> same = {};     ///< other owners with the same effect on all new samples
   std::vector<double> change = {};        ///< of each parameter, since the calibration
   std::vector<double> deviation = {};     ///< standard deviation of each change
   double statistic = 0.0;                 ///< remaining X
@@ -64,11 +70,12 @@ struct Mover {
 
 /// Whether a calibration still holds.
 struct Drift {
-  bool holds = true;                 ///< X is within chance, at the level of the options
-  double statistic = 0.0;            ///< X, of all samples but those of `missed`
-  double freedom = 0.0;              ///< its degrees of freedom
-  double noise_freedom = 0.0;        ///< those of the noise
-  double probability = 1.0;          ///< of a larger X, or of a larger fall by a mover, by chance
+  bool holds = true;           ///< X is within chance, at the level of the options
+  double statistic = 0.0;      ///< X, of all samples but those of `missed`
+  double freedom = 0.0;        ///< its degrees of freedom
+  double noise_freedom = 0.0;  ///< those of the noise
+  double probability = 1.0;    ///< of a larger X, or of a larger fall by a mover, by chance
+  double score = 0.0;          ///< of the best explanation: that nothing or one mover has moved
   std::vector<MissedSample> missed;  ///< bad captures, if the others hold
   std::vector<Mover> movers;         ///< the most likely one first; empty if the calibration holds
   /// How many of the first movers are indistinguishable: scores that differ by less than 6.  The
@@ -84,9 +91,10 @@ struct DriftOptions {
 /// Checks a calibration with new samples.
 /// @param problem  with the new samples; its table may have more parameters than were calibrated:
 ///                 each of its joints, frames and sensors is a hypothesis
+/// @param samples  those of the problem, in their order
 /// @throws std::invalid_argument  if the noise of an error block is unknown
 /// @throws std::domain_error      if a residual is undefined
-[[nodiscard]] Drift check_drift(const AnyProblem& problem, const CalibratedState& state,
-                                const DriftOptions& options = {});
+[[nodiscard]] Drift check_drift(const AnyProblem& problem, std::span<const Sample> samples,
+                                const CalibratedState& state, const DriftOptions& options = {});
 
 }  // namespace kinecal

@@ -45,15 +45,34 @@ struct CleanFit {
 /// Tests possible movers.
 class DriftSearch {
  public:
-  DriftSearch(const AnyProblem& problem, const CalibratedState& state, double level)
-      : problem_(problem), fit_(problem, state), movers_(hypotheses(problem)), level_(level) {
+  DriftSearch(const AnyProblem& problem, std::span<const Sample> samples,
+              const CalibratedState& state, double level)
+      : problem_(problem),
+        common_(state.common),
+        fit_(problem, samples, state),
+        movers_(hypotheses(problem)),
+        level_(level) {
     for (Mover& mover : movers_) {
       std::erase_if(mover.parameters, [&](int p) { return !fit_.matters(p); });
     }
     std::erase_if(movers_, [](const Mover& mover) { return mover.parameters.empty(); });
+    std::stable_sort(movers_.begin(), movers_.end(), [](const Mover& a, const Mover& b) {
+      return a.parameters.size() < b.parameters.size();
+    });
+    std::vector<Mover> distinct;
+    for (Mover& mover : movers_) {
+      const auto known = std::find_if(distinct.begin(), distinct.end(), [&](const Mover& other) {
+        return fit_.same_effect(other.parameters, mover.parameters);
+      });
+      if (known == distinct.end()) {
+        distinct.push_back(std::move(mover));
+      } else {
+        known->same.push_back(mover.owner);
+      }
+    }
+    movers_ = std::move(distinct);
   }
 
-  [[nodiscard]] double noise_freedom() const { return fit_.noise_freedom(); }
   [[nodiscard]] const std::vector<Mover>& movers() const { return movers_; }
 
   /// The minimum if these parameters have moved; with none, also tests against each mover.
@@ -62,7 +81,7 @@ class DriftSearch {
     std::vector<bool> used(static_cast<std::size_t>(problem_.num_samples()), true);
     const auto fit = [&] {
       CleanFit found = fit_directions(directions, used);
-      if (moved.empty()) found.probability = against_movers(found, used);
+      if (moved.empty()) found.probability = against_movers(found);
       return found;
     };
     CleanFit all = fit();
@@ -84,34 +103,36 @@ class DriftSearch {
   [[nodiscard]] CleanFit fit_directions(const Eigen::MatrixXd& directions,
                                         const std::vector<bool>& used) const {
     CleanFit found{fit_.minimize(directions, used), {}};
-    found.freedom = fit_.size(used) - static_cast<double>(found.at.rank);
-    if (found.freedom < 1.0) return found;
-    found.probability =
-        f_tail(found.at.statistic / found.freedom, found.freedom, fit_.noise_freedom());
+    found.freedom = found.at.size - static_cast<double>(found.at.rank);
+    if (found.freedom >= 1.0)
+      found.probability = chance(found.at.statistic, found.freedom, found.at);
     return found;
   }
   /// Probability of the result if nothing has moved: half of the level is for X itself, half for
   /// the fall of X under the best hypothesis (Bonferroni).
-  [[nodiscard]] double against_movers(const CleanFit& still, const std::vector<bool>& used) const {
+  [[nodiscard]] double against_movers(const CleanFit& still) const {
     double least = 1.0;
-    const DriftSums sums = fit_.sums(still.at.rows, used);
     for (const Mover& mover : movers_) {
-      const DriftFall moved = fit_.fall(sums, mover.parameters, still.at);
+      const DriftFall moved = fit_.fall(mover.parameters, still.at);
       const auto rank = static_cast<double>(moved.rank);
       if (moved.rank < 1) continue;
-      least = std::min(least, f_tail(moved.fall / rank, rank, fit_.noise_freedom()));
+      const double fall = moved.fall / common_.effect;
+      least = std::min(least, f_tail(fall / rank, rank, still.at.freedom / common_.scatter));
     }
     const double hypotheses = std::max(1.0, static_cast<double>(movers_.size()));
     return std::min(1.0, 2.0 * std::min(still.probability, hypotheses * least));
   }
-  /// The sample whose removal lowers X most, if it is further off than one in a thousand.
+  /// Probability that some rows' sum of squares is larger by chance.
+  [[nodiscard]] double chance(double squares, double size, const DriftMinimum& at) const {
+    return f_tail(squares / size, size / common_.scatter, at.freedom / common_.scatter);
+  }
+  /// The sample whose removal lowers X most, if it is further off than chance at the level.
   [[nodiscard]] std::optional<MissedSample> worst_sample(const CleanFit& now,
                                                          const Eigen::MatrixXd& directions,
                                                          const std::vector<bool>& used) const {
-    const LinearFit& rows = now.at.rows.fit;
+    const LinearFit& rows = now.at.rows;
     std::optional<MissedSample> worst;
-    constexpr double kFalse = 1e-3;
-    double least = kFalse / problem_.num_samples();
+    double least = level_ / problem_.num_samples();
     for (std::size_t b = 0; b < rows.blocks.size();) {
       std::size_t end = b;
       Eigen::Index size = 0;
@@ -128,17 +149,18 @@ class DriftSearch {
           Eigen::MatrixXd::Identity(size, size) - j * now.at.inverse * j.transpose();
       const double off = r.dot(variance.ldlt().solve(r));
       const double mean = off / static_cast<double>(size);
-      const double chance = f_tail(mean, static_cast<double>(size), fit_.noise_freedom());
-      if (!(chance < least || (worst && chance == least && std::sqrt(mean) > worst->times))) {
+      const double p = chance(off, static_cast<double>(size), now.at);
+      if (!(p < least || (worst && p == least && std::sqrt(mean) > worst->times))) {
         continue;
       }
-      least = chance;
+      least = p;
       worst = MissedSample{sample, static_cast<int>(size), std::sqrt(mean)};
     }
     return worst;
   }
 
   const AnyProblem& problem_;
+  const CommonNoise& common_;
   DriftFit fit_;
   std::vector<Mover> movers_;
   double level_;

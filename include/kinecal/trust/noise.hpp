@@ -27,10 +27,16 @@ struct BlockNoise {
   double robust = 0.0;        ///< the same from the median
   double along = 0.0;         ///< robust, in the direction of the largest scatter, in `unit`
   double across = 0.0;        ///< the same in that of the second largest; 0: not computed
+  double own = 0.0;           ///< sigma without what features of a pose share; 0: not known
+  double own_freedom = 0.0;   ///< degrees of freedom of `own`
   double unit_sigma = 1.0;    ///< residual in `unit` of a weighted residual of one
 
   /// Standard deviation of a weighted residual component: 1 if the given sigma is right.
   [[nodiscard]] double weighted() const { return sigma / unit_sigma; }
+  /// Standard deviation of what a feature does not share with others of its pose, in `unit`.
+  [[nodiscard]] double own_or_all() const { return own > 0.0 ? own : sigma; }
+  /// Its degrees of freedom.
+  [[nodiscard]] double own_freedom_or_all() const { return own > 0.0 ? own_freedom : freedom; }
 };
 
 namespace detail {

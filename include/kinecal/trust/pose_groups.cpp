@@ -9,25 +9,12 @@
 #include <numeric>
 #include <string>
 
+#include "kinecal/trust/joint_effects.ipp"
+
 namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// Names of the joints that move a sensor or target of the problem, and how well robots repeat them.
-[[nodiscard]] std::map<std::string, double> repeatable_joints(const AnyProblem& problem) {
-  constexpr double kRadians = 1e-3, kMetres = 2e-4;
-  std::map<std::string, double> joints;
-  for (const MountedSensor& sensor : problem.sensors()) {
-    for (const RuntimeChain& chain : sensor.chains()) {
-      for (const ChainJoint& joint : chain.joints) {
-        if (joint.type == JointType::fixed) continue;
-        joints[joint.drive.joint] = turns(joint.type) ? kRadians : kMetres;
-      }
-    }
-  }
-  return joints;
-}
 
 /// Positions of joints in a sample, in units of repeatability.
 /// @param joints  their names and repeatability

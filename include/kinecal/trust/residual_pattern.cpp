@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kinecal/trust/joint_courses.ipp"
-#include "kinecal/trust/sample_slopes.ipp"
+#include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/unexplained.hpp"
 
 namespace kinecal {
@@ -63,6 +63,15 @@ class ErrorColumns {
   return sum - static_cast<double>(fit.size());
 }
 
+/// A fit and the samples that it is of.
+struct FittedSamples {
+  const AnyProblem& problem;
+  const FreeSet& free;
+  const LinearFit& fit;
+  ParameterValues values;
+  std::span<const Sample> samples;
+};
+
 /// The search over all patterns.
 class PatternSearch {
  public:
@@ -73,12 +82,13 @@ class PatternSearch {
         inverse_(Spectrum(information(fitted.fit, fitted.fit.loss)).pseudo_inverse()),
         tracks_(joint_tracks(fitted.problem, fitted.samples)) {}
 
-  [[nodiscard]] std::optional<ResidualPattern> find() {
+  /// @param effects  (rows x joints) see joint_effects()
+  [[nodiscard]] std::optional<ResidualPattern> find(const Eigen::MatrixXd& effects) {
     constexpr double kFew = 6.0;
     if (freedom_ < kFew || is_exact(fitted_.problem, fitted_.fit)) return {};
     const std::size_t axes = 3 * fitted_.problem.sensors().size();
     tests_ = static_cast<double>(tracks_.size() * std::size(kJointCourses) + 1 + axes);
-    try_joints();
+    try_joints(effects);
     try_rounding();
     for (const MountedSensor& sensor : fitted_.problem.sensors()) {
       for (int axis = 0; axis < 3; ++axis) try_axis(sensor.mount().name, axis);
@@ -89,11 +99,13 @@ class PatternSearch {
  private:
   [[nodiscard]] Eigen::Index samples() const { return std::ssize(fitted_.samples); }
 
-  void try_joints() {
+  void try_joints(const Eigen::MatrixXd& effects) {
     Eigen::VectorXd lag = Eigen::VectorXd::Zero(fitted_.fit.residual.size());
-    for (const auto& [name, track] : tracks_) {
-      const Eigen::VectorXd slope = fitted_.by_joint(name);
-      if (slope.size() == 0) continue;
+    Eigen::Index column = 0;
+    for (const auto& [name, repeats] : repeatable_joints(fitted_.problem)) {
+      const Eigen::VectorXd slope = effects.col(column++) / repeats;
+      if (!tracks_.contains(name) || slope.isZero(0.0)) continue;
+      const JointTrack& track = tracks_.at(name);
       const ErrorColumns columns(fitted_.fit, slope, samples());
       const double step = rounding_step(track);
       const double squares = columns.squares() * step * step / 12.0;
@@ -130,8 +142,16 @@ class PatternSearch {
     if (!best_ || rounded_.noise_left < best_->noise_left) best_ = rounded_;
   }
   void try_axis(const std::string& sensor, int axis) {
-    const Eigen::VectorXd slope = fitted_.by_axis(sensor, axis);
-    if (slope.size() == 0 || slope.isZero()) return;
+    constexpr double kStep = 1e-6;  // relative
+    const auto longer = [&](Sample& sample) {
+      for (Observation& seen : sample.observations) {
+        if (seen.sensor != sensor) continue;
+        for (Feature& feature : seen.features) feature.point(axis) *= 1.0 + kStep;
+      }
+    };
+    const Eigen::VectorXd slope = sample_slopes(fitted_.problem, fitted_.values, fitted_.samples,
+                                                fitted_.free, fitted_.fit, longer, kStep);
+    if (slope.isZero(0.0)) return;
     const Fall fall = constant(slope);
     ResidualPattern pattern{.owner = sensor, .course = ErrorCourse::axis, .axis = axis};
     pattern.factor = 1.0 + fall.change(0);
@@ -172,11 +192,11 @@ class PatternSearch {
 }  // namespace detail
 
 std::optional<ResidualPattern> residual_pattern(const AnyProblem& problem, const FreeSet& free,
-                                                const LinearFit& fit,
-                                                std::span<const double> values,
+                                                const LinearFit& fit, ParameterValues values,
                                                 std::span<const Sample> samples,
-                                                const PoseGroups& poses) {
-  return detail::PatternSearch({problem, free, fit, values, samples}, poses).find();
+                                                const PoseGroups& poses,
+                                                const Eigen::MatrixXd& effects) {
+  return detail::PatternSearch({problem, free, fit, values, samples}, poses).find(effects);
 }
 
 }  // namespace kinecal

@@ -43,8 +43,9 @@ struct ResidualPattern {
 /// @param free     the parameters of `fit`, at its solution
 /// @param values   of all parameters of the table: the solution
 /// @param samples  those of the problem, in the order in which they were recorded
+/// @param effects  (rows x joints) see joint_effects()
 [[nodiscard]] std::optional<ResidualPattern> residual_pattern(
-    const AnyProblem& problem, const FreeSet& free, const LinearFit& fit,
-    std::span<const double> values, std::span<const Sample> samples, const PoseGroups& poses);
+    const AnyProblem& problem, const FreeSet& free, const LinearFit& fit, ParameterValues values,
+    std::span<const Sample> samples, const PoseGroups& poses, const Eigen::MatrixXd& effects);
 
 }  // namespace kinecal

@@ -1,4 +1,4 @@
-// Derivatives of residuals by what samples say: joint positions, measured coordinates.
+// What residuals change by if samples said something else: other joint positions, other points.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -6,58 +6,39 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
-#include <string>
 
 #include "kinecal/solve/linear_fit.hpp"
 
 namespace kinecal::detail {
 
-/// A fit and the samples that it is of.
-struct FittedSamples {
-  const AnyProblem& problem;
-  const FreeSet& free;
-  const LinearFit& fit;
-  std::span<const double> values;
-  std::span<const Sample> samples;
-
-  /// (rows) derivatives of the weighted residuals; empty if some are undefined.
-  /// @param move  adds a step to a sample
-  [[nodiscard]] Eigen::VectorXd slopes(
-      const std::function<void(Sample& sample, double step)>& move) const {
-    constexpr double kStep = 1e-6;  // radians, metres, or relative
-    const std::unique_ptr<AnyProblem> moved = problem.without_samples();
-    try {
-      for (Sample sample : samples) {
-        move(sample, kStep);
-        moved->add_sample(sample);
-      }
-      const auto evaluator = moved->evaluator(free);
-      const LinearFit there = linear_fit(*evaluator, values, fit.coordinates, false);
-      if (there.residual.size() != fit.residual.size()) return {};
-      const Eigen::VectorXd slope = (there.residual - fit.residual) / kStep;
-      if (slope.allFinite()) return slope;
-    } catch (const SampleError&) {
-    } catch (const std::domain_error&) {
+/// (rows) derivatives of weighted residuals, by a forward difference; zero if some are undefined.
+/// @param values   of all parameters of the table
+/// @param samples  those of the problem, in their order
+/// @param fit      the rows of these samples
+/// @param move     changes a sample a little
+/// @param step     what the difference is divided by
+[[nodiscard]] inline Eigen::VectorXd sample_slopes(const AnyProblem& problem,
+                                                   ParameterValues values,
+                                                   std::span<const Sample> samples,
+                                                   const FreeSet& free, const LinearFit& fit,
+                                                   const std::function<void(Sample&)>& move,
+                                                   double step) {
+  const std::unique_ptr<AnyProblem> moved = problem.without_samples();
+  try {
+    for (Sample sample : samples) {
+      move(sample);
+      moved->add_sample(sample);
     }
-    return {};
+    const auto evaluator = moved->evaluator(free, 1);
+    const LinearFit there = linear_fit(*evaluator, values, fit.coordinates, false);
+    if (there.residual.size() == fit.residual.size()) {
+      const Eigen::VectorXd slopes = (there.residual - fit.residual) / step;
+      if (slopes.allFinite()) return slopes;
+    }
+  } catch (const SampleError&) {
+  } catch (const std::domain_error&) {  // a point behind a camera
   }
-  /// By the position of a joint.
-  [[nodiscard]] Eigen::VectorXd by_joint(const std::string& joint) const {
-    return slopes([&](Sample& sample, double step) {
-      for (std::size_t j = 0; j < sample.joint_names.size(); ++j) {
-        if (sample.joint_names[j] == joint) sample.joint_positions[j] += step;
-      }
-    });
-  }
-  /// By the length of an axis of a sensor, relative.
-  [[nodiscard]] Eigen::VectorXd by_axis(const std::string& sensor, int axis) const {
-    return slopes([&](Sample& sample, double step) {
-      for (Observation& seen : sample.observations) {
-        if (seen.sensor != sensor) continue;
-        for (Feature& feature : seen.features) feature.point(axis) *= 1.0 + step;
-      }
-    });
-  }
-};
+  return Eigen::VectorXd::Zero(fit.residual.size());
+}
 
 }  // namespace kinecal::detail

@@ -42,8 +42,17 @@ inline void read_noise(const JsonValue& report, StoredResult& result) {
     noise.components = static_cast<int>(entry.integer("components"));
     noise.freedom = entry.number("freedom");
     noise.sigma = entry.number("sigma");
+    if (entry.find("own_sigma")) {
+      noise.own = entry.number("own_sigma");
+      noise.own_freedom = entry.number("own_freedom");
+    }
     if (entry.find("held_out")) result.fitted[noise.block].held_out = entry.number("held_out");
     result.noise.push_back(noise);
+  }
+  if (const auto common = report.find("common_noise")) {  // older versions did not write it
+    result.common = {common->flag("separable"), common->number("repeats"),
+                     common->number("freedom"), common->number("scatter"),
+                     common->number("effect")};
   }
   for (const JsonValue& entry : report.list("error_blocks")) {
     const std::string name = entry.text("name");

@@ -94,6 +94,7 @@ CalibratedState StoredResult::state(const ParameterTable& table) const {
     for (const auto& [name, factor] : combination) of.emplace_back(index(name), factor);
   }
   state.noise = noise;
+  state.common = common;
   return state;
 }
 

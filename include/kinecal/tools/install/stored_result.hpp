@@ -48,6 +48,7 @@ struct StoredResult {
   /// Combinations of parameters without effect: names and factors.
   std::vector<std::vector<std::pair<std::string, double>>> undetermined;
   std::vector<BlockNoise> noise;              ///< of each error block
+  CommonNoise common;                         ///< that features of a pose share
   std::map<std::string, FittedBlock> fitted;  ///< by error block
   std::optional<PoseInQuestion> pose;         ///< the one that the robot needs, if that is known
   RecordedPoses poses;                        ///< those of the samples
