@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "kinecal/trust/joint_effects.ipp"
 #include "support/noisy_scene.hpp"
 
 namespace kinecal {
@@ -17,8 +18,9 @@ std::optional<ResidualPattern> pattern_in(test::NoisyScene& scene) {
   const auto evaluator = scene.solved().evaluator(free);
   const LinearFit fit = scene.linear(*evaluator);
   const Eigen::VectorXd values = scene.values();
-  return residual_pattern(scene.solved(), free, fit, test::NoisyScene::span(values), scene.samples,
-                          each_its_own(scene.samples.size()));
+  return residual_pattern(scene.solved(), free, fit, values, scene.samples,
+                          each_its_own(scene.samples.size()),
+                          detail::joint_effects(scene.solved(), values, scene.samples, free, fit));
 }
 
 /// Records other positions of a joint than it has.
