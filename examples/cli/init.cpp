@@ -275,8 +275,11 @@ int init(const InitOptions& options) {
   check();  // the file may have appeared meanwhile
   write_file(options.output, text);
   if (text.find("sigma: ") != std::string::npos) {
-    fmt::print("note: each sigma in {} is a guess; write the accuracy of your sensors\n",
-               options.output);
+    fmt::print(
+        "note: each sigma in {} is a guess of a residual, errors of the robot included; use the "
+        "noise that\n"
+        "calibrate reports\n",
+        options.output);
   }
   fmt::print("wrote {}\nnext: kinecal check --urdf {} --config {}\n", options.output,
              as_word(options.urdf), as_word(options.output));
