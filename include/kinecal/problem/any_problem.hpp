@@ -32,8 +32,7 @@ class AnyProblem {
   /// @param base    the link in which the sensors are compared
   /// @param frames  names of the free frames: joints of the robot or virtual frames
   /// @throws RobotError             if the link does not exist
-  /// @throws std::invalid_argument  if a parameter is not a number or has no value within its
-  ///                                bounds, or a frame is neither a joint nor has parameters
+  /// @throws std::invalid_argument  if numbers of a parameter, or a frame, cannot be right
   AnyProblem(Robot robot, std::string base, ParameterTable table, std::set<std::string> frames);
   virtual ~AnyProblem() = default;
 
@@ -43,9 +42,8 @@ class AnyProblem {
   virtual void add_built_in(const BuiltInSensor& sensor, const Mount& mount) = 0;
 
   /// Adds an error block of a built-in type between sensors that have been added.
-  /// @throws std::invalid_argument  if a sensor does not exist, their number or kind is wrong, another
-  ///                                block has the name, a number of the options cannot be used, or
-  ///                                the table does not have a parameter of the block
+  /// @throws std::invalid_argument  if a sensor does not exist, their number or kind is wrong, a name
+  ///                                or number cannot be right, or a parameter is not in the table
   /// @throws std::logic_error       if samples have been added already
   virtual void add_built_in(const std::string& name, const BuiltInBlock& block,
                             const std::vector<std::string>& sensors,
