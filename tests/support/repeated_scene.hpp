@@ -58,11 +58,13 @@ class RepeatedScene {
     result_ = calibrate(calibration_);
     EXPECT_TRUE(result_.converged) << result_.termination;
     assessment_ = assess(calibration_, result_, old_, {.folds = 0}).back();
-    fresh = recorded(kind.again, 2 * seed + 2);
+    record(2 * seed + 2);
   }
-  /// True value of a parameter, for new samples recorded with again().
+  /// True value of a parameter, when new samples are recorded.
   [[nodiscard]] double& truth(const std::string& name) { return truth_(result_.table.index(name)); }
-  void record_again(unsigned seed) { fresh = recorded(kind_.again, seed); }
+  /// Records new samples.
+  void record(unsigned seed) { fresh = recorded(kind_.again, seed); }
+  [[nodiscard]] const Assessment& assessment() const { return assessment_; }
 
   [[nodiscard]] Drift check(double level) const {
     const auto with = problem(fresh);

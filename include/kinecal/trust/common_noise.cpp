@@ -114,10 +114,11 @@ class PoseFit {
       const Eigen::MatrixXd share = inverse * (j.transpose() * j);
       const double mean = static_cast<double>(r.size()) - share.trace();
       scatter += (r.squaredNorm() - mean) * (r.squaredNorm() - mean);
-      normal += 2.0 * mean;
+      const double squares = share.cwiseProduct(share.transpose()).sum();
+      normal += 2.0 * (mean - share.trace() + squares);
       const Eigen::VectorXd g = j.transpose() * r;
       gradients += g.dot(inverse * g);
-      expected += share.trace() - share.cwiseProduct(share.transpose()).sum();
+      expected += share.trace() - squares;
     }
     if (normal > 0.0) common.scatter = std::max(1.0, scatter / normal);
     if (expected > 0.0) common.effect = std::max(1.0, gradients / expected);

@@ -48,7 +48,7 @@ class DriftSearch {
   DriftSearch(const AnyProblem& problem, std::span<const Sample> samples,
               const CalibratedState& state, double level)
       : problem_(problem),
-        common_(state.common),
+        state_(state),
         fit_(problem, samples, state),
         movers_(hypotheses(problem)),
         level_(level) {
@@ -109,22 +109,30 @@ class DriftSearch {
     return found;
   }
   /// Probability of the result if nothing has moved: half of the level is for X itself, half for
-  /// the fall of X under the best hypothesis (Bonferroni).
+  /// the fall of X under the best hypothesis (Bonferroni).  A held parameter may have been off when the
+  /// others were calibrated, so that X falls although nothing has moved: it is left to X itself.
   [[nodiscard]] double against_movers(const CleanFit& still) const {
-    double least = 1.0;
+    double least = 1.0, hypotheses = 0.0;
     for (const Mover& mover : movers_) {
-      const DriftFall moved = fit_.fall(mover.parameters, still.at);
-      const auto rank = static_cast<double>(moved.rank);
+      std::vector<int> calibrated = mover.parameters;
+      std::erase_if(calibrated, [&](int p) {
+        return std::find(state_.parameters.begin(), state_.parameters.end(), p) ==
+               state_.parameters.end();
+      });
+      if (calibrated.empty()) continue;
+      hypotheses += 1.0;
+      const DriftFall moved = fit_.fall(calibrated, still.at);
       if (moved.rank < 1) continue;
-      const double fall = moved.fall / common_.effect;
-      least = std::min(least, f_tail(fall / rank, rank, still.at.freedom / common_.scatter));
+      const auto rank = static_cast<double>(moved.rank);
+      const double fall = moved.fall / state_.common.effect;
+      least = std::min(least, f_tail(fall / rank, rank, still.at.freedom / state_.common.scatter));
     }
-    const double hypotheses = std::max(1.0, static_cast<double>(movers_.size()));
+    if (hypotheses == 0.0) return still.probability;
     return std::min(1.0, 2.0 * std::min(still.probability, hypotheses * least));
   }
   /// Probability that some rows' sum of squares is larger by chance.
   [[nodiscard]] double chance(double squares, double size, const DriftMinimum& at) const {
-    return f_tail(squares / size, size / common_.scatter, at.freedom / common_.scatter);
+    return f_tail(squares / size, size / state_.common.scatter, at.freedom / state_.common.scatter);
   }
   /// The sample whose removal lowers X most, if it is further off than chance at the level.
   [[nodiscard]] std::optional<MissedSample> worst_sample(const CleanFit& now,
@@ -160,7 +168,7 @@ class DriftSearch {
   }
 
   const AnyProblem& problem_;
-  const CommonNoise& common_;
+  const CalibratedState& state_;
   DriftFit fit_;
   std::vector<Mover> movers_;
   double level_;
