@@ -13,66 +13,14 @@
 #include "kinecal/config/doubts/judge_causes.hpp"
 #include "kinecal/solve/statistics.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
-#include "support/calibrated.hpp"
-#include "support/data.hpp"
+#include "support/real_recordings.hpp"
 
 namespace kinecal {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// A robot, its recording, and other samples of it that are right.
-struct Recording {
-  std::string name, sensor;
-  std::string urdf;
-  Config config;
-  std::vector<Sample> samples, right;
-};
-
-Recording read(const char* name, const fs::path& urdf, const fs::path& config,
-               const fs::path& samples, const char* sensor) {
-  Diagnostics diagnostics;
-  Recording of{name, sensor, test::text_of(urdf), read_config(config.string(), diagnostics),
-               {},   {}};
-  const std::vector<Sample> all = read_samples(samples.string(), diagnostics);
-  diagnostics.throw_if_errors();
-  const bool many = all.size() > 500;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (many ? i >= 260 : false) break;
-    (many ? i >= 60 : i % 3 == 0) ? of.right.push_back(all[many ? (i * 389) % all.size() : i])
-                                  : of.samples.push_back(all[many ? (i * 389) % all.size() : i]);
-  }
-  return of;
-}
-
-Recording recording(const std::string& name) {
-  const fs::path ur5 = test::data_folder() / "ur5_tracker",
-                 panda = test::data_folder() / "mukca_panda";
-  const fs::path cases = test::data_folder().parent_path() / "cases";
-  if (name == "ur5")
-    return read("ur5", ur5 / "ur5.urdf", ur5 / "full.yaml", ur5 / "grid.yaml", "tracker");
-  if (name == "ur5_offsets") {
-    return read("ur5_offsets", ur5 / "ur5.urdf", ur5 / "offsets.yaml", ur5 / "grid.yaml",
-                "tracker");
-  }
-  if (name == "panda") {
-    return read("panda", panda / "panda.urdf", panda / "panda_6/minimal.yaml",
-                panda / "panda_6/front.yaml", "fixture");
-  }
-  Recording kuka = read("kuka", cases / "trust-01-scale-10-percent-good/robot_kuka.urdf",
-                        cases / "trust-01-scale-10-percent-good/config_kuka.yaml",
-                        cases / "trust-01-scale-10-percent-good/samples_kuka.yaml", "fixture");
-  for (std::vector<Sample>* samples : {&kuka.samples, &kuka.right}) {
-    for (Sample& sample : *samples) {  // its sockets are 50 mm apart, not 55
-      for (Observation& seen : sample.observations) {
-        for (Feature& feature : seen.features) feature.point *= 50.0 / 55.0;
-      }
-    }
-  }
-  return kuka;
-}
+using test::Recording;
 
 // What goes wrong.
 
@@ -308,13 +256,8 @@ const std::map<std::string, std::string>& undetectable() {
 class HarmfulInputs : public testing::TestWithParam<const char*> {};
 
 TEST_P(HarmfulInputs, AreNotCalledGood) {
-  KINECAL_NEEDS_DATA("ur5_tracker");
-  KINECAL_NEEDS_DATA("mukca_panda");
-  if (std::string(GetParam()) == "kuka" &&
-      !fs::exists(test::data_folder().parent_path() / "cases")) {
-    GTEST_SKIP() << "the cases are not beside " << test::data_folder();
-  }
-  const Recording right = recording(GetParam());
+  KINECAL_NEEDS_RECORDING(GetParam());
+  const Recording right = test::recording(GetParam());
   const Outcome clean = outcome_of(right);
   EXPECT_NE(clean.judgement.verdict, Grade::do_not_use) << clean.judgement.reasons.front();
   int harmful = 0, good = 0;
