@@ -108,6 +108,18 @@ TEST_F(Recheck, NamesAJointThatWasHeld) {
   EXPECT_THAT(result.out, HasSubstr("Most likely moved\n  joint 'pan': 0.2"));
 }
 
+TEST_F(Recheck, NamesTheToolThatWasBumpedThoughItsJointWasHeld) {
+  calibrate();
+  for (Sample& sample : new_) {  // the tool and its reflectors, in the last link
+    for (Feature& feature : sample.observations[0].features) feature.point.y() -= 1e-3;
+  }
+  const Outcome result = with_new("verify");
+  EXPECT_EQ(result.code, 2) << result.out;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("taken as recorded before the result was installed"),
+                    HasSubstr("Most likely moved\n  frame 'flange': "), HasSubstr(" mm +- ")));
+}
+
 TEST_F(Recheck, NamesTheTrackerThatWasMoved) {
   calibrate();
   for (Sample& sample : new_) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/common_noise.hpp"
 
 #include <gtest/gtest.h>

@@ -249,7 +249,17 @@ Outcome outcome_of(const Recording& of) {
 
 /// What nothing in the samples shows, and why.
 const std::map<std::string, std::string>& undetectable() {
-  static const std::map<std::string, std::string> all = {};
+  const std::string socket_by_socket =
+      "the samples are those of sockets that are elsewhere: they were recorded one after the other";
+  const std::string own_errors =
+      "sockets 51 in place of 50 mm apart change lengths by 2.2 mm, as the URDF's own errors do";
+  static const std::map<std::string, std::string> all = {
+      {"panda points_2_percent_larger", own_errors},
+      {"panda x_2_percent_longer", own_errors},
+      {"panda bump_of_3_mm", socket_by_socket},
+      {"kuka bump_of_3_mm", socket_by_socket},
+      {"kuka eccentric_joint_4", "the joint moves little, and free frames do the same"},
+  };
   return all;
 }
 

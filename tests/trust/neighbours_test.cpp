@@ -19,7 +19,10 @@ void add_walk(test::NoisyScene& scene, double keep, unsigned seed) {
     const Pose<double> camera = test::tip_pose(problem, 1, "camera_optical_frame", sample,
                                                test::NoisyScene::span(scene.truth));
     const Vector3<double> seen = camera.rotation.transpose() * error;
-    for (Feature& feature : sample.observations[0].features) feature.point += seen;
+    for (Observation& observed : sample.observations) {
+      if (observed.sensor != "camera") continue;
+      for (Feature& feature : observed.features) feature.point += seen;
+    }
   }
 }
 

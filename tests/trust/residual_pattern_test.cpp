@@ -111,7 +111,10 @@ TEST(ResidualPattern, FindsAnAxisOfASensorWithAnotherScale) {
   test::NoisyScene scene(40);
   std::erase(scene.names, "camera_fx");
   for (Sample& sample : scene.samples) {
-    for (Feature& feature : sample.observations[0].features) feature.point.x() *= 1.03;
+    for (Observation& seen : sample.observations) {
+      if (seen.sensor != "camera") continue;
+      for (Feature& feature : seen.features) feature.point.x() *= 1.03;
+    }
   }
   const auto found = pattern_in(scene);
   ASSERT_TRUE(found);

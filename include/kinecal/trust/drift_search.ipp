@@ -87,9 +87,10 @@ class DriftSearch {
     CleanFit all = fit();
     CleanFit now = all;
     constexpr int kShare = 5;  // one sample in five
-    for (int n = 0; n < problem_.num_samples() / kShare && now.probability < level_; ++n) {
+    for (int n = 0; n < problem_.num_samples() / kShare; ++n) {
+      if (!moved.empty() && now.probability >= level_) break;  // bad captures are named anyway
       const auto worst = worst_sample(now, directions, used);
-      if (!worst) return all;
+      if (!worst) break;
       used[static_cast<std::size_t>(worst->sample)] = false;
       std::vector<MissedSample> missed = now.missed;
       missed.push_back(*worst);

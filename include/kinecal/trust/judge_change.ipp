@@ -41,9 +41,11 @@ namespace kinecal::detail {
     case ErrorCourse::sag:
       return "if " + owner + " sags by up to " + size + " under the weight of the arm";
     case ErrorCourse::lag:
-      return "if the joints had " + reading(1e2 * pattern.size, "1") +
-             " % of the way from the sample before still to go (stamps differ, or samples were "
-             "taken before the robot stood)";
+      return "if the joints " +
+             std::string(pattern.size > 0.0 ? "had still to go " : "had already gone on by ") +
+             reading(1e2 * std::abs(pattern.size), "1") +
+             " % of the way from the sample before (stamps differ, or samples were taken before "
+             "the robot stood)";
     case ErrorCourse::rounding:
       return "positions of " + owner + " are rounded to multiples of " + size +
              "; without rounding";

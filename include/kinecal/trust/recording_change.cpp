@@ -25,10 +25,11 @@ struct CourseSums {
   Eigen::VectorXd gradient;     ///< sum of u J^T W r
 };
 
-/// The sums from some samples on, at up to 64 places; skips the first and the last samples, whose
-/// change is indistinguishable from a bad capture.  Then those of a drift.
+/// The sums from some samples on, at up to 64 places; skips the first and the last tenth, which bad
+/// captures may explain.  Then those of a drift.
 [[nodiscard]] inline std::vector<CourseSums> course_sums(const LinearFit& fit, int samples) {
-  constexpr int kParts = 64, kFew = 3;
+  constexpr int kParts = 64;
+  const int few = std::max(3, (samples + 9) / 10);
   const Eigen::Index n = fit.size();
   const int parts = std::min(kParts, samples);
   const CourseSums none{0, false, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
@@ -60,7 +61,7 @@ struct CourseSums {
   }
   for (CourseSums& step : sums) step.squared = step.information;
   std::erase_if(sums, [&](const CourseSums& step) {
-    return step.sample < kFew || step.sample > samples - kFew;
+    return step.sample < few || step.sample > samples - few;
   });
   sums.push_back(std::move(drift));
   return sums;

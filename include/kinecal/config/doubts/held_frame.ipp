@@ -111,6 +111,15 @@ class MoreParameters {
   double squares_ = 0.0;
 };
 
+/// Whether residuals are larger than what robots are good to: a thousandth of their size, or a pixel.
+[[nodiscard]] inline bool matters(const Assessment& step) {
+  constexpr double kOfSize = 1e-3, kPixel = 1.0;
+  return std::any_of(step.noise.begin(), step.noise.end(), [&](const BlockNoise& noise) {
+    const double distance = noise.sigma * std::sqrt(static_cast<double>(noise.components));
+    return distance > (noise.unit == "m" ? kOfSize * step.size : kPixel);
+  });
+}
+
 /// A held frame whose change explains residuals, as a sentence; nullopt if none does.
 [[nodiscard]] inline std::optional<std::string> held_frame(const CalibrationInput& input,
                                                            const JudgedResult& judged) {
@@ -134,7 +143,7 @@ class MoreParameters {
   for (const int p : last.free.parameters()) free.insert(last.problem->table()[p].name);
   const MoreParameters rows(problem, more.steps.back().free,
                             {values.data(), static_cast<std::size_t>(values.size())}, free);
-  if (rows.nothing_left()) return {};
+  if (rows.nothing_left() || !matters(judged.assessments.back())) return {};
   constexpr double kLeft = 0.8;
   double best = judged.assessments.back().pattern
                     ? std::min(kLeft, kLeft * judged.assessments.back().pattern->noise_left)
