@@ -50,6 +50,48 @@ namespace {
   return idle;
 }
 
+/// Held-out errors of folds and of regions; infinite if a fit without some ends with a point behind a camera.
+[[nodiscard]] std::vector<HeldOutError> held_out_of(AnyEvaluator& evaluator, ParameterValues values,
+                                                    const LinearFit& fit,
+                                                    std::span<const Sample> samples,
+                                                    const PoseGroups& poses,
+                                                    const AssessOptions& options) {
+  const AnyProblem& problem = evaluator.problem();
+  const int folds = std::min(options.folds, poses.count);
+  if (folds < 2) return {};
+  try {
+    std::vector<HeldOutError> errors =
+        held_out_errors(evaluator, values, fit, folds_of(samples, poses, folds), options.meter);
+    const std::vector<int> regions = pose_regions(problem, samples, poses);
+    if (regions.empty()) return errors;
+    const auto of_regions = held_out_errors(evaluator, values, fit, regions);
+    for (std::size_t t = 0; t < errors.size(); ++t) errors[t].region = of_regions[t].held_out;
+    return errors;
+  } catch (const std::domain_error&) {
+    std::vector<HeldOutError> errors;
+    for (int t = 0; t < problem.num_terms(); ++t) {
+      const Term& term = problem.term(t);
+      errors.push_back(
+          {term.name, term.options.unit, 0, 0.0, std::numeric_limits<double>::infinity()});
+    }
+    return errors;
+  }
+}
+
+/// The median +- of the pose in question over the limits of the joints; 0 if it is not known there.
+[[nodiscard]] double deviation_elsewhere(const AnyProblem& problem, const Assessment& step,
+                                         ParameterValues values) {
+  constexpr int kPoses = 64;
+  std::vector<double> deviations;
+  for (const KnownPoint& point : workspace_map(problem, step, values, kPoses)) {
+    deviations.push_back(point.deviation);
+  }
+  if (deviations.empty()) return 0.0;
+  const auto middle = deviations.begin() + std::ssize(deviations) / 2;
+  std::nth_element(deviations.begin(), middle, deviations.end());
+  return *middle;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -87,44 +129,12 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.change = recording_change(problem, inside, fit);
   found.pattern = residual_pattern(problem, inside, fit, values, samples, poses, effects);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
-  const int folds = std::min(options.folds, poses.count);
-  if (folds >= 2) {
-    try {
-      found.held_out =
-          held_out_errors(*evaluator, values, fit, folds_of(samples, poses, folds), options.meter);
-      const std::vector<int> regions = pose_regions(problem, samples, poses);
-      if (!regions.empty()) {
-        const auto of_regions = held_out_errors(*evaluator, values, fit, regions);
-        for (std::size_t t = 0; t < of_regions.size(); ++t) {
-          found.held_out[t].region = of_regions[t].held_out;
-          fprintf(stderr, "REGION %s fitted %g held %g region %g noise %g\n",
-                  found.held_out[t].block.c_str(), found.held_out[t].fitted,
-                  found.held_out[t].held_out, found.held_out[t].region,
-                  found.noise[t].sigma * std::sqrt(found.noise[t].components));
-        }
-      }
-    } catch (const std::domain_error&) {  // without a fold, a point ends up behind a camera
-      for (int t = 0; t < problem.num_terms(); ++t) {
-        const Term& term = problem.term(t);
-        found.held_out.push_back(
-            {term.name, term.options.unit, 0, 0.0, std::numeric_limits<double>::infinity()});
-      }
-    }
-  }
+  found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);
   if (const auto frames = compared_frames(problem, samples)) {
     found.pose = pose_uncertainty(problem, inside, values, fit, found.uncertainty, samples,
                                   frames->first, frames->second);
   }
-  if (found.pose) {
-    constexpr int kPoses = 64;
-    std::vector<double> deviations;
-    for (const KnownPoint& point : workspace_map(problem, found, values, kPoses)) {
-      deviations.push_back(point.deviation);
-    }
-    const auto middle = deviations.begin() + std::ssize(deviations) / 2;
-    std::nth_element(deviations.begin(), middle, deviations.end());
-    if (!deviations.empty()) found.elsewhere = *middle;
-  }
+  if (found.pose) found.elsewhere = detail::deviation_elsewhere(problem, found, values);
   return found;
 }
 

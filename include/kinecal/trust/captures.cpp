@@ -56,7 +56,6 @@ class CaptureSearch {
   [[nodiscard]] double distance(const FeatureRows& f) const {
     return residual_.segment(f.row, f.size).norm();
   }
-
   /// Noise of each term, from the median of the features in samples that are not bad.
   void set_sigmas(double freedom) {
     std::vector<std::vector<double>> distances(static_cast<std::size_t>(problem_.num_terms()));
@@ -79,7 +78,6 @@ class CaptureSearch {
     const double n = static_cast<double>(fit_.size()) * poses_.readings();
     return rows > 2.0 * n ? 1.0 - n / rows : 0.5;
   }
-
   void solve(const Eigen::VectorXd& weights) {
     inverse_ = Spectrum(information(fit_, weights)).pseudo_inverse();
     const Eigen::VectorXd gradient =
@@ -125,15 +123,15 @@ class CaptureSearch {
     const bool in = !bad_[static_cast<std::size_t>(f.sample)];
     return distance(f) / (sigma_of(f) * std::sqrt(in ? 1.0 - leverage : 1.0 + leverage));
   }
-  /// Assumes equal noise in all directions, or uses the observed tail of the features that fit.
-  /// The latter only when bad captures are no longer among them.
+  /// Equal noise in all directions, or the tail of the features that fit, once bad ones are out.
   enum class Tail { normal, as_seen };
 
   /// In standard deviations; beyond it a feature is bad.
   [[nodiscard]] double limit(const FeatureRows& f) const {
     return limit_[static_cast<std::size_t>(f.term)];
   }
-  void set_limits(Tail tail) {
+  void mark(Tail tail = Tail::normal) {
+    if (features_.empty()) return;
     constexpr double kFalse = 1e-3;       // share of good data sets with a false alarm
     constexpr double kEfficiency = 0.37;  // of the median, as an estimate of the noise
     const double rows = static_cast<double>(fit_.residual.size());
@@ -145,10 +143,6 @@ class CaptureSearch {
       const double factor = tail == Tail::as_seen ? tail_[t] : 1.0;
       limit_[t] = factor * std::sqrt(k * f_exceeded(k, b, chance));
     }
-  }
-  void mark(Tail tail = Tail::normal) {
-    if (features_.empty()) return;
-    set_limits(tail);
     std::vector<bool> bad(bad_.size(), false);
     for (const FeatureRows& f : features_) {
       if (times(f) > limit(f)) bad[static_cast<std::size_t>(f.sample)] = true;

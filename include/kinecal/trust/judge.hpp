@@ -9,7 +9,7 @@
 //   held-out error 3 x the fitted one                   1.5 x
 //   a quarter of the samples does not fit,              a tenth
 //   left out or not
-//   something changed or drifted during the recording:  four fifths; also with a pattern of
+//   something changed or drifted during the recording:  three quarters; also with a pattern of
 //   with that, the noise falls to a third               residuals, such as a joint's gear
 //   a joint's offset of 45 degrees                      15 degrees
 //   an intrinsic changed by 30 %                        9 %

@@ -23,6 +23,12 @@ struct CourseSums {
   Eigen::MatrixXd information;  ///< sum of u J^T W J
   Eigen::MatrixXd squared;      ///< sum of u^2 J^T W J
   Eigen::VectorXd gradient;     ///< sum of u J^T W r
+
+  /// u of a sample.
+  [[nodiscard]] double at(int of, int samples) const {
+    if (drifts) return static_cast<double>(of) / std::max(1, samples - 1) - 0.5;
+    return of < sample ? 0.0 : 1.0;
+  }
 };
 
 /// The sums from some samples on, at up to 64 places; skips the first and the last tenth, which bad
@@ -50,7 +56,7 @@ struct CourseSums {
         rows.transpose() * weights.cwiseProduct(fit.residual.segment(block.first, block.size));
     sums[part].information += information;
     sums[part].gradient += gradient;
-    const double u = static_cast<double>(block.sample) / std::max(1, samples - 1) - 0.5;
+    const double u = drift.at(block.sample, samples);
     drift.information += u * information;
     drift.squared += u * u * information;
     drift.gradient += u * gradient;
@@ -81,13 +87,30 @@ struct CourseSums {
   return fall_of({all, cross, by.transpose() * course.gradient}, scale, inverse);
 }
 
+/// True if a large part of the fall is that of a single sample: a bad capture.
+/// @param by  (coordinates x parameters) of the owner
+[[nodiscard]] inline bool is_one_sample(const LinearFit& fit, const CourseSums& course,
+                                        const Eigen::MatrixXd& by, const Fall& fall, int samples) {
+  constexpr double kLarge = 0.4;
+  const Eigen::VectorXd own = by * fall.change;
+  Eigen::VectorXd falls = Eigen::VectorXd::Zero(samples);
+  for (const RowBlock& block : fit.blocks) {
+    const auto r = fit.residual.segment(block.first, block.size);
+    const Eigen::VectorXd after = r + fit.jacobian.middleRows(block.first, block.size) *
+                                          (fall.others + course.at(block.sample, samples) * own);
+    falls(block.sample) +=
+        fit.loss.segment(block.first, block.size).dot(r.cwiseAbs2() - after.cwiseAbs2());
+  }
+  return falls.maxCoeff() > kLarge * fall.squares;
+}
+
 }  // namespace detail
 
 std::optional<RecordingChange> recording_change(const AnyProblem& problem, const FreeSet& free,
                                                 const LinearFit& fit) {
   const double squares = fit.loss.dot(fit.residual.cwiseAbs2());
   const double freedom = static_cast<double>(fit.residual.size() - fit.size());
-  constexpr double kLeft = 0.8, kChance = 1e-6;
+  constexpr double kLeft = 0.75, kChance = 1e-6;
   if (detail::is_exact(problem, fit)) return {};
   std::map<std::string, std::vector<int>> columns;
   for (int c = 0; c < free.size(); ++c) {
@@ -112,6 +135,7 @@ std::optional<RecordingChange> recording_change(const AnyProblem& problem, const
       const double left = std::sqrt((1.0 - x) * freedom / (freedom - q));
       if (left > kLeft || tests * detail::chance_of_share(x, q, freedom) > kChance) continue;
       if (best && left >= best->noise_left) continue;
+      if (detail::is_one_sample(fit, course, by, fall, problem.num_samples())) continue;
       if (detail::implausible(problem, free, fit.coordinates.basis * fall.others, of_owner))
         continue;
       best = RecordingChange{owner, course.sample, left, course.drifts};

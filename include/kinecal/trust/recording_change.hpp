@@ -3,7 +3,7 @@
 // Let a joint, frame or sensor have other parameters from sample k on, or parameters that change in
 // proportion to the number of the sample; the sum of squares falls by the share x.  Without a change, x has the beta distribution (q / 2, (freedom - q) / 2), q the
 // number of its parameters.  A change is reported if chance is excluded over all owners and k, and
-// if the noise falls to 80 %: deflection and the like also vary over the workspace.
+// if the noise falls to 75 %: deflection and the like also vary over the workspace.
 // Source: Chow, Tests of Equality Between Sets of Coefficients in Two Linear Regressions, 1960.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

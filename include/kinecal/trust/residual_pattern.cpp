@@ -164,7 +164,7 @@ class PatternSearch {
   }
 
   void consider(ResidualPattern pattern, const Fall& fall) {
-    constexpr double kLeft = 0.8, kChance = 1e-6, kSimpler = 0.03;
+    constexpr double kLeft = 0.75, kChance = 1e-6, kSimpler = 0.03;
     const auto q = static_cast<int>(fall.change.size());
     const double x = std::clamp(fall.squares / squares_, 0.0, 1.0);
     const double left = std::sqrt((1.0 - x) * freedom_ / (freedom_ - q));

@@ -9,7 +9,7 @@
 //   a (q_before - q)    all joints: they still had a part of the way to go
 //   a x                 an axis of a sensor
 //
-// and fit again.  Positions that are multiples of a step u scatter by u / sqrt(12).  A pattern is reported if chance is excluded over all of them, and if the noise falls to 80 %.
+// and fit again.  Positions that are multiples of a step u scatter by u / sqrt(12).  A pattern is reported if chance is excluded over all of them, and if the noise falls to 75 %.
 // Source: Mooring, Roth, Driels, Fundamentals of Manipulator Calibration, 1991, for the errors of joints.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

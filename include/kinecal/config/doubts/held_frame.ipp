@@ -144,7 +144,7 @@ class MoreParameters {
   const MoreParameters rows(problem, more.steps.back().free,
                             {values.data(), static_cast<std::size_t>(values.size())}, free);
   if (rows.nothing_left() || !matters(judged.assessments.back())) return {};
-  constexpr double kLeft = 0.8;
+  constexpr double kLeft = 0.75;
   double best = judged.assessments.back().pattern
                     ? std::min(kLeft, kLeft * judged.assessments.back().pattern->noise_left)
                     : kLeft;
