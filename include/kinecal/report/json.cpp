@@ -59,18 +59,20 @@ namespace detail {
 }
 
 [[nodiscard]] inline Json json(const BlockNoise& noise, const HeldOutError* error) {
-  return {{"name", noise.block},
-          {"unit", noise.unit},
-          {"sigma", noise.sigma},
-          {"robust_sigma", noise.robust},
-          {"sigma_given", noise.given > 0.0 ? Json(noise.given) : Json()},
-          {"features", noise.features},
-          {"components", noise.components},
-          {"freedom", noise.freedom},
-          {"own_sigma", noise.own > 0.0 ? Json(noise.own) : Json()},
-          {"own_freedom", noise.own > 0.0 ? Json(noise.own_freedom) : Json()},
-          {"fitted", error == nullptr ? Json() : Json(error->fitted)},
-          {"held_out", error == nullptr ? Json() : Json(error->held_out)}};
+  return {
+      {"name", noise.block},
+      {"unit", noise.unit},
+      {"sigma", noise.sigma},
+      {"robust_sigma", noise.robust},
+      {"sigma_given", noise.given > 0.0 ? Json(noise.given) : Json()},
+      {"features", noise.features},
+      {"components", noise.components},
+      {"freedom", noise.freedom},
+      {"own_sigma", noise.own > 0.0 ? Json(noise.own) : Json()},
+      {"own_freedom", noise.own > 0.0 ? Json(noise.own_freedom) : Json()},
+      {"fitted", error == nullptr ? Json() : Json(error->fitted)},
+      {"held_out", error == nullptr ? Json() : Json(error->held_out)},
+      {"held_out_region", error == nullptr || error->region == 0.0 ? Json() : Json(error->region)}};
 }
 
 [[nodiscard]] inline Json json(const CommonNoise& common) {
@@ -85,7 +87,7 @@ namespace detail {
   return {{"sample", sample.number}, {"source", sample.source}, {"why", sample.why}};
 }
 
-[[nodiscard]] inline Json json(const PoseUncertainty& pose) {
+[[nodiscard]] inline Json json(const PoseUncertainty& pose, double elsewhere) {
   return {{"frame", pose.frame},
           {"link", pose.link},
           {"in", pose.in},
@@ -94,6 +96,7 @@ namespace detail {
           {"rotation", pose.rotation},
           {"worst_position", pose.worst_position},
           {"worst_rotation", pose.worst_rotation},
+          {"position_elsewhere", elsewhere > 0.0 ? Json(elsewhere) : Json()},
           {"determined", pose.determined}};
 }
 
@@ -138,23 +141,24 @@ std::string json_report(const Findings& findings) {
   const auto parameter = [&](int i) { return detail::json_parameter(findings, i); };
   detail::Json images = detail::Json::object();
   for (const auto& [sensor, image] : findings.images) images[sensor] = image;
-  const detail::Json report = {{"verdict", to_string(findings.judgement.verdict)},
-                               {"reasons", findings.judgement.reasons},
-                               {"converged", result.converged},
-                               {"termination", result.termination},
-                               {"steps", json_list(result.steps, write)},
-                               {"error_blocks", json_list(result.blocks, write)},
-                               {"noise", json_list(last.noise, noise)},
-                               {"design_effect", last.uncertainty.design_effect},
-                               {"common_noise", detail::json(last.common)},
-                               {"parameters", json_list(result.calibrated, parameter)},
-                               {"pose", last.pose ? detail::json(*last.pose) : detail::Json()},
-                               {"observability", json_list(findings.assessments, observability)},
-                               {"bad_samples", detail::json_captures(findings, last)},
-                               {"left_out", json_list(findings.left_out, write)},
-                               {"images", images},
-                               {"covariance", detail::json_covariance(findings)},
-                               {"poses", detail::json(findings.poses)}};
+  const detail::Json report = {
+      {"verdict", to_string(findings.judgement.verdict)},
+      {"reasons", findings.judgement.reasons},
+      {"converged", result.converged},
+      {"termination", result.termination},
+      {"steps", json_list(result.steps, write)},
+      {"error_blocks", json_list(result.blocks, write)},
+      {"noise", json_list(last.noise, noise)},
+      {"design_effect", last.uncertainty.design_effect},
+      {"common_noise", detail::json(last.common)},
+      {"parameters", json_list(result.calibrated, parameter)},
+      {"pose", last.pose ? detail::json(*last.pose, last.elsewhere) : detail::Json()},
+      {"observability", json_list(findings.assessments, observability)},
+      {"bad_samples", detail::json_captures(findings, last)},
+      {"left_out", json_list(findings.left_out, write)},
+      {"images", images},
+      {"covariance", detail::json_covariance(findings)},
+      {"poses", detail::json(findings.poses)}};
   return detail::json_lines(report);
 }
 
