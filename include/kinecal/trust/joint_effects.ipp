@@ -39,7 +39,10 @@ namespace kinecal::detail {
   const std::map<std::string, double> joints = repeatable_joints(problem);
   Eigen::MatrixXd effects = Eigen::MatrixXd::Zero(fit.residual.size(), std::ssize(joints));
   Eigen::Index column = 0;
-  for (const auto& [name, repeats] : joints) {
+  for (const auto& joint : joints) {
+    const std::string& name =
+        joint.first;  // lambdas of C++20 capture no structured bindings in clang 14
+    const double repeats = joint.second;
     constexpr double kStep = 1e-3;  // of what robots repeat
     const auto move = [&](Sample& sample) {
       for (std::size_t j = 0; j < sample.joint_positions.size(); ++j) {
