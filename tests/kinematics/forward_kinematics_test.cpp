@@ -12,19 +12,19 @@ namespace {
 
 using Arm = Chain<test::StaticRobot, "base", "tip">;
 constexpr auto kSize = static_cast<int>(Arm::kSize);
-using Positions = Eigen::Matrix<double, kSize, 1>;
-using Dual = Eigen::AutoDiffScalar<Positions>;
+using ScalarPositions = Eigen::Matrix<double, kSize, 1>;
+using Dual = Eigen::AutoDiffScalar<ScalarPositions>;
 using DynamicDual = Eigen::AutoDiffScalar<Eigen::VectorXd>;
 
 static_assert(Scalar<double> && Scalar<float> && Scalar<long double> && Scalar<Packet>);
 static_assert(Scalar<Jet<double, 3>> && Scalar<Jet<Packet, 3>> && Scalar<std::complex<double>>);
 static_assert(Scalar<Dual> && Scalar<DynamicDual>);
-static_assert(!Scalar<int> && !Scalar<bool> && !Scalar<std::string> && !Scalar<Positions>);
+static_assert(!Scalar<int> && !Scalar<bool> && !Scalar<std::string> && !Scalar<ScalarPositions>);
 static_assert(std::same_as<Product<double, float>, float> &&
               std::same_as<Product<Dual, double>, Dual>);
 
-Positions some_positions() {
-  return Positions::LinSpaced(-0.4, 0.7);
+ScalarPositions some_positions() {
+  return ScalarPositions::LinSpaced(-0.4, 0.7);
 }
 
 RuntimeChain at_run_time() {
@@ -32,7 +32,7 @@ RuntimeChain at_run_time() {
 }
 
 TEST(ForwardKinematics, InFloatAgreesWithDouble) {
-  const Positions q = some_positions();
+  const ScalarPositions q = some_positions();
   const Eigen::Matrix<float, kSize, 1> rounded = q.cast<float>();
   const Pose<double> expected = forward_kinematics(Arm{}, q);
   const auto jacobian = geometric_jacobian(Arm{}, q);
@@ -61,17 +61,17 @@ TEST(ForwardKinematics, InFloatAgreesWithDouble) {
 /// Compares derivatives of the tip by an automatic scalar with the geometric Jacobian.
 template <class S>
 void expect_derivatives() {
-  const Positions q = some_positions();
+  const ScalarPositions q = some_positions();
   Eigen::Matrix<S, kSize, 1> variables;
   for (int i = 0; i < kSize; ++i) {
     variables(i) = S(q(i));
-    variables(i).derivatives() = Positions::Unit(i);
+    variables(i).derivatives() = ScalarPositions::Unit(i);
   }
   const auto jacobian = geometric_jacobian(Arm{}, q);
   for (const Pose<S>& tip :
        {forward_kinematics(Arm{}, variables), forward_kinematics(at_run_time(), variables)}) {
     for (int k = 0; k < 3; ++k) {
-      const Positions found = tip.translation(k).derivatives();
+      const ScalarPositions found = tip.translation(k).derivatives();
       EXPECT_LT((found.transpose() - jacobian.row(k)).norm(), 1e-14) << "row " << k;
     }
   }
