@@ -59,6 +59,20 @@ TEST(RecordingChange, ThatIsADriftIsFoundWithItsSize) {
   EXPECT_LT(found->noise_left, 0.4);
 }
 
+/// In poses sorted by a joint, an error that depends on the joint looks like a drift.
+TEST(RecordingChange, SaysIfTheOrderOfSamplesIsThatOfTheirPoses) {
+  test::NoisyScene scene(40);
+  scene.solve();
+  const RecordingChange drift{.owner = "elbow", .drifts = true},
+      step{.owner = "elbow", .sample = 20};
+  EXPECT_FALSE(follows_poses(scene.solved(), drift, scene.samples));
+  EXPECT_FALSE(follows_poses(scene.solved(), step, scene.samples));
+  std::sort(scene.samples.begin(), scene.samples.end(), [](const Sample& a, const Sample& b) {
+    return a.position("elbow").value() < b.position("elbow").value();
+  });
+  EXPECT_TRUE(follows_poses(scene.solved(), drift, scene.samples));
+}
+
 TEST(RecordingChange, OfTheLastSamplesIsABadCapture) {
   test::NoisyScene scene(40);
   slip(scene, "elbow", 39, 0.03);

@@ -77,6 +77,10 @@ std::string note_on(const Parameter& parameter, double deviation) {
         fmt::format("\nPose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
                     pose.frame, pose.in, reading(pose.position, "m"), reading(pose.rotation, "rad"),
                     reading(pose.worst_position, "m"), reading(pose.worst_rotation, "rad"));
+    if (step.elsewhere > 0.0) {
+      text += fmt::format("  over the limits of the joints: {} (median)\n",
+                          reading(step.elsewhere, "m"));
+    }
   }
   return text;
 }

@@ -127,6 +127,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.captures = capture_errors(problem, fit, single);
   found.noise_without_bad = noise_without_bad(fit, found.captures);
   found.change = recording_change(problem, inside, fit);
+  if (found.change) found.change->by_pose = follows_poses(problem, *found.change, samples);
   found.pattern = residual_pattern(problem, inside, fit, values, samples, poses, effects);
   found.idle = detail::idle_groups(problem, inside, values, found.uncertainty);
   found.held_out = detail::held_out_of(*evaluator, values, fit, samples, poses, options);

@@ -126,12 +126,11 @@ void judge_weak(const Assessment& step, const ParameterTable& table, Judgement& 
 void judge_priors(const Assessment& step, const ParameterTable& table, Judgement& judgement) {
   for (const PriorPull& pull : step.pulls) {
     const Parameter& p = table[pull.parameter];
-    judgement.add(
-        Grade::use_with_care,
-        "prior '" + pull.prior + "' and the samples contradict each other: it moves '" + p.name +
-            "' by " + reading(pull.shift, p.unit) + ", " + reading(pull.times, "1") +
-            " times its +-, which does not contain that; is its scale too large, or is the "
-            "drawing wrong there?");
+    judgement.add(Grade::use_with_care,
+                  "prior '" + pull.prior + "' and the samples contradict each other: it moves '" +
+                      p.name + "' by " + reading(pull.shift, p.unit) + ", " +
+                      reading(pull.times, "1") +
+                      " times its +-; is its scale too large, or is the drawing wrong there?");
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdio>
 #include <numbers>
 #include <string>
 
@@ -27,7 +28,9 @@ namespace kinecal::detail {
   const std::string size = pattern.turns
                                ? reading(pattern.size * 180.0 / std::numbers::pi, "1") + " deg"
                                : reading(1e3 * pattern.size, "1") + " mm";
-  const std::string owner = "'" + pattern.owner + "'", factor = reading(pattern.factor, "1");
+  const std::string owner = "'" + pattern.owner + "'";
+  char factor[32];
+  (void)std::snprintf(factor, sizeof factor, "%.5g", pattern.factor);  // gears are near one
   switch (pattern.course) {
     case ErrorCourse::zero:
       return "with a zero of " + owner + " that is " + size + " off (it is held)";
@@ -83,7 +86,13 @@ inline void judge_change(const Assessment& step, const AnyProblem& problem, Judg
            ": with one value before and another after, the noise falls to " + noise +
            "; calibrate with the samples of one part";
   }
-  judgement.add(change.noise_left < kThird ? Grade::do_not_use : Grade::use_with_care, text);
+  if (change.by_pose) {
+    text +=
+        "; or an error that depends on the pose does, as the order of the samples is that of their "
+        "poses: record in a random order";
+  }
+  const bool refuse = change.noise_left < kThird && !change.by_pose;
+  judgement.add(refuse ? Grade::do_not_use : Grade::use_with_care, text);
 }
 
 }  // namespace kinecal::detail

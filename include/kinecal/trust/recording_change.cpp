@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/solve/spectrum.hpp"
+#include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/unexplained.hpp"
 
 namespace kinecal {
@@ -105,6 +106,28 @@ struct CourseSums {
 }
 
 }  // namespace detail
+
+bool follows_poses(const AnyProblem& problem, const RecordingChange& change,
+                   std::span<const Sample> samples) {
+  constexpr double kExplained = 0.7;  // of the variance of the course
+  const auto joints = detail::repeatable_joints(problem);
+  const Eigen::Index rows = std::ssize(samples), columns = std::ssize(joints) + 1;
+  if (rows < 2 * columns) return false;
+  Eigen::MatrixXd poses = Eigen::MatrixXd::Ones(rows, columns);
+  Eigen::VectorXd course(rows);
+  for (Eigen::Index s = 0; s < rows; ++s) {
+    Eigen::Index column = 1;
+    for (const auto& [name, repeats] : joints) {
+      const double q = samples[static_cast<std::size_t>(s)].position(name).value_or(0.0);
+      poses(s, column++) = std::isfinite(q) ? q : 0.0;
+    }
+    const double part = static_cast<double>(s) / static_cast<double>(rows - 1);
+    course(s) = change.drifts ? part : (s < change.sample ? 0.0 : 1.0);
+  }
+  course.array() -= course.mean();
+  const Eigen::VectorXd left = course - poses * poses.colPivHouseholderQr().solve(course);
+  return left.squaredNorm() < (1.0 - kExplained) * course.squaredNorm();
+}
 
 std::optional<RecordingChange> recording_change(const AnyProblem& problem, const FreeSet& free,
                                                 const LinearFit& fit) {

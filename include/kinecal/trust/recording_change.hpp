@@ -9,8 +9,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
+#include "kinecal/samples/sample.hpp"
 #include "kinecal/solve/linear_fit.hpp"
 
 namespace kinecal {
@@ -23,7 +25,14 @@ struct RecordingChange {
   bool drifts = false;      ///< it changes evenly from the first sample to the last
   double metres = 0.0;      ///< length of the change of its parameters in metres, in all
   double radians = 0.0;     ///< the same of those in radians
+  bool by_pose = false;     ///< the order of samples follows their poses: the pose may explain it
 };
+
+/// Whether the course of a change follows the joint positions: then an error that depends on the pose explains
+/// it as well.
+/// @param samples  those of the problem, in their order
+[[nodiscard]] bool follows_poses(const AnyProblem& problem, const RecordingChange& change,
+                                 std::span<const Sample> samples);
 
 /// The change that explains the residuals best; nullopt if none does.  Samples must be in recording
 /// order.

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "kinecal/trust/error_columns.ipp"
 #include "kinecal/trust/joint_courses.ipp"
 #include "kinecal/trust/joint_effects.ipp"
-#include "kinecal/trust/unexplained.hpp"
 
 namespace kinecal {
 
@@ -17,38 +17,6 @@ namespace {
 
 constexpr ErrorCourse kJointCourses[] = {ErrorCourse::zero, ErrorCourse::gear, ErrorCourse::turn,
                                          ErrorCourse::backlash, ErrorCourse::sag};
-
-/// An error's columns beside those of a fit: slopes of the residuals times the error's course.
-class ErrorColumns {
- public:
-  ErrorColumns(const LinearFit& fit, const Eigen::VectorXd& slope, Eigen::Index samples)
-      : squared_(Eigen::VectorXd::Zero(samples)),
-        gradient_(Eigen::VectorXd::Zero(samples)),
-        cross_(Eigen::MatrixXd::Zero(samples, fit.size())) {
-    for (const RowBlock& block : fit.blocks) {
-      const auto d = slope.segment(block.first, block.size);
-      const Eigen::VectorXd w = d.cwiseProduct(fit.loss.segment(block.first, block.size));
-      squared_(block.sample) += w.dot(d);
-      gradient_(block.sample) += w.dot(fit.residual.segment(block.first, block.size));
-      cross_.row(block.sample) += w.transpose() * fit.jacobian.middleRows(block.first, block.size);
-    }
-  }
-
-  /// Sum of the squared slopes, with losses.
-  [[nodiscard]] double squares() const { return squared_.sum(); }
-  /// @param course  (samples x columns) of the error
-  [[nodiscard]] Fall fall(const Eigen::MatrixXd& course, const Eigen::MatrixXd& inverse) const {
-    const AddedColumns added{course.transpose() * squared_.asDiagonal() * course,
-                             course.transpose() * cross_, course.transpose() * gradient_};
-    const Eigen::VectorXd scale = added.squared.diagonal().unaryExpr(
-        [](double a) { return a > 0.0 ? 1.0 / std::sqrt(a) : 0.0; });
-    return fall_of(added, scale, inverse);
-  }
-
- private:
-  Eigen::VectorXd squared_, gradient_;  // by sample: d^T W d, d^T W r of its rows
-  Eigen::MatrixXd cross_;               // (samples x coordinates) d^T W J
-};
 
 /// Residuals minus parameters; a pose has no more than six that are independent.
 [[nodiscard]] double freedom_of(const LinearFit& fit, const PoseGroups& poses) {
@@ -61,6 +29,13 @@ class ErrorColumns {
   double sum = 0.0;
   for (const double of : rows) sum += std::min(kMost, of);
   return sum - static_cast<double>(fit.size());
+}
+
+/// Beyond this the linearization says nothing, and mistakes have other names.
+[[nodiscard]] bool is_plausible(const ResidualPattern& pattern) {
+  constexpr double kTurn = 0.35, kMove = 0.1, kFactor = 0.3;  // radians, metres
+  if (std::abs(pattern.factor - 1.0) > kFactor) return false;
+  return std::abs(pattern.size) <= (pattern.turns ? kTurn : kMove);
 }
 
 /// A fit and the samples that it is of.
@@ -171,6 +146,7 @@ class PatternSearch {
     if (left > kLeft || tests_ * chance_of_share(x, q, freedom_) > kChance) return;
     const bool more = best_ && best_->owner == pattern.owner && q > 1;
     if (best_ && left > best_->noise_left - (more ? kSimpler : 0.0)) return;
+    if (!is_plausible(pattern)) return;
     const Eigen::VectorXd others = fitted_.fit.coordinates.basis * fall.others;
     if (implausible(fitted_.problem, fitted_.free, others)) return;
     pattern.noise_left = left;
