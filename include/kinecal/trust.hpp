@@ -34,6 +34,5 @@
 #include "kinecal/trust/residual_pattern.hpp"
 #include "kinecal/trust/ruined.hpp"
 #include "kinecal/trust/uncertainty.hpp"
-#include "kinecal/trust/unexplained.hpp"
 #include "kinecal/trust/weak_parameters.hpp"
 #include "kinecal/trust/workspace_map.hpp"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "kinecal/trust/unexplained.hpp"
+#include "kinecal/trust/unexplained.ipp"
 
 namespace kinecal::detail {
 

@@ -10,7 +10,7 @@
 
 #include "kinecal/solve/spectrum.hpp"
 #include "kinecal/trust/joint_effects.ipp"
-#include "kinecal/trust/unexplained.hpp"
+#include "kinecal/trust/unexplained.ipp"
 
 namespace kinecal {
 

@@ -17,7 +17,7 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
-#include "kinecal/trust/unexplained.hpp"
+#include "kinecal/trust/unexplained.ipp"
 
 namespace kinecal::detail {
 
