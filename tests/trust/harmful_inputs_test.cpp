@@ -18,7 +18,7 @@
 namespace kinecal {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kOneDegree = std::numbers::pi / 180.0;
 
 using test::Recording;
 
@@ -64,22 +64,23 @@ Change gear(std::size_t j, double factor) {
 }
 Change backlash(std::size_t j, double degrees) {
   return joint(j, [=](double q, double before, double) {
-    return 0.5 * degrees * kDegree * (q > before ? 1.0 : -1.0);
+    return 0.5 * degrees * kOneDegree * (q > before ? 1.0 : -1.0);
   });
 }
 Change eccentric(std::size_t j, double degrees) {
-  return joint(j, [=](double q, double, double) { return degrees * kDegree * std::sin(q + 0.7); });
+  return joint(j,
+               [=](double q, double, double) { return degrees * kOneDegree * std::sin(q + 0.7); });
 }
 Change slip(std::size_t j, double degrees, double from) {
-  return joint(j,
-               [=](double, double, double part) { return part < from ? 0.0 : degrees * kDegree; });
+  return joint(
+      j, [=](double, double, double part) { return part < from ? 0.0 : degrees * kOneDegree; });
 }
 Change sag(double degrees) {
-  return joint(1, [=](double q, double, double) { return degrees * kDegree * std::cos(q); });
+  return joint(1, [=](double q, double, double) { return degrees * kOneDegree * std::cos(q); });
 }
 Change rounded(double degrees) {
   return all_joints([=](double q, double, double) {
-    const double step = degrees * kDegree;
+    const double step = degrees * kOneDegree;
     return std::round(q / step) * step - q;
   });
 }
