@@ -260,6 +260,8 @@ const std::map<std::string, std::string>& undetectable() {
       {"panda bump_of_3_mm", socket_by_socket},
       {"kuka bump_of_3_mm", socket_by_socket},
       {"kuka eccentric_joint_4", "the joint moves little, and free frames do the same"},
+      {"panda eccentric_joint_4",
+       "the same: the noise would fall to 78 %, as it does on right samples"},
   };
   return all;
 }
