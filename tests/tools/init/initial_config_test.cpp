@@ -18,6 +18,7 @@
 #include "kinecal/trust/observability.hpp"
 #include "support/every_robot.hpp"
 #include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace kinecal {
 namespace {
@@ -79,12 +80,10 @@ class InitialConfig : public testing::TestWithParam<test::NamedUrdf> {
 
   /// The configuration that is written, read again from a file: messages have its lines.
   Config read_again(const std::string& text, Diagnostics& diagnostics) {
-    const auto path =
-        std::filesystem::path(testing::TempDir()) / ("kinecal_init_" + GetParam().name + ".yaml");
+    const test::TemporaryFolder folder;  // tests of one robot run at the same time
+    const auto path = folder.path() / "init.yaml";
     std::ofstream(path) << text;
-    Config config = read_config(path.string(), diagnostics);
-    std::filesystem::remove(path);
-    return config;
+    return read_config(path.string(), diagnostics);
   }
 };
 
