@@ -13,6 +13,7 @@
 #include "kinecal/trust/estimated_noise.hpp"
 #include "kinecal/trust/f_distribution.hpp"
 #include "kinecal/trust/gradient_variance.hpp"
+#include "kinecal/trust/held_changes.hpp"
 #include "kinecal/trust/held_out.hpp"
 #include "kinecal/trust/judge.hpp"
 #include "kinecal/trust/judge_crate.hpp"
