@@ -130,7 +130,11 @@ inline void concentrate(const PoseSums& sums, std::size_t share, int steps, Trim
   const auto share =
       static_cast<std::size_t>(std::ceil(kShare * static_cast<double>(order.size())));
   const auto least = static_cast<std::size_t>(std::ceil(n / std::max(1.0, sums.rows()))) + 1;
-  if (fit.size() == 0 || least >= share) return Eigen::VectorXd::Zero(fit.size());
+  constexpr double kEnough =
+      4.0;  // rows for each coordinate: with fewer, a share fits its own noise
+  if (fit.size() == 0 || sums.rows() * static_cast<double>(share) < kEnough * n) {
+    return Eigen::VectorXd::Zero(fit.size());
+  }
   const Eigen::VectorXd here = Eigen::VectorXd::Zero(fit.size());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return sums.distance(a, here) < sums.distance(b, here);
