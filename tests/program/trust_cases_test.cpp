@@ -96,7 +96,7 @@ TEST_F(TrustCases, AChangeThatLetsTheArmShrinkIsNoEvidence) {
   KINECAL_NEEDS_CASE(of, "trust-09-noise-falls-to-0-percent");
   const test::Outcome found = calibrate(of);
   EXPECT_NE(verdict(found), "good");
-  EXPECT_THAT(found.out, Not(HasSubstr("seems to have changed")));
+  EXPECT_THAT(found.out, Not(HasSubstr("'fixture_frame' seems to have changed")));
 }
 
 TEST_F(TrustCases, FewSamplesOfOneRegionAreNotGoodEverywhere) {
