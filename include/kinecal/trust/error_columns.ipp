@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
-
 #include "kinecal/trust/unexplained.ipp"
 
 namespace kinecal::detail {
@@ -30,9 +28,7 @@ class ErrorColumns {
   [[nodiscard]] Fall fall(const Eigen::MatrixXd& course, const Eigen::MatrixXd& inverse) const {
     const AddedColumns added{course.transpose() * squared_.asDiagonal() * course,
                              course.transpose() * cross_, course.transpose() * gradient_};
-    const Eigen::VectorXd scale = added.squared.diagonal().unaryExpr(
-        [](double a) { return a > 0.0 ? 1.0 / std::sqrt(a) : 0.0; });
-    return fall_of(added, scale, inverse);
+    return fall_of(added, unit_lengths(added), inverse);
   }
 
  private:

@@ -61,9 +61,7 @@ std::vector<HeldChange> held_changes(const AnyProblem& problem, const FreeSet& a
     const Eigen::MatrixXd weighted = fit.loss.asDiagonal() * x;
     const detail::AddedColumns added{weighted.transpose() * x, weighted.transpose() * of_free,
                                      weighted.transpose() * fit.residual};
-    const Eigen::VectorXd scale = added.squared.diagonal().unaryExpr(
-        [](double a) { return a > 0.0 ? 1.0 / std::sqrt(a) : 0.0; });
-    const detail::Fall fall = detail::fall_of(added, scale, inverse);
+    const detail::Fall fall = detail::fall_of(added, detail::unit_lengths(added), inverse);
     const double share = std::clamp(fall.squares / squares, 0.0, 1.0);
     const double tests = static_cast<double>(groups.size());
     if (tests * detail::chance_of_share(share, q, freedom) > kChance) continue;

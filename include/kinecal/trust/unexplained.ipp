@@ -27,6 +27,12 @@ struct Fall {
   Eigen::VectorXd others;  ///< (coordinates) by which the model's own parameters move then
 };
 
+/// One over the length of each added column; zero for a column of zeros.
+[[nodiscard]] inline Eigen::VectorXd unit_lengths(const AddedColumns& added) {
+  return added.squared.diagonal().unaryExpr(
+      [](double a) { return a > 0.0 ? 1.0 / std::sqrt(a) : 0.0; });
+}
+
 /// Skips combinations of added columns that the model's own parameters explain just as well.
 /// @param scale    (added) one over the length of each column; zero: skipped
 /// @param inverse  of J^T W J

@@ -7,6 +7,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,32 +18,27 @@
 
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
+#include "kinecal/config/doubts/used_joints.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
 #include "kinecal/trust/held_changes.hpp"
 
 namespace kinecal::detail {
 
-/// Names of the joints on the chains of a problem's sensors.
-[[nodiscard]] inline std::set<std::string> joints_of_sensors(const AnyProblem& problem) {
-  std::set<std::string> names;
-  for (const MountedSensor& sensor : problem.sensors()) {
-    for (const Joint* joint : joints_to_root(problem.robot(), sensor.mount().frame)) {
-      names.insert(joint->name);
-    }
-  }
-  return names;
-}
-
 /// The last step with all axes of the frames of these joints free.
-[[nodiscard]] inline Config with_free_frames(Config config, const std::set<std::string>& joints) {
+[[nodiscard]] inline Config with_free_frames(Config config,
+                                             const std::vector<const Joint*>& joints) {
   StepConfig& step = config.steps.back();
   constexpr std::array<bool, 6> kAll = {true, true, true, true, true, true};
-  std::set<std::string> missing = joints;
-  for (FreeFrameConfig& frame : step.free_frames) {
-    if (missing.erase(frame.name) == 0 || frame.is_fixed) continue;
-    frame.axes = kAll;
+  for (const Joint* joint : joints) {
+    const auto known =
+        std::find_if(step.free_frames.begin(), step.free_frames.end(),
+                     [&](const FreeFrameConfig& frame) { return frame.name == joint->name; });
+    if (known == step.free_frames.end()) {
+      step.free_frames.push_back({joint->name, kAll, step.place});
+    } else if (!known->is_fixed) {
+      known->axes = kAll;
+    }
   }
-  for (const std::string& joint : missing) step.free_frames.push_back({joint, kAll, step.place});
   return config;
 }
 
@@ -59,63 +58,76 @@ struct HeldGroup {
   });
 }
 
-/// A held frame whose change explains residuals, as a sentence; nullopt if none does.
-[[nodiscard]] inline std::optional<std::string> held_frame(const CalibrationInput& input,
-                                                           const JudgedResult& judged) {
-  if (!matters(judged.assessments.back())) return {};
-  const CalibrationStep& last = input.calibration.steps.back();
-  const std::set<std::string> joints = joints_of_sensors(*last.problem);
-  Diagnostics quiet;
-  const Calibration more =
-      assemble(with_free_frames(input.config, joints), input.robot, input.samples, quiet);
-  if (!quiet.errors.empty() || more.steps.size() != input.calibration.steps.size()) return {};
-  const AnyProblem& problem = *more.steps.back().problem;
-  if (problem.num_terms() != last.problem->num_terms()) return {};
-  for (int t = 0; t < problem.num_terms(); ++t) {
-    more.steps.back().problem->set_sigma(t, last.problem->term(t).sigma);
-  }
-  std::vector<double> values;
-  for (int p = 0; p < problem.table().size(); ++p) {
-    const int known = judged.result.table.find(problem.table()[p].name);
-    values.push_back(known >= 0 ? judged.result.table[known].value : problem.table()[p].value);
-  }
-  std::set<int> free;
-  for (const int p : last.free.parameters()) {
-    free.insert(problem.table().find(last.problem->table()[p].name));
-  }
+/// The held translations and rotations of joints.
+/// @param free  table indices of the parameters that are not held
+[[nodiscard]] inline std::vector<HeldGroup> held_groups(const ParameterTable& table,
+                                                        const std::vector<const Joint*>& joints,
+                                                        const std::set<int>& free) {
   std::vector<HeldGroup> groups;
-  for (const std::string& joint : joints) {
+  for (const Joint* joint : joints) {
     for (const bool rotation : {false, true}) {
-      HeldGroup group{joint, rotation, {}};
+      HeldGroup group{joint->name, rotation, {}};
       for (std::size_t i = 0; i < 3; ++i) {
-        const int p =
-            problem.table().find(parameter_name(joint, kFrameAxes[i + (rotation ? 3 : 0)]));
+        const auto axis = kFrameAxes[i + (rotation ? 3 : 0)];
+        const int p = table.find(parameter_name(joint->name, axis));
         if (p >= 0 && !free.contains(p)) group.parameters.push_back(p);
       }
       if (!group.parameters.empty()) groups.push_back(group);
     }
   }
-  constexpr double kLeft = 0.75;
-  const auto& pattern = judged.assessments.back().pattern;
-  double best = pattern ? kLeft * std::min(1.0, pattern->noise_left) : kLeft;
+  return groups;
+}
+
+/// The largest change among those that leave less noise than `most`, as a sentence.
+[[nodiscard]] inline std::optional<std::string> best_sentence(
+    const std::vector<HeldGroup>& groups, const std::vector<HeldChange>& changes, double most) {
   std::optional<std::string> sentence;
-  std::vector<std::vector<int>> held;
-  for (const HeldGroup& group : groups) held.push_back(group.parameters);
-  const std::vector<HeldChange> changes =
-      held_changes(problem, more.steps.back().free, values, free, held);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (!(changes[g].noise_left < best)) continue;
-    best = changes[g].noise_left;
+    if (!(changes[g].noise_left < most)) continue;
+    most = changes[g].noise_left;
+    const std::string size =
+        groups[g].rotation
+            ? fmt::format("turned by {:.2g} deg", changes[g].size * 180.0 / std::numbers::pi)
+            : fmt::format("{:.2g} mm away", 1e3 * changes[g].size);
     sentence = fmt::format(
         "with '{}' {} from where the URDF has it, which is held, the noise falls to {:.3g} %; free "
         "its frame, or is the URDF of another robot?",
-        groups[g].joint,
-        groups[g].rotation
-            ? fmt::format("turned by {:.2g} deg", changes[g].size * 180.0 / std::numbers::pi)
-            : fmt::format("{:.2g} mm away", 1e3 * changes[g].size),
-        1e2 * best);
+        groups[g].joint, size, 1e2 * most);
   }
   return sentence;
+}
+
+/// A held frame whose change explains residuals, as a sentence; nullopt if none does.
+[[nodiscard]] inline std::optional<std::string> held_frame(const CalibrationInput& input,
+                                                           const JudgedResult& judged) {
+  if (!matters(judged.assessments.back())) return {};
+  const CalibrationStep& last = input.calibration.steps.back();
+  const std::vector<const Joint*> joints = joints_between(input.config, input.robot);
+  Diagnostics quiet;
+  const Calibration more =
+      assemble(with_free_frames(input.config, joints), input.robot, input.samples, quiet);
+  if (!quiet.errors.empty() || more.steps.size() != input.calibration.steps.size()) return {};
+  AnyProblem& problem = *more.steps.back().problem;
+  if (problem.num_terms() != last.problem->num_terms()) return {};
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    problem.set_sigma(t, last.problem->term(t).sigma);
+  }
+  std::vector<double> values;
+  for (const Parameter& parameter : problem.table()) {
+    const int known = judged.result.table.find(parameter.name);
+    values.push_back(known >= 0 ? judged.result.table[known].value : parameter.value);
+  }
+  std::set<int> free;
+  for (const int p : last.free.parameters()) {
+    free.insert(problem.table().find(last.problem->table()[p].name));
+  }
+  const std::vector<HeldGroup> groups = held_groups(problem.table(), joints, free);
+  std::vector<std::vector<int>> held;
+  for (const HeldGroup& group : groups) held.push_back(group.parameters);
+  constexpr double kLeft = 0.75;
+  const auto& pattern = judged.assessments.back().pattern;
+  return best_sentence(groups, held_changes(problem, more.steps.back().free, values, free, held),
+                       pattern ? kLeft * std::min(1.0, pattern->noise_left) : kLeft);
 }
 
 }  // namespace kinecal::detail
