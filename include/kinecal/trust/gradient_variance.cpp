@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kinecal/solve/spectrum.hpp"
+#include "kinecal/trust/pose_rows.ipp"
 
 namespace kinecal {
 
@@ -58,17 +59,6 @@ struct GradientSums {
   }
 };
 
-/// The blocks of rows, pose after pose.
-[[nodiscard]] std::vector<const RowBlock*> by_pose(const LinearFit& fit, const PoseGroups& poses) {
-  std::vector<const RowBlock*> blocks;
-  for (const RowBlock& block : fit.blocks) blocks.push_back(&block);
-  std::stable_sort(blocks.begin(), blocks.end(), [&](const RowBlock* a, const RowBlock* b) {
-    return poses.of_sample[static_cast<std::size_t>(a->sample)] <
-           poses.of_sample[static_cast<std::size_t>(b->sample)];
-  });
-  return blocks;
-}
-
 /// S, shrunk towards a target as far as its own scatter demands.
 [[nodiscard]] Eigen::MatrixXd shrunk(const std::vector<Eigen::VectorXd>& groups,
                                      const Eigen::MatrixXd& target) {
@@ -98,20 +88,19 @@ GradientVariance gradient_variance(const AnyProblem& problem, const LinearFit& f
                                     spectrum.vectors.rightCols(rank) *
                                     spectrum.singular.tail(rank).cwiseInverse().asDiagonal();
   detail::GradientSums sums{Eigen::VectorXd::Zero(rank), Eigen::MatrixXd::Zero(rank, rank), {}};
-  int pose = -1;
   double directions = 0.0;
-  for (const RowBlock* block : detail::by_pose(fit, poses)) {
-    const int of_block = poses.of_sample[static_cast<std::size_t>(block->sample)];
-    if (of_block != pose && pose >= 0) sums.end_group();
-    pose = of_block;
-    const Eigen::MatrixXd rows = fit.jacobian.middleRows(block->first, block->size) * whitening;
-    const Eigen::VectorXd loss = fit.loss.segment(block->first, block->size);
-    directions += (loss.asDiagonal() * rows).cwiseProduct(rows).sum();
-    sums.add(rows, fit.residual.segment(block->first, block->size), loss,
-             problem.term(block->term).feature_size);
+  for (const std::vector<std::size_t>& of_pose : detail::blocks_by_pose(fit, poses)) {
+    for (const std::size_t b : of_pose) {
+      const RowBlock& block = fit.blocks[b];
+      const Eigen::MatrixXd rows = fit.jacobian.middleRows(block.first, block.size) * whitening;
+      const Eigen::VectorXd loss = fit.loss.segment(block.first, block.size);
+      directions += (loss.asDiagonal() * rows).cwiseProduct(rows).sum();
+      sums.add(rows, fit.residual.segment(block.first, block.size), loss,
+               problem.term(block.term).feature_size);
+    }
+    if (!of_pose.empty()) sums.end_group();
   }
-  if (pose < 0) return {independent};
-  sums.end_group();
+  if (sums.groups.empty()) return {independent};
   const double count = static_cast<double>(fit.residual.size());
   const double of_features =
       sums.of_features * count / std::max(1.0, count - static_cast<double>(rank));
