@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <set>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
@@ -117,5 +119,18 @@ struct NoisyScene {
  private:
   Eigen::VectorXd values_;
 };
+
+/// Records other positions of a joint than it has.
+/// @param error  of a sample, from its number and the joint's position
+inline void misread(NoisyScene& scene, const std::string& joint,
+                    const std::function<double(std::size_t, double)>& error) {
+  for (std::size_t s = 0; s < scene.samples.size(); ++s) {
+    Sample& sample = scene.samples[s];
+    const auto at = std::find(sample.joint_names.begin(), sample.joint_names.end(), joint);
+    ASSERT_NE(at, sample.joint_names.end());
+    double& q = sample.joint_positions[static_cast<std::size_t>(at - sample.joint_names.begin())];
+    q -= error(s, q);
+  }
+}
 
 }  // namespace kinecal::test

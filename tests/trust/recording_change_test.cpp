@@ -18,12 +18,7 @@ std::optional<RecordingChange> change_in(test::NoisyScene& scene) {
 
 /// Moves a joint of all samples from one on: it slipped.
 void slip(test::NoisyScene& scene, const char* joint, std::size_t from, double by) {
-  for (std::size_t s = from; s < scene.samples.size(); ++s) {
-    Sample& sample = scene.samples[s];
-    const auto at = std::find(sample.joint_names.begin(), sample.joint_names.end(), joint);
-    ASSERT_NE(at, sample.joint_names.end());
-    sample.joint_positions[static_cast<std::size_t>(at - sample.joint_names.begin())] += by;
-  }
+  test::misread(scene, joint, [=](std::size_t s, double) { return s < from ? 0.0 : -by; });
 }
 
 TEST(RecordingChange, IsNoneInSamplesAsTheyShouldBe) {
@@ -45,12 +40,8 @@ TEST(RecordingChange, OfAJointIsFoundWithItsPlace) {
 
 TEST(RecordingChange, ThatIsADriftIsFoundWithItsSize) {
   test::NoisyScene scene(40);
-  for (std::size_t s = 0; s < scene.samples.size(); ++s) {
-    Sample& sample = scene.samples[s];
-    const auto at = std::find(sample.joint_names.begin(), sample.joint_names.end(), "elbow");
-    sample.joint_positions[static_cast<std::size_t>(at - sample.joint_names.begin())] +=
-        0.04 * static_cast<double>(s) / 39.0;
-  }
+  test::misread(scene, "elbow",
+                [](std::size_t s, double) { return -0.04 * static_cast<double>(s) / 39.0; });
   const auto found = change_in(scene);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->owner, "elbow");

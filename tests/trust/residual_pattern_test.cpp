@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "kinecal/trust/joint_effects.ipp"
 #include "support/noisy_scene.hpp"
@@ -23,19 +22,6 @@ std::optional<ResidualPattern> pattern_in(test::NoisyScene& scene) {
                           detail::joint_effects(scene.solved(), values, scene.samples, free, fit));
 }
 
-/// Records other positions of a joint than it has.
-/// @param error  of a sample, from its number and the joint's position
-void misread(test::NoisyScene& scene, const std::string& joint,
-             const std::function<double(std::size_t, double)>& error) {
-  for (std::size_t s = 0; s < scene.samples.size(); ++s) {
-    Sample& sample = scene.samples[s];
-    const auto at = std::find(sample.joint_names.begin(), sample.joint_names.end(), joint);
-    ASSERT_NE(at, sample.joint_names.end());
-    double& q = sample.joint_positions[static_cast<std::size_t>(at - sample.joint_names.begin())];
-    q -= error(s, q);
-  }
-}
-
 double position(const Sample& sample, const std::string& joint) {
   return sample.position(joint).value();
 }
@@ -49,7 +35,7 @@ TEST(ResidualPattern, IsNoneInSamplesAsTheyShouldBe) {
 
 TEST(ResidualPattern, FindsTheGearOfAJoint) {
   test::NoisyScene scene(40);
-  misread(scene, "elbow", [](std::size_t, double q) { return 0.02 * q; });
+  test::misread(scene, "elbow", [](std::size_t, double q) { return 0.02 * q; });
   const auto found = pattern_in(scene);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->owner, "elbow");
@@ -61,7 +47,7 @@ TEST(ResidualPattern, FindsTheGearOfAJoint) {
 TEST(ResidualPattern, FindsAZeroThatIsHeld) {
   test::NoisyScene scene(40);
   std::erase(scene.names, "elbow");
-  misread(scene, "elbow", [](std::size_t, double) { return 0.02; });
+  test::misread(scene, "elbow", [](std::size_t, double) { return 0.02; });
   const auto found = pattern_in(scene);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->owner, "elbow");
@@ -70,7 +56,8 @@ TEST(ResidualPattern, FindsAZeroThatIsHeld) {
 
 TEST(ResidualPattern, FindsAnEccentricEncoder) {
   test::NoisyScene scene(40);
-  misread(scene, "shoulder_lift", [](std::size_t, double q) { return 0.02 * std::sin(q + 1.0); });
+  test::misread(scene, "shoulder_lift",
+                [](std::size_t, double q) { return 0.02 * std::sin(q + 1.0); });
   const auto found = pattern_in(scene);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->owner, "shoulder_lift");
@@ -81,7 +68,7 @@ TEST(ResidualPattern, FindsAnEccentricEncoder) {
 TEST(ResidualPattern, FindsBacklashByTheDirectionOfMotion) {
   test::NoisyScene scene(40);
   const std::vector<Sample> before = scene.samples;
-  misread(scene, "elbow", [&](std::size_t s, double q) {
+  test::misread(scene, "elbow", [&](std::size_t s, double q) {
     const double from = s == 0 ? q : position(before[s - 1], "elbow");
     return q > from ? 0.01 : -0.01;
   });
