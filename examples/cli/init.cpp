@@ -276,9 +276,8 @@ int init(const InitOptions& options) {
   write_file(options.output, text);
   if (text.find("sigma: ") != std::string::npos) {
     fmt::print(
-        "note: each sigma in {} is a guess of a residual, errors of the robot included; use the "
-        "noise that\n"
-        "calibrate reports\n",
+        "note: each sigma in {} is a guess of a residual, errors of the robot included; replace "
+        "it\n  by the noise that kinecal calibrate reports, or remove it\n",
         options.output);
   }
   fmt::print("wrote {}\nnext: kinecal check --urdf {} --config {}\n", options.output,

@@ -2,19 +2,23 @@
 //
 // Do not use                                          Use with care
 //   a step did not converge
-//   noise 10 x the sigma that was given, or a           3 x
-//   sigma above 5 cm or 30 px and 50 x the noise
-//   without sigma: distances of 20 mm, 12 px            8 mm, 4 px
+//   noise 10 x the sigma that was given, and 2 mm or    3 x
+//   1 px; or a sigma above 5 cm or 30 px and 50 x the noise
+//   without sigma: distances of 20 mm, 12 px, in metres 8 mm, 4 px
+//   less for a robot below one metre
 //   freedom less than half of the parameters            less than the parameters
-//   held-out error 3 x the fitted one                   1.5 x
+//   held-out error 3 x the fitted one                   1.5 x; whole regions held out: 3 x
+//                                                       scatter in one direction 5 x that across it
 //   a quarter of the samples does not fit,              a tenth
 //   left out or not
 //   something changed or drifted during the recording:  three quarters; also with a pattern of
 //   with that, the noise falls to a third               residuals, such as a joint's gear
 //   a joint's offset of 45 degrees                      15 degrees
 //   an intrinsic changed by 30 %                        9 %
-//   the frame of a joint that moves: 0.3 m, 60 degrees  5 cm, 15 degrees; of a fixed one 0.2 m, 30 degrees
-//   the pose in question is known to 20 mm only         to 5 mm; a direction of it not at all
+//   the frame of a joint that moves: 0.3 m, 60 degrees  15 % of its link or 3 % of the robot, at most 5 cm;
+//                                                       15 degrees; of a fixed one 0.2 m, 30 degrees
+//   the pose in question is known to 20 mm only         to 5 mm, also over the limits of the joints; a
+//                                                       direction of it not at all
 //                                                       a parameter ended at a bound
 //                                                       a parameter known to 5 degrees, 20 mm, 5 %
 //                                                       or 20 px only
