@@ -66,9 +66,10 @@ TEST_F(Configurations, OfTheUr5AreGoodWhereSamplesAreEnough) {
               c < 3 ? "good" : "use with care")
         << config;
   }
-  for (const char* config : {"base_tool.yaml", "offsets.yaml"}) {
-    EXPECT_EQ(calibrate(folder + "ur5.urdf", folder + config, folder + "random.yaml"), "good");
-  }
+  EXPECT_EQ(calibrate(folder + "ur5.urdf", folder + "offsets.yaml", folder + "random.yaml"), "good");
+  // Its zeros are held; that of the elbow is 0.137 deg off by the grid, and is named as the cause.
+  EXPECT_EQ(calibrate(folder + "ur5.urdf", folder + "base_tool.yaml", folder + "random.yaml"),
+            "use with care");
   // 60 residuals for 25 parameters: the held-out error is twice the fitted one.
   EXPECT_EQ(calibrate(folder + "ur5.urdf", folder + "full.yaml", folder + "random.yaml"),
             "use with care");
