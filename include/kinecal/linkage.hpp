@@ -49,7 +49,7 @@
 #ifdef __SANITIZE_ADDRESS__
 #define KINECAL_LIBRARY_CHECK kLibraryIsCompiledForThisWithAddressSanitizer
 #else
-#define KINECAL_LIBRARY_CHECK kLibraryIsCompiledForThis
+#define KINECAL_LIBRARY_CHECK kLibraryIsCompiledForThis  ///< a symbol of this name
 #endif
 
 #ifndef KINECAL_HEADER_ONLY

@@ -66,7 +66,8 @@ TEST_F(Configurations, OfTheUr5AreGoodWhereSamplesAreEnough) {
               c < 3 ? "good" : "use with care")
         << config;
   }
-  EXPECT_EQ(calibrate(folder + "ur5.urdf", folder + "offsets.yaml", folder + "random.yaml"), "good");
+  EXPECT_EQ(calibrate(folder + "ur5.urdf", folder + "offsets.yaml", folder + "random.yaml"),
+            "good");
   // Its zeros are held; that of the elbow is 0.137 deg off by the grid, and is named as the cause.
   EXPECT_EQ(calibrate(folder + "ur5.urdf", folder + "base_tool.yaml", folder + "random.yaml"),
             "use with care");

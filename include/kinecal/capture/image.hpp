@@ -36,7 +36,9 @@ struct Image {
 
   /// The pixel in column u and row v; it must be in the image.
   [[nodiscard]] P& operator()(int u, int v) { return pixels[index(u, v)]; }
-  [[nodiscard]] const P& operator()(int u, int v) const { return pixels[index(u, v)]; }
+  [[nodiscard]] const P& operator()(int u, int v) const {
+    return pixels[index(u, v)];
+  }  ///< the same
 
  private:
   [[nodiscard]] std::size_t index(int u, int v) const {

@@ -31,7 +31,7 @@ struct PoseError : std::runtime_error {
 /// skipped; if it is still silent in a later pose, the session ends.
 struct SilenceError : PoseError {
   SilenceError(const std::string& what, std::string name, std::optional<Stamp> last)
-      : PoseError(what), stream(std::move(name)), newest(last) {}
+      : PoseError(what), stream(std::move(name)), newest(last) {}  ///< what: the message
 
   std::string stream;           ///< its name, such as a topic
   std::optional<Stamp> newest;  ///< of its last message; nullopt if there was none

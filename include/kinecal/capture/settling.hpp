@@ -32,7 +32,7 @@ struct SettleOptions {
 /// Collects readings of joints and decides whether they are at rest.
 class JointRest {
  public:
-  explicit JointRest(const SettleOptions& options) : options_(options) {}
+  explicit JointRest(const SettleOptions& options) : options_(options) {}  ///< no readings
 
   /// Takes the next reading.
   /// @throws PoseError  if its stamp is not later than the last one, its joints differ from the

@@ -34,7 +34,7 @@ struct EigenAlignedTo {
   static const bool KINECAL_LIBRARY_CHECK;  ///< the library defines the one for its own alignment
 };
 using EigenAligned = EigenAlignedTo<EIGEN_MAX_ALIGN_BYTES, EIGEN_MAX_STATIC_ALIGN_BYTES,
-                                    EIGEN_MALLOC_ALREADY_ALIGNED != 0>;
+                                    EIGEN_MALLOC_ALREADY_ALIGNED != 0>;  ///< here
 template <>
 const bool EigenAligned::KINECAL_LIBRARY_CHECK;
 }  // namespace KINECAL_INSTRUCTION_SET

@@ -51,10 +51,10 @@ class PipeRobot {
   PipeRobot& operator=(PipeRobot&&) noexcept;
   ~PipeRobot();
 
-  void move(const JointTarget& target);
-  [[nodiscard]] MeasuredJoints next_joints(Stamp after);
-  [[nodiscard]] View next_view(Stamp after);
-  [[nodiscard]] Stamp light(int code);
+  void move(const JointTarget& target);                   ///< moves the arm
+  [[nodiscard]] MeasuredJoints next_joints(Stamp after);  ///< the first reading later than that
+  [[nodiscard]] View next_view(Stamp after);              ///< the first image later than that
+  [[nodiscard]] Stamp light(int code);                    ///< when the LED was lit
 
  private:
   class Pipe;

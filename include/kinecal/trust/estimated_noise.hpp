@@ -12,7 +12,7 @@ namespace kinecal {
 /// loss, whose scale is in sigmas, or that share a step with others, against which they are weighed.
 class EstimatedNoise {
  public:
-  explicit EstimatedNoise(const Calibration& calibration);
+  explicit EstimatedNoise(const Calibration& calibration);  ///< finds the blocks
 
   /// Fits, and fits again with the noise that residuals show as sigmas, until they stay.
   /// @param fit  takes nothing, gives a JudgedResult of the calibration

@@ -28,7 +28,10 @@ struct CalibrationResult;
 class ParameterTable;
 
 /// Copies of what a result was calibrated with, so that its folder says all.
-inline constexpr const char *kOriginalUrdf = "original.urdf", *kConfigCopy = "config.yaml";
+/// @{
+inline constexpr const char* kOriginalUrdf = "original.urdf";
+inline constexpr const char* kConfigCopy = "config.yaml";
+/// @}
 
 /// Options for result files.
 struct ResultFileOptions {
