@@ -32,6 +32,7 @@
 #include "kinecal/trust/prior_pulls.hpp"
 #include "kinecal/trust/recording_change.hpp"
 #include "kinecal/trust/reluctance.hpp"
+#include "kinecal/trust/repeat_noise.hpp"
 #include "kinecal/trust/residual_pattern.hpp"
 #include "kinecal/trust/ruined.hpp"
 #include "kinecal/trust/uncertainty.hpp"

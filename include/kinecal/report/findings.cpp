@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "kinecal/report/text.hpp"
+#include "kinecal/trust/repeat_noise.hpp"
 
 namespace kinecal {
 
@@ -18,6 +19,19 @@ namespace detail {
   std::string text = fmt::format("verdict: {}\n", to_string(judgement.verdict));
   for (const std::string& reason : judgement.reasons) text += fmt::format("  - {}\n", reason);
   return text;
+}
+
+/// Where readings of a pose repeat far better than the model fits.
+[[nodiscard]] inline std::string lack_of_fit_note(const Assessment& step) {
+  std::string note;
+  for (const BlockNoise& noise : step.noise) {
+    if (!lacks_fit(noise)) continue;
+    note += fmt::format(
+        "  Readings of a pose of '{}' repeat to {} and miss the model by {}: the model errs, not "
+        "the\n  sensors; free what may be wrong, too\n",
+        noise.block, reading(noise.repeats, noise.unit), reading(noise.sigma, noise.unit));
+  }
+  return note;
 }
 
 [[nodiscard]] inline std::string fit_table(const Findings& findings) {
@@ -40,6 +54,9 @@ namespace detail {
     const Assessment& last = findings.assessments.back();
     note =
         design_effect_note(last.uncertainty.design_effect, last.readings, last.neighbours.together);
+  }
+  for (const Assessment& step : findings.assessments) {
+    if (&step == &findings.assessments.back()) note += lack_of_fit_note(step);
   }
   return "Fit: distances of features, root of the mean square; noise of a coordinate\n" +
          table.str() + note;

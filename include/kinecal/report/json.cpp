@@ -70,6 +70,7 @@ namespace detail {
       {"freedom", noise.freedom},
       {"own_sigma", noise.own > 0.0 ? Json(noise.own) : Json()},
       {"own_freedom", noise.own > 0.0 ? Json(noise.own_freedom) : Json()},
+      {"repeats_sigma", noise.repeats > 0.0 ? Json(noise.repeats) : Json()},
       {"fitted", error == nullptr ? Json() : Json(error->fitted)},
       {"held_out", error == nullptr ? Json() : Json(error->held_out)},
       {"held_out_region", error == nullptr || error->region == 0.0 ? Json() : Json(error->region)}};

@@ -12,6 +12,7 @@
 #include "kinecal/trust/inside_bounds.ipp"
 #include "kinecal/trust/joint_effects.ipp"
 #include "kinecal/trust/plausible_change.ipp"
+#include "kinecal/trust/repeat_noise.hpp"
 #include "kinecal/trust/ruined.hpp"
 #include "kinecal/trust/workspace_map.hpp"
 
@@ -118,6 +119,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.size = detail::robot_size(problem);
   const Eigen::MatrixXd inverse = detail::Spectrum(information(fit, fit.loss)).pseudo_inverse();
   found.noise = estimate_noise(problem, fit, inverse);
+  set_repeats(fit, single, found.noise);
   const Eigen::MatrixXd effects = detail::joint_effects(problem, values, samples, inside, fit);
   found.common = common_noise(fit, effects, single, found.noise);
   found.uncertainty = uncertainty(problem, fit, found.noise, poses);

@@ -17,19 +17,21 @@ namespace kinecal {
 
 /// The noise of one error block.
 struct BlockNoise {
-  std::string block;          ///< name of the error block
-  std::string unit;           ///< of the residual: "m", "px" or "1"
-  std::int64_t features = 0;  ///< compared features
-  int components = 1;         ///< residuals of a feature
-  double freedom = 0.0;       ///< rows minus those that parameters use up
-  double given = 0.0;         ///< sigma of the configuration, in `unit`; 0: none
-  double sigma = 0.0;         ///< standard deviation of a residual component, in `unit`
-  double robust = 0.0;        ///< the same from the median
-  double along = 0.0;         ///< robust, in the direction of the largest scatter, in `unit`
-  double across = 0.0;        ///< the same in that of the second largest; 0: not computed
-  double own = 0.0;           ///< sigma without what features of a pose share; 0: not known
-  double own_freedom = 0.0;   ///< degrees of freedom of `own`
-  double unit_sigma = 1.0;    ///< residual in `unit` of a weighted residual of one
+  std::string block;             ///< name of the error block
+  std::string unit;              ///< of the residual: "m", "px" or "1"
+  std::int64_t features = 0;     ///< compared features
+  int components = 1;            ///< residuals of a feature
+  double freedom = 0.0;          ///< rows minus those that parameters use up
+  double given = 0.0;            ///< sigma of the configuration, in `unit`; 0: none
+  double sigma = 0.0;            ///< standard deviation of a residual component, in `unit`
+  double robust = 0.0;           ///< the same from the median
+  double along = 0.0;            ///< robust, in the direction of the largest scatter, in `unit`
+  double across = 0.0;           ///< the same in that of the second largest; 0: not computed
+  double own = 0.0;              ///< sigma without what features of a pose share; 0: not known
+  double own_freedom = 0.0;      ///< degrees of freedom of `own`
+  double repeats = 0.0;          ///< sigma among readings of a pose, in `unit`; 0: not known
+  double repeats_freedom = 0.0;  ///< its degrees of freedom
+  double unit_sigma = 1.0;       ///< residual in `unit` of a weighted residual of one
 
   /// Standard deviation of a weighted residual component: 1 if the given sigma is right.
   [[nodiscard]] double weighted() const { return sigma / unit_sigma; }
