@@ -64,7 +64,7 @@ struct Work {
   }
   /// The calibrations without each fold, solved from their start.
   [[nodiscard]] double solve_folds(int folds) const {
-    const std::vector<int> fold = folds_of(samples, folds);
+    const std::vector<int> fold = folds_of(samples, each_its_own(samples.size()), folds);
     double cost = 0.0;
     for (int k = 0; k < folds; ++k) {
       std::vector<Sample> kept;

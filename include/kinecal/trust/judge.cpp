@@ -7,6 +7,7 @@
 
 #include "kinecal/trust/judge_change.ipp"
 #include "kinecal/trust/judge_noise.ipp"
+#include "kinecal/trust/judge_values.ipp"
 #include "kinecal/trust/plausible_change.ipp"
 #include "kinecal/trust/ruined.hpp"
 
@@ -81,33 +82,6 @@ void judge_captures(const Assessment& step, const AnyProblem& problem, Judgement
                                  [](const CaptureError& error) { return error.bad; });
   judge_share(static_cast<int>(bad), problem.num_samples(), "step '" + step.step + "': ", "",
               judgement);
-}
-
-/// The change of a parameter; for a ratio 1 + v, relative.
-[[nodiscard]] double change_of(const Parameter& p) {
-  if (p.unit != "1" || !(1.0 + p.initial > 0.0)) return p.value - p.initial;
-  return (1.0 + p.value) / (1.0 + p.initial) - 1.0;
-}
-
-void judge_values(const CalibrationStep& step, const CalibrationResult& result,
-                  const Assessment& assessment, Judgement& judgement) {
-  for (const int p : step.free.parameters()) {
-    const Parameter& parameter = result.table[p];
-    const double by = change_of(parameter);
-    const Limits limits = plausible_change(step, p);
-    if (limits.exceeded(std::abs(by))) {
-      judgement.add(limits.grade(std::abs(by)),
-                    "'" + parameter.name + "' changed by " +
-                        (parameter.unit == "1" ? reading(1e2 * by, "1") + " %"
-                                               : reading(by, parameter.unit)) +
-                        "; is the URDF or its initial value wrong, or do these samples not "
-                        "determine it?");
-    }
-  }
-  for (const int p : assessment.at_bound) {
-    judgement.add(Grade::use_with_care, "'" + result.table[p].name + "' ended at its bound " +
-                                            reading(result.table[p].value, result.table[p].unit));
-  }
 }
 
 void judge_weak(const Assessment& step, const ParameterTable& table, Judgement& judgement) {

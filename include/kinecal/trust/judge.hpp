@@ -52,13 +52,19 @@ enum class Grade { good, use_with_care, do_not_use };
 /// A verdict and its reasons.
 struct Judgement {
   Grade verdict = Grade::good;
-  std::vector<std::string> reasons;  ///< worst first; sentences with figures
+  std::vector<std::string> reasons;  ///< causes, then the worst first; sentences with figures
+  int causes = 0;                    ///< how many of the reasons are causes of the others
 
   /// Adds a reason.
   void add(Grade grade, const std::string& reason) {
-    const auto at = grade > verdict ? reasons.begin() : reasons.end();
-    reasons.insert(at, reason);
+    reasons.insert(grade > verdict ? reasons.begin() + causes : reasons.end(), reason);
     if (grade > verdict) verdict = grade;
+  }
+  /// Adds what explains the reasons, in front of what is known already.
+  void add_causes(Grade grade, const std::vector<std::string>& found) {
+    reasons.insert(reasons.begin(), found.begin(), found.end());
+    causes += static_cast<int>(found.size());
+    if (!found.empty() && grade > verdict) verdict = grade;
   }
 };
 

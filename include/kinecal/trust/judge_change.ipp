@@ -63,9 +63,10 @@ namespace kinecal::detail {
 [[nodiscard]] inline bool judge_pattern(const Assessment& step, Judgement& judgement) {
   if (!step.pattern) return false;
   if (step.change && step.change->noise_left <= step.pattern->noise_left) return false;
-  judgement.add(Grade::use_with_care, error_of(*step.pattern) + ", the noise falls to " +
-                                          reading(1e2 * step.pattern->noise_left, "1") +
-                                          " %; the model does not contain that");
+  judgement.add_causes(Grade::use_with_care,
+                       {error_of(*step.pattern) + ", the noise falls to " +
+                        reading(1e2 * step.pattern->noise_left, "1") +
+                        " %; the model does not contain that"});
   return true;
 }
 
@@ -92,7 +93,7 @@ inline void judge_change(const Assessment& step, const AnyProblem& problem, Judg
         "poses: record in a random order";
   }
   const bool refuse = change.noise_left < kThird && !change.by_pose;
-  judgement.add(refuse ? Grade::do_not_use : Grade::use_with_care, text);
+  judgement.add_causes(refuse ? Grade::do_not_use : Grade::use_with_care, {text});
 }
 
 }  // namespace kinecal::detail

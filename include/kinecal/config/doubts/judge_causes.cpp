@@ -16,10 +16,7 @@ namespace {
 void judge_impossible(const CalibrationInput& input, JudgedResult& judged) {
   const ParameterTable& table = judged.result.table;
   const std::string camera = impossible_camera(input.calibration, table, input.samples);
-  if (!camera.empty()) {
-    judged.judgement.verdict = Grade::do_not_use;
-    judged.judgement.reasons.insert(judged.judgement.reasons.begin(), camera);
-  }
+  if (!camera.empty()) judged.judgement.add_causes(Grade::do_not_use, {camera});
   Diagnostics offsets;
   check_offsets(input, table, offsets);
   for (const std::string& error : offsets.errors) judged.judgement.add(Grade::do_not_use, error);
@@ -32,19 +29,19 @@ void judge_causes(const CalibrationInput& input, JudgedResult& judged) {
   const bool converged = judged.result.converged;
   if (converged) detail::judge_impossible(input, judged);
   if (!converged || judged.assessments.empty() || fits_badly(judged.assessments.back())) {
-    for (const std::string& cause : likely_causes(input.config, input.robot, input.samples)) {
-      judged.judgement.add(Grade::do_not_use, "likely cause: " + cause);
-    }
+    std::vector<std::string> causes = likely_causes(input.config, input.robot, input.samples);
+    for (std::string& cause : causes) cause = "likely cause: " + cause;
+    judged.judgement.add_causes(Grade::do_not_use, causes);
     return;
   }
   if (judged.assessments.back().change) return;  // lengths have absorbed that, too
   if (const auto held = detail::held_frame(input, judged)) {
-    judged.judgement.add(Grade::use_with_care, *held);
+    judged.judgement.add_causes(Grade::use_with_care, {*held});
   }
-  for (const std::string& scale : wrong_scales(input.config, input.robot, input.samples,
-                                               judged.result.table, judged.assessments.back())) {
-    judged.judgement.add(Grade::use_with_care, scale + "; are its lengths right?");
-  }
+  std::vector<std::string> scales = wrong_scales(input.config, input.robot, input.samples,
+                                                 judged.result.table, judged.assessments.back());
+  for (std::string& scale : scales) scale += "; are its lengths right?";
+  judged.judgement.add_causes(Grade::use_with_care, scales);
 }
 
 }  // namespace kinecal
