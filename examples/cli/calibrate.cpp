@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "kinecal/config/doubts/judge_causes.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/text/shell_word.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -131,54 +133,109 @@ SolveOptions solve_options(const CalibrateOptions& options) {
   return solving;
 }
 
-}  // namespace
+/// "--urdf robot.urdf --config calibrate.yaml --samples a.yaml b.yaml"
+std::string input_options(const CalibrateOptions& options) {
+  std::string text;
+  if (!options.urdf.empty()) text += "--urdf " + shell_word(options.urdf) + " ";
+  text += "--config " + shell_word(options.config) + " --samples";
+  for (const std::string& file : options.samples) text += " " + shell_word(file);
+  return text;
+}
 
-int calibrate(const CalibrateOptions& options) {
+/// Checks before the work begins that the results can be written.
+std::optional<OutputFolder> output_folder(const CalibrateOptions& options) {
   if (options.output.empty() && !options.dry_run) {
     throw InputError("--output is required (or --dry-run)");
   }
-  if (!options.dry_run) check_results(options);
   check_reports(options);
   if (!options.scene.empty()) check_scene(options);
-  const Clock::time_point start = Clock::now();
-  Input input = read_input(options);
-  print(input.diagnostics);
-  if (!input.diagnostics.errors.empty()) return kBadInput;
+  if (options.dry_run) return std::nullopt;
+  check_results(options);
+  return std::optional<OutputFolder>(std::in_place, options.output);
+}
 
-  // Checks that the results can be written before the work begins.
-  std::optional<OutputFolder> folder;
-  if (!options.dry_run) folder.emplace(options.output);
-  const double reading = seconds_since(start);
+/// Calibrates and judges, with a line of progress on a terminal.
+Fit fit_and_judge(const CalibrateOptions& options, Input& input) {
   std::optional<ProgressLine> line(std::in_place);
   SolveOptions solving = solve_options(options);
   solving.meter = line->meter();
   Fit fitted = fit(input, std::move(input.calibration), options, progress_line(), solving);
   line.reset();
   end_progress_line();
-  Findings& findings = fitted.findings;
-  const CalibrationResult& result = findings.result;
   judge_causes(
       {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
-      findings);
-  fmt::print("{}", summary_text(findings));
+      fitted.findings);
+  fitted.findings.call = {options.command, input_options(options),
+                          options.dry_run ? "" : options.output};
+  return fitted;
+}
+
+void show_findings(const Findings& findings, const Manner& manner) {
+  if (manner.json) {
+    fmt::print("{}", json_report(findings));
+  } else if (!manner.quiet) {
+    show(manner.verbose ? summary_text(findings) : findings_text(findings), manner);
+  }
   std::fflush(stdout);
+}
+
+/// "100 samples, 0.17 s: reading 0.03 s, solving 0.0004 s (...), judging 0.13 s, writing 0.01 s"
+std::string times_text(std::size_t samples, const CalibrationResult& result, double reading,
+                       double fitting, double writing) {
+  double solving = 0.0;
+  for (const StepResult& step : result.steps) solving += step.seconds;
+  return fmt::format("{}, {:.3f} s: reading {:.3f} s, {}, judging {:.3f} s, writing {:.3f} s\n",
+                     counted(samples, "sample"), reading + fitting + writing, reading,
+                     solving_text(result), std::max(0.0, fitting - solving), writing);
+}
+
+/// The last line: the verdict, and where the results are.
+std::string last_line(const Findings& findings, const CalibrateOptions& options,
+                      std::size_t files) {
+  std::string text = findings_line(findings);
+  if (files > 0) text += fmt::format(" · {} in {}", counted(files, "file"), options.output);
+  for (const std::string& report : options.reports) text += " · " + report;
+  if (!options.scene.empty()) text += " · " + options.scene;
+  return text + "\n";
+}
+
+}  // namespace
+
+int calibrate(const CalibrateOptions& options) {
+  const Clock::time_point start = Clock::now();
+  std::optional<OutputFolder> folder = output_folder(options);
+  Input input = read_input(options);
+  print(input.diagnostics);
+  if (!input.diagnostics.errors.empty()) return kBadInput;
+  const double reading = seconds_since(start);
+
+  const Fit fitted = fit_and_judge(options, input);
+  const double fitting = seconds_since(start) - reading;
+  const Findings& findings = fitted.findings;
+  const Manner& manner = options.manner;
+  show_findings(findings, manner);
+
   write_reports(options, input, fitted);
   if (!options.scene.empty()) write_scene_file(options.scene, input, fitted, options.mesh_paths);
-  if (findings.judgement.verdict == Grade::do_not_use) {
-    fmt::print(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
-               result.steps.empty() ? "" : result.steps.back().name,
-               findings.judgement.reasons.front());
-    return kNotUsable;
+  const bool is_usable = findings.judgement.verdict != Grade::do_not_use;
+  std::vector<OutputFile> files;
+  if (folder && is_usable) {
+    files = with_copies(options, input,
+                        output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration,
+                                     findings, fitted.samples, file_options(options)));
+    folder->write(files);
   }
-  if (folder) {
-    std::vector<OutputFile> files =
-        output_files(input.robot, {input.urdf, input.urdf_text}, fitted.calibration, findings,
-                     fitted.samples, file_options(options));
-    write(*folder, with_copies(options, input, std::move(files)));
+  const double writing = seconds_since(start) - reading - fitting;
+  if (!manner.json && !manner.quiet) {
+    show("\n" + times_text(input.samples.size(), findings.result, reading, fitting, writing),
+         manner);
   }
-  fmt::print("{}, {:.3f} s: reading {:.3f} s, {}\n", counted(input.samples.size(), "sample"),
-             seconds_since(start), reading, solving_text(result));
-  return kDone;
+  if (!manner.json) show(last_line(findings, options, files.size()), manner);
+  if (is_usable) return kDone;
+  fmt::print(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
+             findings.result.steps.empty() ? "" : findings.result.steps.back().name,
+             findings.judgement.reasons.front());
+  return kNotUsable;
 }
 
 }  // namespace kinecal::cli

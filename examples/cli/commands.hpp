@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinecal/config/doubts/rising.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 
@@ -47,6 +48,7 @@ struct CalibrateOptions : ResultOptions {
   int folds = 5;   ///< for held-out errors; 0: leave-one-out
   int starts = 0;  ///< random ones, beside the one of the configuration
   std::string cost = "compressed";
+  Manner manner = {};
 };
 
 /// Calibrates the robot and writes the results, all or none.
@@ -133,6 +135,7 @@ struct RecheckOptions {
   std::optional<Recorded> recorded;  ///< before or after the result was installed
   std::string report;                ///< JSON is written there
   double level = 0.01;               ///< of verify: share of false alarms
+  Manner manner = {};
 };
 
 /// Shows how a result fits other samples; nothing is solved.

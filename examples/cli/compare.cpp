@@ -170,7 +170,8 @@ void compare_poses(const Assembled& a, const Assembled& b, Comparison& all) {
 std::string pose_text(const Assembled& a, const Comparison& all) {
   if (!all.pose || all.change.poses <= 0) return "";
   return fmt::format(
-      "'{}' in '{}' moved by {} and {}, {} at the worst of {} of {}; it is known to {} and {}\n",
+      "'{}' in '{}' moved by {} and {}, {} at the worst of {} of {}; +- {} in the first, {} in the "
+      "second\n",
       all.pose->frame.name(), all.pose->in.name(), reading(all.change.position, "m"),
       reading(all.change.rotation, "rad"), reading(all.change.worst_position, "m"),
       counted(static_cast<std::size_t>(all.change.poses), "pose"), a.result.folder,

@@ -19,6 +19,7 @@
 #include "describe.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
+#include "kinecal/text/shell_word.hpp"
 
 namespace {
 
@@ -81,6 +82,15 @@ void add_offsets(CLI::App& command, std::string& offsets) {
       ->capture_default_str();
 }
 
+/// How the command speaks.
+void add_manner(CLI::App& command, Manner& manner) {
+  command
+      .add_option("--color", manner.color,
+                  "auto: on a terminal, unless NO_COLOR is set; always; never")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->capture_default_str();
+}
+
 /// Options of results, but for the folder.
 void add_results(CLI::App& command, ResultOptions& options) {
   add_offsets(command, options.offsets);
@@ -109,6 +119,18 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
   command.add_option("--output", options.output, "folder for the results")->type_name("DIR");
   add_results(command, options);
   command.add_flag("--dry-run", options.dry_run, "calibrate, but write nothing");
+  add_manner(command, options.manner);
+  CLI::Option* const quiet = command.add_flag("--quiet", options.manner.quiet, "print one line");
+  CLI::Option* const json =
+      command
+          .add_flag("--json", options.manner.json,
+                    "print report.json, and nothing else, on the standard output")
+          ->excludes(quiet);
+  command
+      .add_flag("--verbose", options.manner.verbose,
+                "also print values in radians and metres, and what each step did")
+      ->excludes(quiet)
+      ->excludes(json);
   command
       .add_option(
           "--report", options.reports,
@@ -762,19 +784,8 @@ class Commands {
 
 /// The command line as a shell reads it.
 std::string command_line(int argc, char** argv) {
-  constexpr const char* kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
   std::string line = "kinecal";
-  for (int i = 1; i < argc; ++i) {
-    std::string word = argv[i];  // NOLINT: an array of main()
-    if (word.empty() || word.find_first_not_of(kPlain) != std::string::npos) {
-      for (std::size_t at = 0; (at = word.find('\'', at)) != std::string::npos; at += 4) {
-        word.replace(at, 1, "'\\''");
-      }
-      word = "'" + word + "'";
-    }
-    line += " " + word;
-  }
+  for (int i = 1; i < argc; ++i) line += " " + kinecal::shell_word(argv[i]);  // NOLINT: of main()
   return line;
 }
 

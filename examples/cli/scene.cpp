@@ -31,7 +31,7 @@ void write_scene_file(const std::string& file, const Input& input, const Fit& fi
   std::ostringstream bytes;
   write_scene(scene, bytes, best_mcap_compression());
   write_file(file, bytes.str());
-  fmt::print("wrote {}{}\n", file, scene.thinned.empty() ? "" : ": " + scene.thinned);
+  fmt::print(stderr, "wrote {}{}\n", file, scene.thinned.empty() ? "" : ": " + scene.thinned);
 }
 
 }  // namespace kinecal::cli

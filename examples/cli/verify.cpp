@@ -110,11 +110,6 @@ std::string missed_text(const Check& check, const std::vector<MissedSample>& mis
   return text;
 }
 
-/// "7 %", "0.03 %"
-std::string percent(double share) {
-  return fmt::format("{:.{}g} %", 100.0 * share, share > 0.995 ? 3 : 2);
-}
-
 std::string confidence_text(double probability) {
   constexpr double kLeast = 1e-6;
   if (probability < kLeast) return "confidence above 99.9999 %";
@@ -129,10 +124,10 @@ std::string verdict_text(const Check& check) {
       fmt::format("residuals are {:.2f} times what noise and the uncertainty of the result make",
                   std::sqrt(drift.statistic / std::max(1.0, drift.freedom)));
   if (drift.holds) {
-    text += fmt::format("  - {} of {} fit: {}; chance does so in {} of cases\n",
+    text += fmt::format("  - {} of {} fit: {} (p = {:.2f})\n",
                         check.fresh.samples.size() - drift.missed.size(),
                         counted(check.fresh.samples.size(), "sample"), size,
-                        percent(drift.probability));
+                        drift.probability);
   } else {
     text += fmt::format("  - {}: {}\n", confidence_text(drift.probability), size);
   }

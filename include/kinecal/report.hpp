@@ -29,6 +29,7 @@
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
+#include "kinecal/report/next_step.hpp"
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/report/report_data.hpp"
 #include "kinecal/report/residuals_csv.hpp"

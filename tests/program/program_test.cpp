@@ -176,7 +176,7 @@ TEST_F(Program, CalibratesAndWritesAllFiles) {
   const Outcome result = calibrate();
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("hand_eye"), HasSubstr("elbow"), HasSubstr("1.146"),
-                                HasSubstr("wrote out/calibrated.urdf")));
+                                HasSubstr(" · 8 files in out\n")));
   for (const char* name : {"calibrated.urdf", "calibration.yaml", "depth_camera.yaml",
                            "rgb_camera.yaml", "report.json"}) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;

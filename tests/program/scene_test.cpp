@@ -50,7 +50,7 @@ class SceneFile : public test::ProgramTest {
 TEST_F(SceneFile, IsAWholeMcapFileAndTheSameEachTime) {
   const Outcome done = calibrate("--scene s.mcap");
   EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("wrote s.mcap"));
+  EXPECT_THAT(done.err, HasSubstr("wrote s.mcap"));
   const std::string bytes = read("s.mcap");
   EXPECT_EQ(bytes.substr(0, 8), kMagic);
   EXPECT_EQ(bytes.substr(bytes.size() - 8), kMagic);

@@ -112,7 +112,7 @@ TEST(Judge, NamesPriorsThatTheSamplesContradict) {
   judged.assessments[0].pulls = {
       {"keep", judged.scene.result.table.index("head_pan_x"), 0.0087, 9.0}};
   expect(judged.judgement(), Grade::use_with_care,
-         "prior 'keep' and the samples contradict each other: it moves 'head_pan_x' by 8.7 mm, 9 "
+         "prior 'keep' contradicts the samples: it shifts 'head_pan_x' by 8.7 mm, 9 "
          "times");
 }
 

@@ -13,9 +13,10 @@ namespace kinecal {
 
 void hold_parameters(Config& config, const std::vector<std::string>& names,
                      Diagnostics& diagnostics) {
-  std::set<std::string> free;
+  std::set<std::string> free;  // parameters, and frames by their names
   for (const StepConfig& step : config.steps) {
     for (const FreeParamConfig& parameter : free_parameters(step)) free.insert(parameter.name);
+    for (const FreeFrameConfig& frame : step.free_frames) free.insert(frame.name);
   }
   for (const std::string& name : names) {
     if (free.contains(name)) continue;
@@ -28,7 +29,8 @@ void hold_parameters(Config& config, const std::vector<std::string>& names,
     std::erase_if(step.bounds, [&](const auto& bound) { return held.contains(bound.name); });
     for (FreeFrameConfig& frame : step.free_frames) {
       for (std::size_t k = 0; k < 6; ++k) {
-        if (held.contains(parameter_name(frame.name, kFrameAxes[k]))) frame.axes[k] = false;
+        if (held.contains(frame.name) || held.contains(parameter_name(frame.name, kFrameAxes[k])))
+          frame.axes[k] = false;
       }
     }
   }

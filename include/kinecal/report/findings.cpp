@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/report/parameters_text.ipp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/trust/repeat_noise.hpp"
 
@@ -74,34 +75,6 @@ std::string note_on(const Parameter& parameter, double deviation) {
   return "";
 }
 
-[[nodiscard]] inline std::string parameters_table(const Findings& findings) {
-  TextTable table({"parameter", "calibrated", "+-", "unit", "value", "from", ""});
-  for (const int i : findings.result.calibrated) {
-    const Parameter& parameter = findings.result.table[i];
-    const auto deviation = findings.deviation(i);
-    const auto [text, unit] = for_people(parameter.value, parameter.unit);
-    const std::string known =
-        deviation && std::isfinite(*deviation) ? for_people(*deviation, parameter.unit).first : "-";
-    table.add({parameter.name, text, known, unit, fmt::format("{:.8g}", parameter.value),
-               fmt::format("{:.8g}", parameter.initial),
-               deviation ? note_on(parameter, *deviation) : "at its bound"});
-  }
-  std::string text = "Parameters, with one standard deviation\n" + table.str();
-  for (const Assessment& step : findings.assessments) {
-    if (!step.pose || &step != &findings.assessments.back()) continue;
-    const PoseUncertainty& pose = *step.pose;
-    text +=
-        fmt::format("\nPose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
-                    pose.frame, pose.in, reading(pose.position, "m"), reading(pose.rotation, "rad"),
-                    reading(pose.worst_position, "m"), reading(pose.worst_rotation, "rad"));
-    if (step.elsewhere > 0.0) {
-      text += fmt::format("  over the limits of the joints: {} (median)\n",
-                          reading(step.elsewhere, "m"));
-    }
-  }
-  return text;
-}
-
 [[nodiscard]] inline std::string correlations_text(const Findings& findings) {
   std::string text;
   if (findings.assessments.empty()) return text;
@@ -142,24 +115,6 @@ std::string note_on(const Parameter& parameter, double deviation) {
   return text.empty() ? text : "Worst samples\n" + text;
 }
 
-[[nodiscard]] inline std::string next_text(const Findings& findings) {
-  if (findings.judgement.verdict == Grade::do_not_use) {
-    return "Next: fix the problems listed under the verdict and calibrate again; no results were "
-           "written\n";
-  }
-  std::string idle;
-  for (const Assessment& step : findings.assessments) {
-    if (&step != &findings.assessments.back()) continue;
-    for (const IdleGroup& group : step.idle) idle += (idle.empty() ? "" : ", ") + group.owner;
-  }
-  if (!idle.empty()) {
-    return "Next: " + idle + " may as well be held: freeing them predicts no better\n";
-  }
-  return findings.judgement.verdict == Grade::good
-             ? "Next: kinecal install, and verify the result with a few new poses\n"
-             : "Next: record more samples, or verify the result with a few new poses\n";
-}
-
 }  // namespace detail
 
 Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedResult judged,
@@ -170,14 +125,14 @@ Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedR
   return findings;
 }
 
-std::string findings_text(const Findings& findings) {
+std::string findings_text(const Findings& findings, Figures figures) {
   std::string text = detail::verdict_text(findings);
   std::int64_t samples = std::ssize(findings.sources);  // none are kept of samples in shards
   if (samples == 0 && !findings.result.steps.empty()) samples = findings.result.steps[0].samples;
   text +=
       fmt::format("\nRobot '{}', {} sample{}", findings.robot, samples, samples == 1 ? "" : "s");
   if (!findings.left_out.empty()) text += fmt::format(", {} left out", findings.left_out.size());
-  text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_table(findings);
+  text += "\n\n" + detail::fit_table(findings) + "\n" + detail::parameters_text(findings, figures);
   for (const Assessment& step : findings.assessments) {
     const std::string open =
         observability_text(step.step, step.observability, findings.result.table);
@@ -187,7 +142,25 @@ std::string findings_text(const Findings& findings) {
        {detail::correlations_text(findings), detail::captures_text(findings)}) {
     if (!part.empty()) text += "\n" + part;
   }
-  return text + "\n" + detail::next_text(findings);
+  return text + "\nNext: " + next_step(findings) + "\n";
+}
+
+std::string findings_line(const Findings& findings) {
+  std::string text(to_string(findings.judgement.verdict));
+  std::string fits;
+  for (const BlockStatistics& block : findings.result.blocks) {
+    const auto* noise = detail::of_block(findings.assessments, &Assessment::noise, block.name);
+    if (noise == nullptr || noise->features == 0) continue;
+    const auto* error = detail::of_block(findings.assessments, &Assessment::held_out, block.name);
+    const double rms = std::sqrt(static_cast<double>(noise->components)) * block.after.rms;
+    fits += (fits.empty() ? " · " : ", ") + block.name + " " + reading(rms, block.unit);
+    if (error != nullptr && error->features > 0) {
+      fits += " (held out " + reading(error->held_out, block.unit) + ")";
+    }
+  }
+  const std::size_t out = findings.left_out.size();
+  text += fits;
+  return text + fmt::format(" · {} of {} samples left out", out, findings.sources.size() + out);
 }
 
 }  // namespace kinecal

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/report/next_step.hpp"
 #include "kinecal/report/recorded_poses.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/trust/calibrate_and_judge.hpp"
@@ -20,6 +21,7 @@ struct Findings : JudgedResult {
   std::map<std::string, std::string> images = {};  ///< "raw" or "rectified", where it was chosen,
                                                    ///< by camera
   RecordedPoses poses = {};                        ///< of the samples that were used
+  ProgramCall call = {};                           ///< how the program was called
 };
 
 /// What is reported of a judged calibration.
@@ -38,13 +40,20 @@ namespace detail {
 
 }  // namespace detail
 
+/// Figures of parameters: in degrees and millimetres, or their values in radians and metres, too.
+enum class Figures { readable, raw };
+
 /// The report as text, in this order: verdict, fit, parameters, what cannot be determined, the
 /// worst samples, what to do next.  Distances in millimetres or pixels, angles in degrees.
-[[nodiscard]] std::string findings_text(const Findings& findings);
+[[nodiscard]] std::string findings_text(const Findings& findings,
+                                        Figures figures = Figures::readable);
 
-/// The same, followed by what each step did and how long it took.
+/// The same with all detail, followed by what each step did and how long it took.
 [[nodiscard]] inline std::string summary_text(const Findings& findings) {
-  return findings_text(findings) + "\n" + step_lines(findings.result);
+  return findings_text(findings, Figures::raw) + "\n" + step_lines(findings.result);
 }
+
+/// The result in one line: "good · hand_eye 1.11 mm (held out 1.14) · 1 of 125 samples left out".
+[[nodiscard]] std::string findings_line(const Findings& findings);
 
 }  // namespace kinecal

@@ -147,6 +147,18 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
   return html + "</div>\n";
 }
 
+/// What to do next: a sentence, and a command to copy.
+[[nodiscard]] inline std::string html_next(const std::string& next) {
+  if (next.empty()) return "";
+  const std::size_t line = std::min(next.find("\n"), next.size());
+  std::string html = "<p>Next: " + html_text(next.substr(0, line)) + "</p>";
+  if (line < next.size()) {
+    html += "<pre><code>" + html_text(next.substr(next.find_first_not_of("\n ", line))) +
+            "</code></pre>";
+  }
+  return html + "\n";
+}
+
 /// Verdict, reasons, what was wrong, bad captures.
 [[nodiscard]] inline std::string html_top(const ReportData& data) {
   std::string reasons;
@@ -159,11 +171,11 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
   if (!data.date.empty()) about += ", calibrated " + data.date;
   return fmt::format(
       "<header class=\"verdict {}\">\n"
-      "<h1>{}: <strong>{}</strong></h1>\n<p class=\"note\">{}</p>\n{}"
+      "<h1>{}: <strong>{}</strong></h1>\n<p class=\"note\">{}</p>\n{}{}"
       "<div class=\"facts\">{}{}{}</div>\n</header>\n",
       class_of(data.verdict), html_text(shortened(data.robot, 80)), to_string(data.verdict),
       html_text(about), reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n",
-      fit_sentence(data), what_was_wrong(data), bad_samples(data));
+      html_next(data.next), fit_sentence(data), what_was_wrong(data), bad_samples(data));
 }
 
 [[nodiscard]] inline std::string html_navigation(bool has_scene) {

@@ -145,6 +145,7 @@ std::string json_report(const Findings& findings) {
   const detail::Json report = {
       {"verdict", to_string(findings.judgement.verdict)},
       {"reasons", findings.judgement.reasons},
+      {"next", next_step(findings)},
       {"converged", result.converged},
       {"termination", result.termination},
       {"steps", json_list(result.steps, write)},

@@ -106,6 +106,7 @@ ReportData report_data(const Calibration& calibration, const Findings& findings,
   data.robot = findings.robot;
   data.verdict = findings.judgement.verdict;
   data.reasons = findings.judgement.reasons;
+  data.next = next_step(findings);
   data.steps = findings.result.steps;
   data.blocks = detail::reported_blocks(calibration, findings, samples);
   data.samples = detail::reported_samples(findings);

@@ -84,7 +84,8 @@ struct ReportedParameter {
 struct ReportData {
   std::string robot;  ///< its name
   Grade verdict = Grade::good;
-  std::vector<std::string> reasons;  ///< for the verdict, worst first
+  std::vector<std::string> reasons;  ///< for the verdict: causes, then worst first
+  std::string next;                  ///< what to do: see next_step()
   std::string version;               ///< "kinecal 0.2.0"
   std::string command;               ///< repeats the run
   std::string date;                  ///< "2026-11-23"; of the calibration

@@ -99,14 +99,14 @@ inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evalua
   result.converged = decrease < kNegligible;
   std::ostringstream what;
   what.precision(2);
-  what << (result.converged ? "converged: " : "did not converge: ");
+  what << (result.converged ? "converged" : "did not converge: ");
   if (last.converged && result.converged) {
-    what << last.message;
+    if (!last.message.empty()) what << ": " << last.message;
   } else if (last.converged) {
     what << "no step lowered the cost any further, though chi-square could still fall by about "
          << decrease << "; start elsewhere, or check the derivatives of error blocks of your own";
   } else {
-    what << result.iterations << (result.iterations == 1 ? " iteration is" : " iterations are")
+    what << (result.converged ? ": " : "") << result.iterations << (result.iterations == 1 ? " iteration is" : " iterations are")
          << " used up, ";
     what << (result.converged ? "but what is left is noise: chi-square could fall by "
                               : "and chi-square could still fall by about ")

@@ -97,8 +97,7 @@ inline void add_run(const ceres::Solver::Summary& summary, Minimum& minimum) {
   minimum.usable = summary.IsSolutionUsable();
   const bool by_callback = summary.termination_type == ceres::USER_SUCCESS;
   minimum.converged = summary.termination_type == ceres::CONVERGENCE || by_callback;
-  minimum.message =
-      by_callback ? "a Gauss-Newton step promises no decrease of the cost" : summary.message;
+  minimum.message = by_callback ? "" : summary.message;  // the callback has proved it
   minimum.cost = summary.final_cost;
   minimum.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   minimum.proven = by_callback;

@@ -157,12 +157,18 @@ std::vector<Sample> used_samples(const JudgedResult& judged, std::span<const Sam
 
 std::string capture_text(const CaptureError& error, const Assessment& assessment) {
   const BlockNoise& noise = assessment.noise[static_cast<std::size_t>(error.term)];
-  std::string text = "error block '" + noise.block + "': " + error.feature.text() + " is " +
-                     reading(error.distance, noise.unit) + " off";
-  if (error.others > 0.0) text += ", all others at most " + reading(error.others, noise.unit);
+  const std::string block = "error block '" + noise.block + "': ";
   char times[48];
-  (void)std::snprintf(times, sizeof times, ", %.1f times the noise", error.times);
-  return text + times;
+  (void)std::snprintf(times, sizeof times, "%.1f times the noise", error.times);
+  constexpr double kAlike = 0.8;
+  if (error.others > 0.0 && error.least > kAlike * error.distance) {
+    return block + "all features are about " + reading(error.distance, noise.unit) + " off, " +
+           times + (error.bad ? "; did the robot still move?" : "");
+  }
+  std::string text =
+      block + error.feature.text() + " is " + reading(error.distance, noise.unit) + " off";
+  if (error.others > 0.0) text += ", all others at most " + reading(error.others, noise.unit);
+  return text + ", " + times;
 }
 
 }  // namespace kinecal

@@ -33,6 +33,7 @@ struct CaptureError {
   bool bad = false;           ///< beyond the limit
   double influence = 0.0;  ///< shift of the parameters without the sample: sqrt(dz^T H dz / size),
                            ///< 1: as large as their own uncertainty
+  double least = 0.0;      ///< smallest distance of all features of the sample and block
 };
 
 /// The worst feature of each sample, by number of the sample.

@@ -29,6 +29,7 @@ void judge_freedom(const Assessment& step, Judgement& judgement) {
   const double parameters = std::max(1, step.uncertainty.determined);
   const double freedom = static_cast<double>(step.rows) / step.readings - parameters;
   if (freedom >= parameters) return;
+  judgement.wants_samples = true;
   judgement.add(freedom < 0.5 * parameters ? Grade::do_not_use : Grade::use_with_care,
                 "step '" + step.step + "': " + std::to_string(step.rows) +
                     " residuals are too few to check " +
@@ -58,6 +59,7 @@ void judge_held_out(const Assessment& step, Judgement& judgement) {
     const double times = error.held_out / expected;
     judge_region(error, expected, judgement);
     if (!kTimes.exceeded(times)) continue;
+    judgement.wants_samples = true;
     judgement.add(kTimes.grade(times),
                   "error block '" + error.block + "': " + reading(error.held_out, error.unit) +
                       " on samples held out, " + reading(error.fitted, error.unit) +
@@ -101,10 +103,9 @@ void judge_priors(const Assessment& step, const ParameterTable& table, Judgement
   for (const PriorPull& pull : step.pulls) {
     const Parameter& p = table[pull.parameter];
     judgement.add(Grade::use_with_care,
-                  "prior '" + pull.prior + "' and the samples contradict each other: it moves '" +
-                      p.name + "' by " + reading(pull.shift, p.unit) + ", " +
-                      reading(pull.times, "1") +
-                      " times its +-; is its scale too large, or is the drawing wrong there?");
+                  "prior '" + pull.prior + "' contradicts the samples: it shifts '" + p.name +
+                      "' by " + reading(pull.shift, p.unit) + ", " + reading(pull.times, "1") +
+                      " times its +-; loosen or remove it");
   }
 }
 
@@ -126,6 +127,7 @@ void judge_pose(const Assessment& step, Judgement& judgement) {
                       "poses that differ more");
   }
   if (!kPosition.exceeded(step.pose->position)) return;
+  judgement.wants_samples = true;
   judgement.add(
       kPosition.grade(step.pose->position),
       pose + " is known to " + reading(step.pose->position, "m") + " only; record more samples");

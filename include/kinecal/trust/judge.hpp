@@ -53,6 +53,7 @@ enum class Grade { good, use_with_care, do_not_use };
 struct Judgement {
   Grade verdict = Grade::good;
   std::vector<std::string> reasons;  ///< causes, then the worst first; sentences with figures
+  bool wants_samples = false;        ///< more samples would help
   int causes = 0;                    ///< how many of the reasons are causes of the others
 
   /// Adds a reason.

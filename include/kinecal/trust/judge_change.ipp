@@ -63,10 +63,9 @@ namespace kinecal::detail {
 [[nodiscard]] inline bool judge_pattern(const Assessment& step, Judgement& judgement) {
   if (!step.pattern) return false;
   if (step.change && step.change->noise_left <= step.pattern->noise_left) return false;
-  judgement.add_causes(Grade::use_with_care,
-                       {error_of(*step.pattern) + ", the noise falls to " +
-                        reading(1e2 * step.pattern->noise_left, "1") +
-                        " %; the model does not contain that"});
+  judgement.add_causes(Grade::use_with_care, {error_of(*step.pattern) + ", the noise falls to " +
+                                              reading(1e2 * step.pattern->noise_left, "1") +
+                                              " %; the model does not contain that"});
   return true;
 }
 

@@ -1,0 +1,99 @@
+// Choosing what to do next.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/report/next_step.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "kinecal/report/findings.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Names for --hold: that of a frame in place of its six parameters.
+[[nodiscard]] std::string names_to_hold(const std::vector<int>& parameters,
+                                        const ParameterTable& table) {
+  std::set<std::string> names;
+  for (const int p : parameters) names.insert(table[p].name);
+  std::string text;
+  const auto add = [&](const std::string& name) { text += (text.empty() ? "" : " ") + name; };
+  for (const int p : parameters) {
+    const std::string& name = table[p].name;
+    const std::string frame = name.substr(0, name.rfind('_'));
+    const bool whole = std::all_of(kFrameAxes.begin(), kFrameAxes.end(), [&](const auto axis) {
+      return names.contains(parameter_name(frame, axis));
+    });
+    if (!whole) {
+      add(name);
+    } else if (name == parameter_name(frame, kFrameAxes.front())) {
+      add(frame);
+    }
+  }
+  return text;
+}
+
+/// The call with other options; without one, what to do in words.
+[[nodiscard]] std::string again(const Findings& findings, const std::string& options,
+                                const std::string& in_words) {
+  const ProgramCall& call = findings.call;
+  if (call.command.empty()) return in_words;
+  const bool wrote = !call.output.empty() && findings.judgement.verdict != Grade::do_not_use;
+  const bool forced = call.command.find(" --force") != std::string::npos;
+  return call.command + options + (wrote && !forced ? " --force" : "");
+}
+
+/// Parameters that might as well be held, or that samples do not determine; empty if there are none.
+[[nodiscard]] std::string hold(const Findings& findings) {
+  if (findings.assessments.empty()) return {};
+  const Assessment& step = findings.assessments.back();
+  const bool refused = findings.judgement.verdict == Grade::do_not_use;
+  std::vector<int> parameters = step.weak.hold;
+  std::string why = "what these samples hardly determine";
+  if (refused || parameters.empty()) {
+    if (!step.observability.hold.empty()) {
+      parameters = step.observability.hold;
+      why = "what these samples do not determine";
+    }
+  }
+  if (parameters.empty() && !refused) {
+    for (const IdleGroup& group : step.idle) {
+      parameters.insert(parameters.end(), group.parameters.begin(), group.parameters.end());
+    }
+    why = "what does not help the fit";
+  }
+  if (parameters.empty()) return {};
+  const std::string names = names_to_hold(parameters, findings.result.table);
+  return "hold " + why + ":\n  " + again(findings, " --hold " + names, names);
+}
+
+}  // namespace
+}  // namespace detail
+
+std::string next_step(const Findings& findings) {
+  const Judgement& judgement = findings.judgement;
+  const ProgramCall& call = findings.call;
+  if (judgement.causes > 0) {
+    return std::string(judgement.causes == 1 ? "mend the cause" : "mend the causes") +
+           " named under the verdict, and calibrate again";
+  }
+  const std::string held = detail::hold(findings);
+  if (!held.empty()) return held;
+  if (judgement.wants_samples) {
+    return "record more poses" +
+           (call.inputs.empty() ? "" : "; which:\n  kinecal plan " + call.inputs);
+  }
+  if (judgement.verdict != Grade::good) {
+    return "see where residuals are large" +
+           (call.command.empty() ? ""
+                                 : ":\n  " + detail::again(findings, " --report report.html", ""));
+  }
+  if (call.output.empty()) return "verify the result with a few new poses";
+  return "use " + call.output +
+         "/calibrated.urdf, and verify it with a few new poses:\n"
+         "  kinecal verify " +
+         call.output + " NEW_SAMPLES";
+}
+
+}  // namespace kinecal

@@ -1,0 +1,22 @@
+// What to do next: one line that works when it is pasted.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace kinecal {
+
+struct Findings;
+
+/// How the program was called; empty in a program of one's own.
+struct ProgramCall {
+  std::string command = {};  ///< "kinecal calibrate --urdf robot.urdf ..."
+  std::string inputs = {};   ///< "--urdf robot.urdf --config calibrate.yaml --samples a.yaml"
+  std::string output = {};   ///< folder of the results; empty: none are written
+};
+
+/// What answers the verdict: holding what samples do not determine or support, recording more poses, looking at
+/// the residuals; for a good result, checking it with a few new poses.
+[[nodiscard]] std::string next_step(const Findings& findings);
+
+}  // namespace kinecal

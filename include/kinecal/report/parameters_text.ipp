@@ -1,0 +1,78 @@
+// The parameters of the text report.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "kinecal/report/findings.hpp"
+#include "kinecal/report/text.hpp"
+
+namespace kinecal::detail {
+
+/// True for a parameter of a frame whose pose nobody knew: it was searched for.
+[[nodiscard]] inline bool was_unknown(const Findings& findings, const Parameter& parameter) {
+  for (const StepResult& step : findings.result.steps) {
+    for (const std::string& frame : step.starts.frames) {
+      if (is_frame_parameter(parameter.name, frame)) return true;
+    }
+  }
+  return false;
+}
+
+/// The parameters that were searched for, or the others.
+[[nodiscard]] inline std::string parameter_rows(const Findings& findings, bool unknown,
+                                                Figures figures) {
+  TextTable::Row header = {"parameter", "before", "after", "+-", "unit", ""};
+  if (figures == Figures::raw)
+    header = {"parameter", "before", "after", "+-", "unit", "value", "from", ""};
+  TextTable table(header);
+  int rows = 0;
+  for (const int i : findings.result.calibrated) {
+    const Parameter& parameter = findings.result.table[i];
+    if (was_unknown(findings, parameter) != unknown) continue;
+    ++rows;
+    const auto deviation = findings.deviation(i);
+    const auto [after, unit] = for_people(parameter.value, parameter.unit);
+    const std::string known =
+        deviation && std::isfinite(*deviation) ? for_people(*deviation, parameter.unit).first : "-";
+    TextTable::Row row = {parameter.name,
+                          unknown ? "-" : for_people(parameter.initial, parameter.unit).first,
+                          after, known, unit};
+    if (figures == Figures::raw) {
+      row.push_back(fmt::format("{:.8g}", parameter.value));
+      row.push_back(fmt::format("{:.8g}", parameter.initial));
+    }
+    row.push_back(deviation ? note_on(parameter, *deviation) : "at its bound");
+    table.add(std::move(row));
+  }
+  return rows == 0 ? "" : table.str();
+}
+
+[[nodiscard]] inline std::string parameters_text(const Findings& findings, Figures figures) {
+  std::string text;
+  const std::string changed = parameter_rows(findings, false, figures);
+  if (!changed.empty()) text += "Parameters; +- is one standard deviation\n" + changed;
+  const std::string found = parameter_rows(findings, true, figures);
+  if (!found.empty()) {
+    text += std::string(text.empty() ? "" : "\n") +
+            "Poses that were not known; +- is one standard deviation\n" + found;
+  }
+  for (const Assessment& step : findings.assessments) {
+    if (!step.pose || &step != &findings.assessments.back()) continue;
+    const PoseUncertainty& pose = *step.pose;
+    text +=
+        fmt::format("\nPose of '{}' in '{}': +- {}, {}; at the worst of these samples {}, {}\n",
+                    pose.frame, pose.in, reading(pose.position, "m"), reading(pose.rotation, "rad"),
+                    reading(pose.worst_position, "m"), reading(pose.worst_rotation, "rad"));
+    if (step.elsewhere > 0.0) {
+      text += fmt::format("  over the limits of the joints: {} (median)\n",
+                          reading(step.elsewhere, "m"));
+    }
+  }
+  return text;
+}
+
+}  // namespace kinecal::detail
