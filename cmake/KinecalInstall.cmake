@@ -41,12 +41,19 @@ foreach(component core capture solve io)
   install(FILES ${PROJECT_BINARY_DIR}/kinecal-${component}.pc DESTINATION ${pkgconfig_dir})
 endforeach()
 
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/cmake/package/copyright
-              ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/MANUAL.md
-              ${PROJECT_SOURCE_DIR}/CONCEPTS.md ${PROJECT_SOURCE_DIR}/ARCHITECTURE.md
-              ${PROJECT_SOURCE_DIR}/BACKGROUND.md
-        DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT headers)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+# The program's package has what its users read, that of the headers what their authors do.
+set(library_doc ${CMAKE_INSTALL_DATADIR}/doc/libkinecal-dev)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/MANUAL.md
+              ${PROJECT_SOURCE_DIR}/BACKGROUND.md ${PROJECT_SOURCE_DIR}/LICENSE
+              ${PROJECT_SOURCE_DIR}/cmake/package/copyright
+        DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CONCEPTS.md
+              ${PROJECT_SOURCE_DIR}/ARCHITECTURE.md ${PROJECT_SOURCE_DIR}/LICENSE
+              ${PROJECT_SOURCE_DIR}/cmake/package/copyright
+        DESTINATION ${library_doc} COMPONENT headers)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${library_doc}
         COMPONENT headers PATTERN "demo.sh" EXCLUDE)
+file(GLOB schemas ${PROJECT_SOURCE_DIR}/include/kinecal/*/schema/*.json)
+install(FILES ${schemas} DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal/schema COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/package.xml  # ROS reads it to see what is installed
         DESTINATION ${CMAKE_INSTALL_DATADIR}/kinecal COMPONENT headers)

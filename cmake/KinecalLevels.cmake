@@ -91,7 +91,7 @@ function(kinecal_add_level level)
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${folder}
     INSTALL_RPATH_USE_LINK_PATH ON)
   if(KINECAL_INSTALL)
-    install(TARGETS ${target} LIBRARY DESTINATION ${folder})
+    install(TARGETS ${target} LIBRARY DESTINATION ${folder} COMPONENT program)
   endif()
 endfunction()
 

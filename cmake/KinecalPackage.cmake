@@ -1,6 +1,7 @@
-# `cpack` in a build tree makes kinecal_<version>_<architecture>.deb: programs, libraries, headers
-# and what you need to build against them; and, if there is MPI, kinecal-mpi_<version>_<architecture>.deb:
-# the plug-in for processes of mpirun, so that the program does not depend on MPI.
+# `cpack` in a build tree makes Debian packages:
+#   kinecal         the program, and nothing that only a compiler needs
+#   libkinecal-dev  libraries, headers, and what you need to build against them
+#   kinecal-mpi     if there is MPI: the plug-in for processes of mpirun
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "kinecal developers")
 set(CPACK_PACKAGE_CONTACT "kinecal developers <kinecal@example.org>")
@@ -8,37 +9,41 @@ set(CPACK_PACKAGE_DESCRIPTION
 "kinecal takes a URDF, a list of what may be wrong (joint zeros, frames, camera
 intrinsics, depth offset and scale) and recorded samples, and gives back the
 corrected URDF and camera files, with figures that say how good they are.
-It reads the configurations and samples of robot_calibration and needs no ROS.
-
-The package holds the program, kinecal, and the C++20 libraries.")
+It reads the configurations and samples of robot_calibration and needs no ROS.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
 
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS  # what the headers include and kinecalConfig.cmake looks for
+set(needed_to_build  # what the headers include and kinecalConfig.cmake looks for
   "libeigen3-dev (>= 3.4), libceres-dev (>= 2.1), liburdfdom-dev, libyaml-dev, \
 libpugixml-dev, libfmt-dev, zlib1g-dev, libboost-dev (>= 1.74), nlohmann-json3-dev (>= 3.11), \
 libssl-dev (>= 3.0), pkg-config")
 foreach(package IN LISTS KINECAL_OPTIONAL_PACKAGES)
-  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", ${package}")
+  string(APPEND needed_to_build ", ${package}")
 endforeach()
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "cmake (>= 3.25), g++ (>= 4:12)")
-# To these, what the programs are linked with; the libraries of KinecalLevels.cmake are their own.
+# What programs are linked with is added; the libraries of KinecalLevels.cmake are their own.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
   ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/kinecal)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEBIAN_KINECAL_PACKAGE_NAME kinecal)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libkinecal-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION}), ${needed_to_build}")
+set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "cmake (>= 3.25), g++ (>= 4:12)")
+set(CPACK_DEBIAN_DEV_DESCRIPTION "libraries and headers of kinecal: calibrators of one's own
+ Forward kinematics, residuals with exact derivatives, solving and judging, for any robot.")
 set(CPACK_DEBIAN_MPI_PACKAGE_NAME kinecal-mpi)
 set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION}), openmpi-bin")
-set(CPACK_DEBIAN_MPI_PACKAGE_RECOMMENDS "")
 set(CPACK_DEBIAN_MPI_DESCRIPTION "one calibration or study in several processes of mpirun")
 include(CPack)
 cpack_add_component_group(kinecal)
+cpack_add_component_group(dev)
 cpack_add_component_group(mpi)
-cpack_add_component(Unspecified GROUP kinecal)
-cpack_add_component(headers GROUP kinecal)
+cpack_add_component(program GROUP kinecal)
+cpack_add_component(Unspecified GROUP dev)
+cpack_add_component(headers GROUP dev)
 cpack_add_component(plugin GROUP mpi)

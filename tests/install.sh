@@ -9,10 +9,10 @@ as_root=""
 [ "$(id -u)" = 0 ] || as_root=sudo
 sudo() { $as_root env DEBIAN_FRONTEND=noninteractive "$@"; }
 work=$(mktemp -d)
-trap 'sudo apt-get remove -y -qq kinecal >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
+trap 'sudo apt-get remove -y -qq kinecal libkinecal-dev >/dev/null 2>&1 || true; rm -rf "$work"' EXIT
 
 echo "== README, Install, $(date +%H:%M:%S)"
-rm -f build/release/kinecal_*.deb
+rm -f build/release/*kinecal*.deb
 commands=$(sed -n '/^## Install/,/^[^ #]/s/^    //p' README.md | sed 's/apt install/apt install -y -qq/')
 [ -n "$commands" ]
 echo "$commands"
