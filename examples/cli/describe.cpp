@@ -52,12 +52,28 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// A text without what ends a text, a field or a bracket in zsh.
-std::string zsh_text(std::string text) {
-  for (char& c : text) {
-    if (std::string_view("'[]:").find(c) != std::string_view::npos) c = ' ';
+/// A text between single quotes of zsh, in which brackets and colons end nothing.
+std::string zsh_text(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '\'') {
+      result += "'\\''";
+    } else {
+      if (std::string_view("[]:\\").find(c) != std::string_view::npos) result += '\\';
+      result += c;
+    }
   }
-  return text;
+  return result;
+}
+
+/// A text in single quotes of fish.
+std::string fish_text(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + "'";
 }
 
 /// A text of a manual page.  No line of it is a request of troff.
@@ -185,9 +201,30 @@ std::string zsh_completion(const CLI::App& app) {
          cases + "  esac\n}\n_kinecal \"$@\"\n";
 }
 
+std::string fish_completion(const CLI::App& app) {
+  std::string text = "# Completion of kinecal for fish.\n";
+  for (const CLI::App* command : commands_of(app)) {
+    const std::string& name = command->get_name();
+    text += fmt::format("complete -c kinecal -n __fish_use_subcommand -f -a {} -d {}\n", name,
+                        fish_text(command->get_description()));
+    for (const CLI::Option* option : command->get_options()) {
+      if (option_name(*option).empty()) continue;
+      const auto list = values_of(*option);
+      const std::string value = !list.empty()                 ? " -x -a " + fish_text(joined(list))
+                                : value_name(*option).empty() ? ""
+                                                              : " -r";
+      text += fmt::format("complete -c kinecal -n '__fish_seen_subcommand_from {}' -l {}{} -d {}\n",
+                          name, option_name(*option).substr(2), value,
+                          fish_text(option->get_description()));
+    }
+  }
+  return text;
+}
+
 int describe(const CLI::App& app, const DescribeOptions& options) {
   const std::string text = options.format == "man"    ? man_page(app)
                            : options.format == "bash" ? bash_completion(app)
+                           : options.format == "fish" ? fish_completion(app)
                                                       : zsh_completion(app);
   if (options.output.empty()) {
     fmt::print("{}", text);

@@ -18,6 +18,9 @@ namespace kinecal::cli {
 /// Completion for zsh, with an explanation of each command and option.
 [[nodiscard]] std::string zsh_completion(const CLI::App& app);
 
+/// The same for fish.
+[[nodiscard]] std::string fish_completion(const CLI::App& app);
+
 /// Prints one of them, or writes it to a file.
 /// @return  an exit code
 int describe(const CLI::App& app, const DescribeOptions& options);

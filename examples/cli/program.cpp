@@ -704,7 +704,7 @@ void add_describe(CLI::App& command, DescribeOptions& options) {
       .add_option("format", options.format,
                   "man: a manual page; bash, zsh: completion of commands and options")
       ->required()
-      ->check(CLI::IsMember({"man", "bash", "zsh"}));
+      ->check(CLI::IsMember({"man", "bash", "zsh", "fish"}));
   command.add_option("--output", options.output, "the file to write")->type_name("FILE");
   command.add_flag("--force", options.force, "replace the file that is there");
 }

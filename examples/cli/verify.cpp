@@ -126,8 +126,7 @@ std::string verdict_text(const Check& check) {
   if (drift.holds) {
     text += fmt::format("  - {} of {} fit: {} (p = {:.2f})\n",
                         check.fresh.samples.size() - drift.missed.size(),
-                        counted(check.fresh.samples.size(), "sample"), size,
-                        drift.probability);
+                        counted(check.fresh.samples.size(), "sample"), size, drift.probability);
   } else {
     text += fmt::format("  - {}: {}\n", confidence_text(drift.probability), size);
   }

@@ -131,7 +131,7 @@ TEST_F(Manners, ManualAndCompletionHaveAllCommandsAndOptions) {
   const auto commands = words_of(help.substr(help.find("Subcommands:")), "\n  ([a-z_-]+) ");
   ASSERT_EQ(commands.size(), 21u);
   const std::string man = kinecal("describe man").out, bash = kinecal("describe bash").out,
-                    zsh = kinecal("describe zsh").out;
+                    zsh = kinecal("describe zsh").out, fish = kinecal("describe fish").out;
   for (const std::string& command : commands) {
     const std::string title = std::regex_replace(command, std::regex("-"), "\\-");
     EXPECT_THAT(man, HasSubstr("\n.SS " + title + "\n"));
@@ -148,6 +148,7 @@ TEST_F(Manners, ManualAndCompletionHaveAllCommandsAndOptions) {
       EXPECT_THAT(part(bash, "\n    " + command + ") words=", ";;") + " ",
                   testing::ContainsRegex(option + "[ \"]"));
       EXPECT_THAT(part(zsh, "\n    " + command + ")\n", ";;"), HasSubstr("'*" + option + "["));
+      EXPECT_THAT(fish, HasSubstr("from " + command + "' -l " + option.substr(2) + " "));
       if (option == "--help") continue;
       EXPECT_THAT(part(man, "\n.SS " + title + "\n", "\n.S"),
                   HasSubstr("\\fB" + std::regex_replace(option, std::regex("-"), "\\-") + "\\fR"));
@@ -169,6 +170,16 @@ TEST_F(Manners, BashCompletesCommandsOptionsAndValues) {
   EXPECT_EQ(completed("calibrate --offsets o", 3), "origin\n");
   EXPECT_EQ(completed("help ins", 2), "install inspect\n");
   EXPECT_EQ(completed("calibrate --urdf x", 3), "\n") << "files, which bash completes";
+}
+
+/// What is quoted ends nothing: the texts are those of --help.
+TEST_F(Manners, CompletionOfZshAndFishQuotesTexts) {
+  EXPECT_THAT(kinecal("describe zsh").out, HasSubstr("where joint offsets go\\: rising adds"));
+  EXPECT_THAT(kinecal("describe fish").out, HasSubstr("the joints\\' <origin>"));
+  if (run("zsh --version").code == 0) {
+    ASSERT_EQ(kinecal("describe zsh --output _kinecal").code, 0);
+    EXPECT_EQ(run("zsh -n _kinecal").err, "");
+  }
 }
 
 TEST_F(Manners, TheManualIsFormattedWithoutWarnings) {

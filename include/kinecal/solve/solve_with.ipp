@@ -106,8 +106,8 @@ inline void judge_convergence(AnyEvaluator& evaluator, const EvaluatorOf& evalua
     what << "no step lowered the cost any further, though chi-square could still fall by about "
          << decrease << "; start elsewhere, or check the derivatives of error blocks of your own";
   } else {
-    what << (result.converged ? ": " : "") << result.iterations << (result.iterations == 1 ? " iteration is" : " iterations are")
-         << " used up, ";
+    what << (result.converged ? ": " : "") << result.iterations
+         << (result.iterations == 1 ? " iteration is" : " iterations are") << " used up, ";
     what << (result.converged ? "but what is left is noise: chi-square could fall by "
                               : "and chi-square could still fall by about ")
          << decrease;
