@@ -10,6 +10,7 @@
 #include "kinecal/report/chart_style.hpp"
 #include "kinecal/report/html_sections.ipp"
 #include "kinecal/report/html_tables.ipp"
+#include "kinecal/report/html_top.ipp"
 #include "kinecal/report/page_files.ipp"  // made when kinecal is configured, of page/
 
 namespace kinecal {

@@ -6,18 +6,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/svg_text.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/reading.hpp"
-#include "kinecal/trust/weak_parameters.hpp"
 
 namespace kinecal::detail {
 
 std::string html_text(std::string_view text) {
   return svg_escaped(text);
+}
+
+/// A name of the user's: a long one is shortened, one from right to left does not turn what is beside it.
+[[nodiscard]] inline std::string html_name(std::string_view name) {
+  constexpr std::size_t kMost = 80;
+  return "<bdi>" + html_text(shortened(name, kMost)) + "</bdi>";
 }
 
 std::string html_figure(const Chart& chart) {
@@ -40,8 +44,10 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
       const char* kind = columns[c] == 't'   ? " class=\"text\""
                          : columns[c] == 'l' ? " class=\"long\""
                                              : "";
-      html += r == 0 ? fmt::format("<th scope=\"col\"{}>{}</th>", kind, html_text(rows[r][c]))
-                     : fmt::format("<td{}>{}</td>", kind, html_text(rows[r][c]));
+      html += r == 0
+                  ? fmt::format("<th scope=\"col\"{}>{}</th>", kind, html_text(rows[r][c]))
+                  : fmt::format("<td{}>{}</td>", kind,
+                                columns[c] == 't' ? html_name(rows[r][c]) : html_text(rows[r][c]));
     }
     html += r == 0 ? "</tr></thead><tbody>" : "</tr>\n";
   }
@@ -73,109 +79,6 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
 /// The CSS class of a grade.
 [[nodiscard]] inline std::string_view class_of(Grade grade) {
   return grade == Grade::good ? "good" : grade == Grade::use_with_care ? "care" : "bad";
-}
-
-/// Significant changes, most important first: relative to the useful deviation.
-[[nodiscard]] inline std::vector<const ReportedParameter*> largest_changes(const ReportData& data) {
-  std::vector<const ReportedParameter*> all;
-  std::set<std::string> unknown;  // an unknown pose is not corrected
-  for (const StepResult& step : data.steps) {
-    unknown.insert(step.starts.frames.begin(), step.starts.frames.end());
-  }
-  for (const ReportedParameter& parameter : data.parameters) {
-    if (unknown.contains(parameter.owner)) continue;
-    if (parameter.note.empty() && parameter.sigma && parameter.value != parameter.initial) {
-      all.push_back(&parameter);
-    }
-  }
-  const auto size = [](const ReportedParameter* p) {
-    const double useful = useful_deviation({.name = p->name, .unit = p->unit});
-    return std::abs(p->value - p->initial) / (std::isfinite(useful) ? useful : 1.0);
-  };
-  std::stable_sort(all.begin(), all.end(),
-                   [&](const auto* a, const auto* b) { return size(a) > size(b); });
-  constexpr std::size_t kListed = 5;
-  if (all.size() > kListed) all.resize(kListed);
-  return all;
-}
-
-/// "What was wrong", in a list.
-[[nodiscard]] inline std::string what_was_wrong(const ReportData& data) {
-  std::string items;
-  for (const ReportedParameter* parameter : largest_changes(data)) {
-    const auto [change, unit] = for_people(parameter->value - parameter->initial, parameter->unit);
-    items += fmt::format("<li><code>{}</code> {} {} <span class=\"note\">&plusmn; {}</span></li>",
-                         html_text(parameter->name), html_text(change), html_text(unit),
-                         html_text(for_people(*parameter->sigma, parameter->unit).first));
-  }
-  if (items.empty()) return "";
-  return "<div><h3>Largest corrections</h3><ul>" + items + "</ul></div>\n";
-}
-
-/// Samples that do not fit, in a list.
-[[nodiscard]] inline std::string bad_samples(const ReportData& data) {
-  constexpr int kListed = 5;
-  int bad = 0;
-  std::string items;
-  for (const ReportedSample& sample : data.samples) {
-    if (!sample.bad || ++bad > kListed) continue;
-    items +=
-        fmt::format("<li><a href=\"#sample={0}\" data-sample=\"{0}\">sample {0}</a> {1}: {2}</li>",
-                    sample.number, html_text(sample.source), html_text(sample.why));
-  }
-  if (items.empty()) return "<div><h3>Bad captures</h3><p>none</p></div>\n";
-  if (bad > kListed) items += fmt::format("<li>and {} more</li>", bad - kListed);
-  return "<div><h3>Bad captures</h3><ul>" + items + "</ul></div>\n";
-}
-
-/// "hand_eye 34.1 -> 0.9 mm"
-[[nodiscard]] inline std::string fit_sentence(const ReportData& data) {
-  std::string items;
-  for (const ReportedBlock& block : data.blocks) {
-    items += fmt::format("<li><code>{}</code> {} &rarr; <strong>{}</strong> {}</li>",
-                         html_text(block.name), in_reading_unit(block.rms_before, block.unit),
-                         in_reading_unit(block.rms_after, block.unit), reading_unit(block.unit));
-  }
-  std::string html = "<div><h3>Fit, before and after</h3><ul>" + items + "</ul>";
-  if (data.pose) {
-    constexpr double kKnown = 0.35;  // radians; the orientation of a point is meaningless
-    html += fmt::format(
-        "<p><code>{}</code> in <code>{}</code> is known to <strong>{}</strong>{}</p>",
-        html_text(data.pose->frame), html_text(data.pose->in), reading(data.pose->position, "m"),
-        data.pose->rotation < kKnown ? ", " + reading(data.pose->rotation, "rad") : "");
-  }
-  return html + "</div>\n";
-}
-
-/// What to do next: a sentence, and a command to copy.
-[[nodiscard]] inline std::string html_next(const std::string& next) {
-  if (next.empty()) return "";
-  const std::size_t line = std::min(next.find("\n"), next.size());
-  std::string html = "<p>Next: " + html_text(next.substr(0, line)) + "</p>";
-  if (line < next.size()) {
-    html += "<pre><code>" + html_text(next.substr(next.find_first_not_of("\n ", line))) +
-            "</code></pre>";
-  }
-  return html + "\n";
-}
-
-/// Verdict, reasons, what was wrong, bad captures.
-[[nodiscard]] inline std::string html_top(const ReportData& data) {
-  std::string reasons;
-  for (const std::string& reason : data.reasons) reasons += "<li>" + html_text(reason) + "</li>";
-  const auto left_out = std::count_if(data.samples.begin(), data.samples.end(),
-                                      [](const ReportedSample& sample) { return sample.left_out; });
-  std::string about = fmt::format("{} samples", data.samples.size() - left_out);
-  if (left_out > 0) about += fmt::format(", {} left out", left_out);
-  if (!data.recorded.empty()) about += ", recorded " + data.recorded;
-  if (!data.date.empty()) about += ", calibrated " + data.date;
-  return fmt::format(
-      "<header class=\"verdict {}\">\n"
-      "<h1>{}: <strong>{}</strong></h1>\n<p class=\"note\">{}</p>\n{}{}"
-      "<div class=\"facts\">{}{}{}</div>\n</header>\n",
-      class_of(data.verdict), html_text(shortened(data.robot, 80)), to_string(data.verdict),
-      html_text(about), reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n",
-      html_next(data.next), fit_sentence(data), what_was_wrong(data), bad_samples(data));
 }
 
 [[nodiscard]] inline std::string html_navigation(bool has_scene) {

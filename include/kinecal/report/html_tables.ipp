@@ -75,7 +75,7 @@ namespace kinecal::detail {
     html += "<li>";
     for (std::size_t i = 0; i < std::min(kParameters, combination.size()); ++i) {
       html += fmt::format("{:+.3g}&nbsp;<code>{}</code> ", combination[i].second,
-                          html_text(combination[i].first));
+                          html_name(combination[i].first));
     }
     html += combination.size() > kParameters ? "&hellip;</li>" : "</li>";
   }
