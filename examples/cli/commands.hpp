@@ -135,6 +135,8 @@ struct RecheckOptions {
   std::optional<Recorded> recorded;  ///< before or after the result was installed
   std::string report;                ///< JSON is written there
   double level = 0.01;               ///< of verify: share of false alarms
+  double fail_above =
+      0.0;  ///< of evaluate: exit code 2 beyond that times the held-out error; 0: never
   Manner manner = {};
 };
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <cmath>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -10,6 +10,7 @@
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
+#include "kinecal/text/reading.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
 
@@ -22,6 +23,18 @@ std::string json(const StoredResult& result, const NewSamples& fresh) {
                              {"samples", fresh.samples.size()},
                              {"assumed", fresh.assumed},
                              {"error_blocks", fit_json(result, fresh)}});
+}
+
+/// "worse: hand_eye 0.194 mm -> 255.7 mm", by more than samples of a few poses scatter; else "as good: ..."
+std::string change_line(const std::vector<FitChange>& changes) {
+  constexpr double kWorse = 1.5;
+  std::string worse, as_good;
+  for (const FitChange& change : changes) {
+    std::string& text = change.times() > kWorse ? worse : as_good;
+    text += fmt::format("{}{} {} -> {}", text.empty() ? "" : ", ", change.block,
+                        reading(change.then, change.unit), reading(change.now, change.unit));
+  }
+  return (worse.empty() ? "as good: " + as_good : "worse: " + worse) + "\n";
 }
 
 }  // namespace
@@ -37,9 +50,15 @@ int evaluate(const RecheckOptions& options) {
                                  result.verdict, counted(fresh.samples.size(), "sample"));
   if (!fresh.assumed.empty()) text += fresh.assumed + "\n";
   text += "\n" + fit_text(result, fresh) + "\n" + worst_text(result, fresh);
-  fmt::print("{}", printable(text));
+  const std::vector<FitChange> changes = fit_changes(result, fresh);
+  if (!changes.empty()) text += "\n" + change_line(changes);
+  show(printable(text), options.manner);
   if (!options.report.empty()) write_file(options.report, json(result, fresh));
-  return kDone;
+  const bool fails = options.fail_above > 0.0 &&
+                     std::any_of(changes.begin(), changes.end(), [&](const FitChange& change) {
+                       return !(change.times() <= options.fail_above);
+                     });
+  return fails ? kNotUsable : kDone;
 }
 
 }  // namespace kinecal::cli

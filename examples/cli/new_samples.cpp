@@ -278,6 +278,20 @@ std::string fit_text(const StoredResult& result, const NewSamples& fresh) {
          table.str();
 }
 
+std::vector<FitChange> fit_changes(const StoredResult& result, const NewSamples& fresh) {
+  const AnyProblem& problem = fresh.problem();
+  const auto norms = feature_norms(problem, {fresh.values.data(), fresh.values.size()});
+  std::vector<FitChange> changes;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const auto& distances = norms[static_cast<std::size_t>(t)];
+    if (distances.empty()) continue;
+    const FittedBlock& then = fitted_block(result, problem.term(t).name);
+    changes.push_back({problem.term(t).name, problem.term(t).options.unit,
+                       then.held_out.value_or(then.distance), root_mean_square(distances)});
+  }
+  return changes;
+}
+
 detail::Json fit_json(const StoredResult& result, const NewSamples& fresh) {
   const AnyProblem& problem = fresh.problem();
   const auto norms = feature_norms(problem, {fresh.values.data(), fresh.values.size()});

@@ -47,6 +47,17 @@ struct NewSampleOptions {
 /// The same as a JSON list.
 [[nodiscard]] detail::Json fit_json(const StoredResult& result, const NewSamples& fresh);
 
+/// Distances of an error block: of samples that the calibration had not seen, and of new ones.
+struct FitChange {
+  std::string block, unit;
+  double then = 0.0, now = 0.0;  ///< root of the mean square, in `unit`
+
+  [[nodiscard]] double times() const { return then > 0.0 ? now / then : 1.0; }
+};
+/// Those of each error block that has new features.
+[[nodiscard]] std::vector<FitChange> fit_changes(const StoredResult& result,
+                                                 const NewSamples& fresh);
+
 /// The worst samples, by file and line.
 [[nodiscard]] std::string worst_text(const StoredResult& result, const NewSamples& fresh);
 

@@ -656,6 +656,18 @@ void add_recheck(CLI::App& command, RecheckOptions& options) {
           "what fits better")
       ->check(CLI::IsMember({"after", "before"}));
   command.add_option("--report", options.report, "write what is found as JSON")->type_name("FILE");
+  add_manner(command, options.manner);
+}
+
+void add_evaluate(CLI::App& command, RecheckOptions& options) {
+  add_recheck(command, options);
+  command
+      .add_option(
+          "--fail-above", options.fail_above,
+          "exit code 2 if the distances of an error block are more than that times those of "
+          "samples that the calibration held out")
+      ->check(CLI::PositiveNumber)
+      ->type_name("TIMES");
 }
 
 void add_verify(CLI::App& command, RecheckOptions& options) {
@@ -815,7 +827,7 @@ void add_commands(Commands& commands, const std::string& line) {
                               "file, in several processes",
                               add_calibrate_log, calibrate_log);
   commands.add<RecheckOptions>("evaluate", "show how a result fits other samples, without solving",
-                               add_recheck, evaluate);
+                               add_evaluate, evaluate);
   commands.add<RecheckOptions>(
       "verify", "decide by a few new samples whether a result still holds, and what has moved",
       add_verify, verify);

@@ -260,7 +260,7 @@ int verify(const RecheckOptions& options) {
   text += "\n";
   if (const std::string moved = movers_text(check); !moved.empty()) text += moved + "\n";
   text += fit_text(result, fresh) + "\n" + worst_text(result, fresh) + "\n" + next_text(check);
-  fmt::print("{}", printable(text));
+  show(printable(text), options.manner);
   if (!options.report.empty()) write_file(options.report, json(check));
   return check.drift.holds ? kDone : kNotUsable;
 }
