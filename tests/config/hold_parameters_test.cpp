@@ -44,6 +44,18 @@ TEST(HoldParameters, HoldsJointsAndAxesOfFramesInAllSteps) {
   }
 }
 
+TEST(HoldParameters, HoldsAFrameByItsName) {
+  Config held = config();
+  held.steps[0].bounds.push_back({"tool_x", -0.1, 0.1, {"c.yaml", 7}});
+  Diagnostics diagnostics;
+  hold_parameters(held, {"tool"}, diagnostics);
+  EXPECT_TRUE(diagnostics.errors.empty());
+  for (const StepConfig& step : held.steps) {
+    EXPECT_THAT(free_names(step), ElementsAre("elbow", "wrist"));
+    EXPECT_EQ(step.bounds.size(), 1u);
+  }
+}
+
 TEST(HoldParameters, RefusesNamesThatNoStepFrees) {
   Config held = config();
   Diagnostics diagnostics;

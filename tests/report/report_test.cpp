@@ -137,7 +137,7 @@ TEST(Summary, BeginsWithTheVerdictAndShowsDistancesAndDeviations) {
   EXPECT_THAT(text, HasSubstr("Robot 'arm', 2 samples, 1 left out"));
   EXPECT_THAT(text,
               HasSubstr("17.321   1.732     2.100  4.000  1.100        2.000"));  // rms * sqrt 3
-  EXPECT_THAT(text, HasSubstr("elbow                 5.730  0.573   deg"));
+  EXPECT_THAT(text, testing::ContainsRegex("elbow +0.000 +5.730 +0.573 +deg +0.1 +0\n"));
   EXPECT_THAT(text, HasSubstr("not determined"));
   EXPECT_THAT(text, HasSubstr("not significant"));
   EXPECT_THAT(text, HasSubstr("Pose of 'hand' in 'camera': +- 0.5 mm"));
@@ -147,6 +147,53 @@ TEST(Summary, BeginsWithTheVerdictAndShowsDistancesAndDeviations) {
                               "fit the others"));
   EXPECT_THAT(text, HasSubstr("samples.yaml:20 (sample 2): --exclude; left out"));
   EXPECT_THAT(text, HasSubstr("3 parameters, 30 residuals"));
+}
+
+TEST(Summary, ShowsPosesThatNobodyKnewApartAndRawValuesOnlyIfAsked) {
+  Findings all = findings();
+  all.result.table.add({.name = "board_x", .unit = "m", .initial = 0.0, .value = 1.25});
+  all.result.calibrated.push_back(3);
+  all.result.steps[0].starts.frames = {"board"};
+  const std::string text = findings_text(all);
+  EXPECT_THAT(text, testing::ContainsRegex("elbow +0.000 +5.730 +0.573 +deg\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("Poses that were not known.*\n.*\n +board_x +- +1250"));
+}
+
+TEST(Summary, HasTheResultInOneLine) {
+  EXPECT_EQ(findings_line(findings()),
+            "use with care · hand_eye 1.73 mm (held out 2.1 mm) · 1 of 3 samples left out");
+}
+
+TEST(NextStep, AnswersTheVerdictWithACommand) {
+  Findings all = findings();
+  all.call = {"kinecal calibrate --output out", "--urdf r.urdf --config c.yaml --samples s", "out"};
+  EXPECT_EQ(next_step(all),
+            "hold what these samples do not determine:\n"
+            "  kinecal calibrate --output out --hold camera_z_offset --force");
+  all.assessments[0].observability.hold = {};
+  EXPECT_EQ(next_step(all),
+            "see where residuals are large:\n"
+            "  kinecal calibrate --output out --report report.html --force");
+  all.judgement.wants_samples = true;
+  EXPECT_EQ(next_step(all),
+            "record more poses; which:\n  kinecal plan --urdf r.urdf --config c.yaml --samples s");
+  all.judgement.add_causes(Grade::use_with_care, {"an eccentric encoder"});
+  EXPECT_THAT(next_step(all), HasSubstr("mend the cause"));
+  all.judgement = {};
+  EXPECT_THAT(next_step(all), HasSubstr("use out/calibrated.urdf"));
+  EXPECT_THAT(next_step(all), HasSubstr("\n  kinecal verify out NEW_SAMPLES"));
+}
+
+TEST(NextStep, HoldsAFrameByItsName) {
+  Findings all = findings();
+  std::vector<int>& hold = all.assessments[0].observability.hold;
+  hold.clear();
+  for (const char* axis : {"x", "y", "z", "a", "b", "c"}) {
+    hold.push_back(all.result.table.size());
+    all.result.table.add({.name = std::string("mount_") + axis});
+  }
+  hold.push_back(0);
+  EXPECT_EQ(next_step(all), "hold what these samples do not determine:\n  mount elbow");
 }
 
 TEST(TextReport, SaysWhatSolvingTook) {

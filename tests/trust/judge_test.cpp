@@ -37,6 +37,27 @@ TEST(Judge, IsGoodWhereEverythingIsAsItWasSaid) {
   expect(Judged().judgement(), Grade::good, "");
 }
 
+TEST(Judge, HasCausesBeforeWhatTheyExplain) {
+  Judgement judgement;
+  judgement.add(Grade::use_with_care, "large residuals");
+  judgement.add_causes(Grade::use_with_care, {"backlash"});
+  judgement.add(Grade::do_not_use, "huge residuals");
+  judgement.add_causes(Grade::do_not_use, {"degrees", "a sign"});
+  EXPECT_THAT(judgement.reasons, testing::ElementsAre("degrees", "a sign", "backlash",
+                                                      "huge residuals", "large residuals"));
+  EXPECT_EQ(judgement.causes, 3);
+  EXPECT_EQ(judgement.verdict, Grade::do_not_use);
+}
+
+TEST(Judge, NamesTheWorstOfManyChanges) {
+  Judged judged;
+  for (const char* name : {"elbow", "wrist", "head_tilt"}) judged.set(name, 0.5);
+  judged.set("shoulder_lift", 0.7);
+  const Judgement judgement = judged.judgement();
+  expect(judgement, Grade::use_with_care, "'shoulder_lift' changed by 40.1 deg, and 3 more");
+  EXPECT_EQ(judgement.reasons.size(), 1u);
+}
+
 TEST(Judge, RefusesWhatDidNotConverge) {
   Judged judged;
   judged.scene.result.converged = false;
