@@ -15,10 +15,16 @@ namespace kinecal {
 
 namespace detail {
 
-[[nodiscard]] inline std::string verdict_text(const Findings& findings) {
+/// Causes, and the gravest of the other reasons; all of them with raw figures.
+[[nodiscard]] inline std::string verdict_text(const Findings& findings, Figures figures) {
+  constexpr std::size_t kOthers = 4;
   const Judgement& judgement = findings.judgement;
+  const std::size_t all = judgement.reasons.size();
+  std::size_t shown = static_cast<std::size_t>(judgement.causes) + kOthers;
+  if (figures == Figures::raw || all <= shown + 1) shown = all;
   std::string text = fmt::format("verdict: {}\n", to_string(judgement.verdict));
-  for (const std::string& reason : judgement.reasons) text += fmt::format("  - {}\n", reason);
+  for (std::size_t i = 0; i < shown; ++i) text += fmt::format("  - {}\n", judgement.reasons[i]);
+  if (shown < all) text += fmt::format("  - and {} more, see --verbose\n", all - shown);
   return text;
 }
 
@@ -126,7 +132,7 @@ Findings findings_of(const Robot& robot, const Calibration& calibration, JudgedR
 }
 
 std::string findings_text(const Findings& findings, Figures figures) {
-  std::string text = detail::verdict_text(findings);
+  std::string text = detail::verdict_text(findings, figures);
   std::int64_t samples = std::ssize(findings.sources);  // none are kept of samples in shards
   if (samples == 0 && !findings.result.steps.empty()) samples = findings.result.steps[0].samples;
   text +=
