@@ -69,6 +69,7 @@ std::vector<CapturePose> read_poses(const std::string& path, const CaptureConfig
 SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobot& hardware) {
   AnyCamera& camera = hardware.cameras.at(finder.name);
   const FinderSettings settings = on_robot(finder, robot);
+  const auto fault = [settings](const View& view) { return unusable(settings, view); };
   if (const auto* leds = std::get_if<LedFinder>(&settings)) {
     const auto lamp = hardware.lamps.find(finder.name);
     if (lamp == hardware.lamps.end()) {
@@ -78,9 +79,10 @@ SessionFinder finder_of(const CaptureFinder& finder, const Robot& robot, AnyRobo
     return {finder.name, camera.viewer,
             [leds = *leds, &camera, &lamp = lamp->second](const View& still) {
               return find_leds(leds, camera, lamp, still.stamp, still.joints);
-            }};
+            },
+            fault};
   }
-  return {finder.name, camera.viewer, view_finder(finder, settings).find};
+  return {finder.name, camera.viewer, view_finder(finder, settings).find, fault};
 }
 
 /// Follows the session and says when it is enough.
@@ -152,8 +154,9 @@ class Follower {
 
 /// Prints what became of a pose on one line.
 /// @param left  of the session: "; 6 min left"
+/// @param said  notes of finders that have been printed
 void print_pose(std::size_t number, std::size_t count, const CapturedPose& captured,
-                const std::string& left) {
+                const std::string& left, std::set<std::string>& said) {
   std::string text;
   for (const FinderOutcome& outcome : captured.outcomes) {
     const Found& found = outcome.found;
@@ -162,6 +165,9 @@ void print_pose(std::size_t number, std::size_t count, const CapturedPose& captu
                                 counted(found.observations.front().features.size(), "feature"))
                   : fmt::format("{}: nothing, {}", outcome.finder, found.refusal);
     if (found && !found.refusal.empty()) text += " (" + found.refusal + ")";
+    for (const std::string& note : found.notes) {
+      if (found && said.insert(note).second) text += " (note: " + note + ")";
+    }
   }
   if (!captured.failure.empty()) text = "skipped: " + captured.failure;
   const std::string of = count > 0 ? fmt::format(" of {}", count) : "";
@@ -249,6 +255,7 @@ struct Session {
   Stamp spent{};                           ///< on the robot's clock, for `timed` of these poses
   std::size_t timed = 0;                   ///< poses that were not skipped
   std::vector<Thumbnail> thumbnails = {};  ///< of what finders looked at
+  std::set<std::string> said = {};         ///< notes of finders
 
   /// Prints, writes and follows what came of a pose.
   void take(CapturedPose captured) {
@@ -262,7 +269,7 @@ struct Session {
     spent += captured.duration;
     timed += captured.duration > Stamp::zero() ? 1 : 0;
     ++done;
-    print_pose(done, poses.size(), captured, time_left());
+    print_pose(done, poses.size(), captured, time_left(), said);
     add_thumbnails(captured);
     if (captured.samples.empty()) return;
     samples.insert(samples.end(), captured.samples.begin(), captured.samples.end());
@@ -306,11 +313,12 @@ struct Session {
   }
 
   /// Runs until the last pose, Ctrl-C or the accuracy.
-  /// @returns  why the robot cannot be reached any more; empty if it can
+  /// @returns  why the session ended before; empty if it did not
   [[nodiscard]] std::string run(const CaptureConfig& config) {
     const Interruption interruption;
     AnyRobot hardware = connect(options.robot, config, robot, velocity_limits(urdf, options.urdf),
-                                options.manual ? MovedBy::person : MovedBy::controllers);
+                                options.manual ? MovedBy::person : MovedBy::controllers,
+                                {options.joints, options.depth});
     std::vector<SessionFinder> finders;
     for (const CaptureFinder& finder : config.finders) {
       finders.push_back(finder_of(finder, robot, hardware));
@@ -322,11 +330,14 @@ struct Session {
     };
     SessionOptions session;
     session.velocity_factor = options.velocity;
+    if (options.manual) session.hopeless = 0;  // a person reads why, and may try on
     std::string lost;
     try {
       run_session(
           hardware.arm, next, finders, [&](const CapturedPose& pose) { take(pose); }, session);
     } catch (const ConnectionError& error) {
+      lost = error.what();
+    } catch (const HopelessError& error) {
       lost = error.what();
     }
     return lost;

@@ -212,7 +212,8 @@ int capture_poses(const CapturePosesOptions& options) {
   CaptureConfig joints_only = config;
   joints_only.finders.clear();
   const Interruption interruption;
-  AnyRobot hardware = connect(options.robot, joints_only, robot, {}, MovedBy::person);
+  AnyRobot hardware =
+      connect(options.robot, joints_only, robot, {}, MovedBy::person, {options.joints, ""});
   PoseRecorder recorder(hardware.arm, config, robot, options.output, std::move(before));
   std::string lost;
   try {

@@ -70,6 +70,8 @@ int inspect(const std::vector<std::string>& samples);
 
 struct InitOptions {
   std::string urdf, output = "calibrate.yaml";
+  std::string capture;            ///< file; empty: capture.yaml beside the output
+  std::vector<std::string> from;  ///< samples that give the answers; empty: ask
   std::string base, arm, camera, camera_type, camera_name;  ///< empty: ask, or propose
   std::string target_frame, tracker_frame;                  ///< the same
   std::vector<std::string> targets;
@@ -223,6 +225,8 @@ int plan(const PlanOptions& options);
 struct CaptureOptions {
   std::string config;       ///< capture.yaml
   std::string urdf, robot;  ///< file; address
+  std::string joints;       ///< topic of joint states; empty: /joint_states
+  std::string depth;        ///< topic of depth images; empty: clouds
   std::string poses;        ///< file
   std::string output;       ///< file of samples
   std::string calibrate;    ///< configuration of a calibration that follows; empty: none
@@ -242,6 +246,7 @@ int capture(const CaptureOptions& options);
 struct CapturePosesOptions {
   std::string config;       ///< capture.yaml
   std::string urdf, robot;  ///< file; address
+  std::string joints;       ///< topic of joint states; empty: /joint_states
   std::string output;       ///< file of poses
   bool resume = false;      ///< go on with the poses of the output
   bool force = false;       ///< replace it

@@ -237,6 +237,8 @@ int detect(const DetectOptions& options) {
     ProgressLine line;
     found = detect_all(task, {options.threads, !options.sheet.empty(), line.meter()}, turns);
   }
+  // First: who reads only the first lines of what is printed gets the file as well.
+  if (!found.samples.empty()) write(options, found.samples);
   print_refusals(found.looks);
   print(turns);
   const std::size_t count = found.looks.size();
@@ -253,7 +255,6 @@ int detect(const DetectOptions& options) {
                options.output);
     return kBadInput;
   }
-  write(options, samples);
   fmt::print("wrote {}: {} of {}: {}; {} refused{}\n", options.output, found.used, seen,
              counted(found.features, "feature"), count - found.used,
              printable(count_of_targets(samples)));

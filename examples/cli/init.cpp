@@ -3,15 +3,23 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <utility>
 
 #include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/nearest_name.hpp"
+#include "kinecal/text/printable.hpp"
+#include "kinecal/tools/init/answers_from_samples.hpp"
+#include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
+#include "kinecal/tools/init/possible_targets.hpp"
 #include "output_file.hpp"
 #include "question.hpp"
+#include "report.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -31,15 +39,15 @@ std::string ask_link(const Robot& robot, const Question& question) {
   });
 }
 
-/// @param has_camera  whether the robot seems to have one
-std::string check_target(const std::string& word, bool has_camera = true) {
+/// Why a word is not a target of this robot; empty if it is.
+std::string check_target(const Robot& robot, const InitOptions& options, const std::string& word) {
   if (const auto target = init_target(word)) {
-    if (has_camera || !needs_camera(*target)) return "";
-    return "no link of the URDF looks like a camera; add it to the URDF, or give --camera LINK";
+    return why_no_target(robot, target->target, options.arm, options.camera);
   }
   std::vector<std::string_view> words;
   for (const InitTargetWord& known : kInitTargets) words.push_back(known.word);
-  return fmt::format("'{}' is not a target{}", word, did_you_mean(word, words));
+  return fmt::format("'{}' is not a target{}; choose one of {}", word, did_you_mean(word, words),
+                     init_target_words());
 }
 
 /// Asks for the targets that this robot can have.
@@ -48,12 +56,14 @@ void ask_targets(const Robot& robot, InitOptions& options) {
   const bool has_camera = !options.camera.empty() || !propose_cameras(robot).empty();
   Question question{"--target", "What is the robot measured against?", {}};
   for (const InitTargetWord& known : kInitTargets) {
-    if (!has_camera && needs_camera(known.target)) continue;
-    question.choices.push_back({std::string(known.word), std::string(known.says)});
+    const std::string word(known.word);
+    if (!check_target(robot, options, word).empty()) continue;
+    question.choices.push_back({word, std::string(known.says)});
   }
   if (!has_camera) fmt::print("No link of the URDF looks like a camera.\n");
-  words = {ask(question, [&](const std::string& word) { return check_target(word, has_camera); })};
-  const InitTarget target = *init_target(words.front());
+  words = {
+      ask(question, [&](const std::string& word) { return check_target(robot, options, word); })};
+  const InitTarget target = init_target(words.front())->target;
   if (!needs_camera(target) || target == InitTarget::ground || !on_a_terminal() ||
       options.camera_type == "camera2d") {
     return;
@@ -72,32 +82,35 @@ void answer_targets(const Robot& robot, InitOptions& options, InitAnswers& answe
   const std::vector<std::string>& words = options.targets;
   bool is_chosen = false;
   for (const std::string& word : words) {
-    if (const std::string why = check_target(word); !why.empty()) {
-      throw InputError("--target: " + why);
-    }
-    const InitTarget target = *init_target(word);
-    if (target == InitTarget::ground) {
+    const auto known = init_target(word);
+    if (!known) throw InputError("--target: " + check_target(robot, options, word));
+    if (known->target == InitTarget::ground) {
       answers.with_ground = true;
-    } else if (is_chosen && target != answers.target) {
+    } else if (is_chosen && (known->target != answers.target || known->board != answers.board)) {
       throw InputError(
           fmt::format("--target: {} and {} do not go into one configuration; only ground can be "
                       "combined with another target",
-                      to_string(answers.target), word));
+                      to_string(answers.target, answers.board), word));
     } else {
-      answers.target = target;
+      answers.target = known->target;
+      answers.board = known->board;
       is_chosen = true;
     }
   }
-  if (is_chosen) return;
-  answers.target = InitTarget::ground;
-  answers.with_ground = false;
+  if (!is_chosen) {
+    answers.target = InitTarget::ground;
+    answers.with_ground = false;
+  }
+  // Before further questions, so that no answers are lost.
+  const std::string why = why_no_target(robot, answers.target, options.arm, options.camera);
+  if (!why.empty()) throw InputError(why);
 }
 
 void answer_camera(const Robot& robot, InitOptions& options, InitAnswers& answers) {
   if (answers.camera.empty()) {
     answers.camera = options.camera =
         ask_link(robot, {"--camera", "Which link is the camera's optical frame (z ahead, y down)?",
-                         choices(propose_cameras(robot))});
+                         choices(cameras_for(robot, answers.target, answers.arm))});
   }
   const bool floor = answers.with_ground || answers.target == InitTarget::ground;
   if (options.camera_type.empty() && on_a_terminal() && !floor) {
@@ -198,10 +211,10 @@ void check_given(const Robot& robot, const InitOptions& options) {
 }
 
 /// Warns of options that the target does not use.
-void warn_of_idle(const InitOptions& options, InitTarget target) {
+void warn_of_idle(const InitOptions& options, InitTarget target, std::string_view word) {
   const auto warn = [&](bool is_used, const std::string& given, const char* option) {
     if (is_used || given.empty()) return;
-    fmt::print(stderr, "warning: {} is not used with target {}\n", option, to_string(target));
+    fmt::print(stderr, "warning: {} is not used with target {}\n", option, word);
   };
   warn(needs_arm(target), options.arm, "--arm");
   warn(needs_camera(target), options.camera, "--camera");
@@ -209,6 +222,31 @@ void warn_of_idle(const InitOptions& options, InitTarget target) {
   warn(needs_camera(target), options.camera_name, "--robot-camera-name");
   warn(needs_target_frame(target), options.target_frame, "--target-frame");
   warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
+}
+
+/// The answers that samples give, without questions; prints them.
+InitAnswers answer_from_samples(const Robot& robot, const InitOptions& options) {
+  check_given(robot, options);
+  Diagnostics diagnostics;
+  const Recording recording = read_recordings(options.from, diagnostics);
+  print_or_throw(diagnostics);
+  InitAnswers given;
+  given.base = options.base;
+  given.arm = options.arm;
+  given.camera = options.camera;
+  given.tracker_frame = options.tracker_frame;
+  set_target_frames(options.target_frame, given);
+  const InitAnswers found = answers_from_samples(robot, recording.samples, std::move(given));
+  std::string text = fmt::format("from the samples: target {}", to_string(found.target));
+  if (found.with_ground) text += ",ground";
+  if (needs_arm(found.target)) text += fmt::format("; arm {}", found.arm);
+  if (needs_camera(found.target)) {
+    text += fmt::format("; camera {} ('{}', {})", found.camera, found.camera_name,
+                        found.camera_type == "camera2d" ? "pixels" : "points");
+  }
+  if (!found.target_frame.empty()) text += fmt::format("; frame '{}'", found.target_frame);
+  fmt::print("{}\n", printable(text));
+  return found;
 }
 
 /// @param options  receives the answers, so that they can be given as options
@@ -219,7 +257,7 @@ InitAnswers answer(const Robot& robot, InitOptions& options) {
   answers.arm = options.arm;
   answers.camera = options.camera;
   answer_targets(robot, options, answers);
-  warn_of_idle(options, answers.target);
+  warn_of_idle(options, answers.target, to_string(answers.target, answers.board));
   if (needs_arm(answers.target) && answers.arm.empty()) {
     answers.arm = options.arm =
         ask_link(robot, {"--arm", "Which link is at the end of the arm, with the target?",
@@ -253,11 +291,18 @@ std::string call_of(const InitOptions& options) {
   return call;
 }
 
-/// The configuration; after questions, an error comes with the call that gives their answers.
-std::string configure(const Robot& robot, InitOptions options) {
+/// The answers; after questions, an error comes with the call that gives them.
+struct Configured {
+  InitAnswers answers;
+  std::string text;  ///< of the configuration
+};
+Configured configure(const Robot& robot, InitOptions options) {
   const InitOptions given = options;
   try {
-    return initial_config(robot, answer(robot, options));
+    Configured all{
+        options.from.empty() ? answer(robot, options) : answer_from_samples(robot, options), ""};
+    all.text = initial_config(robot, all.answers);
+    return all;
   } catch (const InputError& error) {
     const std::string call = call_of(options);
     if (!on_a_terminal() || call == call_of(given)) throw;
@@ -265,23 +310,61 @@ std::string configure(const Robot& robot, InitOptions options) {
   }
 }
 
+/// The capture.yaml beside the configuration, unless it is given.
+std::string capture_file(const InitOptions& options) {
+  if (!options.capture.empty()) return options.capture;
+  return (std::filesystem::path(options.output).parent_path() / "capture.yaml").string();
+}
+
+/// Whether a file is one that a session or somebody has written; not init.
+bool is_of_others(const std::string& path) {
+  if (!std::filesystem::exists(path)) return false;
+  return !detail::read_text_file(path).starts_with(kInitialCaptureMark);
+}
+
+/// Writes the capture.yaml that goes with a configuration; keeps one that init has not written.
+void write_capture(const Robot& robot, const InitAnswers& answers, const InitOptions& options) {
+  const std::string text = initial_capture(robot, answers), file = capture_file(options);
+  if (text.empty()) return;
+  const bool is_asked_for = !options.capture.empty() && options.force;
+  if (!is_asked_for && (is_of_others(file) || (std::filesystem::exists(file) && !options.force))) {
+    fmt::print("note: {} is there and is kept; with this configuration, it needs\n  {}\n", file,
+               capture_names(robot, answers));
+    return;
+  }
+  write_file(file, text);
+  fmt::print("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", file);
+}
+
 }  // namespace
 
 int init(const InitOptions& options) {
   const auto check = [&] { check_output(options.output, {options.urdf}, options.force); };
   check();  // before any question
+  if (!options.capture.empty()) {
+    check_output(options.capture, {options.urdf, options.output}, options.force);
+  }
   const Robot robot = read_urdf(options.urdf);
-  const std::string text = configure(robot, options);
+  const Configured made = configure(robot, options);
   check();  // the file may have appeared meanwhile
-  write_file(options.output, text);
-  if (text.find("sigma: ") != std::string::npos) {
+  write_file(options.output, made.text);
+  if (made.text.find("sigma: ") != std::string::npos) {
     fmt::print(
         "note: each sigma in {} is a guess of a residual, errors of the robot included; replace "
         "it\n  by the noise that kinecal calibrate reports, or remove it\n",
         options.output);
   }
-  fmt::print("wrote {}\nnext: kinecal check --urdf {} --config {}\n", options.output,
-             as_word(options.urdf), as_word(options.output));
+  fmt::print("wrote {}\n", options.output);
+  if (options.from.empty()) write_capture(robot, made.answers, options);
+  const std::string files =
+      fmt::format("--urdf {} --config {}", as_word(options.urdf), as_word(options.output));
+  if (options.from.empty()) {
+    fmt::print("next: kinecal check {}\n", files);
+  } else {
+    std::string samples;
+    for (const std::string& file : options.from) samples += " --samples " + as_word(file);
+    fmt::print("next: kinecal calibrate {}{} --output calibrated\n", files, samples);
+  }
   return kDone;
 }
 

@@ -182,12 +182,24 @@ void add_init(CLI::App& command, InitOptions& options) {
   command.add_option("--output", options.output, "the configuration to write")
       ->type_name("FILE")
       ->capture_default_str();
+  CLI::Option* from =
+      command
+          .add_option("--from", options.from,
+                      "recorded samples: target, camera and names are theirs, nothing is asked")
+          ->type_name("FILE");
+  command
+      .add_option("--capture", options.capture,
+                  "the capture.yaml to write, with the same names; default: beside the output, if "
+                  "there is none")
+      ->type_name("FILE");
   command
       .add_option(
           "--target", options.targets,
-          "what the robot is measured against: leds, checkerboard (in the gripper), "
-          "world_checkerboard, tracker or ground; ground also goes with another: leds,ground")
+          "what the robot is measured against: leds; checkerboard, apriltag or charuco (in the "
+          "gripper); world_checkerboard, world_apriltag or world_charuco; tracker; ground, which "
+          "also goes with another: leds,ground")
       ->delimiter(',')
+      ->excludes(from)
       ->type_name("TARGET");
   command
       .add_option(
@@ -479,6 +491,10 @@ void add_robot(CLI::App& command, Options& options) {
       ->required()
       ->type_name("ADDRESS");
   command.add_option("--urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+  command
+      .add_option("--joint-states", options.joints,
+                  "topic of the joint states behind a bridge; default: /joint_states")
+      ->type_name("TOPIC");
 }
 
 void add_capture_poses(CLI::App& command, CapturePosesOptions& options) {
@@ -508,6 +524,13 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
                   "the samples, written after each pose: .yaml, .bag (ROS 1) or .mcap")
       ->required()
       ->type_name("FILE");
+  command
+      .add_option(
+          "--depth", options.depth,
+          "topic of depth images behind a bridge, registered to the images of capture.yaml's "
+          "topics; default: these topics are clouds")
+      ->check(kNotEmpty)
+      ->type_name("TOPIC");
   command.add_option("--velocity", options.velocity, "speed, as a fraction of normal")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();

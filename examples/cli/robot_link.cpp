@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_link.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -10,6 +12,7 @@
 #include "interruption.hpp"
 #include "kinecal/robots/pipe_robot.hpp"
 #include "kinecal/robots/ros_robot.hpp"
+#include "kinecal/text/printable.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
 
 namespace kinecal::cli {
@@ -41,7 +44,8 @@ AnyRobot simulated(const std::string& scene, const CaptureConfig& config, const 
 
 /// What is behind a bridge.
 struct RosParts {
-  explicit RosParts(const std::string& url) : bridge({.url = url}) {}
+  RosParts(const std::string& url, const std::string& joints)
+      : bridge({.url = url}, joints.empty() ? "/joint_states" : joints) {}
 
   RosBridge bridge;
   std::unique_ptr<RosArm> arm = {};
@@ -49,9 +53,24 @@ struct RosParts {
   std::vector<std::unique_ptr<RosLamp>> lamps = {};
 };
 
+/// Topics of a finder's camera.
+RosCameraOptions camera_topics(const CaptureFinder& finder, const std::string& depth) {
+  RosCameraOptions options;
+  options.camera_info = finder.camera_info;
+  if (finder.type.ends_with("2d")) {
+    options.image = finder.topic;
+  } else if (depth.empty()) {
+    options.cloud = finder.topic;
+  } else {
+    options.depth = depth;
+    if (finder.type != "PlaneFinder" && finder.type != "RobotFinder") options.image = finder.topic;
+  }
+  return options;
+}
+
 AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, const Limits& limits,
-                       MovedBy mover) {
-  auto parts = std::make_shared<RosParts>(url);
+                       MovedBy mover, const LinkTopics& topics) {
+  auto parts = std::make_shared<RosParts>(url, topics.joints);
   RosArmOptions arm;
   arm.duration = config.duration;
   constexpr double kPeak = 15.0 / 8.0;  // of a spline from rest to rest, times its mean velocity
@@ -68,10 +87,8 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
   parts->arm = std::make_unique<RosArm>(parts->bridge, arm);
   AnyRobot any{any_arm(*parts->arm), {}, {}};
   for (const CaptureFinder& finder : config.finders) {
-    RosCameraOptions options;
-    (finder.type.ends_with("2d") ? options.image : options.cloud) = finder.topic;
-    options.camera_info = finder.camera_info;
-    parts->cameras.push_back(std::make_unique<RosCamera>(parts->bridge, options));
+    parts->cameras.push_back(
+        std::make_unique<RosCamera>(parts->bridge, camera_topics(finder, topics.depth)));
     any.cameras[finder.name] = any_camera(*parts->cameras.back());
     if (finder.action.empty()) continue;
     parts->lamps.push_back(std::make_unique<RosLamp>(parts->bridge, finder.action));
@@ -84,17 +101,25 @@ AnyRobot behind_bridge(const std::string& url, const CaptureConfig& config, cons
 }  // namespace
 
 AnyRobot connect(const std::string& address, const CaptureConfig& config, const Robot& robot,
-                 const Limits& limits, MovedBy mover) {
+                 const Limits& limits, MovedBy mover, const LinkTopics& topics) {
   const auto after = [&](std::string_view scheme) { return address.substr(scheme.size()); };
-  if (address.starts_with("ws://")) return behind_bridge(address, config, limits, mover);
+  if (address.starts_with("ws://")) return behind_bridge(address, config, limits, mover, topics);
+  if (!topics.joints.empty() || !topics.depth.empty()) {
+    throw InputError("--joint-states and --depth name topics of a bridge; " + address +
+                     " has no topics");
+  }
   if (address.starts_with("pipe:")) {
     if (after("pipe:").find_first_not_of(' ') == std::string::npos) {
       throw InputError("--robot: '" + address + "' has no command; write pipe:COMMAND");
     }
-    return whole_robot(
-        std::make_shared<PipeRobot>(PipeOptions{
-            .command = after("pipe:"), .interrupted = [] { return Interruption::is_asked(); }}),
-        config);
+    return whole_robot(std::make_shared<PipeRobot>(
+                           PipeOptions{.command = after("pipe:"),
+                                       .interrupted = [] { return Interruption::is_asked(); },
+                                       .slow =
+                                           [](const std::string& what) {
+                                             fmt::print(stderr, "note: {}\n", printable(what));
+                                           }}),
+                       config);
   }
   if (address.starts_with(kSimulated)) return simulated(after(kSimulated), config, robot, limits);
   throw InputError("--robot: '" + address +

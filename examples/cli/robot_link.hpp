@@ -17,6 +17,12 @@ inline constexpr std::string_view kSimulated = "simulated:";
 /// Who moves a robot.  If a person does, nothing is sent to its controllers, and they need not run.
 enum class MovedBy { controllers, person };
 
+/// Topics behind a bridge that capture.yaml does not name.
+struct LinkTopics {
+  std::string joints = {};  ///< of joint states; empty: /joint_states
+  std::string depth = {};   ///< of depth images; empty: finders of points have clouds
+};
+
 /// Connects to a robot.
 ///   ws://HOST:PORT    ROS 1 or ROS 2 behind foxglove_bridge
 ///   pipe:COMMAND      a program that speaks JSON lines: examples/pipe_robot
@@ -27,6 +33,6 @@ enum class MovedBy { controllers, person };
 /// @throws ConnectionError  if the robot cannot be reached
 [[nodiscard]] AnyRobot connect(const std::string& address, const CaptureConfig& config,
                                const Robot& robot, const std::map<std::string, double>& limits,
-                               MovedBy mover = MovedBy::controllers);
+                               MovedBy mover = MovedBy::controllers, const LinkTopics& topics = {});
 
 }  // namespace kinecal::cli

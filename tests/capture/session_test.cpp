@@ -180,14 +180,52 @@ TEST(Session, AStreamThatDeliversBetweenItsSilencesOnlySkipsPoses) {
   EXPECT_EQ(poses_with_silences({std::nullopt, std::nullopt}), 4u);
 }
 
-TEST(Session, ARobotThatFailsInEachPoseSkipsAll) {
+/// Why a session ends without hope; empty if it does not.
+std::string hopeless(ToySession& session, const std::vector<CapturePose>& poses) {
+  try {
+    session.run(poses);
+  } catch (const HopelessError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Session, EndsWhenThreePosesFailAlikeAndNothingWasFound) {
   ToySession session;
   session.arm.stuck = "tilt";
   std::vector<CapturePose> poses = five_poses();
   poses.erase(poses.begin());
-  session.run(poses);
-  EXPECT_EQ(session.captured.size(), 4u);
+  EXPECT_THAT(hopeless(session, poses), AllOf(HasSubstr("the same in 3 poses in a row"),
+                                              HasSubstr("joint 'tilt' did not arrive")));
+  EXPECT_EQ(session.captured.size(), 3u);
   EXPECT_TRUE(session.samples.empty());
+}
+
+TEST(Session, GoesOnOnceSomethingWasFound) {
+  ToySession session;
+  int views = 0;
+  session.finders.front().find = [&](const View& view) {
+    return ++views == 1 ? ToyFinder{}.find(view) : refused("no board");
+  };
+  EXPECT_EQ(hopeless(session, five_poses()), "");
+  EXPECT_EQ(session.captured.size(), 5u);
+}
+
+TEST(Session, LooksBeforeItMoves) {
+  ToySession session;
+  EXPECT_THAT(hopeless(session, {{{"pan", "titl"}, {0.1, 0.2}, {}}}),
+              AllOf(HasSubstr("joint 'titl' of the poses is not measured; did you mean 'tilt'?"),
+                    HasSubstr("the robot has not moved")));
+  session.finders.front().fault = [](const View&) { return std::string("no camera_info"); };
+  EXPECT_THAT(hopeless(session, five_poses()), HasSubstr("square: no camera_info"));
+  session.finders.front().fault = {};
+  session.finders.front().next_view = [&](Stamp after) {
+    View view = session.camera.next_view(after);
+    view.stamp += std::chrono::seconds(100);
+    return view;
+  };
+  EXPECT_THAT(hopeless(session, five_poses()), HasSubstr("camera's stamps are"));
+  EXPECT_TRUE(session.captured.empty());
 }
 
 }  // namespace

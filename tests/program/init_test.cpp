@@ -92,8 +92,8 @@ TEST_F(Init, NamesTheOptionWhereNobodyCanBeAsked) {
   EXPECT_THAT(arm.err, AllOf(HasSubstr("--arm is required"), HasSubstr("gripper_led_frame")));
   const Outcome camera = init("ur5e", "--target leds");
   EXPECT_EQ(camera.code, 1);
-  EXPECT_THAT(camera.err,
-              HasSubstr("--camera is required, because the input is not a terminal; no link of"));
+  EXPECT_THAT(camera.err, HasSubstr("--target: no link of the URDF looks like a camera; add it to "
+                                    "the URDF, or give --camera LINK"));
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
 }
 
@@ -106,6 +106,9 @@ TEST_F(Init, ReportsAWrongAnswerAndTheNearestName) {
   EXPECT_EQ(target.code, 1);
   EXPECT_THAT(target.err,
               AllOf(HasSubstr("--target: 'trackr'"), HasSubstr("did you mean 'tracker'?")));
+  EXPECT_THAT(init("fetch", "--target '?'").err,
+              HasSubstr("'?' is not a target; choose one of leds, checkerboard, apriltag, charuco, "
+                        "world_checkerboard, world_apriltag, world_charuco, tracker, ground"));
   EXPECT_EQ(init("fetch", "--target leds,tracker").code, 1);
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
 }
@@ -196,20 +199,47 @@ TEST_F(Init, ProposesNoTargetOfACameraWhereThereIsNone) {
   EXPECT_THAT(silent.out, HasSubstr("--target tracker (the only one)"));
 }
 
-TEST_F(Init, EndsWhereAQuestionHasNoProposalAndNoAnswer) {
-  const Outcome asked = type("ur5e", "--target leds --arm tool0", "\n");
-  EXPECT_EQ(asked.code, 1) << asked.out;
-  EXPECT_THAT(asked.out, AllOf(HasSubstr("--camera: not answered, and the URDF suggests nothing")));
+TEST_F(Init, RefusesBeforeItAsks) {
+  // The camera of the Panda is on its hand, so it cannot see LEDs on it from elsewhere.
+  const Outcome leds = type("panda", "--target leds", "");
+  EXPECT_EQ(leds.code, 1) << leds.out;
+  EXPECT_THAT(leds.out, AllOf(HasSubstr("moves with the arm and sees the same in every pose"),
+                              HasSubstr("world_apriltag"), Not(HasSubstr("Which link"))));
+  const Outcome camera = type("ur5e", "--target leds --arm tool0", "");
+  EXPECT_EQ(camera.code, 1) << camera.out;
+  EXPECT_THAT(camera.out, AllOf(HasSubstr("no link of the URDF looks like a camera"),
+                                Not(HasSubstr("Which link"))));
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
 }
 
+TEST_F(Init, WritesTheCaptureThatGoesWithItsConfiguration) {
+  const std::string options =
+      "--target apriltag --arm gripper_link --camera head_camera_rgb_optical_frame --camera-type "
+      "camera2d";
+  const Outcome made = init("fetch", options);
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("wrote capture.yaml\n  fill in what is zero"));
+  EXPECT_THAT(read("calibrate.yaml"), HasSubstr("{name: apriltag_grid, x: true"));
+  EXPECT_THAT(read("capture.yaml"),
+              AllOf(HasSubstr("AprilTagFinder2d"), HasSubstr("chain_sensor_name: arm"),
+                    HasSubstr("frame_id: apriltag_grid"), HasSubstr("camera_sensor_name: camera")));
+  write("capture.yaml", "features: mine\n");
+  const Outcome again = init("fetch", options + " --force");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("capture.yaml is there and is kept; with this configuration, it "
+                                   "needs\n  camera_sensor_name: camera, chain_sensor_name: arm"));
+  EXPECT_EQ(read("capture.yaml"), "features: mine\n");
+  EXPECT_EQ(init("fetch", options + " --output other.yaml --capture c2.yaml").code, 0);
+  EXPECT_THAT(read("c2.yaml"), HasSubstr("apriltag_grid"));
+}
+
 TEST_F(Init, KeepsTheAnswersWhenAnErrorFollowsThem) {
-  // The camera of the Panda is on its hand, so it cannot see LEDs on it from elsewhere.
-  const Outcome asked = type("panda", "", "1\n\npanda_hand\n\n\neye\n\n");
+  const Outcome asked = type("panda", "", "1\n\n\n\neye\n\npanda_hand\n");
   EXPECT_EQ(asked.code, 1) << asked.out;
-  const std::string call = "kinecal init --urdf " + urdf("panda") +
-                           " --target leds --arm panda_hand --camera camera_color_optical_frame "
-                           "--camera-type camera3d --robot-camera-name eye --base panda_link0";
+  const std::string call =
+      "kinecal init --urdf " + urdf("panda") +
+      " --target world_checkerboard --camera camera_color_optical_frame --camera-type camera3d "
+      "--robot-camera-name eye --target-frame checkerboard --base panda_hand";
   EXPECT_THAT(asked.out,
               AllOf(HasSubstr("error: --camera: "), HasSubstr("to keep your answers: " + call)));
 }
@@ -242,6 +272,61 @@ TEST_F(Init, WritesNothingWhereTheAnswersEnd) {
   EXPECT_EQ(left.code, 1) << left.out;
   EXPECT_THAT(left.out, HasSubstr("not answered; nothing is written"));
   EXPECT_FALSE(fs::exists(folder_ / "calibrate.yaml"));
+}
+
+TEST_F(Init, NeedsNoQuestionsWithSamples) {
+  KINECAL_NEEDS_DATA("ur5_tracker");
+  KINECAL_NEEDS_DATA("fetch/synth");
+  struct Set {
+    std::string urdf, samples, options, says;
+  };
+  const Set sets[] = {
+      {"ur5_tracker/ur5.urdf", "ur5_tracker/grid.yaml", "--target tracker", "target tracker; arm"},
+      {"fetch/synth/fetch_arm_head.urdf", "fetch/synth/samples.yaml",
+       "--target leds --arm wrist_roll_link --camera head_camera_rgb_optical_frame",
+       "target leds; arm wrist_roll_link; camera head_camera_rgb_optical_frame ('camera', "
+       "points)"}};
+  for (const Set& set : sets) {
+    const std::string call = test::kinecal_program() + " init --force --urdf " +
+                             (test::data_folder() / set.urdf).string() + " ";
+    ASSERT_EQ(run(call + set.options + " --output asked.yaml < /dev/null").code, 0);
+    const Outcome made = run(call + "--from " + (test::data_folder() / set.samples).string() +
+                             " --output from.yaml < /dev/null");
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_THAT(made.out, AllOf(HasSubstr("from the samples: " + set.says),
+                                HasSubstr("next: kinecal calibrate --urdf ")));
+    EXPECT_EQ(read("from.yaml"), read("asked.yaml"));
+  }
+}
+
+TEST_F(Init, SeesFromSamplesWhetherTheHandHoldsTheBoard) {
+  const std::string mobile =
+      test::source_folder() + "/examples/mobile_manipulator/mobile_manipulator.urdf";
+  for (const std::string& robot : {mobile, urdf("panda")}) {
+    const std::string call = test::kinecal_program() + " ";
+    ASSERT_EQ(run(call + "simulate " + robot + " --target apriltag --poses 12 -o sim --force").code,
+              0);
+    const YAML::Node config = YAML::LoadFile((folder_ / "sim/calibrate.yaml").string());
+    const auto camera = config["models"][1]["frame"].as<std::string>();
+    const Outcome seen =
+        run(call +
+            "detect sim/capture.yaml --images sim/images --poses sim/poses.csv --camera "
+            "sim/camera.yaml --frame " +
+            camera + " -o samples.yaml --force");
+    if (seen.err.find("libapriltag") != std::string::npos) GTEST_SKIP() << seen.err;
+    ASSERT_EQ(seen.code, 0) << seen.err;
+    const Outcome made =
+        run(call + "init --force --urdf sim/robot.urdf --from samples.yaml < /dev/null");
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_THAT(made.out, HasSubstr(robot == mobile ? "target checkerboard; arm gripper_link"
+                                                    : "target world_checkerboard; camera"));
+    const Outcome done = run(call +
+                             "calibrate --force --urdf sim/robot.urdf --config "
+                             "calibrate.yaml --samples samples.yaml --output out");
+    EXPECT_NE(done.code, 1) << done.err;
+    const YAML::Node report = YAML::LoadFile((folder_ / "out/report.json").string());
+    EXPECT_LT(report["error_blocks"][0]["after"]["rms"].as<double>(), 0.3) << "pixels";
+  }
 }
 
 /// What init writes of a real robot calibrates it as far as its parameters can: the figures are

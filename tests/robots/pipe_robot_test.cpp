@@ -184,6 +184,18 @@ TEST(PipeRobot, AnAnswerThatComesTooLateIsNotTheNextOne) {
   EXPECT_EQ(robot.light(2), Stamp(2));
 }
 
+TEST(PipeRobot, AProgramThatHangsIsNamedBeforeItIsGivenUp) {
+  std::vector<std::string> said;
+  PipeOptions options{"sleep 60", std::chrono::milliseconds(200)};
+  options.patience = std::chrono::milliseconds(50);
+  options.slow = [&](const std::string& what) { said.push_back(what); };
+  PipeRobot robot(options);
+  EXPECT_THAT(error_of([&] { (void)robot.light(1); }), HasSubstr("no answer within 0.200 s"));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_THAT(said[0],
+              HasSubstr("'sleep 60': light: no answer for 0.050 s; waiting until 0.200 s"));
+}
+
 TEST(PipeRobot, AProgramThatAnswersNoMoreIsSilentSinceItsLastAnswer) {
   PipeRobot robot({"read a; echo '{\"stamp\": 7}'; sleep 60", std::chrono::milliseconds(100)});
   EXPECT_EQ(robot.light(1), Stamp(7));

@@ -322,6 +322,14 @@ TEST_P(RosRobotTest, ATopicOfAnotherTypeEndsTheSession) {
                               "'sensor_msgs/PointCloud2'; expected sensor_msgs/JointState")));
 }
 
+TEST_P(RosRobotTest, ATopicThatIsTakenForTwoThingsIsNamedAtOnce) {
+  start();
+  RosBridge bridge = connect();
+  EXPECT_THAT(error_of([&] { (void)RosCamera(bridge, {.image = "/joint_states"}); }),
+              AllOf(HasSubstr("topic '/joint_states' is wanted as sensor_msgs/JointState"),
+                    HasSubstr("and as sensor_msgs/Image")));
+}
+
 TEST_P(RosRobotTest, AnEncodingThatKinecalDoesNotReadIsNamed) {
   start(R"(, "topic_encoding": "protobuf")");
   RosBridge bridge = connect();

@@ -9,29 +9,17 @@
 #include <utility>
 
 #include "kinecal/capture/april_tags.hpp"
+#include "kinecal/capture/tag_layout.hpp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
 
-/// Corner k of a tag on the target, counter-clockwise from its bottom left.
-[[nodiscard]] Vector3<double> tag_corner(const PlacedTag& tag, int k) {
-  const double half = tag.size / 2.0;
-  return tag.centre + Vector3<double>(k == 1 || k == 2 ? half : -half, k >= 2 ? half : -half, 0.0);
-}
-
 /// The tags of a target, in the order of their ids.
 [[nodiscard]] std::vector<PlacedTag> all_tags(const AprilTagSettings& s) {
-  std::vector<PlacedTag> tags = s.tags;
-  const double pitch = s.size * (1.0 + s.spacing);
-  for (int row = 0; row < s.rows; ++row) {
-    for (int column = 0; column < s.columns; ++column) {
-      tags.push_back({s.first_id + row * s.columns + column,
-                      s.size,
-                      {column * pitch + s.size / 2.0, row * pitch + s.size / 2.0, 0.0}});
-    }
-  }
+  std::vector<PlacedTag> tags = grid_tags(s);
+  tags.insert(tags.end(), s.tags.begin(), s.tags.end());
   std::sort(tags.begin(), tags.end(),
             [](const PlacedTag& a, const PlacedTag& b) { return a.id < b.id; });
   return tags;
@@ -163,7 +151,11 @@ Found AprilTagFinder::find(const View& view) const {
   if (const auto fault = edge_fault(seen.edges, settings_.target.quality); !fault.empty()) {
     return refused("the tags are " + fault, marks);
   }
-  return observed(view, settings_.target, std::move(seen.corners));
+  const detail::TagLayout layout = detail::arrange_tags(settings_, *view.camera, seen.corners);
+  if (!layout.fault.empty()) return refused(layout.fault, std::move(marks));
+  Found found = observed(view, settings_.target, std::move(seen.corners));
+  if (!layout.note.empty()) found.notes.push_back(layout.note);
+  return found;
 }
 
 }  // namespace kinecal

@@ -37,7 +37,8 @@ Eigen::Vector2d mapped(const Matrix3<double>& h, const Eigen::Vector2d& point) {
 }
 
 std::optional<Matrix3<double>> homography(const std::vector<Eigen::Vector2d>& from,
-                                          const std::vector<Eigen::Vector2d>& to) {
+                                          const std::vector<Eigen::Vector2d>& to,
+                                          const std::vector<double>& weights) {
   if (from.size() < 4 || from.size() != to.size()) return std::nullopt;
   const Matrix3<double> a = detail::plane_normalization(from), b = detail::plane_normalization(to);
   Eigen::Matrix<double, 9, 9> sums = Eigen::Matrix<double, 9, 9>::Zero();
@@ -46,7 +47,7 @@ std::optional<Matrix3<double>> homography(const std::vector<Eigen::Vector2d>& fr
     Eigen::Matrix<double, 2, 9> rows;
     rows << p.x(), p.y(), 1, 0, 0, 0, -q.x() * p.x(), -q.x() * p.y(), -q.x(),  //
         0, 0, 0, p.x(), p.y(), 1, -q.y() * p.x(), -q.y() * p.y(), -q.y();
-    sums += rows.transpose() * rows;
+    sums += (weights.empty() ? 1.0 : weights[i]) * (rows.transpose() * rows);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(sums);
   const auto& values = eigen.eigenvalues();

@@ -16,9 +16,11 @@ namespace kinecal {
 
 /// H that maps points of a plane to points of another, by least squares.
 /// @param from, to  (2) each, at least four, in the same order
+/// @param weights   of the points, not negative; empty: all the same
 /// @returns         (3 x 3); nullopt if they are too few, or on one line
 [[nodiscard]] std::optional<Matrix3<double>> homography(const std::vector<Eigen::Vector2d>& from,
-                                                        const std::vector<Eigen::Vector2d>& to);
+                                                        const std::vector<Eigen::Vector2d>& to,
+                                                        const std::vector<double>& weights = {});
 
 /// The image of a point under H (2).
 [[nodiscard]] Eigen::Vector2d mapped(const Matrix3<double>& h, const Eigen::Vector2d& point);

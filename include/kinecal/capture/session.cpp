@@ -51,13 +51,6 @@ std::vector<CapturePose> poses_left(std::span<const CapturePose> poses,
 
 namespace detail {
 
-std::string SilentStreams::add(const SilenceError& error) {
-  const auto [known, is_first] = newest_.try_emplace(error.stream, error.newest);
-  const bool is_dead = !is_first && known->second == error.newest;
-  known->second = error.newest;
-  return is_dead ? std::string(error.what()) + "; nothing came in two poses" : std::string();
-}
-
 std::vector<const SessionFinder*> finders_of(const CapturePose& pose,
                                              std::span<const SessionFinder> finders) {
   std::vector<const SessionFinder*> wanted;

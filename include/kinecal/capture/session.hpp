@@ -3,7 +3,9 @@
 // For each pose: move, wait until joints and image are still, run the pose's finders, check that
 // nothing moved meanwhile.  A pose that fails is skipped, with the reason.  The session stores
 // nothing: the observer writes each sample at once, so a crash loses at most the one in progress.
-// A stream that is silent in two poses is dead, and ends the session.
+// A stream that is silent in two poses is dead, and ends the session.  Before the first motion, one
+// look at joints, cameras and clocks finds what would fail in every pose; the same fault in the first
+// three poses ends the session, too.
 //
 // A function supplies the next pose: from a list, from a list without the poses recorded earlier,
 // or from a person who moves the robot (a pose without joints).
@@ -13,47 +15,15 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "kinecal/capture/capture_pose.hpp"
-#include "kinecal/capture/settling.hpp"
+#include "kinecal/capture/session_faults.hpp"
 
 namespace kinecal {
-
-/// A finder of a session, with its camera.
-struct SessionFinder {
-  std::string name;                              ///< as poses name it
-  std::function<View(Stamp after)> next_view;    ///< of its camera: see Camera
-  std::function<Found(const View& still)> find;  ///< receives a view in which nothing moves
-};
-
-/// Settings of a session.
-struct SessionOptions {
-  double velocity_factor = 1.0;  ///< of the robot's usual speed, (0, 1]
-  SettleOptions settling = {};   ///< when the robot counts as still
-  double moved = 0.003;          ///< allowed joint motion while finders look, radians or metres
-};
-
-/// The result of one finder in one pose.
-struct FinderOutcome {
-  std::string finder;  ///< its name
-  View view;           ///< that it searched; without image if it was never still
-  Found found;         ///< its features, or why there are none
-};
-
-/// The result of one pose.
-struct CapturedPose {
-  CapturePose pose;                     ///< as requested
-  std::vector<Sample> samples;          ///< empty if nothing was found; several if finders
-                                        ///< observe with the same sensors
-  std::vector<FinderOutcome> outcomes;  ///< of each finder that looked
-  std::string failure;                  ///< why the pose was skipped; empty if it was not
-  Stamp duration{};                     ///< of the move and the finders, on the robot's clock
-};
 
 /// Supplies the next pose; nullopt ends the session.
 using NextPose = std::function<std::optional<CapturePose>()>;
@@ -66,6 +36,7 @@ using PoseObserver = std::function<void(const CapturedPose&)>;
 /// @throws std::invalid_argument  if a pose names a finder that does not exist
 /// @throws ConnectionError        if the connection is lost, or a stream is silent in two poses;
 ///                                finished poses are kept
+/// @throws HopelessError          if what a first look finds, or the first poses, fail alike
 template <Arm A>
 void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> finders,
                  const PoseObserver& took, const SessionOptions& options = {});
@@ -89,17 +60,6 @@ template <Finder F, Camera C>
 }
 
 namespace detail {
-
-/// Streams that have been silent.
-class SilentStreams {
- public:
-  /// Why the session must end; empty if this is the stream's first silence, or if it has delivered
-  /// something since the last one.
-  [[nodiscard]] std::string add(const SilenceError& error);
-
- private:
-  std::map<std::string, std::optional<Stamp>> newest_;  ///< stamps, by stream
-};
 
 /// The finders that a pose asks for.
 /// @throws std::invalid_argument  naming the one that does not exist
@@ -142,10 +102,16 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
                  const PoseObserver& took, const SessionOptions& options) {
   Stamp now = Stamp::min();
   detail::SilentStreams silent;
+  detail::AlikeFaults alike;
+  bool has_looked = !options.look_first;
   while (std::optional<CapturePose> pose = next()) {
     CapturedPose captured;
     captured.pose = std::move(*pose);
     const auto wanted = detail::finders_of(captured.pose, finders);
+    if (!std::exchange(has_looked, true)) {
+      const std::string why = detail::first_look(arm, captured.pose, wanted, options.settling);
+      if (!why.empty()) throw HopelessError(why + "; the robot has not moved");
+    }
     std::optional<Stamp> start;
     std::string dead;
     try {
@@ -166,6 +132,8 @@ void run_session(A& arm, const NextPose& next, std::span<const SessionFinder> fi
     if (start) captured.duration = now - *start;
     took(captured);
     if (!dead.empty()) throw ConnectionError(dead);
+    const std::string why = alike.add(captured, options.hopeless);
+    if (!why.empty()) throw HopelessError(why);
   }
 }
 

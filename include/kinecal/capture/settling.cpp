@@ -22,6 +22,12 @@ std::string seconds_text(Stamp duration) {
   return text.str();
 }
 
+std::string clock_fault(Stamp view, Stamp joints, const SettleOptions& options) {
+  if (view <= joints + options.clock_limit) return {};
+  return "the camera's stamps are " + seconds_text(view - joints) +
+         " ahead of those of the joints; set both computers' clocks, or stamp both on one";
+}
+
 }  // namespace detail
 
 void JointRest::add(MeasuredJoints reading) {
@@ -109,10 +115,8 @@ double changed_pixels(const GrayImage& a, const GrayImage& b, int gray_levels) {
 View settle_image(const std::function<View(Stamp after)>& next_view, Stamp after,
                   const SettleOptions& options) {
   View last = next_view(after);
-  if (last.stamp > after + options.clock_limit) {
-    throw PoseError(
-        "the camera's stamps are " + detail::seconds_text(last.stamp - after) +
-        " ahead of those of the joints; set both computers' clocks, or stamp both on one");
+  if (const std::string fault = detail::clock_fault(last.stamp, after, options); !fault.empty()) {
+    throw PoseError(fault);
   }
   double changed = 0.0;
   while (!last.image.empty()) {

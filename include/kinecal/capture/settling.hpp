@@ -81,6 +81,9 @@ namespace detail {
 /// A duration as text: "12.345 s".
 [[nodiscard]] std::string seconds_text(Stamp duration);
 
+/// Why a view's stamp is of another clock than that of the joints before it; empty if it is not.
+[[nodiscard]] std::string clock_fault(Stamp view, Stamp joints, const SettleOptions& options);
+
 }  // namespace detail
 
 template <Arm A>

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kinecal/capture/board_fit.hpp"
 #include "kinecal/capture/corner_depth.hpp"
 
 namespace kinecal {
@@ -49,6 +50,11 @@ std::vector<Mark> marks_of(const std::vector<TargetCorner>& corners) {
 
 Found observed(const View& view, const TargetSettings& settings,
                std::vector<TargetCorner> corners) {
+  const std::size_t all = corners.size();
+  if (view.camera) {
+    const std::string fault = drop_wrong_corners(*view.camera, corners);
+    if (!fault.empty()) return refused(fault, marks_of(corners));
+  }
   std::sort(corners.begin(), corners.end(),
             [](const TargetCorner& a, const TargetCorner& b) { return a.id < b.id; });
   Observation camera{settings.camera_sensor, {}, view.camera}, chain{settings.chain_sensor, {}, {}};
@@ -73,8 +79,9 @@ Found observed(const View& view, const TargetSettings& settings,
                        std::to_string(corners.size()) + " corners",
                    marks_of(corners));
   }
-  std::vector<Mark> marks = marks_of(corners);
-  return {{std::move(camera), std::move(chain)}, "", std::move(marks)};
+  Found found{{std::move(camera), std::move(chain)}, "", marks_of(corners), {}};
+  if (corners.size() < all) found.notes.emplace_back(kWrongCornersNote);
+  return found;
 }
 
 void check_target(const TargetSettings& settings) {

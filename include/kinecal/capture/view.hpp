@@ -56,6 +56,7 @@ struct Found {
   std::vector<Observation> observations;  ///< empty if nothing was found
   std::string refusal;      ///< why not: "squares of 3.1 pixels; at least 8 are needed"
   std::vector<Mark> marks;  ///< where its features are in the image; also for refused ones
+  std::vector<std::string> notes = {};  ///< what else is to be said, the same in each such view
 
   /// True if features were found.
   [[nodiscard]] explicit operator bool() const { return !observations.empty(); }
@@ -63,7 +64,7 @@ struct Found {
 
 /// The result if nothing was found, with the reason.
 [[nodiscard]] inline Found refused(std::string why, std::vector<Mark> marks = {}) {
-  return {{}, std::move(why), std::move(marks)};
+  return {{}, std::move(why), std::move(marks), {}};
 }
 
 }  // namespace kinecal

@@ -65,10 +65,15 @@ Deadline BridgeClient::deadline() const {
 void BridgeClient::subscribe(const std::string& topic, std::vector<std::string> types,
                              std::size_t keep) {
   const std::lock_guard lock(state_->mutex);
-  Subscription wanted;
+  const auto [known, is_new] = state_->subscriptions.try_emplace(topic);
+  Subscription& wanted = known->second;
+  if (!is_new) {
+    if (wanted.types == types || wanted.types.empty() || types.empty()) return;
+    throw ConnectionError("topic '" + topic + "' is wanted as " + wanted.types.front() +
+                          " and as " + types.front() + "; which topic is the other one?");
+  }
   wanted.types = std::move(types);
   wanted.keep = keep;
-  if (!state_->subscriptions.try_emplace(topic, std::move(wanted)).second) return;
   for (const auto& [id, channel] : state_->channels) state_->offer(channel);
 }
 

@@ -24,7 +24,7 @@ namespace kinecal {
 class PipeRobot::Pipe {
  public:
   explicit Pipe(const PipeOptions& options)
-      : process_(options.command, options.interrupted), time_limit_(options.time_limit) {}
+      : process_(options.command, options.interrupted), options_(options) {}
 
   /// Sends a request and parses the answer.
   /// @param what  name of the request in messages: "view"
@@ -42,12 +42,12 @@ class PipeRobot::Pipe {
           who + "it still has not answered to the last request, '" + unanswered_ + "'",
           process_.command() + ": " + unanswered_, answered_[unanswered_]);
     }
-    process_.write_line(detail::json_text({{what, request}}), time_limit_);
-    const auto line = process_.read_line(time_limit_);
+    process_.write_line(detail::json_text({{what, request}}), options_.time_limit);
+    const auto line = next_line(who);
     if (!line) {
       ++late_;
       unanswered_ = what;
-      throw SilenceError(who + "no answer within " + limit_text(time_limit_),
+      throw SilenceError(who + "no answer within " + limit_text(options_.time_limit),
                          process_.command() + ": " + what, answered_[what]);
     }
     try {
@@ -70,6 +70,18 @@ class PipeRobot::Pipe {
   }
 
  private:
+  /// The next line; says if it takes long.
+  [[nodiscard]] std::optional<std::string> next_line(const std::string& who) {
+    const auto first = std::min(options_.patience, options_.time_limit);
+    auto line = process_.read_line(first);
+    if (line || first == options_.time_limit) return line;
+    if (options_.slow) {
+      options_.slow(who + "no answer for " + limit_text(first) + "; waiting until " +
+                    limit_text(options_.time_limit));
+    }
+    return process_.read_line(options_.time_limit - first);
+  }
+
   /// Skips a pose after an unreadable answer; a program that sends nothing else is not a robot.
   [[noreturn]] void fail_unreadable(const std::string& who, const std::string& why) {
     constexpr int kMost = 3;
@@ -83,7 +95,7 @@ class PipeRobot::Pipe {
   }
 
   detail::ChildProcess process_;
-  std::chrono::milliseconds time_limit_;
+  PipeOptions options_;
   int late_ = 0;                                          ///< answers given up
   int unreadable_ = 0;                                    ///< answers in a row
   std::string unanswered_;                                ///< the request of the last of them

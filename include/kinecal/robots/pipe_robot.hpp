@@ -35,6 +35,9 @@ struct PipeOptions {
   std::string command;                          ///< for /bin/sh, such as "python3 robot.py"
   std::chrono::milliseconds time_limit{30000};  ///< for each answer
   std::function<bool()> interrupted = {};       ///< returns true to stop waiting for an answer
+  /// Receives the request that has no answer yet: "'python3 robot.py': view: no answer for 5 s; ..."
+  std::function<void(const std::string& what)> slow = {};
+  std::chrono::milliseconds patience{5000};  ///< until `slow` is called
 };
 
 /// An arm, a camera and a lamp: see above.  The functions throw

@@ -69,6 +69,34 @@ TEST(SessionEnd, AsksHowThePosesAreKnownThatAreLeft) {
   EXPECT_THAT(session.why(enough, alike.others), HasSubstr("at the poses that are left"));
 }
 
+TEST(SessionEnd, IsNotThereWhileTheRemainingPosesWouldDetermineAParameter) {
+  AlikeSamples alike(6);
+  CalibratedSession session{alike.scene};
+  session.step.held_out.clear();
+  EXPECT_EQ(session.why(1.0, alike.others), "");
+  // As if the sensor were so much worse that one parameter is just not known well enough.
+  double most = 0.0;
+  std::size_t worst = 0;
+  for (std::size_t c = 0; c < session.step.parameters.size(); ++c) {
+    const int parameter = session.step.parameters[c];
+    const double share = *session.step.deviation(parameter) /
+                         useful_deviation(session.scene.solved().table()[parameter]);
+    if (share <= most) continue;
+    most = share;
+    worst = c;
+  }
+  const std::string name = session.scene.solved().table()[session.step.parameters[worst]].name;
+  session.step.uncertainty.deviation =
+      PlainMatrix((1.1 / most) * session.step.uncertainty.deviation.matrix());
+  EXPECT_THAT(session.why(1.0, alike.others),
+              AllOf(HasSubstr("is known to +- "), HasSubstr("only"),
+                    HasSubstr("the poses that are left determine more")));
+  // Without a list of poses a person moves the robot.
+  session.step.weak.parameters = {session.step.parameters[worst]};
+  EXPECT_THAT(session.why(1.0), AllOf(HasSubstr("'" + name + "' is known to +- "),
+                                      HasSubstr("move the joints that differ least so far")));
+}
+
 TEST(SessionEnd, IsNotThereWithACalibrationThatIsNotToBeUsed) {
   NoisyScene scene(40);
   CalibratedSession session{scene};

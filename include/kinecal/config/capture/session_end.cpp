@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/config/capture/open_parameters.ipp"
 #include "kinecal/text/reading.hpp"
 #include "kinecal/trust/measured_numbers.hpp"
 #include "kinecal/trust/pose_elsewhere.hpp"
@@ -62,6 +63,22 @@ namespace {
       free, needed, numbers);
 }
 
+/// Which parameters the remaining poses would determine; empty if none.  Without such poses, a
+/// person moves the robot: which are hardly determined.
+[[nodiscard]] std::string still_open(const SessionResult& result, std::span<const Sample> ahead) {
+  const std::vector<int> open =
+      ahead.empty() ? result.step.weak.parameters : open_parameters(result, ahead);
+  if (open.empty()) return {};
+  const Parameter& first = result.problem.table()[open.front()];
+  const double now = result.step.deviation(open.front()).value_or(0.0);
+  return fmt::format("'{}' {}{}{}", first.name,
+                     std::isfinite(now) ? "is known to +- " + reading(now, first.unit) + " only"
+                                        : "is not determined",
+                     open.size() > 1 ? fmt::format(", and {} more like it", open.size() - 1) : "",
+                     ahead.empty() ? "; move the joints that differ least so far"
+                                   : "; the poses that are left determine more");
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -93,7 +110,7 @@ std::string why_go_on(const Accuracy& wanted, const SessionResult& result,
   if (why.empty() && !ahead.empty()) {
     why = detail::not_known(wanted, known_at(ahead), times, "at the poses that are left");
   }
-  return why;
+  return why.empty() ? detail::still_open(result, ahead) : why;
 }
 
 std::string why_go_on(const Accuracy& wanted, const SessionCalibration& all,

@@ -14,7 +14,7 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-constexpr int kSheetColumns = 4, kSheetGap = 6, kReasonLines = 3;
+constexpr int kSheetColumns = 3, kSheetGap = 6, kReasonLines = 3;
 constexpr Rgb kPaper{245, 245, 245}, kInk{30, 30, 30}, kFoundColour{0, 200, 60},
     kRefusedColour{215, 30, 30};
 
@@ -46,6 +46,34 @@ void draw_mark(Sheet& sheet, int x, int y, const Rgb& colour) {
   }
 }
 
+/// A dotted line between two marks, short of both.
+void draw_dots(Sheet& sheet, const Mark& from, const Mark& to, int x, int y, const Rgb& colour) {
+  constexpr double kShort = 4.0, kStep = 3.0;  // pixels
+  const double du = to.u - from.u, dv = to.v - from.v, length = std::hypot(du, dv);
+  for (double at = kShort; at < length - kShort; at += kStep) {
+    sheet.dot(x + static_cast<int>(std::lround(from.u + at / length * du)),
+              y + static_cast<int>(std::lround(from.v + at / length * dv)), colour);
+  }
+}
+
+/// Joins marks that follow each other in the order of their ids, if they are neighbours.
+void draw_grid(Sheet& sheet, const Thumbnail& view, int x, int y) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < view.marks.size(); ++i) {
+    steps.push_back(
+        std::hypot(view.marks[i].u - view.marks[i - 1].u, view.marks[i].v - view.marks[i - 1].v));
+  }
+  if (steps.size() < 3) return;
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  constexpr double kNeighbours = 1.6;  // of the median
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!(steps[i] <= std::min<double>(kNeighbours * *middle, kThumbnailWidth))) continue;
+    draw_dots(sheet, view.marks[i], view.marks[i + 1], x, y, kFoundColour);
+  }
+}
+
 /// Draws a thumbnail and its text at its place.
 void draw(Sheet& sheet, const Thumbnail& view, int x, int y) {
   for (int v = 0; v < view.image.height; ++v) {
@@ -61,6 +89,7 @@ void draw(Sheet& sheet, const Thumbnail& view, int x, int y) {
     const bool inside = u >= 0 && v >= 0 && u < view.image.width && v < view.image.height;
     if (inside) draw_mark(sheet, x + static_cast<int>(u), y + static_cast<int>(v), colour);
   }
+  if (found) draw_grid(sheet, view, x, y);
   if (!found) sheet.frame(x, y, view.image.width, view.image.height, kRefusedColour);
   constexpr std::size_t kLetters = kThumbnailWidth / kGlyphWidth;
   int line = y + view.image.height + 3;

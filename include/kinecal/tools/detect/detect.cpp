@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/detect/detect.hpp"
 
+#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 #include <type_traits>
@@ -9,6 +10,7 @@
 #include <variant>
 
 #include "kinecal/capture/session.hpp"
+#include "kinecal/capture/view_checks.hpp"
 
 namespace kinecal {
 namespace detail {
@@ -53,12 +55,39 @@ ViewFinder view_finder(const CaptureFinder& finder, const FinderSettings& settin
   }
 }
 
+std::string unusable(const FinderSettings& settings, const View& view) {
+  const auto first_of = [&](std::initializer_list<std::string (*)(const View&)> checks) {
+    for (const auto& check : checks) {
+      if (std::string why = check(view); !why.empty()) return why;
+    }
+    return std::string();
+  };
+  return std::visit(
+      [&](const auto& chosen) -> std::string {
+        using Chosen = std::decay_t<decltype(chosen)>;
+        if constexpr (std::is_same_v<Chosen, LedFinder>) {
+          return first_of({image_problem, cloud_problem, camera_problem});
+        } else if constexpr (std::is_same_v<Chosen, ScanFinder>) {
+          return cloud_problem(view);
+        } else if constexpr (std::is_same_v<Chosen, PlaneFinder> ||
+                             std::is_same_v<Chosen, RobotFinder>) {
+          return first_of({cloud_problem, camera_problem});
+        } else {
+          return view_fault(view, chosen.target.corners);
+        }
+      },
+      settings);
+}
+
 Detection detect(const View& view, std::span<const ViewFinder> finders, const std::string& source) {
   Detection detection;
   std::vector<FinderOutcome> outcomes;
   for (const ViewFinder& finder : finders) {
     Found found = finder.find(view);
     detection.marks.insert(detection.marks.end(), found.marks.begin(), found.marks.end());
+    for (const std::string& note : found.notes) {
+      if (found) detection.notes.push_back(finder.name + ": " + note);
+    }
     if (found) {
       detection.features += found.observations.front().features.size();
       outcomes.push_back({finder.name, {}, std::move(found)});

@@ -24,6 +24,7 @@ struct Detection {
                                 ///< the same sensors
   std::vector<Mark> marks;      ///< of all finders, in pixels of the view
   std::vector<std::string> refused;  ///< "april_tag_finder: no tag is in the image"
+  std::vector<std::string> notes;    ///< "april_tag_finder: the tags are turned by 180 degrees"
   std::size_t features = 0;          ///< found by all finders
 };
 
@@ -31,6 +32,10 @@ struct Detection {
 /// @throws InputError  "file:line: ..." if settings are impossible, or the finder needs the robot:
 ///                     LEDs must be switched
 [[nodiscard]] ViewFinder view_finder(const CaptureFinder& finder, const FinderSettings& settings);
+
+/// Why a view cannot be used by a finder, whatever it shows: no image, no camera_info; empty if it
+/// can.
+[[nodiscard]] std::string unusable(const FinderSettings& settings, const View& view);
 
 /// Runs all finders on a view.
 /// @param source  of the samples, for messages: "poses.csv:3"

@@ -3,9 +3,11 @@
 #include "kinecal/tools/detect/detect_all.hpp"
 
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "kinecal/evaluation/parallel.hpp"
+#include "kinecal/text/counted.hpp"
 
 namespace kinecal {
 
@@ -28,6 +30,24 @@ std::vector<ViewFinder> make_finders(const DetectionInput& input,
   return finders;
 }
 
+namespace detail {
+namespace {
+
+/// Adds each note of a finder once, with the number of views in which it was made.
+void add_finder_notes(const std::vector<Look>& looks, Diagnostics& diagnostics) {
+  std::map<std::string, std::size_t> counts;
+  for (const Look& look : looks) {
+    for (const std::string& note : look.notes) ++counts[note];
+  }
+  for (const auto& [note, count] : counts) {
+    diagnostics.notes.push_back(note + " (in " + counted(count, "view") + " of " +
+                                std::to_string(looks.size()) + ")");
+  }
+}
+
+}  // namespace
+}  // namespace detail
+
 DetectedSamples detect_all(const DetectionInput& input, const DetectionOptions& options,
                            Diagnostics& diagnostics) {
   const auto finders = [&input] {
@@ -48,6 +68,7 @@ DetectedSamples detect_all(const DetectionInput& input, const DetectionOptions& 
   };
   if (!input.images.empty()) add(look_at(input.images, input.camera, input.frame, how));
   for (const RecordedViews& recording : input.recordings) add(look_at(recording, how));
+  detail::add_finder_notes(found.looks, diagnostics);
   turn_boards(input.config.finders, input.robot, input.links, found.samples, diagnostics);
   return found;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -96,6 +97,7 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
       if (found.samples.empty()) reasons += (reasons.empty() ? "" : "; ") + refused;
     }
     all.features += found.features;
+    std::move(found.notes.begin(), found.notes.end(), std::back_inserter(all.notes));
     if (thumbnails) {
       all.thumbnails.push_back(view_picture(views[c].view, std::move(found.marks), title, reasons));
     }

@@ -33,6 +33,7 @@ struct Look {
   std::size_t features = 0;
   std::vector<std::string>
       refused;  ///< views that were not looked at, and finders, with their reasons
+  std::vector<std::string> notes;     ///< of finders
   std::vector<Thumbnail> thumbnails;  ///< of each view
   bool compared = true;               ///< false: a view has a single image, which may have moved
 };

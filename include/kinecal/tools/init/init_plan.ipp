@@ -10,6 +10,7 @@
 
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/tools/init/determined_offsets.hpp"
 
 namespace kinecal::detail {
 
@@ -59,57 +60,51 @@ inline void free_frame(InitPlan& plan, const std::string& name, const std::strin
 }
 
 /// Removes the common joints at the beginning of two chains.
-/// @return  names of the removed joints
-inline std::vector<std::string> leave_out_common(std::vector<ChainJoint>& a,
-                                                 std::vector<ChainJoint>& b) {
-  std::vector<std::string> common;
+inline void remove_common(std::vector<ChainJoint>& a, std::vector<ChainJoint>& b) {
   while (!a.empty() && !b.empty() && a.front().name == b.front().name) {
-    common.push_back(a.front().name);
     a.erase(a.begin());
     b.erase(b.begin());
   }
-  return common;
 }
 
-/// Number of joints up to and including the first one that rotates: a free frame before them can
-/// replace their offsets.  Sliding joints count even if they are not parallel, because only samples
-/// that move them would show the difference.
-template <class Iterator>
-[[nodiscard]] std::size_t up_to_first_turn(Iterator begin, Iterator end) {
-  const auto first = std::find_if(begin, end, [](const ChainJoint& j) { return turns(j.type); });
-  return static_cast<std::size_t>(first - begin) + (first == end ? 0 : 1);
-}
-
-/// Frees a joint's offset; skips a mimic joint.
-inline void free_offset(InitPlan& plan, const ChainJoint& joint) {
-  if (joint.drive.joint != joint.name) {
-    plan.left_out.push_back({joint.name, "It mimics joint " + name_to_yaml(joint.drive.joint) +
-                                             ", which has the offset"});
-    return;
-  }
-  plan.free_params.push_back({"", joint.name, {}});
-}
-
-/// Frees the offsets of a chain's joints, except those at its ends that a free frame there can
-/// replace.
-/// @param before, after  free frames at the beginning and the end of the chain; empty: not free
-inline void free_offsets(InitPlan& plan, const std::vector<ChainJoint>& way,
-                         const std::string& before, const std::string& after) {
-  const std::size_t first = before.empty() ? 0 : up_to_first_turn(way.begin(), way.end());
-  const std::size_t last =
-      way.size() - (after.empty() ? 0 : up_to_first_turn(way.rbegin(), way.rend()));
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    const std::string& name = way[i].name;
-    if (i >= first && i < last) {
-      free_offset(plan, way[i]);
-    } else if (const std::string& frame = i < first ? before : after; name == frame) {
-      plan.left_out.push_back({name, "Its frame is free, which includes its offset"});
+/// Frees the offsets of joints that samples determine, and gives the reason for the others.
+/// @param kept  joints whose frames are free and kept by a prior
+/// @returns     whether samples also determine the frames
+inline bool free_offsets(InitPlan& plan, const Robot& robot, const MeasuredTarget& measured,
+                         const std::vector<std::string>& frames,
+                         const std::vector<std::string>& kept) {
+  const OffsetEffects effects =
+      offset_effects(robot, measured, frames, kept, driven_joints(robot, measured));
+  for (const OffsetEffect& effect : effects.offsets) {
+    if (effect.determined) {
+      plan.free_params.push_back({"", effect.joint, {}});
+    } else if (!effect.is_seen) {
+      plan.left_out.push_back({effect.joint, "It moves the arm and the camera alike"});
+    } else if (effect.imitated_by == effect.joint) {
+      plan.left_out.push_back({effect.joint, "Its frame is free, which includes its offset"});
+    } else if (!effect.imitated_by.empty()) {
+      plan.left_out.push_back(
+          {effect.joint, "Frame " + name_to_yaml(effect.imitated_by) +
+                             " is free, and no sample can distinguish its rotation (or "
+                             "shift) from this joint's offset"});
     } else {
-      plan.left_out.push_back({name, "Frame " + name_to_yaml(frame) +
-                                         " is free, and no sample can distinguish its rotation (or "
-                                         "shift) from this joint's offset"});
+      plan.left_out.push_back({effect.joint,
+                               "No sample can distinguish its offset from changes of the free "
+                               "frames and of the offsets above"});
     }
   }
+  for (const std::string& end : {measured.target, measured.sensor}) {
+    for (const ChainJoint& joint : movers(robot, measured.base, end)) {
+      const auto is_known = [&](const InitLeftOut& known) { return known.joint == joint.name; };
+      if (joint.drive.joint == joint.name ||
+          std::any_of(plan.left_out.begin(), plan.left_out.end(), is_known)) {
+        continue;
+      }
+      plan.left_out.push_back({joint.name, "It mimics joint " + name_to_yaml(joint.drive.joint) +
+                                               ", which has the offset"});
+    }
+  }
+  return effects.frames_determined;
 }
 
 }  // namespace kinecal::detail

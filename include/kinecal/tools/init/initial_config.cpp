@@ -103,7 +103,7 @@ namespace {
 
 [[nodiscard]] std::string plan_to_yaml(const Robot& robot, const InitAnswers& answers,
                                        const InitPlan& plan) {
-  std::string target(to_string(answers.target));
+  std::string target(to_string(answers.target, answers.board));
   if (answers.with_ground) target += " and ground";
   std::string text =
       comment_lines(fmt::format("Calibration of robot {} from {}.  'kinecal init' wrote this first "

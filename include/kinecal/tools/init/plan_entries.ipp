@@ -46,7 +46,8 @@ inline void free_camera(InitPlan& plan, const InitAnswers& answers, bool floor_o
 }
 
 /// Compares the points seen by the camera with those of a model.
-inline void add_hand_eye(InitPlan& plan, const InitAnswers& answers, const std::string& model) {
+inline void add_hand_eye(InitPlan& plan, const InitAnswers& answers) {
+  const std::string model = holder_of(answers);
   InitEntry block{"", "hand_eye", {}};
   if (answers.camera_type == "camera3d") {
     block.why = "The camera and model '" + model +
@@ -54,14 +55,14 @@ inline void add_hand_eye(InitPlan& plan, const InitAnswers& answers, const std::
                 "one point, in metres: 0.003 is a guess, write yours.";
     block.fields = {{"type", "chain3d_to_chain3d"},
                     {"model_a", name_to_yaml(answers.camera_name)},
-                    {"model_b", model},
+                    {"model_b", name_to_yaml(model)},
                     {"sigma", "0.003"}};
   } else {
     block.why = "The camera sees the points of model '" + model +
                 "', in the same order.  sigma is its accuracy for one point, in "
                 "pixels: 0.5 is a guess, write yours.";
     block.fields = {{"type", "chain3d_to_camera2d"},
-                    {"model_3d", model},
+                    {"model_3d", name_to_yaml(model)},
                     {"model_2d", name_to_yaml(answers.camera_name)},
                     {"sigma", "0.5"}};
   }
@@ -119,13 +120,23 @@ inline void keep_near_zero(InitPlan& plan, const std::string& frame, const std::
 inline void add_board(InitPlan& plan, const std::string& name, const std::string& link) {
   free_frame(
       plan, name,
-      "Where the checkerboard is, seen from link " + name_to_yaml(link) +
+      "Where the board is, seen from link " + name_to_yaml(link) +
           ".  The URDF does not contain this frame; it is the frame_id of the board's corners.");
   add_initial_value(plan, name,
                     "Zeros are no guess: kinecal searches for the board.  Should it not find it, "
                     "measure where the board's first corner is in link " +
                         name_to_yaml(link) +
                         " and how the board is turned (x along its rows, y along its columns).");
+}
+
+/// Points on a link, or of a board in the target frame on it, that the camera sees.
+[[nodiscard]] inline MeasuredTarget seen_by_camera(const InitAnswers& answers,
+                                                   const std::string& link) {
+  MeasuredTarget seen{answers.base, link, answers.camera};
+  seen.target_frame = answers.target_frame;
+  seen.is_camera = true;
+  seen.has_depth = answers.camera_type == "camera3d";
+  return seen;
 }
 
 }  // namespace kinecal::detail

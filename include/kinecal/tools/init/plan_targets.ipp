@@ -1,9 +1,8 @@
 // The offsets and frames that each target determines: these are freed, the others left out.
 //
-// A free frame at an end of a chain can replace the offset of the joint next to it: the rotation of
-// a tracker that of the first joint, the position of a reflector that of the last.  With both free,
-// the samples would only determine their sum.  So one of them is left out, and the configuration
-// gives the reason.
+// A free frame can replace a joint's offset: the rotation of a tracker that of the first joint, the
+// position of a reflector that of the last.  With both free, the samples would only determine their
+// sum.  So the offset is left out, and the configuration gives the reason: determined_offsets.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -22,9 +21,7 @@ namespace kinecal::detail {
   InitPlan plan;
   std::vector<ChainJoint> arm = movers(robot, answers.base, answers.arm);
   std::vector<ChainJoint> head = movers(robot, answers.base, answers.camera);
-  for (const std::string& joint : leave_out_common(arm, head)) {
-    plan.left_out.push_back({joint, "It moves the arm and the camera alike"});
-  }
+  remove_common(arm, head);
   if (arm.empty()) {
     throw InputError(fmt::format(
         "--camera: camera '{}' moves with arm '{}' and sees the same in every pose; let it see a "
@@ -35,36 +32,34 @@ namespace kinecal::detail {
   add_chain_model(plan,
                   board ? "The arm, which holds the board: the points are the board's corners."
                         : "The arm: the points are the LEDs, at known places in this link.",
-                  "arm", answers.arm);
+                  holder_of(answers), answers.arm);
   add_camera_model(plan, answers);
 
   const std::string mount = require_mount(robot, answers, {answers.base, answers.arm}).name;
   const std::string head_frame = head.empty() ? mount : head.front().name;
   if (board) add_board(plan, answers.target_frame, answers.arm);
-  free_offsets(plan, arm, head_frame, board ? answers.target_frame : "");
-  const bool mount_moves =
-      std::any_of(head.begin(), head.end(), [&](const ChainJoint& j) { return j.name == mount; });
-  free_offsets(plan, head, head_frame, mount_moves ? mount : "");
+  MeasuredTarget seen = seen_by_camera(answers, answers.arm);
+  if (!board) seen.target_frame.clear();
+  std::vector<std::string> kept;
+  if (mount != head_frame) kept.push_back(mount);
+  const bool determined = free_offsets(plan, robot, seen, {head_frame}, kept);
   if (!head.empty()) {
     free_frame(plan, head_frame, "How the part that carries the camera is mounted on the robot.");
   }
   free_frame(plan, mount, "How the camera is mounted.");
   free_camera(plan, answers, false);
-  add_hand_eye(plan, answers, "arm");
+  add_hand_eye(plan, answers);
   if (!head.empty()) {
     keep_near_zero(plan, mount,
                    "Samples cannot distinguish a rotation of the joint that carries the camera "
                    "from an opposite one of the camera's frame: this block keeps the correction of "
                    "the camera's frame small.");
+  } else if (!determined) {
+    keep_near_zero(plan, mount,
+                   "The joints of the arm cannot show all of the camera's frame: this block keeps "
+                   "its correction small.");
   }
   return plan;
-}
-
-/// True if at least two joints rotate: with fewer, the position of a point on what they move is not
-/// determined.
-[[nodiscard]] inline bool turns_about_two_axes(const std::vector<ChainJoint>& way) {
-  return std::count_if(way.begin(), way.end(),
-                       [](const ChainJoint& joint) { return turns(joint.type); }) >= 2;
 }
 
 /// A board in the world, seen by a camera that the robot moves.
@@ -79,19 +74,20 @@ namespace kinecal::detail {
         answers.camera, answers.base));
   }
   add_chain_model(plan, "The board, which stands still in this link: the points are its corners.",
-                  "board", answers.base);
+                  holder_of(answers), answers.base);
   add_camera_model(plan, answers);
   const std::string mount = require_mount(robot, answers, {answers.base}).name;
   add_board(plan, answers.target_frame, answers.base);
-  free_offsets(plan, way, answers.target_frame, mount);
+  const bool determined =
+      free_offsets(plan, robot, seen_by_camera(answers, answers.base), {mount}, {});
   free_frame(plan, mount, "How the camera is mounted.");
   free_camera(plan, answers, false);
-  add_hand_eye(plan, answers, "board");
-  if (!turns_about_two_axes(way)) {
-    keep_near_zero(
-        plan, mount,
-        "The camera turns about one axis at most, so samples cannot distinguish all of its frame "
-        "from the board's: this block keeps the correction of the camera's frame small.");
+  add_hand_eye(plan, answers);
+  if (!determined) {
+    keep_near_zero(plan, mount,
+                   "The camera does not turn about two axes, so samples cannot distinguish all of "
+                   "its frame from the board's: this block keeps the correction of the camera's "
+                   "frame small.");
   }
   return plan;
 }
@@ -113,12 +109,16 @@ namespace kinecal::detail {
                   reflectors.size() == 1
                       ? "The arm: the reflector is point (0, 0, 0) of frame " + reflector + "."
                       : "The arm: each reflector is point (0, 0, 0) of its frame.",
-                  "arm", answers.arm);
+                  holder_of(answers), answers.arm);
   add_chain_model(
       plan,
       "The tracker, which stands still in this link: measured points in frame " + tracker + ".",
-      "tracker", answers.base);
-  free_offsets(plan, way, tracker, reflector);
+      tracker_of(answers), answers.base);
+  MeasuredTarget followed{answers.base, answers.arm, answers.base};
+  followed.target_frame = reflector;
+  followed.is_point = true;
+  followed.sensor_frame = tracker;
+  const bool determined = free_offsets(plan, robot, followed, {}, {});
   free_frame(
       plan, tracker,
       "Where the tracker stands, seen from link " + name_to_yaml(answers.base) +
@@ -138,13 +138,13 @@ namespace kinecal::detail {
        "repeatability of the robot, in metres: 0.0001 is a guess, write yours.",
        "measured",
        {{"type", "chain3d_to_chain3d"},
-        {"model_a", "arm"},
-        {"model_b", "tracker"},
+        {"model_a", name_to_yaml(holder_of(answers))},
+        {"model_b", name_to_yaml(tracker_of(answers))},
         {"sigma", "0.0001"},
         {"loss", "{type: huber, scale: 3.0}"}}});
-  if (!turns_about_two_axes(way)) {
+  if (!determined) {
     keep_near_zero(plan, reflector,
-                   "The arm turns about one axis at most, so samples cannot distinguish all of the "
+                   "The arm does not turn about two axes, so samples cannot distinguish all of the "
                    "reflector's position from the tracker's: this block keeps the reflector near "
                    "the origin of its link.");
   }

@@ -165,7 +165,10 @@ InitAnswers with_proposals(const Robot& robot, InitAnswers answers) {
     propose(answers.target_frame, propose_frame(robot, {"smr", "reflector"}));
     propose(answers.tracker_frame, propose_frame(robot, {"tracker_frame", "laser_frame"}));
   } else if (needs_target_frame(target)) {
-    propose(answers.target_frame, propose_frame(robot, {"checkerboard", "board_frame"}));
+    const char* own = answers.board == InitBoard::checkerboard ? "checkerboard"
+                      : answers.board == InitBoard::apriltag   ? "apriltag_grid"
+                                                               : "charuco_board";
+    propose(answers.target_frame, propose_frame(robot, {own, "board_frame"}));
   }
   return answers;
 }

@@ -1,0 +1,159 @@
+// Definitions of answers_from_samples.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/init/answers_from_samples.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinecal/files/diagnostics.hpp"
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/tools/init/possible_targets.hpp"
+#include "kinecal/tools/init/robot_parts.hpp"
+#include "kinecal/tools/init/seen_sensors.ipp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// The sum of the ranges of a link's own joints in the samples: those that do not move a camera.
+[[nodiscard]] double motion_of(const Robot& robot, std::span<const Sample> samples,
+                               const std::string& end, const std::string& camera) {
+  std::set<std::string> shared;
+  if (!camera.empty()) {
+    for (const Joint* joint : joints_to_root(robot, camera)) shared.insert(joint->name);
+  }
+  double sum = 0.0;
+  for (const Joint* joint : joints_to_root(robot, end)) {
+    if (!moves(joint->type) || shared.contains(joint->name)) continue;
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const Sample& sample : samples) {
+      const auto position = sample.position(drive(robot, *joint).joint);
+      if (!position) continue;
+      least = std::min(least, *position);
+      most = std::max(most, *position);
+    }
+    if (most > least) sum += most - least;
+  }
+  return sum;
+}
+
+/// The arm that moves most in the samples, without a camera; empty if none does.
+[[nodiscard]] std::string moving_arm(const Robot& robot, std::span<const Sample> samples,
+                                     const std::string& camera) {
+  constexpr double kStill = 1e-3;  // radians or metres
+  std::string best;
+  double most = kStill;
+  for (const std::string& end : propose_arms(robot)) {
+    const double motion = motion_of(robot, samples, end, camera);
+    if (motion <= most) continue;
+    most = motion;
+    best = end;
+  }
+  return best;
+}
+
+/// A reflector and a tracker: two sensors without a camera, one of which always reports the same.
+void add_tracker(const Robot& robot, std::span<const Sample> samples,
+                 const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
+  if (chains.size() != 2 || chains[0]->varies == chains[1]->varies) {
+    throw InputError(
+        "--from: the samples have no camera, and not one sensor with fixed points and one with "
+        "measured ones (a tracker), but " +
+        (chains.empty() ? std::string("no sensor") : names_of(chains)) +
+        "; give --target and write the configuration for these");
+  }
+  const SeenSensor& held = *chains[chains[0]->varies ? 1 : 0];
+  const SeenSensor& tracker = *chains[chains[0]->varies ? 0 : 1];
+  answers.target = InitTarget::tracker;
+  answers.holder = held.name;
+  answers.tracker = tracker.name;
+  if (answers.tracker_frame.empty()) answers.tracker_frame = tracker.frames.front();
+  if (answers.target_frame.empty()) {
+    answers.target_frame = held.frames.front();
+    answers.more_reflectors.assign(held.frames.begin() + 1, held.frames.end());
+  }
+  if (answers.arm.empty()) answers.arm = moving_arm(robot, samples, "");
+}
+
+/// The link of a camera.
+[[nodiscard]] std::string camera_link(const Robot& robot, const SeenSensor& camera) {
+  if (robot.has_link(camera.frames.front())) return camera.frames.front();
+  const std::vector<std::string> proposed = propose_cameras(robot);
+  if (proposed.size() == 1) return proposed.front();
+  throw InputError(fmt::format(
+      "--camera: the features of camera '{}' are in frame '{}', which is not a link of the URDF; "
+      "give the link of its optical frame, or add it to the URDF",
+      camera.name, camera.frames.front()));
+}
+
+/// What holds a board that a camera sees: the arm that moves, or the world.
+void add_board_holder(const Robot& robot, std::span<const Sample> samples, InitAnswers& answers) {
+  const bool given = !answers.arm.empty();
+  const std::string arm = given ? answers.arm : moving_arm(robot, samples, answers.camera);
+  const bool held =
+      !arm.empty() && why_no_target(robot, InitTarget::checkerboard, arm, answers.camera).empty();
+  answers.target = held ? InitTarget::checkerboard : InitTarget::world_checkerboard;
+  if (held) answers.arm = arm;
+}
+
+/// A camera, and what it sees.
+void add_camera(const Robot& robot, std::span<const Sample> samples, const SeenSensor& camera,
+                const std::vector<const SeenSensor*>& chains, InitAnswers& answers) {
+  answers.camera_name = camera.name;
+  answers.camera_type = camera.in_pixels ? "camera2d" : "camera3d";
+  if (answers.camera.empty()) answers.camera = camera_link(robot, camera);
+  if (chains.empty()) {
+    answers.target = InitTarget::ground;
+    return;
+  }
+  if (chains.size() > 1) {
+    throw InputError("--from: camera '" + camera.name + "' sees the points of " + names_of(chains) +
+                     "; init writes a configuration for one of them");
+  }
+  const SeenSensor& holder = *chains.front();
+  answers.holder = holder.name;
+  answers.with_ground = camera.alone > 0 && !camera.in_pixels;
+  const std::string& frame = holder.frames.front();
+  if (robot.has_link(frame)) {
+    answers.target = InitTarget::leds;
+    answers.arm = frame;
+    return;
+  }
+  if (answers.target_frame.empty()) answers.target_frame = frame;
+  add_board_holder(robot, samples, answers);
+}
+
+}  // namespace
+}  // namespace detail
+
+InitAnswers answers_from_samples(const Robot& robot, std::span<const Sample> samples,
+                                 InitAnswers given) {
+  if (samples.empty()) throw InputError("--from: there are no samples");
+  const std::vector<detail::SeenSensor> sensors = detail::sensors_of(samples);
+  std::vector<const detail::SeenSensor*> cameras, chains;
+  for (const detail::SeenSensor& sensor : sensors) {
+    if (!sensor.frames.empty()) (sensor.is_camera ? cameras : chains).push_back(&sensor);
+  }
+  if (cameras.size() > 1) {
+    throw InputError("--from: the samples have several cameras, " + detail::names_of(cameras) +
+                     "; init writes a configuration for one: give it the samples of one");
+  }
+  if (cameras.empty()) {
+    detail::add_tracker(robot, samples, chains, given);
+  } else {
+    detail::add_camera(robot, samples, *cameras.front(), chains, given);
+  }
+  if (needs_arm(given.target) && given.arm.empty()) {
+    throw InputError("--arm: no arm of the URDF moves in the samples; give the link at its end");
+  }
+  return given;
+}
+
+}  // namespace kinecal
