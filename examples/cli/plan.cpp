@@ -14,6 +14,7 @@
 #include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/text/frame_name.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "output_file.hpp"
@@ -40,7 +41,7 @@ Accuracy accuracy_of_plan(const std::string& text) {
 /// @throws InputError  if it is not one of a position of what the calibration compares
 double wanted_position(const std::string& text, const StudyInput& input) {
   const Accuracy accuracy = accuracy_of_plan(text);
-  if (!accuracy.frame.empty() && accuracy.frame != input.setup.frame.name()) {
+  if (!accuracy.frame.empty() && !same_frame(accuracy.frame, input.setup.frame.name())) {
     throw InputError("--accuracy: '" + accuracy.frame + "' is not what is calibrated: '" +
                      input.setup.frame.name() + "' in '" + input.setup.in.name() +
                      "'; write 'gripper 0.5 mm'");

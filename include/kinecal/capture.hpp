@@ -22,6 +22,7 @@
 #include "kinecal/capture/led_search.hpp"
 #include "kinecal/capture/light_blob.hpp"
 #include "kinecal/capture/opencv_corners.hpp"
+#include "kinecal/capture/other_tags.hpp"
 #include "kinecal/capture/plane_finder.hpp"
 #include "kinecal/capture/plane_search.hpp"
 #include "kinecal/capture/pose_generation.hpp"

@@ -11,6 +11,7 @@
 #include "kinecal/config/doubts/check_offsets.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"
+#include "kinecal/config/doubts/ignored_urdf.hpp"
 #include "kinecal/config/doubts/initial_values.hpp"
 #include "kinecal/config/doubts/joint_positions.hpp"
 #include "kinecal/config/doubts/judge_causes.hpp"

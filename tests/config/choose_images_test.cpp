@@ -99,10 +99,13 @@ TEST(ChooseImages, ALensThatCannotBeUsedIsRefusedForRawImagesOnly) {
   for (Sample& sample : scenario.samples) {
     sample.observations[1].camera->distortion_model = "equidistant";
   }
-  EXPECT_THAT(choose(scenario).notes,
-              ElementsAre(HasSubstr("sensor 'eye': image taken as rectified; distortion model "
-                                    "'equidistant' is not supported in raw images")));
-  EXPECT_TRUE(calibrate(scenario.calibration()).converged);
+  Diagnostics refused;
+  choose_images(scenario.config, scenario.robot, scenario.samples, refused);
+  EXPECT_THAT(refused.errors,
+              ElementsAre(AllOf(HasSubstr("sensor 'eye': its lens has the distortion model "
+                                          "'equidistant', which raw images cannot have"),
+                                HasSubstr("write 'image: rectified' in the model"))));
+  EXPECT_TRUE(calibrate(scenario.calibration()).converged) << "its pixels count as rectified";
   scenario.config.steps[0].models[1].image = ImageKind::raw;
   EXPECT_THROW((void)scenario.calibration(), InputError);
 }

@@ -74,9 +74,12 @@ TEST_F(ImagesProgram, AKeyIsObeyedEvenIfItIsWrong) {
 }
 
 TEST_F(ImagesProgram, ALensThatCannotBeUsedIsRefusedForRawImagesOnly) {
-  const test::Outcome rectified = calibrate(ImageKind::rectified, "", "equidistant");
+  const test::Outcome rectified =
+      calibrate(ImageKind::rectified, ", image: rectified", "equidistant");
   EXPECT_EQ(rectified.code, 0) << rectified.err;
-  EXPECT_THAT(rectified.err, HasSubstr("image taken as rectified; distortion model 'equidistant'"));
+  const test::Outcome unknown = calibrate(ImageKind::rectified, "", "equidistant");
+  EXPECT_EQ(unknown.code, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("its lens has the distortion model 'equidistant', which raw"));
   const test::Outcome raw = calibrate(ImageKind::rectified, ", image: raw", "equidistant");
   EXPECT_EQ(raw.code, 1);
   EXPECT_THAT(raw.err, HasSubstr("distortion model 'equidistant' is not supported in raw images"));

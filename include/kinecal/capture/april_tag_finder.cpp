@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinecal/capture/april_tags.hpp"
+#include "kinecal/capture/other_tags.hpp"
 #include "kinecal/capture/tag_layout.hpp"
 
 namespace kinecal {
@@ -114,6 +115,7 @@ void add_tag(const GrayImage& image, const PlacedTag& placed, const SeenTag& tag
 
 struct AprilTagFinder::Detector {
   detail::TagReader reader;
+  detail::OtherTags others;
 };
 
 AprilTagFinder::AprilTagFinder(AprilTagSettings settings)
@@ -123,7 +125,8 @@ AprilTagFinder::AprilTagFinder(AprilTagSettings settings)
   detail::check_tags(settings_, tags_);
   check_target(settings_.target);
   detector_.reset(new Detector{detail::TagReader(settings_.family, settings_.border,
-                                                 settings_.max_wrong_bits, settings_.decimate)});
+                                                 settings_.max_wrong_bits, settings_.decimate),
+                               detail::OtherTags(settings_, tags_)});
 }
 
 Found AprilTagFinder::find(const View& view) const {
@@ -131,8 +134,9 @@ Found AprilTagFinder::find(const View& view) const {
   if (const auto fault = view_fault(view, settings_.target.corners); !fault.empty()) {
     return refused(fault);
   }
-  detail::TagsSeen seen = detail::tags_seen(view.image, detector_->reader.read(view.image), tags_,
-                                            detector_->reader.cells(), settings_.min_side);
+  const std::vector<detail::SeenTag> found = detector_->reader.read(view.image);
+  detail::TagsSeen seen =
+      detail::tags_seen(view.image, found, tags_, detector_->reader.cells(), settings_.min_side);
   std::vector<Mark> marks = marks_of(seen.corners);
   if (seen.twice >= 0) {
     return refused("tag " + std::to_string(seen.twice) + " is seen twice: which is meant?", marks);
@@ -144,6 +148,10 @@ Found AprilTagFinder::find(const View& view) const {
       why += "; " + std::to_string(seen.small) + " are too small: sides of at most " +
              detail::one_digit(seen.largest) + " pixels, " + detail::one_digit(settings_.min_side) +
              " are needed";
+    }
+    if (seen.tags + seen.small + seen.outside == 0) {
+      const std::string hint = detector_->others.hint(view.image, found);
+      if (!hint.empty()) why += "; " + hint;
     }
     if (seen.outside > 0) why += "; " + std::to_string(seen.outside) + " are at the border";
     return refused(why, marks);

@@ -9,6 +9,7 @@
 #include "kinecal/capture/joint_range.ipp"
 #include "kinecal/geometry/rotation.hpp"
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/text/frame_name.hpp"
 #include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
@@ -44,7 +45,8 @@ RobotBody::RobotBody(const Robot& robot, const std::string& base, double radius,
   find_neighbours(robot, held);
 }
 
-void RobotBody::add_links(const Robot& robot, const std::string& base) {
+void RobotBody::add_links(const Robot& robot, const std::string& name) {
+  const std::string base = make_chain(robot, name, name).base;  // as the robot spells it
   std::string root = base;
   const auto is_connected = [](const Joint& j) {
     return j.type == JointType::fixed || moves(j.type);
@@ -112,8 +114,9 @@ void RobotBody::find_neighbours(const Robot& robot, const std::map<std::string, 
 }
 
 std::size_t RobotBody::link(const std::string& name) const {
-  const auto found = links_.find(name);
-  if (found != links_.end()) return found->second;
+  for (const auto& [known, index] : links_) {
+    if (same_frame(known, name)) return index;
+  }
   std::vector<std::string> names;
   for (const auto& [known, index] : links_) names.push_back(known);
   throw RobotError("no link '" + name + "' is connected to the base" + did_you_mean(name, names));

@@ -5,10 +5,13 @@
 #include "kinecal/config/add_blocks.ipp"
 #include "kinecal/config/config_free.ipp"
 #include "kinecal/config/few_samples.ipp"
+#include "kinecal/config/free_set.ipp"
 #include "kinecal/config/id_warnings.ipp"
+#include "kinecal/config/missing_sensors.ipp"
 #include "kinecal/config/parameters_from_config.hpp"
 #include "kinecal/config/sample_warnings.ipp"
 #include "kinecal/config/unknown_frames.ipp"
+#include "kinecal/config/unneeded_parts.ipp"
 #include "kinecal/evaluation/any_evaluator.hpp"
 
 namespace kinecal {
@@ -16,24 +19,44 @@ namespace kinecal {
 namespace detail {
 namespace {
 
+/// Adds the samples.  Samples that are refused for one reason give one error.
 /// @returns  indices of those that were added
 std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> samples,
                              Diagnostics& diagnostics) {
   constexpr std::size_t kReported = 5;  // the first few show what is wrong
-  std::size_t refused = 0;
+  std::size_t others = 0;
+  struct Reason {
+    std::string text, first;  // without and with the place of a sample
+    std::size_t count = 1;
+  };
+  std::vector<Reason> refused;
   std::vector<int> added;
   for (const Sample& sample : samples) {
     try {
       problem.add_sample(sample);
       added.push_back(static_cast<int>(&sample - samples.data()));
     } catch (const SampleError& e) {
-      if (++refused <= kReported) diagnostics.errors.emplace_back(e.what());
+      const std::string what = e.what(), place = sample.source + ": ";
+      const std::string reason = what.starts_with(place) ? what.substr(place.size()) : what;
+      const auto known = std::find_if(refused.begin(), refused.end(),
+                                      [&](const Reason& one) { return one.text == reason; });
+      if (known != refused.end()) {
+        ++known->count;
+      } else if (refused.size() < kReported) {
+        refused.push_back({reason, what});
+      } else {
+        ++others;
+      }
     }
   }
-  if (refused > kReported) {
-    diagnostics.errors.push_back(fmt::format("{} more sample{} errors like these",
-                                             refused - kReported,
-                                             refused - kReported == 1 ? " has" : "s have"));
+  for (const Reason& reason : refused) {
+    diagnostics.errors.push_back(
+        reason.first +
+        (reason.count > 1 ? " (and in " + counted(reason.count - 1, "more sample") + ")" : ""));
+  }
+  if (others > 0) {
+    diagnostics.errors.push_back(
+        fmt::format("{} more sample{} errors like these", others, others == 1 ? " has" : "s have"));
   }
   return added;
 }
@@ -52,8 +75,9 @@ std::vector<int> add_samples(AnyProblem& problem, std::span<const Sample> sample
 }
 
 /// Reports terms without samples, and plane blocks that also use the samples of another block.
-void check_terms(const StepConfig& step, const AnyProblem& problem, std::span<const Sample> samples,
-                 Diagnostics& diagnostics) {
+/// @returns  false if no term has samples, an error
+bool check_terms(const StepConfig& step, const AnyProblem& problem, std::span<const Sample> samples,
+                 const MissingSensors& missing, Diagnostics& diagnostics) {
   int total = 0;
   for (int t = 0; t < problem.num_terms(); ++t) {
     const Term& term = problem.term(t);
@@ -61,6 +85,7 @@ void check_terms(const StepConfig& step, const AnyProblem& problem, std::span<co
                                     [&](const BlockConfig& b) { return b.name == term.name; });
     const int count = problem.samples_of(t);
     total += count;
+    if (missing.are_in(*block)) continue;  // report_missing() says so
     warn_of_disjoint_ids(term, *block, samples, diagnostics);
     warn_of_one_sided_ids(term, *block, samples, diagnostics);
     if (count == 0) {
@@ -85,37 +110,15 @@ void check_terms(const StepConfig& step, const AnyProblem& problem, std::span<co
                       term.name, block->models.front()));
     }
   }
-  if (total == 0) {
+  if (total > 0) return true;
+  if (missing.models.empty()) {
     diagnostics.error(step.place, fmt::format("step '{}': no sample has usable features for any of "
                                               "its error blocks",
                                               step.name));
+  } else {
+    diagnostics.error(missing.models.front()->place, sentence_of(missing));
   }
-}
-
-/// The free parameters of a step that affect residuals, in file order; warns of others.
-[[nodiscard]] FreeSet free_set(const StepConfig& step, const AnyProblem& problem, bool have_samples,
-                               Diagnostics& diagnostics) {
-  const ParameterTable& table = problem.table();
-  const std::vector<int> touched = problem.touched_parameters();
-  std::vector<int> free;
-  const auto add = [&](const std::string& name, const SourceLocation& place) {
-    const int index = table.find(name);
-    if (index < 0) return;
-    if (have_samples && !std::binary_search(touched.begin(), touched.end(), index)) {
-      diagnostics.warning(place, fmt::format("no residual of these samples depends on '{}'; it "
-                                             "keeps its initial value {}",
-                                             name, table[index].value));
-      return;
-    }
-    free.push_back(index);
-  };
-  for (const FreeParamConfig& param : free_parameters(step)) add(param.name, param.place);
-  if (free.empty()) {
-    diagnostics.error(step.place, fmt::format("step '{}': these samples determine none of "
-                                              "its free parameters",
-                                              step.name));
-  }
-  return FreeSet(std::move(free), table.size());
+  return false;
 }
 
 /// The table with the bounds of a step.
@@ -137,28 +140,6 @@ void check_terms(const StepConfig& step, const AnyProblem& problem, std::span<co
     }
   }
   return table;
-}
-
-/// Warns of priors on parameters that no step frees.
-void warn_of_held_priors(const Config& config, const ParameterTable& table,
-                         Diagnostics& diagnostics) {
-  std::set<int> free;
-  for (const StepConfig& step : config.steps) {
-    for (const FreeParamConfig& param : free_parameters(step)) free.insert(table.find(param.name));
-  }
-  free.erase(-1);
-  for (const StepConfig& step : config.steps) {
-    for (const BlockConfig& block : step.error_blocks) {
-      if (block.param.empty()) continue;
-      const auto rows = Prior{block.param}.parameters(table);
-      const auto held = [&](int parameter) { return !free.contains(parameter); };
-      const bool misspelt = std::all_of(rows.begin(), rows.end(), [](int p) { return p < 0; });
-      if (misspelt || !std::all_of(rows.begin(), rows.end(), held)) continue;
-      diagnostics.warning(block.place, fmt::format("error block '{}' has no effect: no step frees "
-                                                   "its param '{}'",
-                                                   block.name, block.param));
-    }
-  }
 }
 
 /// Adds the sensors and error blocks of a step.
@@ -219,26 +200,26 @@ void prepare_search(CalibrationStep& step, const Config& config, const StepConfi
 }  // namespace
 }  // namespace detail
 
-Calibration assemble(const Config& config, const Robot& robot, std::span<const Sample> samples,
+Calibration assemble(const Config& given, const Robot& robot, std::span<const Sample> samples,
                      Diagnostics& diagnostics) {
   Calibration calibration;
-  if (!robot.has_link(config.base_link)) {
-    diagnostics.error(
-        config.base_link_place.value_or(config.place),
-        fmt::format("base_link{}: no link '{}' in robot '{}'{}",
-                    config.base_link_place ? "" : " is not given", config.base_link, robot.name(),
-                    did_you_mean(config.base_link, robot.link_names())));
+  if (!robot.has_link(given.base_link)) {
+    diagnostics.error(given.base_link_place.value_or(given.place),
+                      fmt::format("base_link{}: no link '{}' in robot '{}'{}",
+                                  given.base_link_place ? "" : " is not given", given.base_link,
+                                  robot.name(), did_you_mean(given.base_link, robot.link_names())));
     return calibration;
   }
-  const std::set<std::string> frames = detail::frames_of(config);
-  calibration.table = detail::parameters_from(config, robot, samples, diagnostics);
+  const std::set<std::string> frames = detail::frames_of(given);
+  calibration.table = detail::parameters_from(given, robot, samples, diagnostics);
+  const Config config =
+      detail::without_unneeded(given, robot, calibration.table, samples, diagnostics);
   if (!config.steps.empty()) {  // values of later steps are set when those steps start
     for (const auto& [index, value] :
          detail::initial_assignments(config.steps.front(), calibration.table)) {
       calibration.table[index].initial = calibration.table[index].value = value;
     }
   }
-  detail::warn_of_held_priors(config, calibration.table, diagnostics);
   detail::warn_of_unusable(config, samples, diagnostics);
   detail::warn_of_far_points(config, samples, diagnostics);
   detail::warn_of_changing_cameras(samples, diagnostics);
@@ -246,12 +227,14 @@ Calibration assemble(const Config& config, const Robot& robot, std::span<const S
   for (const StepConfig& step : config.steps) {
     std::unique_ptr<AnyProblem> problem = make_problem(
         robot, config.base_link, detail::with_bounds(calibration.table, step, diagnostics), frames);
-    detail::warn_of_unknown_sensors(step, samples, diagnostics);
     if (!detail::add_models(*problem, step, samples, diagnostics)) continue;
     (void)detail::add_samples(*problem, samples, diagnostics);
     if (!diagnostics.errors.empty()) continue;
-    if (!samples.empty()) detail::check_terms(step, *problem, samples, diagnostics);
-    FreeSet free = detail::free_set(step, *problem, !samples.empty(), diagnostics);
+    const detail::MissingSensors missing = detail::missing_sensors(step, samples);
+    if (!samples.empty() && !detail::check_terms(step, *problem, samples, missing, diagnostics)) {
+      continue;
+    }
+    FreeSet free = detail::free_set(step, *problem, samples, missing, diagnostics);
     calibration.steps.push_back({step.name, step.max_num_iterations, std::move(problem),
                                  std::move(free),
                                  detail::initial_assignments(step, calibration.table)});

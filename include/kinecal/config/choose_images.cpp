@@ -28,8 +28,20 @@ struct ImageOptions {
   bool bends = false;     ///< a coefficient of the distortion is not zero
   double turn = 0.0;      ///< angle of R, radians
   std::string no_raw;     ///< why raw is impossible
+  std::string lens;       ///< the distortion model, if that is why
   bool rectified = true;  ///< is possible
 };
+
+/// True if only the distortion keeps a camera_info from describing a raw image.
+[[nodiscard]] bool is_only_lens(const AnySensor& as_raw, Observation seen) {
+  seen.camera->d.clear();
+  try {
+    (void)as_raw.settings(seen);
+    return true;
+  } catch (const SettingsError&) {
+    return false;
+  }
+}
 
 [[nodiscard]] ImageOptions image_options(std::span<const Sample> samples, const std::string& camera,
                                          const SensorEntry& entry) {
@@ -54,6 +66,7 @@ struct ImageOptions {
       raw = as_raw->settings(*seen);
     } catch (const SettingsError& e) {
       options.no_raw = e.what();
+      if (is_only_lens(*as_raw, *seen)) options.lens = info.distortion_model;
     }
     options.differ = options.differ || raw != rectified;
   }
@@ -68,8 +81,18 @@ void choose_image(Config& config, const Robot& robot, std::span<const Sample> sa
   if (!options.no_raw.empty()) {
     if (!options.rectified || !options.bends) return;  // an error, or P as always
     set_image(config, camera.name, ImageKind::rectified);
-    diagnostics.note(camera.place,
-                     fmt::format("{}: image taken as rectified; {}", sensor, options.no_raw));
+    if (options.lens.empty()) {
+      diagnostics.note(camera.place,
+                       fmt::format("{}: image taken as rectified; {}", sensor, options.no_raw));
+    } else {  // raw pixels taken as rectified would be wrong by all of the distortion
+      diagnostics.error(
+          camera.place,
+          fmt::format("{}: its lens has the distortion model '{}', which raw images cannot have "
+                      "here, and the configuration does not say that its pixels are of rectified "
+                      "images; rectify the images and write 'image: rectified' in the model, or "
+                      "give it a plumb_bob model",
+                      sensor, options.lens));
+    }
     return;
   }
   if (!options.rectified || !options.differ) return;

@@ -26,8 +26,9 @@ namespace kinecal {
 /// Sets ModelConfig::image of each camera2d without the key.  If both fit alike, it stays
 /// automatic.  A step without the key uses that of another step.
 ///
-/// Notes the choice, with both medians; also if a distortion model is unsupported, so that only
-/// rectified is possible.  Warns of a raw image if R is not the identity.
+/// Notes the choice, with both medians.  Error: only rectified is possible, because the distortion
+/// model is unsupported, and has coefficients that are not zero.  Warns of a raw image if R is not
+/// the identity.
 void choose_images(Config& config, const Robot& robot, std::span<const Sample> samples,
                    Diagnostics& diagnostics);
 

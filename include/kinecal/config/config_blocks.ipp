@@ -128,6 +128,8 @@ inline void read_block_weighting(ConfigMap& map, BlockConfig& block) {
   read_block_numbers(map, *entry, block);
   read_block_weighting(map, block);
   if (entry->type == "camera3d_to_ground") block.ground = map.text("ground").value_or("");
+  // A fork describes its board here; lines of sight need none.
+  if (entry->type == "camera2d_to_camera2d") map.ignore({"points_x", "points_y", "size"});
   map.report_unknown(!entry->is_upstream);
   return block;
 }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "kinecal/config/config_step.ipp"
+#include "kinecal/config/ros2_nodes.ipp"
 
 namespace kinecal::detail {
 
@@ -45,15 +46,6 @@ inline void read_ros1(ConfigMap& file, ConfigProgress& progress) {
   }
   if (auto steps = file.map(*entry, "cal_steps")) read_ros1_steps(file, *steps, progress);
   file.report_unknown();
-}
-
-/// The nodes of a file: its top-level keys with ros__parameters below them.
-[[nodiscard]] inline std::vector<ConfigEntry> ros2_nodes(const ConfigMap& file) {
-  std::vector<ConfigEntry> nodes;
-  for (const ConfigEntry& entry : file.entries()) {
-    if (entry.value.find("ros__parameters") != nullptr) nodes.push_back(entry);
-  }
-  return nodes;
 }
 
 /// The names in `calibration_steps`, each as the key of its entry.
@@ -101,7 +93,14 @@ inline void read_ros2_steps(ConfigMap& parameters, int max_num_iterations,
 
 /// @param parameters  the map under ros__parameters
 inline void read_ros2(ConfigMap& parameters, ConfigProgress& progress) {
-  parameters.ignore({"use_sim_time"});
+  parameters.ignore({"use_sim_time", "start_type_description_service"});  // of every node
+  // Of the capture, which may be in the same file.
+  parameters.ignore({"duration", "velocity_factor", "settling_timeout", "qos_overrides"});
+  for (const char* list : {"chains", "features"}) {
+    for (const ConfigEntry& element : parameters.list(list)) {
+      if (const auto name = config_text(element.value)) parameters.use(*name);
+    }
+  }
   const int iterations = read_settings(parameters, StepConfig{}.max_num_iterations, progress);
   require_items(parameters, {"calibration_steps", "step", ""});
   read_ros2_steps(parameters, iterations, progress);
@@ -142,14 +141,11 @@ inline bool is_too_deep(const ConfigMap& file) {
   for (const ConfigEntry& entry : file.entries()) {
     const std::string below = "below '" + entry.key + "'";
     const auto deeper = [&](const std::string& key) { return entry.value.find(key); };
-    const auto is_node = [](const YamlNode& node) { return node.find("ros__parameters"); };
     if (deeper("calibration_steps") != nullptr) {
       file.error(entry.place,
                  "calibration_steps is " + below + "; add 'ros__parameters:' between the two");
     } else if (std::any_of(known.begin(), known.end(), stands_in(deeper))) {
       file.error(entry.place, "the keys are " + below + "; move them to the top");
-    } else if (std::any_of(entry.value.items.begin(), entry.value.items.end(), is_node)) {
-      file.error(entry.place, "the node is " + below + "; move it to the top");
     } else {
       continue;
     }
@@ -159,18 +155,18 @@ inline bool is_too_deep(const ConfigMap& file) {
 }
 
 /// Reads the file's top-level map in its dialect: ROS 2 with `ros__parameters`, ROS 1 without.
-inline void read_dialect(ConfigMap& file, ConfigProgress& progress) {
-  const std::vector<ConfigEntry> nodes = ros2_nodes(file);
+/// @param content  the map
+inline void read_dialect(const YamlNode& content, ConfigMap& file, ConfigProgress& progress) {
+  const std::vector<ConfigEntry> nodes = ros2_nodes(content, file.place().file);
   if (nodes.empty()) {
     if (!misses_ros_parameters(file) && !is_too_deep(file)) read_ros1(file, progress);
     return;
   }
-  for (std::size_t i = 1; i < nodes.size(); ++i) {
-    file.error(nodes[i].place,
-               "two nodes, '" + nodes[0].key + "' and '" + nodes[i].key + "'; keep one");
-  }
+  for (const ConfigEntry& entry : nodes) file.use(entry.key.substr(0, entry.key.find('/')));
   for (const ConfigEntry& entry : nodes) file.use(entry.key);
-  ConfigMap node(nodes[0].value, nodes[0].place, "node '" + nodes[0].key + "'", file.diagnostics());
+  const ConfigEntry* chosen = choose_node(nodes, "calibration_steps", file.diagnostics());
+  if (chosen == nullptr) return;
+  ConfigMap node(chosen->value, chosen->place, "node '" + chosen->key + "'", file.diagnostics());
   if (auto parameters = node.map(*node.find("ros__parameters"), "")) {
     read_ros2(*parameters, progress);
   }

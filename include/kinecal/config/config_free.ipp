@@ -31,16 +31,22 @@ inline void read_free_params(ConfigMap& map, StepConfig& step) {
   }
 }
 
-/// Reports a parameter that is freed twice, by its name or as an axis of a frame.
-inline void check_free_parameters(const ConfigMap& map, const StepConfig& step) {
+/// Frees a parameter once that is freed twice, by its name or as an axis of a frame; a warning.
+inline void check_free_parameters(const ConfigMap& map, StepConfig& step) {
   std::map<std::string, SourceLocation> places;
-  for (const FreeParamConfig& parameter : free_parameters(step)) {
-    const auto [first, is_new] = places.emplace(parameter.name, parameter.place);
-    if (is_new) continue;
-    map.error(parameter.place, "free parameter '" + parameter.name +
-                                   "' occurs twice; the first is in line " +
-                                   std::to_string(first->second.line));
+  for (const FreeFrameConfig& frame : step.free_frames) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (frame.axes[i]) places.emplace(parameter_name(frame.name, kFrameAxes[i]), frame.place);
+    }
   }
+  std::erase_if(step.free_params, [&](const FreeParamConfig& parameter) {
+    const auto [other, is_new] = places.emplace(parameter.name, parameter.place);
+    if (is_new) return false;
+    map.warning(parameter.place, "free parameter '" + parameter.name +
+                                     "' occurs twice and counts once; the other is in line " +
+                                     std::to_string(other->second.line));
+    return true;
+  });
 }
 
 /// Warns of a frame without a free axis, and of a frame with two of three rotations free.
@@ -126,15 +132,10 @@ inline void check_initial_axes(const ConfigMap& map, const FrameInitialValueConf
                                                                       const FreeAxes& free) {
   FrameInitialValueConfig initial = read_frame_pose(item);
   if (!item.map) return initial;
-  const ConfigMap& map = *item.map;
   if (const auto frame = free.find(item.name); frame != free.end()) {
-    check_initial_axes(map, initial, frame->second);
-    return initial;
+    check_initial_axes(*item.map, initial, frame->second);
   }
-  std::vector<std::string> names;
-  for (const auto& [name, axes] : free) names.push_back(name);
-  map.error(item.place, "there is no such free frame" + map.did_you_mean(item.name, names));
-  return initial;
+  return initial;  // a frame that is not free: assemble() knows whether the robot has it
 }
 
 /// `initial_values: {parameter: number}`

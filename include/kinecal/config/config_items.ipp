@@ -45,6 +45,15 @@ inline const ConfigItemKind kErrorBlockItems{"error_blocks", "error block", ""};
 inline const ConfigItemKind kInitialValueItems{"free_frames_initial_values",
                                                "initial value of free frame", "_initial_values"};
 
+/// Reports a list that is missing or empty.
+inline void require_items(const ConfigMap& map, const ConfigItemKind& kind) {
+  const ConfigEntry* entry = map.peek(kind.list);
+  const bool missing = entry == nullptr || entry->value.is_null();
+  if (!missing && !(entry->value.is_list() && entry->value.items.empty())) return;
+  map.error(entry == nullptr ? map.place() : entry->place,
+            "no " + kind.noun + " is given; list at least one under '" + kind.list + "'");
+}
+
 using FindConfigItems =
     std::function<std::vector<ConfigItem>(ConfigMap& step, const ConfigItemKind& kind)>;
 

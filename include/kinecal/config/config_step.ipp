@@ -63,20 +63,26 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   return ImageKind::automatic;
 }
 
+/// Names of the types of models.
+[[nodiscard]] inline std::vector<std::string> model_types() {
+  std::vector<std::string> types;
+  for (const SensorEntry& entry : registry().sensors()) types.push_back(entry.type);
+  types.emplace_back("chain");
+  return types;
+}
+
 /// @return  the model; its type is empty if it is unknown
 [[nodiscard]] inline ModelConfig read_model(ConfigItem& item) {
   ModelConfig model{item.name, "", "", item.name, item.place, ImageKind::automatic};
   if (!item.map) return model;
   ConfigMap& map = *item.map;
-  std::vector<std::string> types;
-  for (const SensorEntry& entry : registry().sensors()) types.push_back(entry.type);
-  types.emplace_back("chain");
+  const std::vector<std::string> types = model_types();
   const std::string type = map.required_text("type").value_or("");
+  const std::string meant = did_you_mean(type, types);
   if (std::find(types.begin(), types.end(), type) != types.end()) {
     model.type = type == "chain" ? "chain3d" : type;
-  } else if (!type.empty()) {
-    map.error(map.find("type")->place,
-              "type '" + type + "' is not a model" + did_you_mean(type, types));
+  } else if (!meant.empty()) {
+    map.error(map.find("type")->place, "type '" + type + "' is not a model" + meant);
   }
   model.frame = map.required_text("frame").value_or("");
   model.param_name = map.text("param_name").value_or(item.name);
@@ -86,13 +92,26 @@ inline int read_settings(ConfigMap& map, int fallback, ConfigProgress& progress)
   return model;
 }
 
-/// Reports a list that is missing or empty.
-inline void require_items(const ConfigMap& map, const ConfigItemKind& kind) {
-  const ConfigEntry* entry = map.peek(kind.list);
-  const bool missing = entry == nullptr || entry->value.is_null();
-  if (!missing && !(entry->value.is_list() && entry->value.items.empty())) return;
-  map.error(entry == nullptr ? map.place() : entry->place,
-            "no " + kind.noun + " is given; list at least one under '" + kind.list + "'");
+/// Reports models of a type that does not exist; one that no error block uses is left out.
+inline void check_model_types(std::vector<ConfigItem>& items, StepConfig& step) {
+  for (ConfigItem& item : items) {
+    const auto type = item.map ? item.map->text("type") : std::nullopt;
+    const auto model = std::find_if(step.models.begin(), step.models.end(),
+                                    [&](const ModelConfig& m) { return m.name == item.name; });
+    if (!type || model == step.models.end() || !model->type.empty()) continue;
+    if (nearest_name(*type, model_types())) continue;  // read_model() has reported it
+    const auto uses = [&](const BlockConfig& block) {
+      return std::find(block.models.begin(), block.models.end(), item.name) != block.models.end();
+    };
+    const std::string what = "type '" + *type + "' is not a model";
+    if (std::any_of(step.error_blocks.begin(), step.error_blocks.end(), uses)) {
+      item.map->error(item.map->find("type")->place, what);
+    } else {
+      item.map->warning(item.map->find("type")->place,
+                        what + "; no error block uses it, so it is left out");
+      step.models.erase(model);
+    }
+  }
 }
 
 inline void check_step(const ConfigMap& map, StepConfig& step) {
@@ -118,7 +137,8 @@ inline void read_step(ConfigMap& map, const FindConfigItems& find, const std::st
   step.name = name;
   step.place = map.place();
   step.max_num_iterations = read_settings(map, max_num_iterations, progress);
-  for (ConfigItem& item : find(map, kModelItems)) step.models.push_back(read_model(item));
+  std::vector<ConfigItem> models = find(map, kModelItems);
+  for (ConfigItem& item : models) step.models.push_back(read_model(item));
   read_free_params(map, step);
   for (ConfigItem& item : find(map, kFreeFrameItems)) {
     step.free_frames.push_back(read_free_frame(item));
@@ -136,6 +156,7 @@ inline void read_step(ConfigMap& map, const FindConfigItems& find, const std::st
   for (ConfigItem& item : find(map, kErrorBlockItems)) {
     step.error_blocks.push_back(read_block(item, step.models));
   }
+  check_model_types(models, step);
   step.initial_values = read_initial_values(map);
   step.initial_values.insert(step.initial_values.end(), fixed.begin(), fixed.end());
   step.bounds = read_bounds(map);

@@ -8,6 +8,7 @@
 
 #include "kinecal/geometry/rpy.hpp"
 #include "kinecal/parameters/joint_parameters.hpp"
+#include "kinecal/text/frame_name.hpp"
 
 namespace kinecal::detail {
 
@@ -34,25 +35,27 @@ std::vector<ParameterInfo> own_parameters(const BlockConfig& block) {
   }
 }
 
-/// Names of the frames in which features were recorded.
-[[nodiscard]] inline std::set<std::string> feature_frames(std::span<const Sample> samples) {
+std::set<std::string> feature_frames(std::span<const Sample> samples) {
   std::set<std::string> frames;
   for (const Sample& sample : samples) {
     for (const Observation& observation : sample.observations) {
-      for (const Feature& feature : observation.features) frames.insert(feature.frame);
+      for (const Feature& feature : observation.features) {
+        frames.insert(std::string(plain_frame(feature.frame)));
+      }
     }
   }
   return frames;
 }
 
-/// Adds the offset of a joint, or reports why it cannot have one.
+/// Adds the offset of a joint, or reports why it cannot have one: a fixed joint has none, which
+/// changes nothing, but the offset of a mimic joint would be lost.
 inline void add_joint(ParameterTable& table, const Robot& robot, const std::string& name,
                       const SourceLocation& place, Diagnostics& diagnostics) {
   const Joint& joint = robot.joint(name);
   if (!moves(joint.type)) {
-    diagnostics.error(place, fmt::format("joint '{}' is {} and has no offset; free its frame "
-                                         "instead (free_frames)",
-                                         name, to_string(joint.type)));
+    diagnostics.warning(place, fmt::format("joint '{}' is {} and has no offset, so it is left out; "
+                                           "free_frames frees its frame",
+                                           name, to_string(joint.type)));
     return;
   }
   if (joint.mimic) {
@@ -98,7 +101,7 @@ inline void check_fixed_frame(const FreeFrameConfig& frame, const Robot& robot,
                       fmt::format("fixed frame '{}' is a {} of the robot, whose URDF says where it "
                                   "is; fixed_frames are beyond the link of a model",
                                   frame.name, robot.has_joint(frame.name) ? "joint" : "link"));
-  } else if (have_samples && !recorded.contains(frame.name)) {
+  } else if (have_samples && !recorded.contains(std::string(plain_frame(frame.name)))) {
     diagnostics.warning(frame.place,
                         fmt::format("fixed frame '{}': no feature of the samples is in it{}",
                                     frame.name, did_you_mean(frame.name, recorded)));
@@ -118,7 +121,7 @@ inline void check_frame(const FreeFrameConfig& frame, const Robot& robot,
                                   frame.name, joint ? ": '" + joint->name + "'" : ""));
     return;
   }
-  if (recorded.contains(frame.name)) return;
+  if (recorded.contains(std::string(plain_frame(frame.name)))) return;
   const auto nearest = nearest_name(frame.name, robot.joint_names());
   if (nearest) {
     diagnostics.error(frame.place,

@@ -27,6 +27,9 @@ namespace kinecal::detail {
 /// The own parameters of an error block; empty if its numbers are impossible.
 [[nodiscard]] std::vector<ParameterInfo> own_parameters(const BlockConfig& block);
 
+/// Names of the frames in which features were recorded, without a leading slash.
+[[nodiscard]] std::set<std::string> feature_frames(std::span<const Sample> samples);
+
 /// Names of all frames that are free in some step.
 [[nodiscard]] std::set<std::string> frames_of(const Config& config);
 

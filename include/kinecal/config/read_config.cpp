@@ -36,7 +36,7 @@ Config parse_config(const std::string& text, const std::string& path, Diagnostic
   const detail::YamlNode content = detail::parse_config_text(text, path, found);
   if (content.is_map()) {
     detail::ConfigMap file(content, {path, 0}, "", found);
-    detail::read_dialect(file, progress);
+    detail::read_dialect(content, file, progress);
   } else {
     found.error({path, 0}, "the file is " + detail::describe_config(content) + ", not a map");
   }

@@ -147,24 +147,4 @@ inline void warn_of_joints_with_two_positions(std::span<const Sample> samples,
       count, count == 1 ? "" : "s", count == 1 ? "has" : "have", first));
 }
 
-/// Warns of models whose sensor is in no sample: probably a misspelt name.
-inline void warn_of_unknown_sensors(const StepConfig& step, std::span<const Sample> samples,
-                                    Diagnostics& diagnostics) {
-  std::set<std::string> recorded, models;
-  for (const Sample& sample : samples) {
-    for (const Observation& observation : sample.observations) recorded.insert(observation.sensor);
-  }
-  for (const ModelConfig& model : step.models) models.insert(model.name);
-  for (const ModelConfig& model : step.models) {
-    if (recorded.contains(model.name) || samples.empty()) continue;
-    std::string hint = did_you_mean(model.name, recorded);
-    if (hint.empty() && !recorded.empty()) {
-      hint = fmt::format("; the samples have '{}'", fmt::join(recorded, "', '"));
-    }
-    diagnostics.warning(
-        model.place,
-        fmt::format("model '{}': no sample has a sensor of that name{}", model.name, hint));
-  }
-}
-
 }  // namespace kinecal::detail

@@ -4,8 +4,23 @@
 
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/chain_fold.hpp"
+#include "kinecal/text/frame_name.hpp"
 
 namespace kinecal {
+
+namespace detail {
+
+/// The name of a link as the robot has it, with or without a leading slash.
+/// @throws RobotError  if the robot has no such link
+[[nodiscard]] inline std::string link_called(const Robot& robot, const std::string& name) {
+  if (const Joint* joint = robot.parent_joint(name)) return joint->child;
+  for (const Joint& joint : robot.joints()) {
+    if (same_frame(joint.parent, name)) return joint.parent;  // the root
+  }
+  return name;
+}
+
+}  // namespace detail
 
 KINECAL_INLINE std::vector<const Joint*> joints_to_root(const Robot& robot,
                                                         const std::string& link) {
@@ -23,10 +38,9 @@ KINECAL_INLINE std::vector<const Joint*> joints_to_root(const Robot& robot,
 KINECAL_INLINE RuntimeChain make_chain(const Robot& robot, const std::string& base,
                                        const std::string& tip,
                                        const std::set<std::string>& corrected) {
-  (void)robot.parent_joint(base);
-  (void)robot.parent_joint(tip);
+  const std::string from = detail::link_called(robot, base), to = detail::link_called(robot, tip);
   const std::vector<Joint>& joints = robot.joints();
-  const auto way = detail::find_way(joints, base, tip, std::vector<std::size_t>(2 * joints.size()));
+  const auto way = detail::find_way(joints, from, to, std::vector<std::size_t>(2 * joints.size()));
   if (!way.ends) throw RobotError("link '" + base + "' or '" + tip + "' is below itself");
   if (!way.is_connected) {
     throw RobotError("links '" + base + "' and '" + tip + "' are not connected in robot '" +
@@ -39,7 +53,7 @@ KINECAL_INLINE RuntimeChain make_chain(const Robot& robot, const std::string& ba
                      std::string(to_string(joint.type)) +
                      "; chains take fixed, revolute, continuous and prismatic joints");
   }
-  RuntimeChain chain{base, tip, {}, {}};
+  RuntimeChain chain{from, to, {}, {}};
   chain.tail = detail::fold(
       joints, way, [&](const std::string& name) { return corrected.contains(name); },
       [&](const Joint& joint, const Pose<double>& fixed, bool is_corrected, bool reversed) {

@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "kinecal/kinematics/chain_fold.hpp"
 #include "kinecal/kinematics/robot.hpp"
+#include "kinecal/text/frame_name.hpp"
 #include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal {
@@ -17,11 +19,29 @@ namespace detail {
 /// another robot stays the same, bit for bit.
 inline constexpr double kUnitLength = 4.0 * std::numeric_limits<double>::epsilon();
 
+/// Adds each link under its other spelling: /tool as tool, and tool as /tool.
+/// @throws RobotError  if two links differ only by the slash
+inline void add_other_spellings(std::map<std::string, int>& links) {
+  std::map<std::string, int> others;
+  for (const auto& [link, joint] : links) {
+    const std::string_view plain = plain_frame(link);
+    std::string other = plain.size() < link.size() ? std::string(plain) : "/" + link;
+    if (links.contains(other)) {
+      throw RobotError("links '" + link + "' and '" + other +
+                       "' differ only by the leading slash, which names of frames lose in ROS; "
+                       "rename one of them");
+    }
+    if (link != "/") others.emplace(std::move(other), joint);
+  }
+  links.merge(others);
+}
+
 }  // namespace detail
 
 KINECAL_INLINE Robot::Robot(std::string name, std::vector<Joint> joints)
     : name_(std::move(name)), joints_(std::move(joints)) {
   for (std::size_t i = 0; i < joints_.size(); ++i) add_to_indices(i);
+  detail::add_other_spellings(links_);
   for (const Joint& joint : joints_) check_mimic(joint);
 }
 
@@ -50,9 +70,12 @@ KINECAL_INLINE std::vector<std::string> Robot::joint_names() const {
 }
 
 KINECAL_INLINE std::vector<std::string> Robot::link_names() const {
-  std::vector<std::string> names;
-  for (const auto& [link, joint] : links_) names.push_back(link);
-  return names;
+  std::set<std::string> names;
+  for (const Joint& joint : joints_) {
+    names.insert(joint.parent);
+    names.insert(joint.child);
+  }
+  return {names.begin(), names.end()};
 }
 
 KINECAL_INLINE void Robot::add_to_indices(std::size_t i) {

@@ -19,7 +19,7 @@ KINECAL_INLINE AnyProblem::AnyProblem(Robot robot, std::string base, ParameterTa
       base_(std::move(base)),
       table_(std::move(table)),
       frames_(std::move(frames)) {
-  (void)robot_.parent_joint(base_);
+  base_ = make_chain(robot_, base_, base_).base;  // as the robot spells it
   for (const Parameter& parameter : table_) detail::check(parameter);
   detail::check_frames(robot_, table_, frames_);
   set_owners();

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "kinecal/problem/mounted_sensor.hpp"
+#include "kinecal/text/frame_name.hpp"
 
 namespace kinecal {
 
@@ -32,6 +33,7 @@ KINECAL_INLINE MountedSensor::MountedSensor(const Robot& robot, const std::strin
                                             const std::set<std::string>& frames)
     : mount_(std::move(mount)), sensor_(std::move(sensor)) {
   const RuntimeChain chain = make_chain(robot, base, mount_.frame, frames);
+  mount_.frame = chain.tip;  // as the robot spells it
   add_chain(chain, table);
   for (const std::string& frame : frames) {
     if (!robot.has_joint(frame)) add_chain(with_virtual_frame(chain, frame), table);
@@ -69,7 +71,7 @@ KINECAL_INLINE detail::ObservationNumbers MountedSensor::numbers(const Sample& s
 
 KINECAL_INLINE void MountedSensor::add_chain(const RuntimeChain& chain,
                                              const ParameterTable& table) {
-  chain_by_frame_.emplace(chain.tip, chains_.size());
+  chain_by_frame_.emplace(plain_frame(chain.tip), chains_.size());
   chains_.push_back(chain);
   chain_parameters_.push_back(kinecal::chain_parameters(chain, table));
 }
@@ -112,7 +114,7 @@ KINECAL_INLINE void MountedSensor::add_sigmas(const Observation& seen,
 
 KINECAL_INLINE std::size_t MountedSensor::chain_to(const std::string& frame) const {
   if (frame.empty()) return 0;  // a header without frame_id: the sensor's own frame
-  const auto it = chain_by_frame_.find(frame);
+  const auto it = chain_by_frame_.find(std::string(plain_frame(frame)));
   const bool own = sensor_->in_own_frame();
   if (it != chain_by_frame_.end() && !(own && it->second != 0)) return it->second;
   std::vector<std::string> known;

@@ -13,6 +13,7 @@
 #include "kinecal/kinematics/forward_kinematics.hpp"
 #include "kinecal/problem/any_problem.hpp"
 #include "kinecal/report/scene_pairs.ipp"
+#include "kinecal/text/frame_name.hpp"
 
 namespace kinecal::detail {
 
@@ -149,7 +150,7 @@ class ScenePoints {
       if (frame == frames.end()) {
         std::size_t chain = 0;
         for (std::size_t c = 1; c < of.chains().size(); ++c) {
-          if (of.chains()[c].tip == feature.frame) chain = c;
+          if (same_frame(of.chains()[c].tip, feature.frame)) chain = c;
         }
         frame = frames.emplace(feature.frame, frame_in_base(s, chain, sample)).first;
       }

@@ -36,10 +36,10 @@ class SceneRobot {
         for (const Feature& feature : seen->features) {
           if (last != nullptr && *last == feature.frame) continue;
           last = &feature.frame;
-          const bool beyond = problem_.frames().contains(feature.frame) &&
-                              !problem_.robot().has_joint(feature.frame);
-          if (beyond && known.insert({sensor.mount().frame, feature.frame}).second) {
-            add_frame(sensor.mount().frame, feature.frame);
+          const std::string* frame = frame_among(problem_.frames(), feature.frame);
+          const bool beyond = frame != nullptr && !problem_.robot().has_joint(*frame);
+          if (beyond && known.insert({sensor.mount().frame, *frame}).second) {
+            add_frame(sensor.mount().frame, *frame);
           }
         }
       }

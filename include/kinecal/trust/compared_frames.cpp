@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/text/frame_name.hpp"
+
 namespace kinecal {
 
 namespace detail {
@@ -19,9 +21,9 @@ namespace {
   for (const Sample& sample : samples) {
     const Observation* seen = sample.observation(mounted.mount().name);
     if (seen == nullptr || seen->features.empty()) continue;
-    const std::string& name = seen->features.front().frame;
-    const bool is_virtual = problem.frames().contains(name) && !problem.robot().has_joint(name);
-    if (is_virtual && !mounted.sensor().in_own_frame()) frame.frame = name;
+    const std::string* name = frame_among(problem.frames(), seen->features.front().frame);
+    const bool is_virtual = name != nullptr && !problem.robot().has_joint(*name);
+    if (is_virtual && !mounted.sensor().in_own_frame()) frame.frame = *name;
     break;
   }
   return frame;

@@ -80,6 +80,102 @@ TEST(CaptureConfig, ReadsTheDialectOfRos2) {
   EXPECT_THAT(file.config.chains.at(0).joints, ElementsAre("elbow", "wrist"));
 }
 
+TEST(CaptureConfig, ReadsTheLedsOfRos2) {
+  const CaptureFile file(
+      "robot_calibration:\n  ros__parameters:\n    features: [lights]\n"
+      "    lights: {type: 'robot_calibration::LedFinder', leds: [upper, lower],\n"
+      "             upper: {code: 1, topic: upper_debug, x: 0.06, y: 0.02, z: 0.03},\n"
+      "             lower: {code: 2, z: -0.01}}\n");
+  EXPECT_THAT(file.diagnostics.errors, IsEmpty());
+  EXPECT_THAT(file.diagnostics.warnings, IsEmpty());
+  ASSERT_EQ(file.config.finders.size(), 1u);
+  EXPECT_EQ(file.config.finders[0].topic, "/lights/points");
+  const auto& leds = std::get<LedFinder>(file.config.finders[0].settings).leds;
+  ASSERT_EQ(leds.size(), 2u);
+  EXPECT_EQ(leds[0].code, 1);
+  EXPECT_EQ(leds[0].name, "upper");
+  EXPECT_EQ(leds[0].position, Vector3<double>(0.06, 0.02, 0.03));
+  EXPECT_EQ(leds[1].position, Vector3<double>(0, 0, -0.01)) << "zero by default, as in ROS 2";
+}
+
+TEST(CaptureConfig, AnLedWithoutItsMapIsAnError) {
+  const CaptureFile file(
+      "n:\n  ros__parameters:\n    features: [f]\n"
+      "    f: {type: LedFinder, leds: [upper, lower], uper: {code: 1}, lower: {code: 2}}\n");
+  EXPECT_THAT(
+      file.diagnostics.errors,
+      ElementsAre(HasSubstr("LED 'upper' has no map 'upper' beside the list 'leds'; did you "
+                            "mean 'uper'?")));
+}
+
+TEST(CaptureConfig, APluginOfImagesFindsPixels) {
+  const CaptureFile file(
+      "n:\n  ros__parameters:\n    features: [f]\n    f: {size: 0.02, type: "
+      "'robot_calibration::CheckerboardFinder<sensor_msgs::msg::Image>'}\n");
+  EXPECT_THAT(file.diagnostics.errors, IsEmpty());
+  const auto& board = std::get<CheckerboardSettings>(file.config.finders.at(0).settings);
+  EXPECT_EQ(board.target.corners, CornerKind::pixels);
+}
+
+TEST(CaptureConfig, OneFileMayHoldTheCalibrationAndOtherNodes) {
+  const CaptureFile file(
+      "other:\n  ros__parameters: {a: 1}\n"
+      "fetch:\n  robot_calibration:\n    ros__parameters:\n      features: [f]\n"
+      "      f: {type: CheckerboardFinder, size: 0.02}\n      base_link: base\n"
+      "      calibration_steps: [once]\n      once: {free_params: [a]}\n");
+  EXPECT_THAT(file.diagnostics.errors, IsEmpty());
+  EXPECT_THAT(file.diagnostics.warnings, ElementsAre(HasSubstr("node 'other' is ignored")));
+  EXPECT_EQ(file.config.finders.size(), 1u);
+}
+
+TEST(CaptureConfig, EveryKeyOfTheTagFinderIsRead) {
+  const CaptureFile file(
+      "features:\n  f: {type: AprilTagFinder2d, columns: 2, rows: 1, size: 0.1, border: 2, "
+      "first_id: "
+      "7,\n      family: tag25h9, min_tags: 2, decimate: 1, min_side: 12, max_wrong_bits: 0,\n"
+      "      min_square: 5, max_glare: 0.1, max_bleed: 2, max_edge_width: 9}\n");
+  EXPECT_THAT(file.diagnostics.errors, IsEmpty());
+  EXPECT_THAT(file.diagnostics.warnings, IsEmpty());
+  EXPECT_THAT(file.diagnostics.notes, ElementsAre(HasSubstr("spacing is not given: gaps of 0.3")));
+  const auto& tags = std::get<AprilTagSettings>(file.config.finders.at(0).settings);
+  EXPECT_EQ(tags.border, 2);
+  EXPECT_EQ(tags.decimate, 1.0);
+  EXPECT_EQ(tags.min_side, 12.0);
+  EXPECT_EQ(tags.max_wrong_bits, 0);
+  EXPECT_EQ(tags.target.quality.max_bleed, 2.0);
+}
+
+TEST(CaptureConfig, ADefaultSizeIsNoted) {
+  const CaptureFile board("features:\n  f: {type: CheckerboardFinder}\n");
+  EXPECT_THAT(board.diagnostics.notes,
+              ElementsAre(HasSubstr("finder 'f': size is not given: squares of 24.5 mm")));
+  const CaptureFile charuco("features:\n  f: {type: CharucoFinder, square_size: 0.03}\n");
+  EXPECT_THAT(charuco.diagnostics.notes,
+              ElementsAre(HasSubstr("marker_size is not given: markers of 30.0 mm")));
+}
+
+TEST(CaptureConfig, AKeyThatLooksLikeASizeIsAnErrorIfItIsUnknown) {
+  const auto error_of = [](const std::string& type, const std::string& key) {
+    const CaptureFile file("features:\n  f: {type: " + type + ", columns: 2, rows: 2, " + key +
+                           ": 0.03}\n");
+    for (const std::string& error : file.diagnostics.errors) {
+      if (error.find("'" + key + "'") != std::string::npos) return error;
+    }
+    return std::string("none");
+  };
+  for (const char* key : {"square_size", "squareSize", "square_length", "side", "tile_width"}) {
+    EXPECT_THAT(error_of("CheckerboardFinder", key), HasSubstr("did you mean 'size'?")) << key;
+  }
+  for (const char* key : {"tagSize", "tag_size", "edge_length"}) {
+    EXPECT_THAT(error_of("AprilTagFinder", key), HasSubstr("did you mean 'size'?")) << key;
+  }
+  EXPECT_THAT(error_of("AprilTagFinder", "tagSpacing"), HasSubstr("did you mean 'spacing'?"));
+  EXPECT_THAT(error_of("AprilTagFinder", "gap"), HasSubstr("did you mean 'spacing'?"));
+  EXPECT_THAT(error_of("CheckerboardFinder", "unit"), HasSubstr("looks like a unit"));
+  EXPECT_EQ(error_of("CheckerboardFinder", "queue_size"), "none") << "of a program";
+  EXPECT_EQ(error_of("CheckerboardFinder", "colour"), "none");
+}
+
 /// The first error of a finder with this text.
 std::string first_error(const std::string& finder) {
   const CaptureFile file("features:\n  led_finder:\n" + finder);
@@ -90,7 +186,8 @@ TEST(CaptureConfig, ErrorsNameTheLineAndWhatWasProbablyMeant) {
   EXPECT_THAT(first_error("    type: robot_calibration/LedFindr\n"),
               HasSubstr("capture.yaml:3: finder 'led_finder': type 'robot_calibration/LedFindr' is "
                         "not a finder; did you mean 'LedFinder'?"));
-  EXPECT_THAT(first_error("    type: LedFinder\n"), HasSubstr("poses has no LEDs"));
+  EXPECT_THAT(first_error("    type: LedFinder\n"),
+              HasSubstr("has no LEDs: list them under poses (ROS 1) or leds"));
   EXPECT_THAT(first_error("    type: LedFinder\n    poses:\n    - {code: 1, x: 0.1, y: 0.2}\n"),
               HasSubstr("LED 1: z is missing"));
   EXPECT_THAT(first_error("    type: CheckerboardFinder\n    points_x: 0\n"),

@@ -325,6 +325,28 @@ TEST_F(ReadCsvSamples, ReportsErrorsOfTheMappingWithTheirLines) {
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the file is a list, not a map")));
 }
 
+TEST_F(ReadCsvSamples, NotesTheUnitsThatAreTaken) {
+  (void)read(kTable, with(kMapping, "  unit: degrees\n", ""));
+  EXPECT_THAT(diagnostics_.notes,
+              testing::Contains(HasSubstr("m.yaml:1: joints: unit is not given: radians")));
+}
+
+TEST_F(ReadCsvSamples, AKeyThatLooksLikeAUnitIsAnErrorIfItIsUnknown) {
+  (void)read(kTable, with(kMapping, "joints:", "joints: {columns: {pan: q1}, scale: 0.01}\nx:"));
+  EXPECT_THAT(diagnostics_.errors,
+              testing::Contains(HasSubstr("joints: unknown key 'scale' looks like a unit or scale, "
+                                          "which would be lost; did you mean 'unit'?")));
+}
+
+TEST_F(ReadCsvSamples, JointsAloneNeedNoObservations) {
+  std::ofstream(folder_ / "j.yaml") << "joints: {unit: degrees, columns: {pan: q1}}\n";
+  const std::string path = (folder_ / "j.yaml").string();
+  EXPECT_EQ(read_csv_mapping(path, diagnostics_, CsvUse::joints).joints.size(), 1u);
+  EXPECT_THAT(diagnostics_.errors, IsEmpty());
+  (void)read_csv_mapping(path, diagnostics_);
+  EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("no observation is given")));
+}
+
 TEST_F(ReadCsvSamples, ReportsFilesThatAreEmptyOrMissing) {
   (void)read("");
   EXPECT_THAT(diagnostics_.errors, ElementsAre(HasSubstr("the table has no rows")));

@@ -10,6 +10,7 @@
 
 #include "kinecal/config/capture/finder_settings.ipp"
 #include "kinecal/config/read_config.hpp"
+#include "kinecal/config/ros2_nodes.ipp"
 #include "kinecal/files/yaml/yaml_document.hpp"
 #include "kinecal/kinematics/forward_kinematics.hpp"
 
@@ -17,11 +18,15 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// "LedFinder" of "robot_calibration/LedFinder" and "robot_calibration::LedFinder<...>".
-[[nodiscard]] std::string finder_type(std::string type) {
-  type = type.substr(0, type.find('<'));
-  const std::size_t last = type.find_last_of("/:");
-  return last == std::string::npos ? type : type.substr(last + 1);
+/// "LedFinder" of "robot_calibration/LedFinder" and "robot_calibration::LedFinder"; the plugin
+/// CheckerboardFinder<sensor_msgs::msg::Image> is the CheckerboardFinder2d.
+[[nodiscard]] std::string finder_type(const std::string& type) {
+  const std::size_t arguments = type.find('<');
+  std::string name = type.substr(0, arguments);
+  name = name.substr(name.find_last_of("/:") + 1);  // npos + 1 is 0
+  const bool of_images =
+      arguments != std::string::npos && type.find("Image", arguments) != std::string::npos;
+  return of_images && !name.ends_with("2d") ? name + "2d" : name;
 }
 
 /// The camera_info topic of an image topic: /head_camera/rgb/image_raw has
@@ -30,7 +35,9 @@ namespace {
   return topic.substr(0, topic.find_last_of('/') + 1) + "camera_info";
 }
 
-[[nodiscard]] std::optional<CaptureFinder> read_finder(const std::string& name, ConfigMap& map) {
+/// @param topic  if the file does not name one
+[[nodiscard]] std::optional<CaptureFinder> read_finder(const std::string& name,
+                                                       const std::string& topic, ConfigMap& map) {
   const std::optional<std::string> type = map.required_text("type");
   if (!type) return std::nullopt;
   CaptureFinder finder;
@@ -45,10 +52,10 @@ namespace {
               "type '" + *type + "' is not a finder" + map.did_you_mean(finder.type, types));
     return std::nullopt;
   }
-  finder.topic = map.text("topic").value_or("/points");
+  finder.topic = map.text("topic").value_or(topic);
   finder.camera_info = map.text("camera_info_topic").value_or(camera_info_beside(finder.topic));
   finder.action = map.text("action").value_or("");
-  map.ignore({"camera_driver"});
+  map.ignore({"camera_driver", "canera_driver"});  // ROS 2 spells it so
   finder.settings = reader->second(map);
   if (const auto* plane = std::get_if<PlaneFinder>(&finder.settings)) {
     finder.region_frame = plane->region.frame;
@@ -100,10 +107,18 @@ void read_capture(ConfigMap& file, bool is_ros2, CaptureConfig& config) {
       is_ros2 ? find_items({"features", "finder", ""}) : find_finders_in_map(file);
   for (ConfigItem& item : finders) {
     if (!item.map) continue;
-    if (auto finder = read_finder(item.name, *item.map)) config.finders.push_back(*finder);
+    const std::string topic = is_ros2 ? "/" + item.name + "/points" : "/points";
+    if (auto finder = read_finder(item.name, topic, *item.map)) config.finders.push_back(*finder);
   }
   if (finders.empty()) file.error(file.place(), "features has no finders");
-  file.ignore({"settling_time", "velocity_factor"});
+  file.ignore({"settling_time", "settling_timeout", "velocity_factor"});
+  // Of every node of ROS 2, and of the calibration, which may be in the same file.
+  file.ignore({"use_sim_time", "start_type_description_service", "qos_overrides", "verbose",
+               "base_link", "models", "free_params", "free_frames", "free_frames_initial_values",
+               "error_blocks", "cal_steps", "max_num_iterations"});
+  for (const ConfigEntry& step : file.list("calibration_steps")) {
+    if (const auto name = config_text(step.value)) file.use(*name);
+  }
   file.report_unknown();
 }
 
@@ -134,15 +149,22 @@ CaptureConfig read_capture_config(const std::string& path, Diagnostics& diagnost
                                      ", not a map with chains and features");
     return config;
   }
-  detail::ConfigMap file(content, {path, 0}, "", diagnostics);
-  for (const detail::ConfigEntry& node : file.entries()) {
-    const detail::YamlNode* parameters = node.value.find("ros__parameters");
-    if (parameters == nullptr || !parameters->is_map()) continue;
-    detail::ConfigMap map(*parameters, node.place, "", diagnostics);
-    detail::read_capture(map, true, config);
+  const std::vector<detail::ConfigEntry> nodes = detail::ros2_nodes(content, path);
+  if (nodes.empty()) {
+    detail::ConfigMap file(content, {path, 0}, "", diagnostics);
+    detail::read_capture(file, false, config);
     return config;
   }
-  detail::read_capture(file, false, config);
+  const detail::ConfigEntry* node = detail::choose_node(nodes, "features", diagnostics);
+  if (node == nullptr) return config;
+  const detail::YamlNode& parameters = *node->value.find("ros__parameters");
+  if (parameters.is_map()) {
+    detail::ConfigMap map(parameters, node->place, "", diagnostics);
+    detail::read_capture(map, true, config);
+  } else {
+    diagnostics.error(node->place, "node '" + node->key + "': ros__parameters is " +
+                                       detail::describe_config(parameters) + ", not a map");
+  }
   return config;
 }
 

@@ -10,15 +10,10 @@
 #include <utility>
 
 #include "kinecal/config/capture/capture_config.hpp"
+#include "kinecal/config/capture/led_settings.ipp"
 #include "kinecal/config/config_items.ipp"
 
 namespace kinecal::detail {
-
-[[nodiscard]] inline Vector3<double> read_corner(ConfigMap& map, const std::string& prefix,
-                                                 const Vector3<double>& fallback) {
-  return {map.number(prefix + "x", fallback.x()), map.number(prefix + "y", fallback.y()),
-          map.number(prefix + "z", fallback.z())};
-}
 
 /// An integer of at least zero.
 [[nodiscard]] inline int read_index(ConfigMap& map, const std::string& key, int fallback) {
@@ -34,44 +29,39 @@ namespace kinecal::detail {
 inline void read_target(ConfigMap& map, TargetSettings& target) {
   target.camera_sensor = map.text("camera_sensor_name").value_or(target.camera_sensor);
   target.chain_sensor = map.text("chain_sensor_name").value_or(target.chain_sensor);
+  // ROS 2 reads this name of the key in place of the other, for checkerboards.
+  target.chain_sensor = map.text("chain_sensor_name_id").value_or(target.chain_sensor);
   target.frame = map.text("frame_id").value_or(target.frame);
-  target.quality.min_square = map.positive("min_square", target.quality.min_square);
+  TargetQuality& quality = target.quality;
+  quality.min_square = map.positive("min_square", quality.min_square);
+  quality.max_edge_width = map.positive("max_edge_width", quality.max_edge_width);
+  quality.max_glare = map.number("max_glare", quality.max_glare);
+  quality.max_bleed = map.positive("max_bleed", quality.max_bleed);
+  target.max_without_depth = map.number("max_without_depth", target.max_without_depth);
 }
 
-[[nodiscard]] inline LedFinder read_led_finder(ConfigMap& map) {
-  LedFinder finder;
-  finder.camera_sensor = map.text("camera_sensor_name").value_or(finder.camera_sensor);
-  finder.chain_sensor = map.text("chain_sensor_name").value_or(finder.chain_sensor);
-  finder.frame = map.text("gripper_led_frame").value_or(finder.frame);
-  finder.threshold = map.positive("threshold", finder.threshold);
-  finder.max_iterations = map.count("max_iterations", finder.max_iterations);
-  finder.max_error = map.positive("max_error", finder.max_error);
-  finder.max_inconsistency = map.positive("max_inconsistency", finder.max_inconsistency);
-  map.ignore({"debug_image", "debug"});
-  for (const ConfigEntry& element : map.list("poses")) {
-    const std::string subject = "LED " + std::to_string(finder.leds.size() + 1);
-    auto led = map.map(element, subject);
-    if (!led) continue;
-    led->set_subject(subject);
-    const std::string name = led->text("topic").value_or(subject);
-    finder.leds.push_back({led->count("code", 0), name, read_corner(*led, "", {0, 0, 0})});
-    for (const char* key : {"code", "x", "y", "z"}) {
-      if (led->peek(key) == nullptr) led->error(led->place(), std::string(key) + " is missing");
-    }
-    led->report_unknown();
+/// A length that decides the scale of the result.  Notes the default, if it is taken.
+[[nodiscard]] inline double read_scale(ConfigMap& map, const std::string& key, double fallback,
+                                       const std::string& what) {
+  if (map.peek(key) == nullptr) {
+    map.note(map.place(), key + " is not given: " + what + " of " +
+                              number_to_yaml(1000.0 * fallback) + " mm are assumed");
   }
-  if (finder.leds.empty()) map.error(map.place(), "poses has no LEDs");
-  return finder;
+  return map.positive(key, fallback);
 }
 
 [[nodiscard]] inline CheckerboardSettings read_checkerboard(ConfigMap& map, CornerKind corners) {
   CheckerboardSettings board;
   board.points_x = map.count("points_x", board.points_x);
   board.points_y = map.count("points_y", board.points_y);
-  board.size = map.positive("size", board.size);
+  board.size = read_scale(map, "size", board.size, "squares");
+  (void)read_choice(map, "checkerboard_type", "chess_board", {"chess_board"});  // of a fork
   board.target.corners = corners;
   read_target(map, board.target);
-  map.ignore({"debug"});
+  if (const ConfigEntry* link = map.find("camera_link")) {  // of a fork
+    map.warning(link->place, "camera_link is ignored: points stay in the frame of the camera");
+  }
+  map.ignore({"debug", "max_trials_count"});
   return board;
 }
 
@@ -80,11 +70,17 @@ inline void read_target(ConfigMap& map, TargetSettings& target) {
   tags.columns = read_index(map, "columns", 0);
   tags.rows = read_index(map, "rows", 0);
   tags.size = map.positive("size", 0.0);
+  if (tags.columns * tags.rows > 1 && map.peek("spacing") == nullptr) {
+    map.note(map.place(), "spacing is not given: gaps of 0.3 times the size are assumed");
+  }
   tags.spacing = map.number("spacing", tags.spacing);
   tags.first_id = read_index(map, "first_id", tags.first_id);
   tags.family = map.text("family").value_or(tags.family);
   tags.border = map.count("border", tags.border);
   tags.min_tags = map.count("min_tags", tags.min_tags);
+  tags.max_wrong_bits = read_index(map, "max_wrong_bits", tags.max_wrong_bits);
+  tags.min_side = map.positive("min_side", tags.min_side);
+  tags.decimate = map.positive("decimate", tags.decimate);
   tags.target.corners = corners;
   read_target(map, tags.target);
   for (const ConfigEntry& element : map.list("tags")) {
@@ -101,8 +97,8 @@ inline void read_target(ConfigMap& map, TargetSettings& target) {
   CharucoSettings board;
   board.squares_x = map.count("squares_x", board.squares_x);
   board.squares_y = map.count("squares_y", board.squares_y);
-  board.square_size = map.positive("square_size", board.square_size);
-  board.marker_size = map.positive("marker_size", board.marker_size);
+  board.square_size = read_scale(map, "square_size", board.square_size, "squares");
+  board.marker_size = read_scale(map, "marker_size", board.marker_size, "markers");
   board.dictionary = map.text("dictionary").value_or(board.dictionary);
   board.first_id = read_index(map, "first_id", board.first_id);
   board.legacy = map.flag("legacy", board.legacy);

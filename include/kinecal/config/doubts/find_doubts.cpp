@@ -3,6 +3,7 @@
 #include "kinecal/config/doubts/find_doubts.hpp"
 
 #include "kinecal/config/doubts/enough_samples.hpp"
+#include "kinecal/config/doubts/ignored_urdf.hpp"
 #include "kinecal/config/doubts/initial_values.hpp"
 #include "kinecal/config/doubts/joint_positions.hpp"
 #include "kinecal/config/doubts/repeated_samples.hpp"
@@ -18,6 +19,7 @@ void find_doubts(const CalibrationInput& input, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.errors.size();
   detail::check_initial_values(config, diagnostics);
   detail::check_xacro(urdf_text, urdf, diagnostics);
+  detail::check_ignored_urdf(robot, urdf_text, urdf, diagnostics);
   detail::check_urdf_units(config, robot, urdf_text, urdf, diagnostics);
   if (samples.empty() || before > 0) return;  // the rest needs models that match the robot
   const std::vector<detail::UsedJoint> joints = detail::used_joints(config, robot, samples);

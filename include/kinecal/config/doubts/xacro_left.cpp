@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "kinecal/files/urdf/urdf_text.ipp"
@@ -26,8 +27,12 @@ std::string xacro_command(const std::string& file) {
   std::filesystem::path stem = std::filesystem::path(file).filename();
   if (!stem.has_extension()) return {};
   while (stem.has_extension()) stem = stem.stem();  // robot.urdf.xacro
-  return fmt::format("xacro {} > {}", shell_word(file),
-                     shell_word(stem.string() + "_expanded.urdf"));
+  std::string expanded = stem.string() + "_expanded.urdf";
+  std::error_code failed;
+  for (int n = 2; std::filesystem::exists(expanded, failed); ++n) {
+    expanded = fmt::format("{}_expanded_{}.urdf", stem.string(), n);
+  }
+  return fmt::format("xacro {} > {}", shell_word(file), shell_word(expanded));
 }
 
 /// Error: remnants that may hold a part of the robot.

@@ -15,7 +15,7 @@ namespace kinecal::detail {
 void check_xacro(const std::string& text, const std::string& name_for_messages,
                  Diagnostics& diagnostics);
 
-/// The command that expands a xacro file into another file, never the file itself.
+/// The command that expands a xacro file into a file that does not exist yet.
 /// @param file  its name; empty result if it has no extension, because then it is not a file
 [[nodiscard]] std::string xacro_command(const std::string& file);
 

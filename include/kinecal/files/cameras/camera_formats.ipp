@@ -74,6 +74,7 @@ inline void doubt_no_distortion(ConfigMap& file, const CameraKeys& known,
   const bool has_p = read_camera_matrix(file, {"projection_matrix", "P", "p"}, camera.p);
   doubt_image_part(file, camera);
   file.ignore({"camera_name", "header"});
+  ignore_beside_camera(file);
   file.report_unknown();  // or camera_matrix would replace a misspelt projection_matrix
   complete_camera(camera, has_r, has_p, file.place(), file.diagnostics());
   return camera;
@@ -89,7 +90,9 @@ inline void doubt_no_distortion(ConfigMap& file, const CameraKeys& known,
                                                         std::size_t count) {
   const ConfigEntry* entry = camera.find(key);
   if (entry == nullptr) {
-    camera.error(camera.place(), key + " is missing");
+    std::vector<std::string> keys;
+    for (const ConfigEntry& other : camera.entries()) keys.push_back(other.key);
+    camera.error(camera.place(), key + " is missing" + meant_by_key(key, keys));
     return std::vector<double>(count, 0.0);
   }
   auto numbers = camera_numbers(camera, *entry);
@@ -129,6 +132,10 @@ inline void expect_kalibr_model(ConfigMap& camera, const std::string& key,
     camera.error(camera.place(), fmt::format("resolution: {} is not a number of pixels", pixels));
     return info;
   }
+  camera.ignore({"rostopic", "T_cn_cnm1", "T_cam_imu", "T_imu_cam", "timeshift_cam_imu",
+                 "cam_overlaps", "line_delay"});
+  ignore_beside_camera(camera);
+  camera.report_unknown();
   info.width = static_cast<int>(size[0]);
   info.height = static_cast<int>(size[1]);
   complete_camera(info, false, false, camera.place(), camera.diagnostics());

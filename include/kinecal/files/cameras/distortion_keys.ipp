@@ -84,6 +84,34 @@ namespace kinecal::detail {
   return plain == "kc" || nearest_name(key, known).has_value();
 }
 
+/// True for a key about a board or a sensor beside the camera: square_size, pixel_size.
+[[nodiscard]] inline bool is_beside_camera(const std::string& key) {
+  return has_word(key_words(key),
+                  {"board", "chessboard", "checkerboard", "square",  "squares",    "pattern",
+                   "grid",  "marker",     "markers",      "tag",     "charuco",    "aruco",
+                   "pixel", "sensor",     "squaresize",   "tagsize", "markersize", "roi",
+                   "focal", "aspect",     "baseline",     "circle",  "target"});
+}
+
+/// Ignores keys of what calibrated the camera: they decide nothing here.
+inline void ignore_beside_camera(ConfigMap& file) {
+  for (const ConfigEntry& entry : file.entries()) {
+    if (is_beside_camera(entry.key)) (void)file.use(entry.key);
+  }
+}
+
+/// If the size of the image is missing: an error for each entry that could be it.
+/// @param intended  what the format calls it
+inline void refuse_lost_size(const ConfigMap& file, const std::string& intended) {
+  for (const ConfigEntry& entry : file.entries()) {
+    if (file.is_used(entry.key) || is_beside_camera(entry.key)) continue;
+    if (meaning_of_key(entry.key) != KeyMeaning::size) continue;
+    file.error(entry.place, "unknown key '" + entry.key +
+                                "' looks like the size of the image, which would be lost; write " +
+                                intended);
+  }
+}
+
 /// True for numbers that could be a distortion: 4, 5, 8, 12 or 14, not all integers.
 [[nodiscard]] inline bool could_be_distortion(const std::vector<double>& numbers) {
   constexpr std::array<std::size_t, 5> kSizes = {4, 5, 8, 12, 14};

@@ -78,6 +78,9 @@ namespace kinecal::detail {
   }
   if (n < 5) camera.d.resize(5, 0.0);
   camera.distortion_model = n == 8 ? "rational_polynomial" : "plumb_bob";
+  if (camera.width == 0 || camera.height == 0) {
+    refuse_lost_size(file, "image_width and image_height");
+  }
   const bool has_r = read_camera_matrix(file, keys({"rectification_matrix"}), camera.r);
   const bool has_p = read_camera_matrix(file, keys({"projection_matrix"}), camera.p);
   complete_camera(camera, has_r, has_p, file.place(), file.diagnostics());

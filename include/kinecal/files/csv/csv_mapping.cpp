@@ -17,6 +17,7 @@ namespace {
 void read_csv_joints(ConfigMap& map, const std::string& key, bool angle, CsvMapping& mapping) {
   auto joints = map.map(key, key);
   if (!joints) return;
+  note_csv_unit(*joints, angle);
   const CsvUnit unit = read_csv_unit(*joints, angle);
   auto columns = joints->map("columns", key + ": columns");
   if (!columns)
@@ -43,7 +44,7 @@ void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
   }
 }
 
-[[nodiscard]] CsvMapping read_csv_mapping(ConfigMap& file) {
+[[nodiscard]] CsvMapping read_csv_mapping(ConfigMap& file, CsvUse use) {
   CsvMapping mapping;
   const std::string separator =
       read_choice(file, "separator", "comma", {"comma", "semicolon", "tab", "space"});
@@ -57,7 +58,9 @@ void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
     if (auto map = file.map(entry, "observation")) read_csv_observation(*map, mapping);
   }
   if (mapping.joints.empty()) file.error(file.place(), "no joint is given; list them under joints");
-  if (mapping.observations.empty()) {
+  if (use == CsvUse::joints) {
+    mapping.observations.clear();
+  } else if (mapping.observations.empty()) {
     file.error(file.place(), "no observation is given; list at least one under observations");
   }
   file.report_unknown();
@@ -67,14 +70,14 @@ void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
 }  // namespace
 }  // namespace detail
 
-CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics) {
+CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics, CsvUse use) {
   const detail::YamlNode content = detail::load_config(path, diagnostics);
   if (!content.is_map()) {
     diagnostics.error({path, 0}, "the file is " + detail::describe_config(content) + ", not a map");
     return {};
   }
   detail::ConfigMap file(content, {path, 0}, "", diagnostics);
-  return detail::read_csv_mapping(file);
+  return detail::read_csv_mapping(file, use);
 }
 
 }  // namespace kinecal

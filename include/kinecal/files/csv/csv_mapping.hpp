@@ -85,8 +85,16 @@ struct CsvMapping {
   std::vector<CsvObservation> observations;  ///< of every sample
 };
 
+/// What a table is read for.
+enum class CsvUse {
+  samples,  ///< joints and observations
+  joints    ///< joints only: the observations are elsewhere, such as in photographs
+};
+
 /// Reads the meaning of columns.  Collects all errors; with errors, the mapping is incomplete.
+/// @param use  for joints only, observations may be missing, and those that are there are left out
 /// @throws InputError  "file:line: ..." if the file cannot be read or is not YAML
-[[nodiscard]] CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics);
+[[nodiscard]] CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics,
+                                          CsvUse use = CsvUse::samples);
 
 }  // namespace kinecal

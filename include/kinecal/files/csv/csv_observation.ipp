@@ -38,6 +38,12 @@ namespace kinecal::detail {
   return {unit == "degrees", unit == "millimetres"};
 }
 
+/// Notes the unit that is taken if none is given: it decides the scale.
+inline void note_csv_unit(const ConfigMap& map, bool angle) {
+  if (map.peek("unit") != nullptr) return;
+  map.note(map.place(), angle ? "unit is not given: radians" : "unit is not given: metres");
+}
+
 /// `points:` (three columns each) or `pixels:` (two)
 inline void read_csv_points(ConfigMap& map, const std::string& key, std::size_t columns,
                             CsvObservation& observation) {
@@ -145,6 +151,7 @@ inline void read_csv_observation(ConfigMap& map, CsvMapping& mapping) {
   if (!observation.sensor.empty()) map.set_subject("sensor '" + observation.sensor + "'");
   read_csv_frame(map, observation);
   const bool has_pixels = map.peek("pixels") != nullptr;
+  if (map.peek("points") != nullptr) note_csv_unit(map, false);
   if (!has_pixels) observation.unit = read_csv_unit(map, false);
   read_csv_constant(map, observation);
   read_csv_points(map, "points", 3, observation);

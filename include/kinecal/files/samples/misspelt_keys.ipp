@@ -13,6 +13,7 @@
 
 #include "kinecal/files/samples/sample_camera.ipp"
 #include "kinecal/files/samples/sample_schema.ipp"
+#include "kinecal/files/yaml/deciding_keys.ipp"
 #include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal::detail {
@@ -41,6 +42,17 @@ inline void doubt_sample_key(SampleErrors& errors, SampleNode parent, int line,
     const std::string_view part = key.substr(0, 20);
     return errors.add(line, fmt::format("{}: unknown key '{}'; decimal comma? write a dot: 0.{}",
                                         sample_name(parent), part, part));
+  }
+  const KeyMeaning meaning = meaning_of_key(key);
+  const bool is_lens = parent == SampleNode::camera_info && meaning == KeyMeaning::distortion;
+  const bool is_unit = meaning == KeyMeaning::unit &&
+                       (parent == SampleNode::feature || parent == SampleNode::point ||
+                        parent == SampleNode::observation || parent == SampleNode::joint_states);
+  if (is_lens || is_unit) {
+    return errors.add(line, fmt::format("{}: unknown key {} looks like {}, which would be lost; {}",
+                                        sample_name(parent), shown(key), text_of(meaning),
+                                        is_lens ? "the distortion is called D (ROS 2: d)"
+                                                : "samples are in metres, radians and pixels"));
   }
   const std::string_view meant = meant_sample_key(parent, key);
   if (meant.empty()) return;

@@ -21,6 +21,7 @@
 #include "kinecal/files/samples/sample_schema.ipp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/samples/sample.hpp"
+#include "kinecal/text/frame_name.hpp"
 
 namespace kinecal::detail {
 
@@ -113,7 +114,7 @@ class SampleBuilder {
     } else if (node == SampleNode::sensor) {
       observation().sensor = text;
     } else if (node == SampleNode::frame) {
-      feature().frame = text.substr(text.starts_with('/') ? 1 : 0);  // tf of old ROS 1: /tool
+      feature().frame = plain_frame(text);  // tf of old ROS 1: /tool
     } else {
       camera_.word(node, line, text);
     }

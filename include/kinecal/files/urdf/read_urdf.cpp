@@ -8,6 +8,7 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,7 +69,9 @@ void check_urdf_joint(const UrdfText& source, pugi::xml_node joint, Diagnostics&
   }
   (void)source.vector(joint.child("origin"), "xyz", diagnostics);
   (void)source.vector(joint.child("origin"), "rpy", diagnostics);
-  (void)source.vector(joint.child("axis"), "xyz", diagnostics);
+  const bool has_axis =
+      type != to_string(JointType::fixed) && type != to_string(JointType::floating);
+  if (has_axis) (void)source.vector(joint.child("axis"), "xyz", diagnostics);
 }
 
 /// The robot with these joints, which must be a tree.
@@ -108,9 +111,24 @@ void check_urdf_joints(const UrdfText& source) {
   (void)make_urdf_robot(source, std::move(joints));
 }
 
-/// The joint with the exact numbers of the file; urdfdom rounds.
+/// True if a joint mimics one that exists, and not itself in a circle.  urdfdom takes the others,
+/// and ROS reads their own positions.
+[[nodiscard]] bool mimics_a_joint(const urdf::ModelInterface& model, const urdf::Joint& joint) {
+  std::set<std::string> before = {joint.name};
+  const urdf::Joint* next = &joint;
+  while (next->mimic) {
+    const urdf::JointConstSharedPtr mimicked = model.getJoint(next->mimic->joint_name);
+    if (!mimicked) return next != &joint;  // that joint has positions of its own
+    if (!before.insert(mimicked->name).second) return mimicked->name != joint.name;
+    next = mimicked.get();
+  }
+  return joint.mimic != nullptr;
+}
+
+/// The joint with the exact numbers of the file; urdfdom rounds.  What only matters if a chain
+/// contains the joint is no error: ignored_urdf.hpp warns of it.
 [[nodiscard]] Joint make_urdf_joint(const UrdfText& source, pugi::xml_node node,
-                                    const urdf::Joint& parsed) {
+                                    const urdf::ModelInterface& model, const urdf::Joint& parsed) {
   Joint joint;
   Diagnostics checked_before;
   joint.name = parsed.name;
@@ -120,8 +138,11 @@ void check_urdf_joints(const UrdfText& source) {
   const pugi::xml_node origin = node.child("origin");
   joint.origin.rotation = rotation_from_rpy(source.vector(origin, "rpy", checked_before));
   joint.origin.translation = source.vector(origin, "xyz", checked_before);
-  if (moves(joint.type)) joint.axis = {parsed.axis.x, parsed.axis.y, parsed.axis.z};
-  if (parsed.mimic) {
+  if (moves(joint.type)) {
+    joint.axis = {parsed.axis.x, parsed.axis.y, parsed.axis.z};
+    if (joint.axis.isZero(0.0)) joint.type = JointType::floating;  // no chain passes it
+  }
+  if (mimics_a_joint(model, parsed)) {
     joint.mimic = Mimic{parsed.mimic->joint_name, parsed.mimic->multiplier, parsed.mimic->offset};
   }
   const bool limited = moves(joint.type) && joint.type != JointType::continuous;
@@ -139,7 +160,7 @@ Robot parse_urdf(const std::string& text, const std::string& name_for_messages) 
   std::vector<Joint> joints;
   for (pugi::xml_node node : source.robot().children("joint")) {
     const urdf::JointConstSharedPtr joint = model->getJoint(node.attribute("name").value());
-    joints.push_back(detail::make_urdf_joint(source, node, *joint));
+    joints.push_back(detail::make_urdf_joint(source, node, *model, *joint));
   }
   return detail::make_urdf_robot(source, std::move(joints));
 }

@@ -2,7 +2,8 @@
 //
 // A key becomes known when the reader asks for it.  At the end, unknown keys are reported: as an
 // error if the key is near a known one, because a misspelt `free_parms` must not silently free
-// nothing; otherwise as a warning.
+// nothing, or if its name says that it decides the result (deciding_keys.ipp); otherwise as a
+// warning.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,6 +18,7 @@
 
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/yaml/config_scalar.ipp"
+#include "kinecal/files/yaml/deciding_keys.ipp"
 #include "kinecal/text/nearest_name.hpp"
 
 namespace kinecal::detail {
@@ -54,6 +56,9 @@ class ConfigMap {
   }
   void warning(const SourceLocation& place, const std::string& message) const {
     diagnostics_->warning(place, subject_.empty() ? message : subject_ + ": " + message);
+  }
+  void note(const SourceLocation& place, const std::string& message) const {
+    diagnostics_->note(place, subject_.empty() ? message : subject_ + ": " + message);
   }
 
   /// "; did you mean ...?"; nothing after many errors, because hostile files have thousands of
@@ -161,18 +166,31 @@ class ConfigMap {
   }
 
   /// @param strict  an error for every unknown key; else only for those that resemble a known one
+  ///                or decide the result
   void report_unknown(bool strict = false) const {
     for (const ConfigEntry& entry : entries_) {
       if (used_.contains(entry.key)) continue;
       const std::string unknown = "unknown key '" + entry.key + "'";
       const std::string meant = kinecal::did_you_mean(entry.key, words_);
-      if (strict || !meant.empty()) {
+      if (meant.empty() && meaning_of_key(entry.key) != KeyMeaning::other) {
+        report_lost(entry);
+      } else if (strict || !meant.empty()) {
         error(entry.place, unknown + meant);
       } else {
         warning(entry.place, unknown + " is ignored");
       }
     }
   }
+
+  /// Reports an unknown key that decides the result.
+  void report_lost(const ConfigEntry& entry) const {
+    error(entry.place, "unknown key '" + entry.key + "' looks like " +
+                           text_of(meaning_of_key(entry.key)) + ", which would be lost" +
+                           meant_by_key(entry.key, words_));
+  }
+
+  /// True if the reader has asked for a key.
+  [[nodiscard]] bool is_used(const std::string& key) const { return used_.contains(key); }
 
  private:
   [[nodiscard]] SourceLocation place_of(const YamlNode& node) const {

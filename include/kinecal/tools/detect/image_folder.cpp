@@ -142,7 +142,9 @@ std::vector<PosedImage> list_images(const ImageFolder& folder, Diagnostics& diag
   }
   const std::string text = detail::read_text_file(folder.table);
   CsvMapping mapping;
-  if (!folder.columns.empty()) mapping = read_csv_mapping(folder.columns, diagnostics);
+  if (!folder.columns.empty()) {
+    mapping = read_csv_mapping(folder.columns, diagnostics, CsvUse::joints);
+  }
   const char separator = folder.columns.empty() ? detail::separator_of(text) : mapping.separator;
   Diagnostics repeated;  // csv_samples() reports them again
   const auto rows = detail::csv_rows(text, separator, folder.table, repeated);
@@ -151,7 +153,6 @@ std::vector<PosedImage> list_images(const ImageFolder& folder, Diagnostics& diag
   if (folder.columns.empty()) {
     mapping = detail::joints_of_header(rows, separator, image, folder.table);
   }
-  mapping.observations.clear();  // they are in the images
   if (!diagnostics.errors.empty()) return {};
   const std::vector<Sample> samples = csv_samples(text, mapping, folder.table, diagnostics);
   if (rows.size() < (header ? 2U : 1U)) return {};  // an error: no image has a row

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/files/messages/view_message.hpp"
+#include "kinecal/text/frame_name.hpp"
 #include "kinecal/tools/detect/recorded_survey.ipp"
 
 namespace kinecal::detail {
@@ -51,7 +52,7 @@ struct RawView {
   for (const RawView::Part& part : raw.parts) {
     try {
       const MessageFields message = decode(part.form->definition, part.form->encoding, part.data);
-      if (view.frame.empty()) view.frame = plain_topic(text_at(message, "header.frame_id"));
+      if (view.frame.empty()) view.frame = plain_frame(text_at(message, "header.frame_id"));
       if (part.topic == topics.image) {
         view.image = gray_image(message);
       } else if (part.topic == topics.cloud) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/kinematics/chain.hpp"
+#include "kinecal/text/frame_name.hpp"
 
 namespace kinecal::detail {
 
@@ -29,7 +30,7 @@ namespace kinecal::detail {
 [[nodiscard]] inline bool is_camera_only(const Robot& robot, const std::string& link) {
   if (!looks_like_camera(link)) return false;
   return std::all_of(robot.joints().begin(), robot.joints().end(), [&](const Joint& joint) {
-    if (joint.parent != link) return true;
+    if (!same_frame(joint.parent, link)) return true;
     return joint.type == JointType::fixed && is_camera_only(robot, joint.child);
   });
 }

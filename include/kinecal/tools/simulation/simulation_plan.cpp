@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/text/frame_name.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
 #include "kinecal/tools/init/robot_parts.hpp"
 #include "kinecal/tools/simulation/place_target.ipp"
@@ -92,7 +93,7 @@ void take_models(const Config& config, SimulationPlan& plan) {
   for (const ModelConfig& model : step.models) {
     const bool is_camera = model.type.starts_with("camera");
     std::string& camera = plan.setup.camera.frame;
-    if (is_camera && (camera.empty() || camera == model.frame)) {
+    if (is_camera && (camera.empty() || same_frame(camera, model.frame))) {
       camera = model.frame;
       plan.setup.camera_name = model.name;
       plan.camera_type = model.type;

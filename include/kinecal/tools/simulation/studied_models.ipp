@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinecal/config/config.hpp"
+#include "kinecal/text/frame_name.hpp"
 #include "kinecal/tools/simulation/place_target.ipp"
 
 namespace kinecal::detail {
@@ -51,7 +52,7 @@ struct StudiedModels {
     StudiedModels models{model(block.models[0]), model(block.models[1])};
     if (models.camera == nullptr || models.chain == nullptr) continue;
     if (!models.camera->type.starts_with("camera")) std::swap(models.camera, models.chain);
-    if (models.camera->frame != plan.setup.camera.frame) continue;
+    if (!same_frame(models.camera->frame, plan.setup.camera.frame)) continue;
     if (models.chain->type.starts_with("camera")) continue;
     for (const FreeFrameConfig& frame : step.free_frames) {
       if (is_board(plan.target) && !plan.setup.robot.has_joint(frame.name))
