@@ -134,9 +134,9 @@ Found AprilTagFinder::find(const View& view) const {
   if (const auto fault = view_fault(view, settings_.target.corners); !fault.empty()) {
     return refused(fault);
   }
-  const std::vector<detail::SeenTag> found = detector_->reader.read(view.image);
+  const std::vector<detail::SeenTag> read = detector_->reader.read(view.image);
   detail::TagsSeen seen =
-      detail::tags_seen(view.image, found, tags_, detector_->reader.cells(), settings_.min_side);
+      detail::tags_seen(view.image, read, tags_, detector_->reader.cells(), settings_.min_side);
   std::vector<Mark> marks = marks_of(seen.corners);
   if (seen.twice >= 0) {
     return refused("tag " + std::to_string(seen.twice) + " is seen twice: which is meant?", marks);
@@ -150,7 +150,7 @@ Found AprilTagFinder::find(const View& view) const {
              " are needed";
     }
     if (seen.tags + seen.small + seen.outside == 0) {
-      const std::string hint = detector_->others.hint(view.image, found);
+      const std::string hint = detector_->others.hint(view.image, read);
       if (!hint.empty()) why += "; " + hint;
     }
     if (seen.outside > 0) why += "; " + std::to_string(seen.outside) + " are at the border";
