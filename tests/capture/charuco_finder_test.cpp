@@ -119,6 +119,22 @@ TEST(CharucoFinder, ReadsBoardsOfOldWithTheirTopLeftWhite) {
   EXPECT_LT(mean_error(CharucoFinder(s).find(view_of({target})), target), 0.1);
 }
 
+TEST(CharucoFinder, NamesSettingsThatTheMarkersContradict) {
+  const CharucoSettings s = board_of(5, 7);
+  const View view = view_of({target_of(s, drawn(s), {0, 0, 0.55}, 0.2, 0.2, 0.1)});
+  for (const auto& [columns, rows] : {std::pair{7, 5}, {6, 7}, {4, 8}}) {
+    EXPECT_THAT(CharucoFinder(board_of(columns, rows)).find(view).refusal,
+                HasSubstr("squares in a row has them; write squares_x: 5"))
+        << columns;
+  }
+  CharucoSettings old = board_of(5, 6);
+  old.legacy = true;
+  EXPECT_THAT(CharucoFinder(board_of(5, 6))
+                  .find(view_of({target_of(old, drawn(old), {0, 0, 0.55}, 0.2, 0.2, 0.1)}))
+                  .refusal,
+              HasSubstr("write legacy: true"));
+}
+
 TEST(CharucoFinder, APartOfTheBoardIsEnough) {
   const CharucoSettings s = board_of(5, 7);
   const Target target = target_of(s, drawn(s), {0.2, 0.12, 0.5}, 0.2, 0.2, 0.3);

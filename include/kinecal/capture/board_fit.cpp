@@ -122,7 +122,7 @@ BoardFit fit_board(const std::vector<TargetCorner>& corners, const CameraInfo& c
   board.typical = fit.typical;
   board.gap = detail::median_gap(view.pixels);
   // 4 medians are 4.7 standard deviations: chance drops no corner.
-  constexpr double kPixels = 0.75, kMedians = 4.0, kFewOfGap = 0.1;
+  constexpr double kPixels = 0.75, kMedians = 4.0, kFewOfGap = 0.03;
   board.limit = std::max(kPixels, kMedians * fit.typical);
   // Few corners do not show the lens.
   if (corners.size() < detail::kForLens) board.limit += kFewOfGap * board.gap;

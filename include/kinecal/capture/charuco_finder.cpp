@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kinecal/capture/charuco_layout.ipp"
 #include "kinecal/capture/homography.hpp"
 #include "kinecal/capture/opencv_corners.hpp"
 
@@ -18,21 +19,6 @@ namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// Column and row.
-using SquarePlace = std::pair<int, int>;
-
-/// The squares with markers, in the order of their ids: row by row from the top left.
-[[nodiscard]] std::vector<SquarePlace> marker_places(const CharucoSettings& s) {
-  const int white = s.legacy && s.squares_y % 2 == 0 ? 0 : 1;
-  std::vector<SquarePlace> places;
-  for (int row = 0; row < s.squares_y; ++row) {
-    for (int column = 0; column < s.squares_x; ++column) {
-      if ((column + row) % 2 == white) places.emplace_back(column, row);
-    }
-  }
-  return places;
-}
 
 /// Markers of a board by their places; `twice` gets the id of one that occurs twice.
 [[nodiscard]] std::map<SquarePlace, Marker> markers_by_place(const std::vector<Marker>& markers,
@@ -180,6 +166,10 @@ Found CharucoFinder::find(const View& view) const {
       detail::find_markers(view.image, settings_.dictionary), settings_, twice);
   if (twice >= 0) {
     return refused("marker " + std::to_string(twice) + " is seen twice: which is meant?");
+  }
+  if (const auto fault = detail::charuco_layout_fault(markers, settings_, *view.camera);
+      !fault.empty()) {
+    return refused(fault);
   }
   const detail::CornerMap corners = detail::charuco_corners(view.image, markers, settings_);
   const double side = detail::shortest_of(corners), square = settings_.square_size;

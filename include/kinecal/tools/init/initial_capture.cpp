@@ -113,7 +113,10 @@ namespace {
 
 std::string initial_capture(const Robot& robot, const InitAnswers& given) {
   const InitAnswers answers = with_proposals(robot, given);
+  // No finder reports where a reflector is, or LEDs in pixels.
+  const bool in_pixels = answers.camera_type == "camera2d";
   if (answers.target == InitTarget::tracker) return "";
+  if (answers.target == InitTarget::leds && in_pixels) return "";
   std::string text = fmt::format(
       "{}: what to look for, with the names of its configuration.\n"
       "# Fill in what is zero: sizes decide the scale of the result, so measure them.\n",

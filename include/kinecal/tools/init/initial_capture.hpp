@@ -12,7 +12,7 @@ namespace kinecal {
 /// The first words of what initial_capture() writes, by which it is recognised.
 inline constexpr const char* kInitialCaptureMark = "# Capture for 'kinecal init'";
 
-/// The text of a capture.yaml; empty with a tracker, which no finder looks for.  Sizes and numbers of
+/// The text of a capture.yaml; empty with a tracker or LEDs in pixels, which no finder looks for.  Sizes and numbers of
 /// a board are zero, and readers refuse it until they are filled in: a guess would be a wrong scale.
 /// @param given  as of initial_config(), which checks them
 [[nodiscard]] std::string initial_capture(const Robot& robot, const InitAnswers& given);
