@@ -479,9 +479,11 @@ TEST_F(Program, RefusesAFreeParameterThatDoesNotExist) {
                 "'camera_"));
 }
 
-TEST_F(Program, RefusesAFixedJointAsAnOffset) {
-  spoil("c.yaml", " - elbow", " - optical_joint");
-  expect_refused(AllOf(HasSubstr("c.yaml:10:"), HasSubstr("'optical_joint' is fixed")));
+TEST_F(Program, WarnsOfAFixedJointAsAnOffset) {
+  spoil("c.yaml", " - elbow", " - optical_joint\n - elbow");
+  const Outcome result = calibrate();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("c.yaml:10:"), HasSubstr("'optical_joint' is fixed")));
 }
 
 TEST_F(Program, RefusesAMisspeltFreeFrame) {
@@ -871,7 +873,7 @@ TEST_F(Program, RefusesADistortionModelItDoesNotKnow) {
     sample.observations[0].camera->d = {0.1, 0.0, 0.0, 0.0};
   }
   write_all(all);
-  expect_refused(AllOf(HasSubstr("s.yaml:"), HasSubstr("'equidistant' is not supported")));
+  expect_refused(AllOf(HasSubstr("c.yaml:6"), HasSubstr("distortion model 'equidistant'")));
 }
 
 TEST_F(Program, AnObservationWithoutFeaturesDoesNotCount) {

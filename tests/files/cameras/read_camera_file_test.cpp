@@ -304,6 +304,26 @@ TEST_F(CameraFile, RefusesWhatOpencvHasAndCameraInfoHasNot) {
               HasSubstr("distortion_coefficients has 5 numbers, not '4' x '1'"));
 }
 
+TEST_F(CameraFile, KeysThatDecideAreNotLostInAnyFormat) {
+  EXPECT_EQ(refusal(replaced(kKalibr, "distortion_coeffs", "distortion_coefficients"), "cam0"),
+            "c.yaml:4: cam0: unknown key 'distortion_coefficients'; did you mean "
+            "'distortion_coeffs'?");
+  EXPECT_EQ(refusal(replaced(kKalibr, "resolution", "image_size"), "cam0"),
+            "c.yaml:7: cam0: unknown key 'image_size'; did you mean 'resolution'?");
+  EXPECT_THAT(refusal(replaced(kKalibr, "  cam_overlaps: [1]", "  lens_scale: 2"), "cam0"),
+              HasSubstr("unknown key 'lens_scale' looks like a unit or scale"));
+  EXPECT_THAT(refusal(replaced(kOpencv, "image_width: 640\nimage_height: 480",
+                               "frameSize: [640, 480]\nsquare_size: 0.02")),
+              HasSubstr("c.yaml:4: unknown key 'frameSize' looks like the size of the image"));
+  EXPECT_THAT(refusal(replaced(kMessage, "\nd:", "\nCamera.k1: 0.3\nx:")),
+              HasSubstr("unknown key 'Camera.k1': is it the distortion"));
+  EXPECT_THAT(refusal(replaced(kMessage, "\nd:", "\nlens: {k1: 0.3}\nx:")),
+              HasSubstr("unknown key 'lens': is it the distortion"));
+  EXPECT_EQ(refusal(replaced(kOpencv, "flags: 0", "square_size: 0.02\nboard_width: 9")),
+            "(not refused)")
+      << "of what calibrated the camera";
+}
+
 TEST_F(CameraFile, WithoutASizeIsReadWithAWarning) {
   const CameraInfo camera = read(replaced(kMessage, "width: 640\n", ""));
   EXPECT_EQ(camera.width, 0);

@@ -57,21 +57,32 @@ TEST(Poses, AreReadInBlocksAndWithoutFeatures) {
 TEST(Poses, ReportAllTheirErrorsTogether) {
   Diagnostics diagnostics;
   (void)read(
-      "- {joints: [a, b], positions: [1]}\n"
+      "- {joints: [a], positions: [1]}\n"
       "- {joints: [a, a], positions: [1, x]}\n"
       "- {jionts: [a], positions: [.nan]}\n"
       "- nothing\n",
       diagnostics);
   EXPECT_THAT(
       diagnostics.errors,
-      testing::IsSupersetOf({HasSubstr("poses.yaml:1: pose 1: 2 joints but 1 position"),
-                             HasSubstr("poses.yaml:2: pose 2: positions: 'x'"),
+      testing::IsSupersetOf({HasSubstr("poses.yaml:2: pose 2: positions: 'x'"),
                              HasSubstr("poses.yaml:2: pose 2: joint 'a' occurs twice"),
                              HasSubstr("poses.yaml:3: pose 3: unknown key 'jionts'; did you mean "
                                        "'joints'?"),
                              HasSubstr("poses.yaml:3: pose 3: positions: '.nan'"),
                              HasSubstr("poses.yaml:3: pose 3: joints is missing"),
                              HasSubstr("poses.yaml:4: pose 4 is 'nothing', not a map")}));
+}
+
+TEST(Poses, OneWithoutAPositionOfAJointIsLeftOut) {
+  Diagnostics diagnostics;
+  const auto poses =
+      read("- {joints: [a, b], positions: [1]}\n- {joints: [a], positions: [2]}\n", diagnostics);
+  EXPECT_THAT(diagnostics.errors, IsEmpty());
+  EXPECT_THAT(diagnostics.warnings, ElementsAre(HasSubstr("poses.yaml:1: pose 1: 2 joints but 1 "
+                                                          "position; the pose is left out")));
+  EXPECT_EQ(poses.size(), 1u);
+  (void)read("- {joints: [a, b], positions: [1]}\n", diagnostics);
+  EXPECT_THAT(diagnostics.errors, ElementsAre(HasSubstr("no pose is left")));
 }
 
 TEST(Poses, AreAListAndNothingElse) {

@@ -90,9 +90,15 @@ inline void doubt_no_distortion(ConfigMap& file, const CameraKeys& known,
                                                         std::size_t count) {
   const ConfigEntry* entry = camera.find(key);
   if (entry == nullptr) {
-    std::vector<std::string> keys;
-    for (const ConfigEntry& other : camera.entries()) keys.push_back(other.key);
-    camera.error(camera.place(), key + " is missing" + meant_by_key(key, keys));
+    const CameraKeys wanted = {key};
+    for (const ConfigEntry& other : camera.entries()) {
+      if (camera.is_used(other.key) || meant_by_key(other.key, wanted).empty()) continue;
+      camera.error(other.place,
+                   "unknown key '" + other.key + "'" + meant_by_key(other.key, wanted));
+      (void)camera.use(other.key);
+      return std::vector<double>(count, 0.0);
+    }
+    camera.error(camera.place(), key + " is missing");
     return std::vector<double>(count, 0.0);
   }
   auto numbers = camera_numbers(camera, *entry);

@@ -63,13 +63,17 @@ namespace kinecal::detail {
   return numbers;
 }
 
-/// True for one coefficient by its usual name: k1 to k6, p1, p2.
-[[nodiscard]] inline bool is_coefficient(const ConfigEntry& entry) {
-  const std::string plain = plain_key(entry.key);
+/// True for one coefficient by its usual name, k1 to k6, p1, p2, also as Camera.k1; or for a map with
+/// one.
+[[nodiscard]] inline bool is_coefficient(const std::string& key, const YamlNode& value) {
+  for (std::size_t i = 0; i < value.keys.size(); ++i) {
+    if (is_coefficient(value.keys[i].text, value.items[i])) return true;
+  }
+  const std::string plain = plain_key(key.substr(key.find_last_of("._-/") + 1));
   const bool named =
       plain.size() == 2 &&
       ((plain[0] == 'k' && plain[1] >= '1' && plain[1] <= '6') || plain == "p1" || plain == "p2");
-  const auto number = config_number(entry.value);
+  const auto number = config_number(value);
   return named && number && *number != 0.0;
 }
 
@@ -144,13 +148,14 @@ inline bool refuse_lost_distortion(ConfigMap& file, const std::vector<std::strin
     const std::vector<double> numbers = numbers_in(entry.value);
     const bool sounds = sounds_like_distortion(entry.key) && !numbers.empty();
     const bool fits = any_name && could_be_distortion(numbers) && !is_of_something_else(entry.key);
-    if (!sounds && !fits && !is_coefficient(entry)) continue;
+    if (!sounds && !fits && !is_coefficient(entry.key, entry.value)) continue;
     found = true;
     (void)file.use(entry.key);  // reported below
     file.error(entry.place,
                "unknown key '" + entry.key +
                    "': is it the distortion of the lens, which would be lost?  Then " +
-                   (is_coefficient(entry) ? "list the coefficients under '" : "call it '") +
+                   (is_coefficient(entry.key, entry.value) ? "list the coefficients under '"
+                                                           : "call it '") +
                    intended + "', else remove it or give the distortion as well");
   }
   return found;

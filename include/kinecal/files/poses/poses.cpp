@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <fstream>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -41,7 +42,9 @@ namespace {
   return names;
 }
 
-[[nodiscard]] CapturePose read_pose(ConfigMap& map) {
+/// @return  nullopt, and a warning, for joints and positions of different number: robot_calibration
+///          leaves such a pose out, too
+[[nodiscard]] std::optional<CapturePose> read_pose(ConfigMap& map) {
   CapturePose pose;
   pose.joint_names = read_pose_names(map, "joints");
   for (const ConfigEntry& element : map.list("positions")) {
@@ -56,9 +59,6 @@ namespace {
   for (const char* key : {"joints", "positions"}) {
     if (map.peek(key) == nullptr) map.error(map.place(), std::string(key) + " is missing");
   }
-  if (pose.joint_names.size() != pose.positions.size()) {
-    map.error(map.place(), names_but_positions(pose));
-  }
   for (std::size_t i = 0; i < pose.joint_names.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (pose.joint_names[i] == pose.joint_names[j]) {
@@ -67,7 +67,9 @@ namespace {
     }
   }
   map.report_unknown();
-  return pose;
+  if (pose.joint_names.size() == pose.positions.size()) return pose;
+  map.warning(map.place(), names_but_positions(pose) + "; the pose is left out");
+  return std::nullopt;
 }
 
 }  // namespace
@@ -95,16 +97,22 @@ std::vector<CapturePose> read_poses_yaml(const std::string& path, Diagnostics& d
                                      ", not a list of {joints: [], positions: [], features: []}");
     return poses;
   }
+  std::size_t number = 0;
   for (const detail::YamlNode& element : content.items) {
     const SourceLocation place{path, element.line};
-    const std::string subject = fmt::format("pose {}", poses.size() + 1);
+    const std::string subject = fmt::format("pose {}", ++number);
     if (!element.is_map()) {
       diagnostics.error(place, subject + " is " + detail::describe_config(element) + ", not a map");
       continue;
     }
     detail::ConfigMap map(element, place, subject, diagnostics);
-    poses.push_back(detail::read_pose(map));
-    poses.back().source = place.str();
+    if (auto pose = detail::read_pose(map)) {
+      poses.push_back(std::move(*pose));
+      poses.back().source = place.str();
+    }
+  }
+  if (poses.empty() && number > 0 && diagnostics.errors.empty()) {
+    diagnostics.error({path, 0}, "no pose is left");
   }
   return poses;
 }

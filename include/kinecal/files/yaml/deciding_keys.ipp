@@ -78,14 +78,15 @@ enum class KeyMeaning { other, distortion, size, spacing, unit };
 }
 
 /// "; did you mean 'size'?": the nearest known key, or else the nearest one of the same meaning;
-/// empty if there is none.  A limit is not meant by what is none.
+/// empty if there is none.  A limit or the name of a model is not meant by
+/// what is none.
 template <class Names>
 [[nodiscard]] std::string meant_by_key(std::string_view key, const Names& known) {
   const std::string near = did_you_mean(key, known);
   const KeyMeaning meaning = meaning_of_key(key);
   if (!near.empty() || meaning == KeyMeaning::other) return near;
   const auto is_limit = [](std::string_view name) {
-    return has_word(key_words(name), {"min", "max"});
+    return has_word(key_words(name), {"min", "max", "model"});
   };
   const std::string* best = nullptr;
   for (const std::string& name : known) {
