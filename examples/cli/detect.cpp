@@ -123,7 +123,7 @@ void check_recordings(const std::vector<std::string>& bags) {
   }
 }
 
-void read_recordings(const DetectOptions& options, DetectionInput& task, Diagnostics& diagnostics) {
+void add_recordings(const DetectOptions& options, DetectionInput& task, Diagnostics& diagnostics) {
   for (const std::string& bag : options.bags) {
     RecordingOptions recording{.path = bag, .frame = options.frame, .camera = task.camera};
     for (const std::string& topic : options.joints) {
@@ -153,7 +153,7 @@ DetectionInput read_task(const DetectOptions& options, Diagnostics& diagnostics)
         list_images({options.images, options.poses, options.columns, options.depth}, diagnostics);
   }
   check_joints(options, task, diagnostics);
-  if (diagnostics.errors.empty()) read_recordings(options, task, diagnostics);
+  if (diagnostics.errors.empty()) add_recordings(options, task, diagnostics);
   return task;
 }
 

@@ -55,7 +55,7 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-struct Reading {
+struct ReadConfig {
   Config config;
   Messages errors, warnings;
 
@@ -79,12 +79,12 @@ struct TestFolder {
 
 /// Reads the text as calibrate.yaml.  Messages that begin with the file's whole path are given with
 /// its name instead.
-Reading read(const std::string& text) {
+ReadConfig read(const std::string& text) {
   const TestFolder folder;
   const std::string path = (folder.path / "calibrate.yaml").string();
   std::ofstream(path) << text;
   Diagnostics diagnostics;
-  Reading reading;
+  ReadConfig reading;
   reading.config = read_config(path, diagnostics);
   const auto shorten = [&](Messages messages) {
     for (std::string& m : messages) {
@@ -148,7 +148,7 @@ std::string describe(const Config& config) {
 
 TEST(ReadConfig, BaseTextsOfThisTestAreWithoutMistakes) {
   for (const std::string& text : {kRos1, kRos2}) {
-    const Reading reading = read(text);
+    const ReadConfig reading = read(text);
     EXPECT_THAT(reading.errors, IsEmpty());
     EXPECT_THAT(reading.warnings, IsEmpty());
     EXPECT_EQ(reading.config.base_link, "torso");
@@ -204,7 +204,7 @@ error_blocks:
       walls: {type: plane_to_plane, model_a: camera, model_b: arm, samples: alone}
       prior: {type: outrageous, param: board, joint_scale: 0}
 )";
-  const Reading one = read(settings), two = read(ros2);
+  const ReadConfig one = read(settings), two = read(ros2);
   EXPECT_THAT(one.errors, IsEmpty());
   EXPECT_THAT(one.warnings, IsEmpty());
   EXPECT_THAT(two.errors, IsEmpty());
@@ -231,13 +231,13 @@ block prior outrageous board 0 1 none 1 joint_scale=0 mean=0 mean_a=0 mean_b=0 m
 }
 
 TEST(ReadConfig, AFixedFrameIsAFrameWithoutFreeAxesAndWithItsPose) {
-  const Reading ros1 = read(with(kRos1, "error_blocks:",
-                                 "fixed_frames:\n - {name: smr, x: 0.05, z: -0.1, yaw: 0.5}\n"
-                                 "error_blocks:"));
-  const Reading ros2 = read(with(kRos2, "      error_blocks",
-                                 "      fixed_frames: [smr]\n"
-                                 "      smr: {x: 0.05, z: -0.1, yaw: 0.5}\n      error_blocks"));
-  for (const Reading* reading : {&ros1, &ros2}) {
+  const ReadConfig ros1 = read(with(kRos1, "error_blocks:",
+                                    "fixed_frames:\n - {name: smr, x: 0.05, z: -0.1, yaw: 0.5}\n"
+                                    "error_blocks:"));
+  const ReadConfig ros2 = read(with(kRos2, "      error_blocks",
+                                    "      fixed_frames: [smr]\n"
+                                    "      smr: {x: 0.05, z: -0.1, yaw: 0.5}\n      error_blocks"));
+  for (const ReadConfig* reading : {&ros1, &ros2}) {
     EXPECT_THAT(reading->errors, IsEmpty());
     EXPECT_THAT(reading->warnings, IsEmpty());
     ASSERT_EQ(reading->step().free_frames.size(), 2u);
@@ -265,7 +265,7 @@ TEST(ReadConfig, TextsWithControlCharactersAreErrors) {
 }
 
 TEST(ReadConfig, ItemsKeepTheLineThatTheUserHasToMend) {
-  const Reading ros1 = read(kRos1), ros2 = read(kRos2);
+  const ReadConfig ros1 = read(kRos1), ros2 = read(kRos2);
   EXPECT_EQ(ros1.step().models[1].place.line, 4);
   EXPECT_EQ(ros1.step().free_params[1].place.line, 6);
   EXPECT_EQ(ros1.step().error_blocks[0].place.line, 10);
@@ -440,7 +440,7 @@ TEST(ReadConfig, TheImageOfACamera2dIsRawOrRectified) {
 }
 
 TEST(ReadConfig, KeysOfTheCaptureAreIgnoredInSilence) {
-  const Reading reading =
+  const ReadConfig reading =
       read(with(kRos1, "frame: optical", "frame: optical, topic: /p, camera_info_topic: /i") +
            "verbose: true\n");
   EXPECT_THAT(reading.errors, IsEmpty());
@@ -520,13 +520,14 @@ TEST(ReadConfig, NamesThatOccurTwiceAreErrorsWithBothLines) {
 }
 
 TEST(ReadConfig, AParameterThatIsFreedTwiceCountsOnce) {
-  const Reading twice = read(with(kRos1, "[shoulder, elbow]", "[shoulder,\n elbow,\n shoulder]"));
+  const ReadConfig twice =
+      read(with(kRos1, "[shoulder, elbow]", "[shoulder,\n elbow,\n shoulder]"));
   EXPECT_THAT(twice.errors, IsEmpty());
   EXPECT_THAT(twice.warnings,
               ElementsAre("calibrate.yaml:8: free parameter 'shoulder' occurs twice and counts "
                           "once; the other is in line 6"));
   EXPECT_EQ(twice.step().free_params.size(), 2u);
-  const Reading axis = read(with(kRos1, "elbow", "board_x"));
+  const ReadConfig axis = read(with(kRos1, "elbow", "board_x"));
   EXPECT_THAT(axis.errors, IsEmpty());
   EXPECT_THAT(
       axis.warnings,
@@ -538,8 +539,8 @@ TEST(ReadConfig, AParameterThatIsFreedTwiceCountsOnce) {
 // ---- free frames ----
 
 TEST(ReadConfig, AxesAreFlagsInEverySpelling) {
-  const Reading reading = read(with(kRos1, "x: true, y: true, z: true",
-                                    "x: 1, y: 'true', z: On, roll: 0, pitch: 'False', yaw: no"));
+  const ReadConfig reading = read(with(kRos1, "x: true, y: true, z: true",
+                                       "x: 1, y: 'true', z: On, roll: 0, pitch: 'False', yaw: no"));
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.step().free_frames[0].axes,
               ElementsAre(true, true, true, false, false, false));
@@ -556,7 +557,7 @@ TEST(ReadConfig, FrameWithoutAFreeAxisIsAWarning) {
 }
 
 TEST(ReadConfig, TwoOfThreeRotationsAreAcceptedWithAWarning) {
-  const Reading two = read(with(kRos1, "x: true", "roll: true, yaw: true"));
+  const ReadConfig two = read(with(kRos1, "x: true", "roll: true, yaw: true"));
   EXPECT_THAT(two.errors, IsEmpty());
   ASSERT_EQ(two.warnings.size(), 1u);
   EXPECT_THAT(two.warnings[0],
@@ -569,7 +570,7 @@ TEST(ReadConfig, TwoOfThreeRotationsAreAcceptedWithAWarning) {
 const std::string kInitial = "free_frames_initial_values:\n - {name: board, x: 0.5, z: -1e-3}\n";
 
 TEST(ReadConfig, InitialValuesOfFramesAreRead) {
-  const Reading reading = read(kRos1 + kInitial);
+  const ReadConfig reading = read(kRos1 + kInitial);
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.warnings, IsEmpty());
   EXPECT_EQ(reading.step().frame_initial_values.at(0).xyz, Vector3<double>(0.5, 0.0, -1e-3));
@@ -684,7 +685,7 @@ TEST(ReadConfig, AliasesOfOldVersionsAreRead) {
               ElementsAre("calibrate.yaml:10: error block 'block': camera 'camra' is not a model; "
                           "did you mean 'camera'?"));
 
-  const Reading ground = read(with_block("type: camera3d_to_ground, camera: camera, ground: g"));
+  const ReadConfig ground = read(with_block("type: camera3d_to_ground, camera: camera, ground: g"));
   EXPECT_THAT(ground.errors, IsEmpty());
   EXPECT_THAT(ground.warnings, IsEmpty());
   BlockConfig plane = ground.step().error_blocks[0];
@@ -781,7 +782,7 @@ cal_steps:
 )";
 
 TEST(ReadConfig, Ros1StepsRunInAlphabeticalOrderAndTakeOverWhatTheyLeaveOut) {
-  const Reading reading = read(kRos1Steps);
+  const ReadConfig reading = read(kRos1Steps);
   EXPECT_THAT(reading.errors, IsEmpty());
   ASSERT_EQ(reading.config.steps.size(), 2u);
   const StepConfig &first = reading.config.steps[0], &second = reading.config.steps[1];
@@ -801,7 +802,7 @@ TEST(ReadConfig, Ros1StepsAllStartTheirFreeFramesAtTheInitialValues) {
   const std::string text = with(kRos1Steps, "    error_blocks:\n",
                                 "    free_frames_initial_values:\n     - {name: board, x: 0.1}\n"
                                 "    error_blocks:\n");
-  const Reading reading = read(text);
+  const ReadConfig reading = read(text);
   EXPECT_THAT(reading.errors, IsEmpty());
   ASSERT_EQ(reading.config.steps.size(), 2u);
   for (const StepConfig& step : reading.config.steps) {
@@ -818,7 +819,7 @@ TEST(ReadConfig, ErrorsInListsThatStepsShareAreReportedOnce) {
 }
 
 TEST(ReadConfig, ValuesAndBoundsOfTheFileReachTheirSteps) {
-  const Reading reading = read(kRos1Steps);
+  const ReadConfig reading = read(kRos1Steps);
   const StepConfig &first = reading.config.steps[0], &second = reading.config.steps[1];
   EXPECT_EQ(first.initial_values.size(), 1u);
   EXPECT_THAT(second.initial_values, IsEmpty());
@@ -867,7 +868,7 @@ const std::string kRos2Second = R"(    extra:
 
 TEST(ReadConfig, Ros2StepsRunInTheirOrderAndTakeOverNothing) {
   const std::string text = with(kRos2, "[calibrate]", "[calibrate, extra]") + kRos2Second;
-  const Reading reading = read(text);
+  const ReadConfig reading = read(text);
   EXPECT_THAT(reading.errors, IsEmpty());
   ASSERT_EQ(reading.config.steps.size(), 2u);
   EXPECT_EQ(reading.config.steps[1].name, "extra");
@@ -915,7 +916,7 @@ TEST(ReadConfig, MissingOrMisspeltRosParametersAreFound) {
 }
 
 TEST(ReadConfig, OtherNodesOfAFileAreIgnored) {
-  const Reading reading = read(kRos2 + "other:\n  ros__parameters: {a: 1}\n");
+  const ReadConfig reading = read(kRos2 + "other:\n  ros__parameters: {a: 1}\n");
   EXPECT_THAT(reading.errors, IsEmpty());
   EXPECT_THAT(reading.warnings, ElementsAre("calibrate.yaml:15: node 'other' is ignored; "
                                             "'robot_calibration' is used"));
