@@ -724,7 +724,7 @@ TEST_F(Program, SaysWhatCannotBeDeterminedAndHoldsIt) {
                                 HasSubstr("shoulder"), HasSubstr("mast_joint_")));
   const std::string hold = to_hold(result.out);
   EXPECT_EQ(to_hold(check().out), hold);
-  const Outcome held = calibrate(hold);
+  const Outcome held = calibrate(hold + " --verbose");
   EXPECT_EQ(held.code, 0) << held.err;
   EXPECT_THAT(held.out, Not(HasSubstr("cannot be determined")));
   EXPECT_THAT(held.out, HasSubstr("calibrate: 8 parameters"));

@@ -90,7 +90,7 @@ void choose_image(Config& config, const Robot& robot, std::span<const Sample> sa
           fmt::format("{}: its lens has the distortion model '{}', which raw images cannot have "
                       "here, and the configuration does not say that its pixels are of rectified "
                       "images; rectify the images and write 'image: rectified' in the model, or "
-                      "give it a plumb_bob model",
+                      "give it a plumb_bob or rational_polynomial model",
                       sensor, options.lens));
     }
     return;

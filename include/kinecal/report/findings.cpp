@@ -164,8 +164,9 @@ std::string findings_line(const Findings& findings) {
       fits += " (held out " + reading(error->held_out, block.unit) + ")";
     }
   }
-  const std::size_t out = findings.left_out.size();
   text += fits;
+  const std::size_t out = findings.left_out.size();
+  if (out == 0) return text;
   return text + fmt::format(" · {} of {} samples left out", out, findings.sources.size() + out);
 }
 

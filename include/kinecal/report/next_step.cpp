@@ -78,22 +78,22 @@ std::string next_step(const Findings& findings) {
     return std::string(judgement.causes == 1 ? "mend the cause" : "mend the causes") +
            " named under the verdict, and calibrate again";
   }
+  if (judgement.verdict == Grade::good) {
+    if (call.output.empty()) return "verify the result with a few new poses";
+    return "use " + call.output +
+           "/calibrated.urdf, and verify it with a few new poses:\n"
+           "  kinecal verify " +
+           call.output + " NEW_SAMPLES";
+  }
   const std::string held = detail::hold(findings);
   if (!held.empty()) return held;
   if (judgement.wants_samples) {
     return "record more poses" +
            (call.inputs.empty() ? "" : "; which:\n  kinecal plan " + call.inputs);
   }
-  if (judgement.verdict != Grade::good) {
-    return "see where residuals are large" +
-           (call.command.empty() ? ""
-                                 : ":\n  " + detail::again(findings, " --report report.html", ""));
-  }
-  if (call.output.empty()) return "verify the result with a few new poses";
-  return "use " + call.output +
-         "/calibrated.urdf, and verify it with a few new poses:\n"
-         "  kinecal verify " +
-         call.output + " NEW_SAMPLES";
+  return "see where residuals are large" +
+         (call.command.empty() ? ""
+                               : ":\n  " + detail::again(findings, " --report report.html", ""));
 }
 
 }  // namespace kinecal

@@ -60,6 +60,9 @@ namespace kinecal::detail {
     text += std::string(text.empty() ? "" : "\n") +
             "Poses that were not known; +- is one standard deviation\n" + found;
   }
+  for (const StepResult& step : findings.result.steps) {
+    if (step.starts.searched()) text += "  " + to_string(step.starts) + "\n";
+  }
   for (const Assessment& step : findings.assessments) {
     if (!step.pose || &step != &findings.assessments.back()) continue;
     const PoseUncertainty& pose = *step.pose;

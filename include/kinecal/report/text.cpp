@@ -82,7 +82,6 @@ std::string step_lines(const CalibrationResult& result) {
         "({:.1f} ms)\n    {}\n",
         step.name, step.num_parameters, step.num_residuals, step.initial_cost, step.final_cost,
         step.iterations, 1e3 * step.seconds, step.termination);
-    if (step.starts.searched()) text += fmt::format("    {}\n", to_string(step.starts));
   }
   return text;
 }

@@ -36,7 +36,7 @@ struct CameraInfo {
   int width = 0;                 ///< pixels
   int height = 0;                ///< pixels
   std::string distortion_model;  ///< such as "plumb_bob"
-  std::vector<double> d;         ///< k1 k2 p1 p2 k3 of plumb_bob
+  std::vector<double> d;         ///< k1 k2 p1 p2 k3; rational: k4 k5 k6
   std::array<double, 9> k{};     ///< 3x3, row-major, pixels
   std::array<double, 9> r{};     ///< 3x3, row-major
   std::array<double, 12> p{};    ///< 3x4, row-major, pixels

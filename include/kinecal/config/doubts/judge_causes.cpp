@@ -22,26 +22,31 @@ void judge_impossible(const CalibrationInput& input, JudgedResult& judged) {
   for (const std::string& error : offsets.errors) judged.judgement.add(Grade::do_not_use, error);
 }
 
-}  // namespace
-}  // namespace detail
-
-void judge_causes(const CalibrationInput& input, JudgedResult& judged) {
-  const bool converged = judged.result.converged;
-  if (converged) detail::judge_impossible(input, judged);
-  if (!converged || judged.assessments.empty() || fits_badly(judged.assessments.back())) {
+/// Mistakes that explain a bad fit; of a good one, a held frame and scales.
+void judge_likely(const CalibrationInput& input, JudgedResult& judged) {
+  if (!judged.result.converged || judged.assessments.empty() ||
+      fits_badly(judged.assessments.back())) {
     std::vector<std::string> causes = likely_causes(input.config, input.robot, input.samples);
     for (std::string& cause : causes) cause = "likely cause: " + cause;
     judged.judgement.add_causes(Grade::do_not_use, causes);
     return;
   }
   if (judged.assessments.back().change) return;  // lengths have absorbed that, too
-  if (const auto held = detail::held_frame(input, judged)) {
+  if (const auto held = held_frame(input, judged)) {
     judged.judgement.add_causes(Grade::use_with_care, {*held});
   }
   std::vector<std::string> scales = wrong_scales(input.config, input.robot, input.samples,
                                                  judged.result.table, judged.assessments.back());
   for (std::string& scale : scales) scale += "; are its lengths right?";
   judged.judgement.add_causes(Grade::use_with_care, scales);
+}
+
+}  // namespace
+}  // namespace detail
+
+void judge_causes(const CalibrationInput& input, JudgedResult& judged) {
+  detail::judge_likely(input, judged);
+  if (judged.result.converged) detail::judge_impossible(input, judged);
 }
 
 }  // namespace kinecal
