@@ -60,53 +60,109 @@ constexpr double kLeastSaddle = 12.0;  // of 255
   return sum / count;
 }
 
-/// Where the gradients around a place meet.
-[[nodiscard]] std::optional<Eigen::Vector2d> meeting_point(const GrayImage& image,
-                                                           const Eigen::Vector2d& near,
-                                                           const CornerAxes& axes) {
-  constexpr double kWindow = 0.8;  // of the axes
-  const double longest = std::max(axes.x.norm(), axes.y.norm());
-  const int steps = std::clamp(static_cast<int>(std::lround(kWindow * longest)), 3, 8);
-  Eigen::Matrix2d sums = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  const Eigen::Vector2d u(1.0, 0.0), v(0.0, 1.0);
-  for (int i = -steps; i <= steps; ++i) {
-    for (int j = -steps; j <= steps; ++j) {
-      const double x = static_cast<double>(i) / steps, y = static_cast<double>(j) / steps;
-      const Eigen::Vector2d off = kWindow * (x * axes.x + y * axes.y), at = near + off;
-      const Eigen::Vector2d g(brightness_at(image, at + u) - brightness_at(image, at - u),
-                              brightness_at(image, at + v) - brightness_at(image, at - v));
-      const Eigen::Matrix2d weighted = std::exp(-2.0 * (x * x + y * y)) * g * g.transpose();
-      sums += weighted;
-      right += weighted * off;
+/// The image around a corner, smoothed: at the edges of a sharp image, squares of gradients in whole
+/// pixels are off by a tenth of a pixel.
+class SmoothPatch {
+ public:
+  /// @param passes  of the filter (1 2 1) / 4 in both directions
+  SmoothPatch(const GrayImage& image, const Eigen::Vector2d& middle, int reach, int passes)
+      : left_(static_cast<int>(std::lround(middle.x())) - reach),
+        top_(static_cast<int>(std::lround(middle.y())) - reach),
+        side_(2 * reach + 1) {
+    values_.reserve(static_cast<std::size_t>(side_ * side_));
+    for (int v = top_; v < top_ + side_; ++v) {
+      for (int u = left_; u < left_ + side_; ++u) {
+        values_.push_back(
+            image(std::clamp(u, 0, image.width - 1), std::clamp(v, 0, image.height - 1)));
+      }
+    }
+    for (int pass = 0; pass < passes; ++pass) {
+      smooth(1, side_);
+      smooth(side_, 1);
     }
   }
-  if (!(sums.determinant() > 1e-6 * sums.trace() * sums.trace())) return std::nullopt;
-  return near + sums.inverse() * right;
+
+  /// The place where the gradients around a place meet.
+  [[nodiscard]] std::optional<Eigen::Vector2d> meeting_point(const Eigen::Vector2d& near,
+                                                             const CornerAxes& axes) const {
+    Eigen::Matrix2d into, sums = Eigen::Matrix2d::Zero();
+    into << axes.x, axes.y;
+    if (!(std::abs(into.determinant()) > 1.0)) return std::nullopt;
+    const Eigen::Matrix2d of_axes = into.inverse();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    for (int v = 1; v + 1 < side_; ++v) {
+      for (int u = 1; u + 1 < side_; ++u) {
+        const Eigen::Vector2d off = Eigen::Vector2d(left_ + u, top_ + v) - near;
+        const Eigen::Vector2d place = of_axes * off;
+        const double x = 1.0 - place.x() * place.x(), y = 1.0 - place.y() * place.y();
+        if (x <= 0.0 || y <= 0.0) continue;
+        const Eigen::Vector2d g(at(u + 1, v) - at(u - 1, v), at(u, v + 1) - at(u, v - 1));
+        const Eigen::Matrix2d weighted = x * x * y * y * g * g.transpose();
+        sums += weighted;
+        right += weighted * off;
+      }
+    }
+    if (!(sums.determinant() > 1e-6 * sums.trace() * sums.trace())) return std::nullopt;
+    return near + sums.inverse() * right;
+  }
+
+ private:
+  [[nodiscard]] double at(int u, int v) const {
+    return values_[static_cast<std::size_t>(v * side_ + u)];
+  }
+  /// Along lines of pixels that are `step` apart.
+  void smooth(int step, int next) {
+    for (int line = 0; line < side_; ++line) {
+      double before = values_[static_cast<std::size_t>(line * next)];
+      for (int i = 1; i + 1 < side_; ++i) {
+        double& value = values_[static_cast<std::size_t>(line * next + i * step)];
+        const double after = values_[static_cast<std::size_t>(line * next + (i + 1) * step)];
+        const double smoothed = 0.25 * (before + after) + 0.5 * value;
+        before = value;
+        value = smoothed;
+      }
+    }
+  }
+
+  int left_, top_, side_;
+  std::vector<double> values_ = {};
+};
+
+/// The saddle from a first place, at most `most` pixels from it.
+[[nodiscard]] std::optional<Eigen::Vector2d> exactly(const GrayImage& image,
+                                                     const Eigen::Vector2d& first,
+                                                     const CornerAxes& axes, double most) {
+  constexpr int kPasses = 10;
+  constexpr double kStill = 0.002, kWide = 5.0;  // pixels
+  const double across = std::abs(axes.x.x() * axes.y.y() - axes.x.y() * axes.y.x()) /
+                        std::max(axes.x.norm(), axes.y.norm());
+  const double reach = std::max(axes.x.norm(), axes.y.norm()) * std::sqrt(2.0) + 2.0;
+  const SmoothPatch patch(image, first, static_cast<int>(std::ceil(reach + 0.5 * most)),
+                          across < kWide ? 1 : 2);
+  Eigen::Vector2d at = first;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const auto next = patch.meeting_point(at, axes);
+    if (!next || !is_within(image, *next, 2.0) || (*next - first).norm() > most)
+      return std::nullopt;
+    const double moved = (*next - at).norm();
+    at = *next;
+    if (moved < kStill) break;
+  }
+  return at;
 }
 
 }  // namespace
 
 std::optional<Eigen::Vector2d> find_saddle(const GrayImage& image, const Eigen::Vector2d& near,
                                            const CornerAxes& axes, double reach) {
-  constexpr int kPasses = 8;
-  constexpr double kStill = 0.005, kLargest = 12.0;  // pixels
+  constexpr double kLargest = 12.0;  // pixels
   const double longest = std::max(axes.x.norm(), axes.y.norm());
   if (!(longest >= 1.0)) return std::nullopt;
   const auto first = roughly(image, near, axes, reach);
   if (!first) return std::nullopt;
   const double share = std::min(1.0, kLargest / longest);
-  const CornerAxes window{share * axes.x, share * axes.y};
-  Eigen::Vector2d at = *first;
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const auto next = meeting_point(image, at, window);
-    if (!next || !is_within(image, *next, 2.0)) return std::nullopt;
-    const double moved = (*next - at).norm();
-    at = *next;
-    if ((at - *first).norm() > longest) return std::nullopt;
-    if (moved < kStill) break;
-  }
-  if (saddle_contrast(image, at, axes) <= kLeastSaddle) return std::nullopt;
+  const auto at = exactly(image, *first, {share * axes.x, share * axes.y}, longest);
+  if (!at || saddle_contrast(image, *at, axes) <= kLeastSaddle) return std::nullopt;
   return at;
 }
 
