@@ -90,7 +90,6 @@ TEST_F(CaptureCases, CornersOfKalibrsGridAreRightOrLeftOut) {
     const test::Outcome found = detect(of / (name + ".png"), 1280, 720,
                                        "columns: 6, rows: 6, size: 0.024, spacing: 0.3, border: 2");
     ASSERT_EQ(found.code, 0) << found.err;
-    EXPECT_THAT(found.err, HasSubstr("not where the others of their view put them are left out"));
     std::istringstream truth(read(of / ("truth_" + name + ".csv")));
     std::map<int, std::pair<double, double>> right;
     std::string line;
@@ -100,7 +99,7 @@ TEST_F(CaptureCases, CornersOfKalibrsGridAreRightOrLeftOut) {
       double x = 0.0, y = 0.0;
       if (std::sscanf(line.c_str(), "%d,%lf,%lf", &id, &x, &y) == 3) right[id] = {x, y};
     }
-    EXPECT_GE(pixels().size(), 30u) << "only wrong ones are left out";
+    EXPECT_GE(pixels().size(), 4 * 34u) << "of 36 tags";
     for (const auto& [id, at] : pixels()) {
       EXPECT_LT(std::hypot(at.first - right.at(id).first, at.second - right.at(id).second), 1.0)
           << name << ", corner " << id;
