@@ -241,10 +241,11 @@ void add_simulate(CLI::App& command, SimulateOptions& options) {
               "camera, target, errors, motion and faults in YAML; default: what the URDF allows")
           ->type_name("FILE");
   command
-      .add_option("--target", options.target,
-                  "checkerboard (default), apriltag, ground, or leds for a session")
+      .add_option(
+          "--target", options.target,
+          "checkerboard (default), apriltag, aprilgrid (Kalibr's), ground, or leds for a session")
       ->excludes(scene)
-      ->check(CLI::IsMember({"checkerboard", "apriltag", "ground", "leds"}));
+      ->check(CLI::IsMember({"checkerboard", "apriltag", "aprilgrid", "ground", "leds"}));
   command.add_option("--poses", options.poses, "number of images, default: 30")
       ->check(CLI::Range(1, 9999))
       ->type_name("N");
@@ -277,10 +278,11 @@ void add_study_files(CLI::App& command, StudyFiles& files) {
           .add_option("--scene", files.scene,
                       "camera, target, errors and noise in YAML, as of `kinecal simulate`")
           ->type_name("FILE");
-  command.add_option("--target", files.target, "checkerboard (default), apriltag or leds")
+  command
+      .add_option("--target", files.target, "checkerboard (default), apriltag, aprilgrid or leds")
       ->excludes(scene)
       ->excludes(samples)
-      ->check(CLI::IsMember({"checkerboard", "apriltag", "leds"}));
+      ->check(CLI::IsMember({"checkerboard", "apriltag", "aprilgrid", "leds"}));
   command.add_option("--seed", files.seed, "random seed (default 1) of robots and noise")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");

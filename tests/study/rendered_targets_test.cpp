@@ -70,7 +70,7 @@ TEST(RenderedTargets, TagsAreFoundWhereTheyAre) {
   const Renderer renderer(camera);
   const AprilTagFinder finder({.columns = 3, .rows = 2, .size = 0.06, .spacing = 0.25});
   const auto picture = std::make_shared<const GrayImage>(tag_grid_picture(3, 2));
-  const double bit = 0.06 / kTagBits;
+  const double bit = 0.06 / kPlainTags.tag();
   SeededRandom random(2);
   for (const Pose<double>& middle : poses()) {
     const Pose<double> corner =
@@ -81,6 +81,28 @@ TEST(RenderedTargets, TagsAreFoundWhereTheyAre) {
     Scene scene;
     scene.light.position = {0.5, -1.0, -0.5};
     add_picture(scene, "", corner, picture, 32 * bit);
+    expect_found(finder.find(view_of(camera, renderer, scene, random)), renderer.lens(), grid);
+  }
+}
+
+TEST(RenderedTargets, TagsOfKalibrsGridAreFoundWhereTheyAre) {
+  SimulatedCamera camera;
+  camera.has_depth = false;
+  const Renderer renderer(camera);
+  const AprilTagFinder finder({.columns = 3, .rows = 2, .size = 0.06, .spacing = 0.3, .border = 2});
+  const auto picture = std::make_shared<const GrayImage>(tag_grid_picture(3, 2, kKalibrTags));
+  const double bit = 0.06 / kKalibrTags.tag(), width = picture->width, height = picture->height;
+  SeededRandom random(3);
+  for (const Pose<double>& middle : poses()) {
+    const Pose<double> corner =
+        middle *
+        Pose<double>{Matrix3<double>::Identity(), {-0.5 * width * bit, -0.5 * height * bit, 0.0}};
+    const double margin = kKalibrTags.margin * bit;
+    const Pose<double> grid = corner * Pose<double>{Vector3<double>(1, -1, -1).asDiagonal(),
+                                                    {margin, height * bit - margin, 0.0}};
+    Scene scene;
+    scene.light.position = {0.5, -1.0, -0.5};
+    add_picture(scene, "", corner, picture, width * bit);
     expect_found(finder.find(view_of(camera, renderer, scene, random)), renderer.lens(), grid);
   }
 }

@@ -55,4 +55,17 @@ inline Print tag_grid(int columns, int rows, int border = 1, bool twice = false)
   };
 }
 
+/// The grid as Kalibr makes it: a black square at each corner of a tag, which touches it.
+inline Print kalibr_grid(int columns, int rows, int border = 2) {
+  const Print tags = tag_grid(columns, rows, border);
+  return [=](double x, double y) {
+    const double pitch = kTagSize * (1 + kTagSpacing), gap = kTagSize * kTagSpacing;
+    const double right = columns * pitch, top = rows * pitch;
+    if (x < -2 * gap || y < -2 * gap || x > right + gap || y > top + gap) return -1.0;
+    if (x < -gap || y < -gap || x >= right || y >= top) return 1.0;
+    const double a = x - std::floor(x / pitch) * pitch, b = y - std::floor(y / pitch) * pitch;
+    return a > kTagSize && b > kTagSize ? 0.0 : tags(x, y);
+  };
+}
+
 }  // namespace kinecal::test

@@ -11,6 +11,7 @@
 #include "kinecal/capture/april_tags.hpp"
 #include "kinecal/capture/other_tags.hpp"
 #include "kinecal/capture/tag_layout.hpp"
+#include "kinecal/capture/touching_tags.hpp"
 
 namespace kinecal {
 
@@ -24,6 +25,13 @@ namespace {
   std::sort(tags.begin(), tags.end(),
             [](const PlacedTag& a, const PlacedTag& b) { return a.id < b.id; });
   return tags;
+}
+
+/// Where squares may touch tags: single tags have none.
+[[nodiscard]] TouchingGrid touching_grid(const AprilTagSettings& s) {
+  TouchingGrid grid{s.spacing, s.max_wrong_bits};
+  for (const PlacedTag& tag : grid_tags(s)) grid.ids.push_back(tag.id);
+  return grid;
 }
 
 void check_tags(const AprilTagSettings& s, const std::vector<PlacedTag>& tags) {
@@ -116,6 +124,7 @@ void add_tag(const GrayImage& image, const PlacedTag& placed, const SeenTag& tag
 struct AprilTagFinder::Detector {
   detail::TagReader reader;
   detail::OtherTags others;
+  detail::TouchingGrid grid;
 };
 
 AprilTagFinder::AprilTagFinder(AprilTagSettings settings)
@@ -126,7 +135,8 @@ AprilTagFinder::AprilTagFinder(AprilTagSettings settings)
   check_target(settings_.target);
   detector_.reset(new Detector{detail::TagReader(settings_.family, settings_.border,
                                                  settings_.max_wrong_bits, settings_.decimate),
-                               detail::OtherTags(settings_, tags_)});
+                               detail::OtherTags(settings_, tags_),
+                               detail::touching_grid(settings_)});
 }
 
 Found AprilTagFinder::find(const View& view) const {
@@ -134,7 +144,8 @@ Found AprilTagFinder::find(const View& view) const {
   if (const auto fault = view_fault(view, settings_.target.corners); !fault.empty()) {
     return refused(fault);
   }
-  const std::vector<detail::SeenTag> read = detector_->reader.read(view.image);
+  const std::vector<detail::SeenTag> read = detail::with_touching_tags(
+      detector_->reader, view.image, detector_->grid, detector_->reader.read(view.image));
   detail::TagsSeen seen =
       detail::tags_seen(view.image, read, tags_, detector_->reader.cells(), settings_.min_side);
   std::vector<Mark> marks = marks_of(seen.corners);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "kinecal/capture/april_tag_finder.hpp"
 #include "kinecal/capture/tag_edges.hpp"
@@ -82,6 +83,21 @@ void widen_border(apriltag_family_t& family, int border) {
   }
 }
 
+/// The codes of a family, with the places of their bits.
+[[nodiscard]] TagCodes codes_of(const apriltag_family_t& family, int border) {
+  TagCodes codes{family.width_at_border,
+                 border,
+                 static_cast<int>(family.h),
+                 {family.codes, family.codes + family.ncodes},
+                 {}};
+  const double cells = family.width_at_border;
+  for (std::uint32_t i = 0; i < family.nbits; ++i) {
+    codes.places.emplace_back((family.bit_x[i] + 0.5) / cells,
+                              1.0 - (family.bit_y[i] + 0.5) / cells);
+  }
+  return codes;
+}
+
 TagReader::TagReader(const std::string& family, int border, int wrong_bits, double decimate)
     : library_(nullptr, [](Library* l) {
         apriltag_detector_destroy(l->detector);
@@ -90,12 +106,14 @@ TagReader::TagReader(const std::string& family, int border, int wrong_bits, doub
       }) {
   const TagFamily calls = kTagFamilies[family_number(family)];
   library_.reset(new Library{calls, calls.create(), apriltag_detector_create()});
-  if (border > 1 && !family.starts_with("tag36") && !family.starts_with("tag25") &&
-      !family.starts_with("tag16")) {
+  const bool has_border =
+      family.starts_with("tag36") || family.starts_with("tag25") || family.starts_with("tag16");
+  if (border > 1 && !has_border) {
     throw std::invalid_argument("tags of family " + family + " have no black border of " +
                                 std::to_string(border) + " bits");
   }
   widen_border(*library_->family, border);
+  if (has_border) codes_ = codes_of(*library_->family, border);
   apriltag_detector_add_family_bits(library_->detector, library_->family, wrong_bits);
   library_->detector->nthreads = 1;
   library_->detector->quad_decimate = static_cast<float>(decimate);
@@ -105,12 +123,13 @@ double TagReader::cells() const {
   return library_->family->width_at_border;
 }
 
-std::vector<SeenTag> TagReader::read(const GrayImage& image) const {
+/// The tags that libapriltag finds.
+[[nodiscard]] std::vector<SeenTag> detected(apriltag_detector_t* detector, const GrayImage& image) {
   constexpr int kLeastSide = 32;
   if (image.width < kLeastSide || image.height < kLeastSide) return {};
   image_u8_t pixels = {image.width, image.height, image.width,
                        const_cast<std::uint8_t*>(image.pixels.data())};
-  zarray_t* found = apriltag_detector_detect(library_->detector, &pixels);
+  zarray_t* found = apriltag_detector_detect(detector, &pixels);
   std::vector<SeenTag> tags;
   for (int i = 0; i < zarray_size(found); ++i) {
     apriltag_detection_t* d = nullptr;
@@ -118,10 +137,25 @@ std::vector<SeenTag> TagReader::read(const GrayImage& image) const {
     SeenTag tag{d->id, {}};
     // In libapriltag the centre of the first pixel is at (0.5, 0.5).
     for (std::size_t k = 0; k < 4; ++k) tag.corners[k] = {d->p[k][0] - 0.5, d->p[k][1] - 0.5};
-    refine_tag(image, (tag.corners[1] - tag.corners[0]).norm() / cells(), tag.corners);
     tags.push_back(tag);
   }
   apriltag_detections_destroy(found);
+  return tags;
+}
+
+std::vector<SeenTag> TagReader::read(const GrayImage& image) const {
+  std::vector<SeenTag> tags = detected(library_->detector, image);
+  for (SeenTag& tag : tags) {
+    refine_tag(image, (tag.corners[1] - tag.corners[0]).norm() / cells(), tag.corners);
+  }
+  return tags;
+}
+
+std::vector<SeenTag> TagReader::read_roughly(const GrayImage& image) const {
+  float& decimate = library_->detector->quad_decimate;
+  const float usual = std::exchange(decimate, 1.0F);
+  std::vector<SeenTag> tags = detected(library_->detector, image);
+  decimate = usual;
   return tags;
 }
 
@@ -144,6 +178,10 @@ double TagReader::cells() const {
 }
 
 std::vector<SeenTag> TagReader::read(const GrayImage&) const {
+  return {};
+}
+
+std::vector<SeenTag> TagReader::read_roughly(const GrayImage&) const {
   return {};
 }
 

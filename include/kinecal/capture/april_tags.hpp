@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinecal/capture/image.hpp"
+#include "kinecal/capture/tag_code.hpp"
 
 namespace kinecal::detail {
 
@@ -34,12 +35,19 @@ class TagReader {
   /// The tags in an image; none if it is less than 32 pixels wide or high.
   [[nodiscard]] std::vector<SeenTag> read(const GrayImage& image) const;
 
+  /// The tags in an image, searched at its full size, with corners as libapriltag finds them.
+  [[nodiscard]] std::vector<SeenTag> read_roughly(const GrayImage& image) const;
+
+  /// The codes of the family; none if its tags have no black border, or without libapriltag.
+  [[nodiscard]] const TagCodes& codes() const { return codes_; }
+
   /// Number of cells along a tag's side, including the border.
   [[nodiscard]] double cells() const;
 
  private:
   struct Library;
   std::unique_ptr<Library, void (*)(Library*)> library_;
+  TagCodes codes_;
 };
 
 }  // namespace kinecal::detail

@@ -14,7 +14,19 @@
 namespace kinecal {
 
 #ifdef KINECAL_HAVE_APRILTAG
-GrayImage tag_grid_picture(int columns, int rows) {
+namespace detail {
+namespace {
+
+void paint_square(GrayImage& picture, int left, int top, int side, std::uint8_t grey) {
+  for (int v = top; v < top + side; ++v) {
+    for (int u = left; u < left + side; ++u) picture(u, v) = grey;
+  }
+}
+
+}  // namespace
+}  // namespace detail
+
+GrayImage tag_grid_picture(int columns, int rows, const TagGridShape& shape) {
   const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(),
                                                                                 tag36h11_destroy);
   if (columns < 1 || rows < 1 || columns > static_cast<int>(family->ncodes) / rows) {
@@ -22,26 +34,28 @@ GrayImage tag_grid_picture(int columns, int rows) {
                                 std::to_string(rows) + " tags; there are " +
                                 std::to_string(family->ncodes) + " tags");
   }
-  constexpr int kStep = kTagBits + kTagGap;
+  const int step = shape.tag() + shape.gap, more = shape.border - 1;
   constexpr std::uint8_t kWhite = 230, kBlack = 20;
-  GrayImage picture(columns * kStep + kTagGap, rows * kStep + kTagGap, kWhite);
+  GrayImage picture(shape.width(columns), shape.width(rows), kWhite);
+  for (int i = 0; shape.has_squares && i < (columns + 1) * (rows + 1); ++i) {
+    detail::paint_square(picture, shape.margin - shape.gap + step * (i % (columns + 1)),
+                         shape.margin - shape.gap + step * (i / (columns + 1)), shape.gap, kBlack);
+  }
   const auto bits = static_cast<int>(family->nbits);
   for (int id = 0; id < columns * rows; ++id) {
-    const int left = kTagGap + kStep * (id % columns);
-    const int top = kTagGap + kStep * (rows - 1 - id / columns);
-    for (int v = 0; v < kTagBits; ++v) {
-      for (int u = 0; u < kTagBits; ++u) picture(left + u, top + v) = kBlack;
-    }
+    const int left = shape.margin + step * (id % columns);
+    const int top = shape.margin + step * (rows - 1 - id / columns);
+    detail::paint_square(picture, left, top, shape.tag(), kBlack);
     for (int i = 0; i < bits; ++i) {
       if (((family->codes[id] >> (bits - 1 - i)) & 1U) == 0) continue;
-      picture(left + static_cast<int>(family->bit_x[i]), top + static_cast<int>(family->bit_y[i])) =
-          kWhite;
+      picture(left + more + static_cast<int>(family->bit_x[i]),
+              top + more + static_cast<int>(family->bit_y[i])) = kWhite;
     }
   }
   return picture;
 }
 #else
-GrayImage tag_grid_picture(int, int) {
+GrayImage tag_grid_picture(int, int, const TagGridShape&) {
   throw std::runtime_error(
       "AprilTags cannot be drawn: kinecal was built without libapriltag (libapriltag-dev)");
 }

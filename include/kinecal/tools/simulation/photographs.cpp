@@ -41,7 +41,7 @@ namespace {
   if (target.type == "checkerboard") {
     name = "checkerboard_finder";
     type = is_3d ? "CheckerboardFinder" : "CheckerboardFinder2d";
-  } else if (target.type == "apriltag") {
+  } else if (has_tags(target)) {
     name = "april_tag_finder";
     type = is_3d ? "AprilTagFinder" : "AprilTagFinder2d";
   } else if (target.type == "leds") {
@@ -53,13 +53,15 @@ namespace {
   if (target.type == "ground") return text;
   text += fmt::format("    chain_sensor_name: {}\n", name_to_yaml(plan.chain_sensor));
   if (is_board(target)) {
-    const bool has_tags = target.type == "apriltag";
-    text += fmt::format("    frame_id: {}\n    {}: {}\n    {}: {}\n    size: {}\n",
-                        name_to_yaml(plan.target_frame), has_tags ? "columns" : "points_x",
-                        target.columns, has_tags ? "rows" : "points_y", target.rows,
-                        number_to_yaml(target.size));
-    if (has_tags) {
-      text += fmt::format("    spacing: {}\n", number_to_yaml(double(kTagGap) / kTagBits));
+    const bool tags = has_tags(target);
+    text +=
+        fmt::format("    frame_id: {}\n    {}: {}\n    {}: {}\n    size: {}\n",
+                    name_to_yaml(plan.target_frame), tags ? "columns" : "points_x", target.columns,
+                    tags ? "rows" : "points_y", target.rows, number_to_yaml(target.size));
+    if (tags) {
+      const TagGridShape shape = tags_of(target);
+      text += fmt::format("    spacing: {}\n", number_to_yaml(double(shape.gap) / shape.tag()));
+      if (shape.border != 1) text += fmt::format("    border: {}\n", shape.border);
     }
     return text;
   }

@@ -22,8 +22,17 @@ namespace kinecal::detail {
   return {{-x, -y, 0.0}, {x, -y, 0.0}, {x, y, 0.0}, {-x, y, 0.0}};
 }
 
+[[nodiscard]] inline bool has_tags(const SimulatedTarget& target) {
+  return target.type == "apriltag" || target.type == "aprilgrid";
+}
+
 [[nodiscard]] inline bool is_board(const SimulatedTarget& target) {
-  return target.type == "checkerboard" || target.type == "apriltag";
+  return target.type == "checkerboard" || has_tags(target);
+}
+
+/// The tags of a target that has some.
+[[nodiscard]] inline TagGridShape tags_of(const SimulatedTarget& target) {
+  return target.type == "aprilgrid" ? kKalibrTags : kPlainTags;
 }
 
 /// Width and height of a board with its margin, metres.
@@ -31,20 +40,21 @@ namespace kinecal::detail {
   if (target.type == "checkerboard") {
     return {(target.columns + 3) * target.size, (target.rows + 3) * target.size};
   }
-  const double bit = target.size / kTagBits;
-  return {(target.columns * (kTagBits + kTagGap) + kTagGap) * bit,
-          (target.rows * (kTagBits + kTagGap) + kTagGap) * bit};
+  const TagGridShape tags = tags_of(target);
+  const double bit = target.size / tags.tag();
+  return {tags.width(target.columns) * bit, tags.width(target.rows) * bit};
 }
 
 /// The frame in the middle of a target, like that of a patch: link_T_middle.
 [[nodiscard]] inline Pose<double> middle_of(const SimulatedTarget& target) {
   if (!is_board(target)) return target.pose;
   const auto [width, height] = board_size(target);
-  const bool has_tags = target.type == "apriltag";
-  const double before = has_tags ? target.size * kTagGap / kTagBits : 2.0 * target.size;
+  const TagGridShape tags = tags_of(target);
+  const double before =
+      has_tags(target) ? target.size * tags.margin / tags.tag() : 2.0 * target.size;
   Pose<double> middle{Matrix3<double>::Identity(),
                       {0.5 * width - before, 0.5 * height - before, 0.0}};
-  if (has_tags) middle.rotation = Vector3<double>(1.0, -1.0, -1.0).asDiagonal();  // y up
+  if (has_tags(target)) middle.rotation = Vector3<double>(1.0, -1.0, -1.0).asDiagonal();  // y up
   return target.pose * middle;
 }
 
@@ -166,10 +176,11 @@ inline void furnish(SimulationPlan& plan) {
   constexpr double kBehind = 0.0005;
   const Pose<double> body{Matrix3<double>::Identity(), {0.0, 0.0, kBehind + 0.5 * depth}};
   add_box(scene, target.link, middle_of(target) * body, {width + margin, height + margin, depth});
-  if (target.type == "apriltag") {
+  if (has_tags(target)) {
     const Pose<double> middle_T_corner{Matrix3<double>::Identity(), {-width / 2, -height / 2, 0.0}};
     add_picture(scene, target.link, middle_of(target) * middle_T_corner,
-                std::make_shared<const GrayImage>(tag_grid_picture(target.columns, target.rows)),
+                std::make_shared<const GrayImage>(
+                    tag_grid_picture(target.columns, target.rows, tags_of(target))),
                 width);
   } else if (flat) {
     add_checkerboard(scene, target.link, target.pose, target.columns, target.rows, target.size);

@@ -140,7 +140,9 @@ class PoseSampling {
 PoseSamples pose_samples(const SimulationPlan& plan, const Config& config,
                          const std::vector<CapturePose>& poses) {
   if (plan.target.type == "ground") {
-    throw InputError("a study has no floor as its target; choose leds, checkerboard or apriltag");
+    throw InputError(
+        "a study has no floor as its target; choose leds, checkerboard, apriltag or "
+        "aprilgrid");
   }
   const detail::PoseSampling sampling(plan, config);
   PoseSamples result;

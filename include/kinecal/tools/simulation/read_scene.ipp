@@ -106,8 +106,8 @@ inline void read_camera(ConfigMap& map, SimulationPlan& plan) {
 
 inline void read_target(ConfigMap& map, SimulationPlan& plan) {
   SimulatedTarget& target = plan.target;
-  target.type =
-      read_word(map, "type", {"leds", "checkerboard", "apriltag", "ground"}).value_or(target.type);
+  target.type = read_word(map, "type", {"leds", "checkerboard", "apriltag", "aprilgrid", "ground"})
+                    .value_or(target.type);
   target.link = read_link(map, "link", plan.setup.robot).value_or("");
   target.columns = map.count("columns", target.columns);
   target.rows = map.count("rows", target.rows);

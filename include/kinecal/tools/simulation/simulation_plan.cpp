@@ -24,10 +24,10 @@ namespace {
 
 /// Fills in the default size of a board.
 void complete(SimulatedTarget& target) {
-  const bool has_tags = target.type == "apriltag";
-  if (target.columns == 0) target.columns = has_tags ? 4 : 6;
-  if (target.rows == 0) target.rows = has_tags ? 3 : 5;
-  if (target.size == 0.0) target.size = has_tags ? 0.04 : 0.025;
+  const bool tags = has_tags(target);
+  if (target.columns == 0) target.columns = tags ? 4 : 6;
+  if (target.rows == 0) target.rows = tags ? 3 : 5;
+  if (target.size == 0.0) target.size = tags ? 0.04 : 0.025;
 }
 
 /// The answers for `kinecal init` that lead to this simulation.

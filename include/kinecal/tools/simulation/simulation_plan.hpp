@@ -28,7 +28,7 @@ namespace kinecal {
 
 /// The target of a simulated camera.
 struct SimulatedTarget {
-  std::string type = "checkerboard";       ///< leds, checkerboard, apriltag or ground
+  std::string type = "checkerboard";       ///< leds, checkerboard, apriltag, aprilgrid or ground
   std::string link = {};                   ///< that carries it; empty: the arm's end, or the base
   bool has_pose = false;                   ///< false: placed where the camera can see it
   Pose<double> pose = {};                  ///< link_T_target, metres; of boards: their finder's
@@ -55,7 +55,7 @@ struct SimulationPlan {
 
 /// Reads a scene, or uses only defaults.
 /// @param path         of the scene; empty: only defaults
-/// @param target       leds, checkerboard, apriltag or ground; empty: from the scene, or
+/// @param target       leds, checkerboard, apriltag, aprilgrid or ground; empty: from the scene, or
 ///                     checkerboard
 /// @param seed         zero: from the scene, or 1
 /// @param diagnostics  receives errors and warnings; with errors, the plan is incomplete

@@ -16,13 +16,14 @@ namespace kinecal::detail {
 [[nodiscard]] inline std::vector<Vector3<double>> features_of(const SimulatedTarget& target) {
   std::vector<Vector3<double>> points;
   if (!is_board(target)) return points_of(target);
-  const bool has_tags = target.type == "apriltag";
-  const double step = has_tags ? target.size * (1.0 + double(kTagGap) / kTagBits) : target.size;
+  const bool tags = has_tags(target);
+  const TagGridShape shape = tags_of(target);
+  const double step = tags ? target.size * (1.0 + double(shape.gap) / shape.tag()) : target.size;
   for (int row = 0; row < target.rows; ++row) {
     for (int column = 0; column < target.columns; ++column) {
       const Vector3<double> corner(column * step, row * step, 0.0);
-      if (!has_tags) points.push_back(corner);
-      if (!has_tags) continue;
+      if (!tags) points.push_back(corner);
+      if (!tags) continue;
       for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
         points.push_back(corner + target.size * Vector3<double>(x, y, 0.0));
       }
