@@ -127,13 +127,23 @@ TEST_F(StrangerCases, ACameraFileWithAKeyOfADistortionKeepsIt) {
   EXPECT_THAT(size.err, HasSubstr("unknown key 'image_size' looks like the size of the image"));
 }
 
-TEST_F(StrangerCases, RawPixelsOfALensThatIsNotSupportedAreRefused) {
+TEST_F(StrangerCases, RawPixelsOfARationalLensAreUsed) {
   KINECAL_NEEDS_STRANGER(of, "08-raw-rational-camera");
   for (const char* file : {"robot.urdf", "calibrate.yaml", "samples.yaml"}) take(of, file);
   const test::Outcome result = calibrate();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("taken as raw"));
+  EXPECT_NEAR(value("camera_joint_y"), 0.005, 0.001);
+}
+
+TEST_F(StrangerCases, RawPixelsOfALensThatIsNotSupportedAreRefused) {
+  KINECAL_NEEDS_STRANGER(of, "08-raw-rational-camera");
+  for (const char* file : {"robot.urdf", "calibrate.yaml", "samples.yaml"}) take(of, file);
+  ASSERT_EQ(run("sed -i s/rational_polynomial/equidistant/ samples.yaml").code, 0);
+  const test::Outcome result = calibrate();
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, AllOf(HasSubstr("calibrate.yaml:4: sensor 'camera': its lens has the "
-                                          "distortion model 'rational_polynomial'"),
+                                          "distortion model 'equidistant'"),
                                 HasSubstr("write 'image: rectified'")));
   EXPECT_FALSE(fs::exists(folder_ / "out/calibration.yaml"));
 }
