@@ -37,7 +37,7 @@ TEST(CalibrateAndJudge, LeavesOutRuinedSamplesAndNamesThem) {
   for (const LeftOutSample& left : judged.left_out) {
     numbers.push_back(left.number);
     EXPECT_EQ(left.source, scene.samples[static_cast<std::size_t>(left.number - 1)].source);
-    EXPECT_THAT(left.why, HasSubstr("error block 'points': feature"));
+    EXPECT_THAT(left.why, HasSubstr("error block 'points': all features are about"));
   }
   EXPECT_THAT(numbers, ElementsAre(4, 18, 45));
   EXPECT_EQ(judged.numbers.size(), 57u);

@@ -163,7 +163,7 @@ std::string capture_text(const CaptureError& error, const Assessment& assessment
   constexpr double kAlike = 0.8;
   if (error.others > 0.0 && error.least > kAlike * error.distance) {
     return block + "all features are about " + reading(error.distance, noise.unit) + " off, " +
-           times + (error.bad ? "; did the robot still move?" : "");
+           times;
   }
   std::string text =
       block + error.feature.text() + " is " + reading(error.distance, noise.unit) + " off";

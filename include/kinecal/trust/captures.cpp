@@ -156,7 +156,6 @@ class CaptureSearch {
       CaptureError& of = all[static_cast<std::size_t>(f.sample)];
       const double unit = 1.0 / problem_.term(f.term).weight, d = unit * distance(f);
       const double so_far = times(f);
-      of.sample = f.sample;
       of.least = of.term == f.term && of.times > 0.0 ? std::min(of.least, d) : d;
       if (so_far > of.times) {
         of.others = of.term == f.term ? std::max(of.others, of.distance) : 0.0;
