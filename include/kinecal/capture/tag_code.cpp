@@ -78,11 +78,11 @@ struct TagShade {
 
 std::optional<TagReading> read_code(const GrayImage& image, const TagCodes& codes,
                                     const std::array<Eigen::Vector2d, 4>& corners, int wrong_bits) {
-  constexpr double kLeastContrast = 15.0;
+  constexpr double kLeastRange = 15.0;
   const auto h = homography(unit_tag(), {corners.begin(), corners.end()});
   if (!h) return std::nullopt;
   const TagShade shade = shade_of(image, codes, *h);
-  if (!(shade.contrast > kLeastContrast)) return std::nullopt;
+  if (!(shade.contrast > kLeastRange)) return std::nullopt;
   const double cell = 1.0 / codes.cells;
   TagReading best{0, 0, wrong_bits + 1};
   for (int turns = 0; turns < 4; ++turns) {
