@@ -152,18 +152,25 @@ Found AprilTagFinder::find(const View& view) const {
   if (seen.twice >= 0) {
     return refused("tag " + std::to_string(seen.twice) + " is seen twice: which is meant?", marks);
   }
-  if (seen.tags < settings_.min_tags) {
-    std::string why = std::to_string(seen.tags) + " of " + std::to_string(tags_.size()) +
-                      " tags are seen, at least " + std::to_string(settings_.min_tags) + " must be";
+  // A few tags that are read by chance do not hide that the target is of another kind.
+  constexpr int kByChance = 3;
+  const int any = seen.tags + seen.small + seen.outside;
+  std::string hint;
+  if (any == 0 || (any <= kByChance && 4 * any < static_cast<int>(tags_.size()))) {
+    hint = detector_->others.hint(view.image, read);
+  }
+  if (seen.tags < settings_.min_tags || !hint.empty()) {
+    std::string why =
+        std::to_string(seen.tags) + " of " + std::to_string(tags_.size()) + " tags are seen";
+    if (seen.tags < settings_.min_tags) {
+      why += ", at least " + std::to_string(settings_.min_tags) + " must be";
+    }
     if (seen.small > 0) {
       why += "; " + std::to_string(seen.small) + " are too small: sides of at most " +
              detail::one_digit(seen.largest) + " pixels, " + detail::one_digit(settings_.min_side) +
              " are needed";
     }
-    if (seen.tags + seen.small + seen.outside == 0) {
-      const std::string hint = detector_->others.hint(view.image, read);
-      if (!hint.empty()) why += "; " + hint;
-    }
+    if (!hint.empty()) why += "; " + hint;
     if (seen.outside > 0) why += "; " + std::to_string(seen.outside) + " are at the border";
     return refused(why, marks);
   }
