@@ -311,7 +311,8 @@ TEST_F(Study, PlanAndSelectPosesSayWhatAPriorLeavesWithoutNoise) {
   EXPECT_THAT(page, HasSubstr("<header class=\"verdict care\">"));
   EXPECT_THAT(page, ContainsRegex("but [0-9.]+ mm remain without noise</strong>"));
   EXPECT_THAT(page, Not(HasSubstr("<circle class=\"good\"")));
-  EXPECT_THAT(page, ContainsRegex("<td[^>]*>configuration</td><td[^>]*>prior.yaml</td>"));
+  EXPECT_THAT(page,
+              ContainsRegex("<bdi>configuration</bdi></td><td[^>]*><bdi>prior.yaml</bdi></td>"));
   EXPECT_THAT(page, ContainsRegex("<pre class=\"command\"><code>[^<]* plan [^<]*prior.yaml"));
   const test::Outcome studied =
       call("study", "--config prior.yaml --robots 1 --repeat 2 --poses 12 --limit 0.001");
