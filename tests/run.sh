@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-echo "Installs what is missing, compiles and tests kinecal: about 15 minutes on two cores."
+echo "Installs what is missing, compiles and tests kinecal: about 25 minutes on two cores."
 cmake/install_packages.sh test
 for preset in "${@:-dev}"; do
   echo "== $preset, $(date +%H:%M:%S)"

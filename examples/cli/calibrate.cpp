@@ -133,11 +133,12 @@ SolveOptions solve_options(const CalibrateOptions& options) {
   return solving;
 }
 
-/// "--urdf robot.urdf --config calibrate.yaml --samples a.yaml b.yaml"
+/// "--urdf robot.urdf --config calibrate.yaml --samples a.yaml b.yaml", for `kinecal plan`; empty if that
+/// needs more: a URDF, or intrinsics.
 std::string input_options(const CalibrateOptions& options) {
-  std::string text;
-  if (!options.urdf.empty()) text += "--urdf " + shell_word(options.urdf) + " ";
-  text += "--config " + shell_word(options.config) + " --samples";
+  if (options.urdf.empty() || !options.cameras.empty()) return "";
+  std::string text = "--urdf " + shell_word(options.urdf) + " --config " +
+                     shell_word(options.config) + " --samples";
   for (const std::string& file : options.samples) text += " " + shell_word(file);
   return text;
 }

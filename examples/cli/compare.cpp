@@ -169,13 +169,13 @@ void compare_poses(const Assembled& a, const Assembled& b, Comparison& all) {
 /// How the judged pose moved; empty if it is not known.
 std::string pose_text(const Assembled& a, const Comparison& all) {
   if (!all.pose || all.change.poses <= 0) return "";
+  const std::string first = reading(all.pose->position, "m"), second = reading(all.position_b, "m");
   return fmt::format(
-      "'{}' in '{}' moved by {} and {}, {} at the worst of {} of {}; +- {} in the first, {} in the "
-      "second\n",
+      "'{}' in '{}' moved by {} and {}, {} at the worst of {} of {}; +- {}\n",
       all.pose->frame.name(), all.pose->in.name(), reading(all.change.position, "m"),
       reading(all.change.rotation, "rad"), reading(all.change.worst_position, "m"),
       counted(static_cast<std::size_t>(all.change.poses), "pose"), a.result.folder,
-      reading(all.pose->position, "m"), reading(all.position_b, "m"));
+      first == second ? first + " in both" : first + " in the first, " + second + " in the second");
 }
 
 /// What was not compared, and why: a line each.

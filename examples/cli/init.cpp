@@ -13,6 +13,7 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
+#include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
@@ -268,15 +269,9 @@ InitAnswers answer(const Robot& robot, InitOptions& options) {
   return answers;
 }
 
-/// Quoted, if a shell would not take the text as one word.
-std::string as_word(const std::string& text) {
-  const bool is_plain = text.find_first_of(" \t\"$&;()<>|*?'") == std::string::npos;
-  return is_plain ? text : "'" + text + "'";
-}
-
 /// The call with all that was given and answered.
 std::string call_of(const InitOptions& options) {
-  std::string call = "kinecal init --urdf " + as_word(options.urdf), targets;
+  std::string call = "kinecal init --urdf " + shell_word(options.urdf), targets;
   for (const std::string& target : options.targets) {
     targets += (targets.empty() ? "" : ",") + target;
   }
@@ -286,7 +281,7 @@ std::string call_of(const InitOptions& options) {
         std::pair("--robot-camera-name", options.camera_name),
         std::pair("--target-frame", options.target_frame),
         std::pair("--tracker-frame", options.tracker_frame), std::pair("--base", options.base)}) {
-    if (!value.empty()) call += std::string(" ") + option + " " + as_word(value);
+    if (!value.empty()) call += std::string(" ") + option + " " + shell_word(value);
   }
   return call;
 }
@@ -357,12 +352,12 @@ int init(const InitOptions& options) {
   fmt::print("wrote {}\n", options.output);
   if (options.from.empty()) write_capture(robot, made.answers, options);
   const std::string files =
-      fmt::format("--urdf {} --config {}", as_word(options.urdf), as_word(options.output));
+      fmt::format("--urdf {} --config {}", shell_word(options.urdf), shell_word(options.output));
   if (options.from.empty()) {
     fmt::print("next: kinecal check {}\n", files);
   } else {
     std::string samples;
-    for (const std::string& file : options.from) samples += " --samples " + as_word(file);
+    for (const std::string& file : options.from) samples += " --samples " + shell_word(file);
     fmt::print("next: kinecal calibrate {}{} --output calibrated\n", files, samples);
   }
   return kDone;

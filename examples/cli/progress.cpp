@@ -2,23 +2,16 @@
 #include "progress.hpp"
 
 #include <fmt/core.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "kinecal/text/printable.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
-
-/// Columns of the terminal.
-std::size_t terminal_width() {
-  winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
-  return known ? size.ws_col : 80;
-}
 
 /// "3 s", "2 min".
 std::string duration(double seconds) {
@@ -58,7 +51,7 @@ void ProgressLine::show(double fraction, const std::string& what) {
   is_visible_ = true;
   std::string text =
       progress_text(fraction, what, std::chrono::duration<double>(now - begin_).count());
-  const std::size_t width = terminal_width() - 1;
+  const std::size_t width = terminal_width(STDERR_FILENO) - 1;
   if (text.size() > width) text = "..." + text.substr(text.size() - (width - 3));
   fmt::print(stderr, "\r{}\033[K", text);
   std::fflush(stderr);

@@ -59,13 +59,15 @@ std::string colored(std::string_view text) {
 
 }  // namespace
 
+std::size_t terminal_width(int descriptor) {
+  winsize size{};
+  const bool known = ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
+  return known ? size.ws_col : 80;
+}
+
 void show(const std::string& text, const Manner& manner) {
   std::string shown = text;
-  winsize size{};
-  if (isatty(STDOUT_FILENO) != 0) {
-    const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
-    shown = wrapped(shown, known ? size.ws_col : 80);
-  }
+  if (isatty(STDOUT_FILENO) != 0) shown = wrapped(shown, terminal_width(STDOUT_FILENO));
   fmt::print("{}", is_colored(manner) ? colored(shown) : shown);
   std::fflush(stdout);
 }

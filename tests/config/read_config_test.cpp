@@ -317,6 +317,8 @@ TEST(ReadConfig, EmptyFilesAreErrors) {
     EXPECT_THAT(errors(text), ElementsAre("calibrate.yaml: the file is empty, not a map")) << text;
   }
   EXPECT_THAT(errors("- a\n"), ElementsAre("calibrate.yaml: the file is a list, not a map"));
+  EXPECT_THAT(errors("<?xml version=\"1.0\"?>\n<robot name=\"r\"/>\n"),
+              ElementsAre("calibrate.yaml: this is a URDF, not a configuration"));
   EXPECT_THAT(errors("abc\n"), ElementsAre("calibrate.yaml: the file is 'abc', not a map"));
 }
 

@@ -298,7 +298,7 @@ TEST_P(HarmfulInputs, AreNotCalledGood) {
 
 INSTANTIATE_TEST_SUITE_P(OnRealRobots, HarmfulInputs,
                          testing::Values("ur5", "ur5_offsets", "panda", "kuka"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& robot) { return std::string(robot.param); });
 
 }  // namespace
 }  // namespace kinecal

@@ -100,7 +100,7 @@ TEST_P(RealCoverage, IsAsStatedOnceAndWithRepeatedReadings) {
 
 INSTANTIATE_TEST_SUITE_P(OfRealRobots, RealCoverage,
                          testing::Values("ur5", "ur5_offsets", "panda", "kuka"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& robot) { return std::string(robot.param); });
 
 }  // namespace
 }  // namespace kinecal

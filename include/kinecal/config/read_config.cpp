@@ -38,7 +38,7 @@ Config parse_config(const std::string& text, const std::string& path, Diagnostic
     detail::ConfigMap file(content, {path, 0}, "", found);
     detail::read_dialect(content, file, progress);
   } else {
-    found.error({path, 0}, "the file is " + detail::describe_config(content) + ", not a map");
+    found.error({path, 0}, detail::describe_wrong_file(content, "a configuration"));
   }
   detail::add_once(diagnostics.errors, found.errors);
   detail::add_once(diagnostics.warnings, found.warnings);

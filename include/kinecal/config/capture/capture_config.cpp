@@ -145,8 +145,8 @@ CaptureConfig read_capture_config(const std::string& path, Diagnostics& diagnost
   CaptureConfig config;
   const detail::YamlNode content = detail::load_config(path, diagnostics);
   if (!content.is_map()) {
-    diagnostics.error({path, 0}, "the file is " + detail::describe_config(content) +
-                                     ", not a map with chains and features");
+    diagnostics.error({path, 0}, detail::describe_wrong_file(content, "a capture.yaml",
+                                                             "a map with chains and features"));
     return config;
   }
   const std::vector<detail::ConfigEntry> nodes = detail::ros2_nodes(content, path);

@@ -73,7 +73,7 @@ void read_csv_conditions(ConfigMap& file, CsvMapping& mapping) {
 CsvMapping read_csv_mapping(const std::string& path, Diagnostics& diagnostics, CsvUse use) {
   const detail::YamlNode content = detail::load_config(path, diagnostics);
   if (!content.is_map()) {
-    diagnostics.error({path, 0}, "the file is " + detail::describe_config(content) + ", not a map");
+    diagnostics.error({path, 0}, detail::describe_wrong_file(content, "a description of columns"));
     return {};
   }
   detail::ConfigMap file(content, {path, 0}, "", diagnostics);

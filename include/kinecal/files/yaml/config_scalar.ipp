@@ -36,6 +36,15 @@ namespace kinecal::detail {
   return is_config_scalar(node) ? "'" + text + "'" : "'" + node.tag + " " + text + "'";
 }
 
+/// Why a file is none of a kind: "this is a URDF, not a configuration", "the file is 'abc', not a map".
+/// @param wanted  what its content must be
+[[nodiscard]] inline std::string describe_wrong_file(const YamlNode& content,
+                                                     const std::string& kind,
+                                                     const std::string& wanted = "a map") {
+  if (content.is_scalar() && content.text.starts_with('<')) return "this is a URDF, not " + kind;
+  return "the file is " + describe_config(content) + ", not " + wanted;
+}
+
 /// A nonempty text without control characters: texts are names, and are printed.
 [[nodiscard]] inline std::optional<std::string> config_text(const YamlNode& node) {
   if (!is_config_scalar(node) || node.text.empty()) return std::nullopt;

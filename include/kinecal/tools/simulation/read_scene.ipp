@@ -156,7 +156,7 @@ inline void set_noise(SimulationPlan& plan) {
   ParameterTable given;
   const YamlNode content = load_config(path, diagnostics);
   if (!content.is_map()) {
-    diagnostics.error({path, 0}, "the scene is " + describe_config(content) + ", not a map");
+    diagnostics.error({path, 0}, describe_wrong_file(content, "a scene"));
     return given;
   }
   ConfigMap map(content, {path, content.line}, "", diagnostics);
