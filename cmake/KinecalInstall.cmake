@@ -41,6 +41,7 @@ foreach(component core capture solve io)
   install(FILES ${PROJECT_BINARY_DIR}/kinecal-${component}.pc DESTINATION ${pkgconfig_dir})
 endforeach()
 
+find_program(KINECAL_GZIP gzip)
 # The program's package has what its users read, that of the headers what their authors do.
 set(library_doc ${CMAKE_INSTALL_DATADIR}/doc/libkinecal-dev)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/MANUAL.md
@@ -51,6 +52,15 @@ install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CONCEPTS.md
               ${PROJECT_SOURCE_DIR}/ARCHITECTURE.md ${PROJECT_SOURCE_DIR}/LICENSE
               ${PROJECT_SOURCE_DIR}/cmake/package/copyright
         DESTINATION ${library_doc} COMPONENT headers)
+if(KINECAL_GZIP)  # as Debian wants it
+  set(changelog ${PROJECT_BINARY_DIR}/package/changelog)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/package/changelog.in ${changelog} @ONLY)
+  execute_process(COMMAND ${KINECAL_GZIP} -9nkf ${changelog} COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${changelog}.gz DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+  install(FILES ${changelog}.gz DESTINATION ${library_doc} COMPONENT headers)
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/lintian-overrides RENAME kinecal
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${library_doc}
         COMPONENT headers PATTERN "demo.sh" EXCLUDE)
 file(GLOB schemas ${PROJECT_SOURCE_DIR}/include/kinecal/*/schema/*.json)

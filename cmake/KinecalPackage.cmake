@@ -30,12 +30,15 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEBIAN_KINECAL_PACKAGE_NAME kinecal)
+set(CPACK_DEBIAN_KINECAL_DESCRIPTION "calibration of robots with arms, heads and cameras
+${CPACK_PACKAGE_DESCRIPTION}")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libkinecal-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION}), ${needed_to_build}")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "cmake (>= 3.25), g++ (>= 4:12)")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "libraries and headers of kinecal: calibrators of one's own
- Forward kinematics, residuals with exact derivatives, solving and judging, for any robot.")
+ Forward kinematics, residuals with exact derivatives, solving and judging,
+ for any robot.")
 set(CPACK_DEBIAN_MPI_PACKAGE_NAME kinecal-mpi)
 set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "kinecal (= ${PROJECT_VERSION}), openmpi-bin")
 set(CPACK_DEBIAN_MPI_DESCRIPTION "one calibration or study in several processes of mpirun")

@@ -66,15 +66,15 @@ int main() {
 
   const CrateResult<Tracked> result = calibrate(Tracked(), samples);
 
-  // Residuals are in units of the noise, so 1 RMS remains of each component, less what the
-  // parameters fit.
+  // Residuals are in units of the noise, so 1 RMS remains of each of the six components, less what
+  // the parameters fit.
   const BlockStatistics& fit = result.blocks.front();
-  const double components = 6.0 * static_cast<double>(fit.count);
+  const double components = 6.0 * static_cast<double>(fit.count), root = std::sqrt(6.0);
   const double noise = std::sqrt(1.0 - static_cast<double>(result.calibrated.size()) / components);
   std::printf("weighted residual: %.1f RMS before, %.2f after; noise alone gives %.2f\n",
-              fit.before.rms, fit.after.rms, noise);
+              fit.before.rms / root, fit.after.rms / root, noise);
   const double chance = 4.0 * noise / std::sqrt(2.0 * components);  // four standard deviations
-  bool as_expected = result.converged && std::abs(fit.after.rms - noise) < chance;
+  bool as_expected = result.converged && std::abs(fit.after.rms / root - noise) < chance;
   constexpr double kFoundTo = 5e-4;  // metres, radians: the noise, which 60 samples make smaller
   for (const int i : result.calibrated) {
     const Parameter& found = result.table[i];

@@ -167,7 +167,8 @@ Fit fit_and_judge(const CalibrateOptions& options, Input& input) {
       {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
       fitted.findings);
   fitted.findings.call = {options.command, input_options(options),
-                          options.dry_run ? "" : options.output};
+                          options.dry_run ? "" : options.output, KINECAL_VERSION,
+                          read_files(options, input)};
   return fitted;
 }
 

@@ -10,6 +10,7 @@
 #include "kinecal/files/cameras/camera_info.hpp"
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/diagnostics.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 
@@ -53,8 +54,9 @@ int camera(const CameraOptions& options) {
   print_camera(camera);
   if (options.output.empty()) return kDone;
   check_size(camera, options.file);
-  write_file(options.output, options.keys == "message" ? to_camera_message_yaml(camera)
-                                                       : to_camera_info_yaml(camera, options.name));
+  write_text_file(options.output, options.keys == "message"
+                                      ? to_camera_message_yaml(camera)
+                                      : to_camera_info_yaml(camera, options.name));
   fmt::print("wrote {}\n", options.output);
   return kDone;
 }

@@ -21,6 +21,7 @@
 #include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/recordings/write_recording.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/urdf/velocity_limits.hpp"
@@ -382,7 +383,7 @@ int capture(const CaptureOptions& options) {
   }
   const std::string lost = is_complete ? "" : session.run(config);
   if (!session.thumbnails.empty()) {
-    write_file(options.sheet, contact_sheet(session.thumbnails));
+    write_text_file(options.sheet, contact_sheet(session.thumbnails));
     fmt::print("{}: what was found in {}\n", options.sheet,
                counted(session.thumbnails.size(), "view"));
   }

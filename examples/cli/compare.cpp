@@ -11,6 +11,7 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/doubts/rising.hpp"
 #include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/report/charts/parameters.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/text.hpp"
@@ -280,7 +281,8 @@ int compare(const CompareOptions& options) {
   compare_poses(a, b, all);
   fmt::print("{}", printable(text_of(a, b, all)));
   if (!options.report.empty()) {
-    write_file(options.report, is_page(options.report) ? page_of(a, b, all) : json_of(a, b, all));
+    write_text_file(options.report,
+                    is_page(options.report) ? page_of(a, b, all) : json_of(a, b, all));
   }
   return kDone;
 }

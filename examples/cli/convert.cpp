@@ -95,7 +95,7 @@ std::string write_yaml(const Content& content, const std::string& output) {
   } else {
     write_samples(text, content.samples);
   }
-  write_file(output, text.str());
+  write_text_file(output, text.str());
   return counted_content(content);
 }
 

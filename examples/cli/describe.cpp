@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinecal/files/results/file_set.hpp"
 #include "output_file.hpp"
 
 namespace kinecal::cli {
@@ -230,7 +231,7 @@ int describe(const CLI::App& app, const DescribeOptions& options) {
     fmt::print("{}", text);
   } else {
     check_output(options.output, {}, options.force);
-    write_file(options.output, text);
+    write_text_file(options.output, text);
   }
   return kDone;
 }

@@ -248,7 +248,7 @@ int detect(const DetectOptions& options) {
   const std::string seen = counted(count, noun);
   const std::vector<Sample>& samples = found.samples;
   if (!options.sheet.empty()) {
-    write_file(options.sheet, contact_sheet(thumbnails_of(std::move(found.looks))));
+    write_text_file(options.sheet, contact_sheet(thumbnails_of(std::move(found.looks))));
   }
   if (samples.empty()) {
     fmt::print(stderr, "error: nothing was found in {}; {} was not written\n", seen,

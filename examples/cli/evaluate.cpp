@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/text/reading.hpp"
@@ -53,7 +54,7 @@ int evaluate(const RecheckOptions& options) {
   const std::vector<FitChange> changes = fit_changes(result, fresh);
   if (!changes.empty()) text += "\n" + change_line(changes);
   show(printable(text), options.manner);
-  if (!options.report.empty()) write_file(options.report, json(result, fresh));
+  if (!options.report.empty()) write_text_file(options.report, json(result, fresh));
   const bool fails = options.fail_above > 0.0 &&
                      std::any_of(changes.begin(), changes.end(), [&](const FitChange& change) {
                        return !(change.times() <= options.fail_above);

@@ -9,6 +9,8 @@
 
 #include "commands.hpp"
 #include "input.hpp"
+#include "kinecal/files/csv/read_csv_samples.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/nearest_name.hpp"
@@ -18,6 +20,7 @@
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
+#include "kinecal/tools/init/proposed_columns.hpp"
 #include "output_file.hpp"
 #include "question.hpp"
 #include "report.hpp"
@@ -225,19 +228,51 @@ void warn_of_idle(const InitOptions& options, InitTarget target, std::string_vie
   warn(target == InitTarget::tracker, options.tracker_frame, "--tracker-frame");
 }
 
+/// The columns.yaml of a table that samples come from; empty if they come from no table.
+std::string columns_file(const InitOptions& options) {
+  if (options.from.size() != 1) return "";
+  const std::string extension = std::filesystem::path(options.from.front()).extension().string();
+  const bool is_table = extension == ".csv" || extension == ".tsv" || extension == ".txt";
+  if (!is_table) return "";
+  return (std::filesystem::path(options.output).parent_path() / "columns.yaml").string();
+}
+
+/// The samples of --from.  Of a table, the meaning of its columns is proposed, unless a columns.yaml is there.
+std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
+  Diagnostics diagnostics;
+  const std::string columns = columns_file(options);
+  if (columns.empty()) {
+    Recording recording = read_recordings(options.from, diagnostics);
+    print_or_throw(diagnostics);
+    return std::move(recording.samples);
+  }
+  const std::string& table = options.from.front();
+  const bool is_there = std::filesystem::exists(columns);
+  if (is_there &&
+      (!options.force || !detail::read_text_file(columns).starts_with(kProposedColumnsMark))) {
+    fmt::print("{} is there and is used\n", columns);
+  } else {
+    write_text_file(columns, proposed_columns(robot, detail::read_text_file(table), table));
+    fmt::print(
+        "wrote {}\n  what each column of {} means, as far as names and values tell: look at it\n",
+        columns, table);
+  }
+  std::vector<Sample> samples = read_csv_samples(table, columns, diagnostics);
+  print_or_throw(diagnostics);
+  return samples;
+}
+
 /// The answers that samples give, without questions; prints them.
 InitAnswers answer_from_samples(const Robot& robot, const InitOptions& options) {
   check_given(robot, options);
-  Diagnostics diagnostics;
-  const Recording recording = read_recordings(options.from, diagnostics);
-  print_or_throw(diagnostics);
+  const std::vector<Sample> samples = read_from(robot, options);
   InitAnswers given;
   given.base = options.base;
   given.arm = options.arm;
   given.camera = options.camera;
   given.tracker_frame = options.tracker_frame;
   set_target_frames(options.target_frame, given);
-  const InitAnswers found = answers_from_samples(robot, recording.samples, std::move(given));
+  const InitAnswers found = answers_from_samples(robot, samples, std::move(given));
   std::string text = fmt::format("from the samples: target {}", to_string(found.target));
   if (found.with_ground) text += ",ground";
   if (needs_arm(found.target)) text += fmt::format("; arm {}", found.arm);
@@ -327,7 +362,7 @@ void write_capture(const Robot& robot, const InitAnswers& answers, const InitOpt
                capture_names(robot, answers));
     return;
   }
-  write_file(file, text);
+  write_text_file(file, text);
   fmt::print("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", file);
 }
 
@@ -342,7 +377,7 @@ int init(const InitOptions& options) {
   const Robot robot = read_urdf(options.urdf);
   const Configured made = configure(robot, options);
   check();  // the file may have appeared meanwhile
-  write_file(options.output, made.text);
+  write_text_file(options.output, made.text);
   if (made.text.find("sigma: ") != std::string::npos) {
     fmt::print(
         "note: each sigma in {} is a guess of a residual, errors of the robot included; replace "
@@ -356,9 +391,15 @@ int init(const InitOptions& options) {
   if (options.from.empty()) {
     fmt::print("next: kinecal check {}\n", files);
   } else {
-    std::string samples;
-    for (const std::string& file : options.from) samples += " --samples " + shell_word(file);
-    fmt::print("next: kinecal calibrate {}{} --output calibrated\n", files, samples);
+    std::string samples, before;
+    if (const std::string columns = columns_file(options); !columns.empty()) {
+      before = fmt::format("kinecal convert {} samples.yaml --columns {} && ",
+                           shell_word(options.from.front()), shell_word(columns));
+      samples = " --samples samples.yaml";
+    } else {
+      for (const std::string& file : options.from) samples += " --samples " + shell_word(file);
+    }
+    fmt::print("next: {}kinecal calibrate {}{} --output calibrated\n", before, files, samples);
   }
   return kDone;
 }

@@ -4,11 +4,13 @@
 #include <system_error>
 
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/results/standard_output.hpp"
 #include "report.hpp"
 
 namespace kinecal::cli {
 
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force) {
+  if (is_standard_output(output)) return reserve_standard_output();
   const auto name = [](const std::string& path) {
     return std::filesystem::absolute(path).lexically_normal();
   };
@@ -37,16 +39,6 @@ void check_page(const std::string& output, const std::vector<std::string>& input
   check_output(output, inputs, force);
   if (is_page(output)) return;
   throw OutputError(output + ": is written as HTML; let the name end in .html");
-}
-
-std::filesystem::path folder_of(const std::string& output) {
-  const std::filesystem::path path(output);
-  return path.has_parent_path() ? path.parent_path() : ".";
-}
-
-void write_file(const std::string& output, const std::string& text) {
-  OutputFolder folder(folder_of(output));
-  folder.write({{std::filesystem::path(output).filename().string(), text}});
 }
 
 }  // namespace kinecal::cli

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace kinecal::cli {
 
-/// Checks that an output can be written, is not an input, and does not exist or may be replaced.
+/// Checks that an output can be written, is not an input, and does not exist or may be replaced.  With "-", the standard output is kept for it.
 /// @throws OutputError  if not
 void check_output(const std::string& output, const std::vector<std::string>& inputs, bool force);
 
@@ -17,12 +16,5 @@ void check_picture(const std::string& output, const std::vector<std::string>& in
 
 /// The same for a page, which is HTML.
 void check_page(const std::string& output, const std::vector<std::string>& inputs, bool force);
-
-/// The folder of an output.
-[[nodiscard]] std::filesystem::path folder_of(const std::string& output);
-
-/// Writes the whole file or nothing; creates its folder if it is missing.
-/// @throws OutputError  naming the file
-void write_file(const std::string& output, const std::string& text);
 
 }  // namespace kinecal::cli

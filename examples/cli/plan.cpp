@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "kinecal/config/capture/session_follower.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/frame_name.hpp"
@@ -314,7 +315,7 @@ void write_outputs(const PlanOptions& options, const StudyInput& input, const Po
     fmt::print("{}: not written, no more poses are needed\n", options.output);
   }
   if (options.report.empty()) return;
-  write_file(options.report, plan_page(input, findings));
+  write_text_file(options.report, plan_page(input, findings));
   fmt::print("{}\n", options.report);
 }
 

@@ -156,7 +156,7 @@ void write_pose_file(const std::string& path, const std::vector<CapturePose>& po
   } else {
     std::ostringstream text;
     write_poses_yaml(text, poses);
-    write_file(path, text.str());
+    write_text_file(path, text.str());
   }
 }
 

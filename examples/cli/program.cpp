@@ -182,11 +182,12 @@ void add_init(CLI::App& command, InitOptions& options) {
   command.add_option("--output", options.output, "the configuration to write")
       ->type_name("FILE")
       ->capture_default_str();
-  CLI::Option* from =
-      command
-          .add_option("--from", options.from,
-                      "recorded samples: target, camera and names are theirs, nothing is asked")
-          ->type_name("FILE");
+  CLI::Option* from = command
+                          .add_option("--from", options.from,
+                                      "recorded samples: target, camera and names are theirs, "
+                                      "nothing is asked; of a table (.csv, .tsv, .txt), "
+                                      "the meaning of its columns is proposed in columns.yaml")
+                          ->type_name("FILE");
   command
       .add_option("--capture", options.capture,
                   "the capture.yaml to write, with the same names; default: beside the output, if "

@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "kinecal/files/checksum.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/json.hpp"
 #include "kinecal/report/scene_clouds.hpp"
@@ -61,19 +62,16 @@ void add_input(const std::string& role, const std::string& name, std::vector<Inp
   for (const std::string& file : inside) files.push_back(input_file(role, file));
 }
 
-/// All files that a calibration read.
+/// All files that a calibration read, with their checksums.
 std::vector<InputFile> input_files(const CalibrateOptions& options, const Input& input) {
   std::vector<InputFile> files;
-  if (!options.urdf.empty()) {
-    files.push_back({"URDF", options.urdf, input.urdf_text.size(), sha256_text(input.urdf_text)});
-  } else {
-    files.push_back({"URDF", input.urdf, input.urdf_text.size(), sha256_text(input.urdf_text)});
-  }
-  files.push_back(
-      {"configuration", options.config, input.config_text.size(), sha256_text(input.config_text)});
-  for (const std::string& samples : options.samples) add_input("samples", samples, files);
-  for (const std::string& camera : options.cameras) {
-    add_input("camera", camera_file(camera), files);
+  for (const auto& [role, name] : read_files(options, input)) {
+    if (role == "URDF" || role == "configuration") {
+      const std::string& text = role == "URDF" ? input.urdf_text : input.config_text;
+      files.push_back({role, name, text.size(), sha256_text(text)});
+    } else {
+      add_input(role, name, files);
+    }
   }
   return files;
 }
@@ -119,6 +117,18 @@ std::string page(const CalibrateOptions& options, const Input& input, const Fit&
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> read_files(const CalibrateOptions& options,
+                                                            const Input& input) {
+  std::vector<std::pair<std::string, std::string>> files = {
+      {"URDF", options.urdf.empty() ? input.urdf : options.urdf},
+      {"configuration", options.config}};
+  for (const std::string& samples : options.samples) files.emplace_back("samples", samples);
+  for (const std::string& camera : options.cameras) {
+    files.emplace_back("camera", camera_file(camera));
+  }
+  return files;
+}
+
 std::string study_inputs(const StudyInput& input) {
   std::vector<InputFile> files;
   for (const auto& [role, name] : input.files) add_input(role, name, files);
@@ -141,8 +151,8 @@ void check_reports(const CalibrateOptions& options) {
 
 void write_reports(const CalibrateOptions& options, const Input& input, const Fit& fitted) {
   for (const std::string& report : options.reports) {
-    write_file(report,
-               is_page(report) ? page(options, input, fitted) : json_report(fitted.findings));
+    write_text_file(report,
+                    is_page(report) ? page(options, input, fitted) : json_report(fitted.findings));
   }
 }
 

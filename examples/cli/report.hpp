@@ -3,6 +3,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "fit.hpp"
@@ -13,6 +15,10 @@ namespace kinecal::cli {
 
 /// True for the name of a page: it ends in .html or .htm.
 [[nodiscard]] bool is_page(const std::string& file);
+
+/// All files that a calibration reads, by role ("URDF", "configuration", "samples", "camera").
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> read_files(
+    const CalibrateOptions& options, const Input& input);
 
 /// The inputs of a study or plan, and the command that repeats it: a section of its page.
 [[nodiscard]] std::string study_inputs(const StudyInput& input);

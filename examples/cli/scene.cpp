@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "kinecal/files/bags/mcap/write_mcap.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/urdf/visuals.hpp"
 #include "kinecal/report/scene_mcap.hpp"
 #include "kinecal/report/scene_meshes.hpp"
@@ -30,7 +31,7 @@ void write_scene_file(const std::string& file, const Input& input, const Fit& fi
       scene_of(input, fitted, mesh_paths, {.samples = 1000, .features = 100000});
   std::ostringstream bytes;
   write_scene(scene, bytes, best_mcap_compression());
-  write_file(file, bytes.str());
+  write_text_file(file, bytes.str());
   fmt::print(stderr, "wrote {}{}\n", file, scene.thinned.empty() ? "" : ": " + scene.thinned);
 }
 

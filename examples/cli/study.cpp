@@ -240,7 +240,7 @@ void report(const StudyOptions& options, const StudyInput& input, const std::vec
     return;
   }
   if (!options.report.empty()) {
-    write_file(options.report, study_page(input, result));
+    write_text_file(options.report, study_page(input, result));
     fmt::print("{}\n", options.report);
   }
   if (output == nullptr) return;

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/files/json/json_text.hpp"
+#include "kinecal/files/results/file_set.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/printable.hpp"
 #include "kinecal/trust/pose_change.hpp"
@@ -261,7 +262,7 @@ int verify(const RecheckOptions& options) {
   if (const std::string moved = movers_text(check); !moved.empty()) text += moved + "\n";
   text += fit_text(result, fresh) + "\n" + worst_text(result, fresh) + "\n" + next_text(check);
   show(printable(text), options.manner);
-  if (!options.report.empty()) write_file(options.report, json(check));
+  if (!options.report.empty()) write_text_file(options.report, json(check));
   return check.drift.holds ? kDone : kNotUsable;
 }
 

@@ -67,7 +67,7 @@ struct HeldOut {
   std::string name, unit;
   std::int64_t features = 0;
   double by_urdf = 0.0, calibrated = 0.0,
-         noise = 0.0;   ///< rms of components; noise: with the true values
+         noise = 0.0;   ///< rms of distances; noise: with the true values
   double metres = 1.0;  ///< per unit of the residual
 };
 
@@ -110,7 +110,7 @@ bool is_as_good_as_the_truth(const std::vector<HeldOut>& blocks) {
                fmt::format("{:.3f}", 1e3 * block.metres * block.calibrated)});
     good = good && block.calibrated <= kNearly * block.noise;
   }
-  fmt::print("On samples held out (rms of components)\n{}\n", table.str());
+  fmt::print("On samples held out (rms of distances)\n{}\n", table.str());
   return good;
 }
 

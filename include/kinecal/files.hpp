@@ -46,6 +46,7 @@
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/results/output_file.hpp"
 #include "kinecal/files/results/result_files.hpp"
+#include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/samples/read_samples.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 #include "kinecal/files/text_file.hpp"

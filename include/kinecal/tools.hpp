@@ -19,6 +19,7 @@
 #include "kinecal/tools/init/initial_capture.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
 #include "kinecal/tools/init/possible_targets.hpp"
+#include "kinecal/tools/init/proposed_columns.hpp"
 #include "kinecal/tools/init/robot_parts.hpp"
 #include "kinecal/tools/install/install.hpp"
 #include "kinecal/tools/install/launch_names.hpp"

@@ -331,13 +331,12 @@ TEST_F(Init, WritesWhatCalibratesARealRobotAsItStands) {
   KINECAL_NEEDS_DATA("fetch/synth");
   struct Set {
     std::string urdf, samples, options;
-    double rms;  ///< of components, metres
+    double rms;  ///< metres
   };
   const Set sets[] = {
-      {"ur5_tracker/ur5.urdf", "ur5_tracker/grid.yaml", "--target tracker",
-       0.560881e-3 / 1.7320508},
+      {"ur5_tracker/ur5.urdf", "ur5_tracker/grid.yaml", "--target tracker", 0.560881e-3},
       {"fetch/synth/fetch_arm_head.urdf", "fetch/synth/samples.yaml",
-       "--target leds --arm wrist_roll_link --camera head_camera_rgb_optical_frame", 1e-3}};
+       "--target leds --arm wrist_roll_link --camera head_camera_rgb_optical_frame", 1.7320508e-3}};
   for (const Set& set : sets) {
     const std::string robot = " --urdf " + (test::data_folder() / set.urdf).string();
     const Outcome made =

@@ -75,6 +75,32 @@ class Manners : public test::ProgramTest {
 const std::string kCalibrate =
     "calibrate --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --output out ";
 
+TEST_F(Manners, ADashIsTheStandardInputOrOutput) {
+  prepare();
+  const std::string program = test::kinecal_program();
+  const Outcome piped =
+      run(program + " convert - - --columns columns.yaml < tracker.csv | " + program +
+          " calibrate --urdf ur5e.urdf --config calibrate.yaml --samples - --dry-run --quiet");
+  EXPECT_EQ(piped.code, 0) << piped.err;
+  EXPECT_THAT(piped.out, testing::StartsWith("good · "));
+  const Outcome plain = kinecal(
+      "calibrate --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --dry-run "
+      "--quiet");
+  EXPECT_EQ(piped.out, plain.out);
+  const Outcome out = run(program + " convert tracker.csv - --columns columns.yaml");
+  EXPECT_EQ(out.out, read("samples.yaml")) << "nothing else is printed there";
+  EXPECT_THAT(out.err, HasSubstr("wrote -: 60 samples"));
+  ASSERT_EQ(kinecal("convert samples.yaml samples.mcap").code, 0);
+  const Outcome bag = run(
+      program +
+      " calibrate --urdf ur5e.urdf --config calibrate.yaml --samples - --dry-run < samples.mcap");
+  EXPECT_EQ(bag.code, 1);
+  EXPECT_THAT(bag.err, HasSubstr("-: is a bag, which can be read from a file only; give its name"));
+  EXPECT_EQ(
+      kinecal("calibrate --urdf - --config calibrate.yaml --samples samples.yaml --dry-run").code,
+      1);
+}
+
 TEST_F(Manners, ResultsAreReplacedOnlyIfForcedAndBeforeAnyWork) {
   prepare();
   ASSERT_EQ(kinecal(kCalibrate).code, 0);

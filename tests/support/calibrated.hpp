@@ -28,9 +28,7 @@ struct Calibrated {
 
   [[nodiscard]] double cost() const { return result.steps.back().final_cost; }
   /// Root of the mean squared distance of the first error block's features, millimetres.
-  [[nodiscard]] double rms_mm() const {
-    return 1e3 * result.blocks.front().after.rms * std::sqrt(3.0);
-  }
+  [[nodiscard]] double rms_mm() const { return 1e3 * result.blocks.front().after.rms; }
 };
 
 inline Calibrated calibrate_samples(const Robot& robot, const std::filesystem::path& config,

@@ -28,7 +28,7 @@ TEST(HeldOut, IsTheErrorOfFitsThatDidNotSeeTheFold) {
   ASSERT_EQ(found.held_out.size(), 1u);
   EXPECT_NEAR(found.held_out[0].held_out, std::sqrt(squares / 80.0), 1e-4 * test::kPointNoise);
   EXPECT_GT(found.held_out[0].held_out, found.held_out[0].fitted);
-  EXPECT_NEAR(found.held_out[0].fitted, std::sqrt(3.0) * scene.result.blocks[0].after.rms, 1e-12);
+  EXPECT_NEAR(found.held_out[0].fitted, scene.result.blocks[0].after.rms, 1e-12);
 }
 
 TEST(HeldOut, FoldsDoNotDependOnTheOrderOfSamples) {

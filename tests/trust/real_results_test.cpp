@@ -36,7 +36,7 @@ double error_on(const Calibrated& calibrated, const std::filesystem::path& confi
   const Calibration other = assemble(read, calibrated.robot, samples, diagnostics);
   const Eigen::VectorXd values = calibrated.result.table.values();
   const std::span<const double> all(values.data(), static_cast<std::size_t>(values.size()));
-  return 1e3 * std::sqrt(3.0) * block_statistics(*other.steps[0].problem, all, all)[0].after.rms;
+  return 1e3 * block_statistics(*other.steps[0].problem, all, all)[0].after.rms;
 }
 
 TEST(RealResults, TheFullModelOfTheUr5IsBestOnHeldOutPoses) {

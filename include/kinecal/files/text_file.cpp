@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <string>
 #include <system_error>
@@ -21,10 +22,23 @@ std::string why_no_file(const std::string& path) {
   return "is a pipe, not a file; write its content to a file and give that";
 }
 
+bool is_stream(const std::string& path) {
+  if (path == "-") return true;
+  std::error_code missing;
+  return path.starts_with("/dev/") && !std::filesystem::is_directory(path, missing) &&
+         !why_no_file(path).empty();
+}
+
 std::string read_text_file(const std::string& path) {
-  const std::string why = why_no_file(path);
-  const bool is_of_the_shell = path.starts_with("/dev/") && !std::filesystem::is_directory(path);
-  if (!why.empty() && !is_of_the_shell) throw InputError(path + ": " + why);
+  if (path == "-") {
+    static const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+    return text;
+  }
+  if (!is_stream(path)) {
+    if (const std::string why = why_no_file(path); !why.empty()) {
+      throw InputError(path + ": " + why);
+    }
+  }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw InputError(path + ": cannot be read: " + std::generic_category().message(errno));

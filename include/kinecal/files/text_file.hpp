@@ -10,7 +10,10 @@ namespace kinecal::detail {
 /// block forever.  Empty if it may be a file, even if it does not exist.
 [[nodiscard]] std::string why_no_file(const std::string& path);
 
-/// Reads a file, or a pipe made by the shell: /dev/stdin, /dev/fd/63.
+/// True for what can be read once only: the standard input, "-", and a pipe made by the shell: /dev/fd/63.
+[[nodiscard]] bool is_stream(const std::string& path);
+
+/// Reads a file or stream.  The standard input is read once, and remembered.
 /// @throws InputError  if the file is missing, is a folder or a named pipe, or cannot be read
 [[nodiscard]] std::string read_text_file(const std::string& path);
 

@@ -49,9 +49,8 @@ namespace detail {
     if (noise == nullptr) continue;  // a prior
     const auto* error = of_block(findings.assessments, &Assessment::held_out, block.name);
     const auto text = [&](double value) { return in_reading_unit(value, block.unit); };
-    const double root = std::sqrt(static_cast<double>(noise->components));
     table.add({block.name, fmt::format("{}", block.count), reading_unit(block.unit),
-               text(root * block.before.rms), text(root * block.after.rms),
+               text(block.before.rms), text(block.after.rms),
                error == nullptr || error->features == 0 ? "-" : text(error->held_out),
                text(block.after.max), noise->freedom > 0.0 ? text(noise->sigma) : "-",
                noise->given > 0.0 ? text(noise->given) : "-"});
@@ -158,8 +157,7 @@ std::string findings_line(const Findings& findings) {
     const auto* noise = detail::of_block(findings.assessments, &Assessment::noise, block.name);
     if (noise == nullptr || noise->features == 0) continue;
     const auto* error = detail::of_block(findings.assessments, &Assessment::held_out, block.name);
-    const double rms = std::sqrt(static_cast<double>(noise->components)) * block.after.rms;
-    fits += (fits.empty() ? " · " : ", ") + block.name + " " + reading(rms, block.unit);
+    fits += (fits.empty() ? " · " : ", ") + block.name + " " + reading(block.after.rms, block.unit);
     if (error != nullptr && error->features > 0) {
       fits += " (held out " + reading(error->held_out, block.unit) + ")";
     }

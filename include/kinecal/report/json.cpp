@@ -142,7 +142,14 @@ std::string json_report(const Findings& findings) {
   const auto parameter = [&](int i) { return detail::json_parameter(findings, i); };
   detail::Json images = detail::Json::object();
   for (const auto& [sensor, image] : findings.images) images[sensor] = image;
+  const auto file = [](const auto& of) {
+    return detail::Json{{"role", of.first}, {"name", of.second}};
+  };
   const detail::Json report = {
+      {"format", kReportFormat},
+      {"version", findings.call.version},
+      {"robot", findings.robot},
+      {"inputs", json_list(findings.call.files, file)},
       {"verdict", to_string(findings.judgement.verdict)},
       {"reasons", findings.judgement.reasons},
       {"next", next_step(findings)},

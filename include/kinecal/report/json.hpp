@@ -8,8 +8,12 @@
 
 namespace kinecal {
 
-/// The whole report.  Costs are 1/2 sum of squares; rms is per residual component; mean, median and
-/// max are of the features' norms.  Units are metres, radians and pixels; `sigma` of a parameter is
+/// Of report.json.  It grows when a key changes its meaning; a report without `format` is of the first, whose `rms`
+/// was of a residual's components.
+inline constexpr int kReportFormat = 2;
+
+/// The whole report.  Costs are 1/2 sum of squares; rms, mean, median and
+/// max are of the features' distances.  Units are metres, radians and pixels; `sigma` of a parameter is
 /// one standard deviation, null if undetermined.  `covariance` is of all parameters, the lower
 /// triangle row by row, zero along the combinations of `undetermined`; `poses` are joint positions.
 /// Source: schema/report.schema.json beside this header documents every key

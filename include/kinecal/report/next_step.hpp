@@ -3,6 +3,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace kinecal {
 
@@ -13,6 +15,10 @@ struct ProgramCall {
   std::string command = {};  ///< "kinecal calibrate --urdf robot.urdf ..."
   std::string inputs = {};   ///< "--urdf robot.urdf --config calibrate.yaml --samples a.yaml"
   std::string output = {};   ///< folder of the results; empty: none are written
+  std::string version = {};  ///< of the program
+  std::vector<std::pair<std::string, std::string>> files =
+      {};  ///< role ("URDF", "configuration", "samples",
+           ///< "camera") and name of each that was read
 };
 
 /// What answers the verdict: holding what samples do not determine or support, recording more poses, looking at

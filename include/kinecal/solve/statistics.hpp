@@ -14,7 +14,7 @@ namespace kinecal {
 
 /// Sizes of residuals.
 struct Statistics {
-  double rms = 0.0;     ///< of the residual's components
+  double rms = 0.0;     ///< of the features' norms: distances
   double mean = 0.0;    ///< of the features' norms
   double median = 0.0;  ///< of the features' norms
   double max = 0.0;     ///< of the features' norms
@@ -31,9 +31,8 @@ struct BlockStatistics {
 };
 
 /// Statistics of the residuals of one error block.
-/// @param norms       norm of each feature's residual
-/// @param components  number of components of a residual
-[[nodiscard]] Statistics statistics_of(std::vector<double> norms, int components);
+/// @param norms  norm of each feature's residual
+[[nodiscard]] Statistics statistics_of(std::vector<double> norms);
 
 /// Norms of the unweighted residuals of every feature, for each term of a problem.
 [[nodiscard]] std::vector<std::vector<double>> feature_norms(const AnyProblem& problem,

@@ -10,7 +10,7 @@
 
 namespace kinecal {
 
-KINECAL_INLINE Statistics statistics_of(std::vector<double> norms, int components) {
+KINECAL_INLINE Statistics statistics_of(std::vector<double> norms) {
   if (norms.empty()) return {};
   Statistics s;
   double squares = 0.0;
@@ -19,7 +19,7 @@ KINECAL_INLINE Statistics statistics_of(std::vector<double> norms, int component
     s.mean += norm;
   }
   const auto n = static_cast<double>(norms.size());
-  s.rms = std::sqrt(squares / (n * components));
+  s.rms = std::sqrt(squares / n);
   s.mean /= n;
   std::sort(norms.begin(), norms.end());
   const std::size_t half = norms.size() / 2;
@@ -49,18 +49,17 @@ KINECAL_INLINE std::vector<BlockStatistics> block_statistics(const AnyProblem& p
   for (std::size_t t = 0; t < norms_after.size(); ++t) {
     const Term& term = problem.term(static_cast<int>(t));
     all.push_back({term.name, term.options.type, term.options.unit,
-                   static_cast<int>(norms_after[t].size()),
-                   statistics_of(norms_before[t], term.feature_size),
-                   statistics_of(norms_after[t], term.feature_size)});
+                   static_cast<int>(norms_after[t].size()), statistics_of(norms_before[t]),
+                   statistics_of(norms_after[t])});
   }
   TermResiduals residuals;
   for (const PriorTerm& prior : problem.priors()) {
     BlockStatistics& block = all.emplace_back();
     block = {prior.name, prior.options.type, prior.options.unit, problem.num_samples(), {}, {}};
     prior.evaluate(problem.table(), before, nullptr, residuals);
-    block.before = statistics_of({residuals.residual.norm()}, Prior::kRows);
+    block.before = statistics_of({residuals.residual.norm()});
     prior.evaluate(problem.table(), after, nullptr, residuals);
-    block.after = statistics_of({residuals.residual.norm()}, Prior::kRows);
+    block.after = statistics_of({residuals.residual.norm()});
   }
   return all;
 }

@@ -21,7 +21,7 @@ class ReadResult : public test::InstallScene {
     write("out/original.urdf", test::kArmUrdf);
     write("out/config.yaml", test::kArmConfig);
     write("out/report.json", R"({
-      "converged": true, "verdict": "use with care",
+      "format": 2, "converged": true, "verdict": "use with care",
       "parameters": [{"name": "elbow", "unit": "rad", "value": 0.02, "sigma": 0.001},
                      {"name": "camera_z_scaling", "unit": "1", "value": 0.01}],
       "covariance": {"parameters": ["elbow"], "lower": [[1e-6]],
@@ -52,7 +52,7 @@ TEST_F(ReadResult, HasWhatTheReportAndTheFilesBesideItSay) {
   EXPECT_TRUE(std::isinf(read.deviations.at("camera_z_scaling")));
   EXPECT_THAT(read.covariance, ElementsAre(ElementsAre(1e-6)));
   EXPECT_EQ(read.noise.at(0).sigma, 0.5);
-  EXPECT_EQ(read.fitted.at("hand_eye").distance, std::sqrt(3.0) * 2.0);
+  EXPECT_EQ(read.fitted.at("hand_eye").distance, 2.0);
   EXPECT_EQ(read.fitted.at("hand_eye").held_out, 0.75);
   EXPECT_EQ(read.pose_samples().at(1).joint_positions.at(0), 0.25);
   EXPECT_EQ(read.urdf_text, test::kArmUrdf);
@@ -76,6 +76,13 @@ TEST_F(ReadResult, IsRefusedIfItWasChangedOrMustNotBeUsed) {
   EXPECT_THAT(refusal(), HasSubstr("'elbow' is 0.02 there and 0.03 in report.json"));
   spoil("out/report.json", "use with care", "do not use");
   EXPECT_THAT(refusal(), HasSubstr("report.json: this result was judged 'do not use'"));
+}
+
+TEST_F(ReadResult, ReadsOlderFormatsAndRefusesNewerOnes) {
+  spoil("out/report.json", "\"format\": 2, ", "");
+  EXPECT_EQ(result().fitted.at("hand_eye").distance, std::sqrt(3.0) * 2.0) << "was of components";
+  spoil("out/report.json", "\"converged\"", "\"format\": 3, \"converged\"");
+  EXPECT_THAT(refusal(), HasSubstr("it has format 3, and this version of kinecal reads up to 2"));
 }
 
 TEST_F(ReadResult, IsRefusedIfSomethingIsMissing) {

@@ -13,6 +13,8 @@ namespace kinecal::detail {
 inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
 /// First bytes of an SQLite database.
 inline constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
+/// First bytes of a ROS 1 bag, before its version.
+inline constexpr std::string_view kRos1Begin{"#ROSBAG V"};
 /// First bytes of a zstd frame, little-endian.
 inline constexpr std::string_view kZstdMagic{"\x28\xB5\x2F\xFD", 4};
 
@@ -29,6 +31,12 @@ inline constexpr std::string_view kZstdMagic{"\x28\xB5\x2F\xFD", 4};
 /// @param first  its first bytes, at least 16 unless it has fewer
 [[nodiscard]] inline bool is_sqlite(Bytes first) {
   return begins_with(first, kSqliteMagic);
+}
+/// True if a file is a bag of any kind, or packed.
+/// @param first  its first bytes, at least 16 unless it has fewer
+[[nodiscard]] inline bool is_bag(Bytes first) {
+  return is_mcap(first) || is_sqlite(first) || begins_with(first, kZstdMagic) ||
+         begins_with(first, kRos1Begin);
 }
 
 }  // namespace kinecal::detail

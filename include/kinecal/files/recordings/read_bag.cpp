@@ -36,8 +36,8 @@ RecordingFormat recording_format(const std::string& path) {
   if (detail::is_mcap(bytes)) return RecordingFormat::mcap;
   if (detail::is_sqlite(bytes)) return RecordingFormat::sqlite;
   if (detail::begins_with(bytes, detail::kZstdMagic)) return RecordingFormat::zstd;
-  const bool is_ros1 = std::string_view(first.data(), first.size()).starts_with("#ROSBAG V");
-  return is_ros1 ? RecordingFormat::ros1_bag : RecordingFormat::yaml;
+  return detail::begins_with(bytes, detail::kRos1Begin) ? RecordingFormat::ros1_bag
+                                                        : RecordingFormat::yaml;
 }
 
 void read_bag(const std::string& path, const BagReader& reader, Diagnostics& diagnostics) {

@@ -9,11 +9,13 @@
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/recordings/convert.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/samples/write_samples.hpp"
 
 namespace kinecal {
 
 std::optional<Encoding> output_encoding(const std::string& path) {
+  if (is_standard_output(path)) return std::nullopt;
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".bag") return Encoding::ros1;
   if (extension == ".mcap") return Encoding::cdr;
@@ -24,14 +26,12 @@ std::optional<Encoding> output_encoding(const std::string& path) {
 void write_recording(const std::string& path, const std::vector<Sample>& samples,
                      const std::string& urdf) {
   const std::optional<Encoding> encoding = output_encoding(path);
-  const std::filesystem::path name(path);
-  OutputFolder folder(name.has_parent_path() ? name.parent_path() : ".");
   if (!encoding) {
     std::ostringstream text;
     write_samples(text, samples);
-    folder.write({{name.filename().string(), text.str()}});
-    return;
+    return write_text_file(path, text.str());
   }
+  const OutputFolder folder(folder_of(path));  // creates it if it is missing
   BagOutput bag(path, *encoding,
                 *encoding == Encoding::cdr ? best_mcap_compression() : Compression::none);
   if (!urdf.empty()) write_urdf(bag, urdf);

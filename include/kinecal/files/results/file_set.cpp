@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "kinecal/files/results/staging.ipp"
+#include "kinecal/files/results/standard_output.hpp"
 
 namespace kinecal {
 
@@ -108,6 +109,16 @@ void OutputFolder::write(const std::vector<OutputFile>& files) {
     }
     throw;
   }
+}
+
+std::filesystem::path folder_of(const std::string& file) {
+  const std::filesystem::path path(file);
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+void write_text_file(const std::string& file, const std::string& content) {
+  if (is_standard_output(file)) return write_standard_output(content);
+  OutputFolder(folder_of(file)).write({{std::filesystem::path(file).filename().string(), content}});
 }
 
 }  // namespace kinecal

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "kinecal/files/results/output_file.hpp"
@@ -40,5 +41,12 @@ class OutputFolder {
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> created_;
 };
+
+/// The folder of a file: "." for a name without one.
+[[nodiscard]] std::filesystem::path folder_of(const std::string& file);
+
+/// Writes a file whole or not at all, and creates its folder if it is missing; "-" is the standard output.
+/// @throws OutputError  naming the file
+void write_text_file(const std::string& file, const std::string& content);
 
 }  // namespace kinecal

@@ -11,19 +11,40 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include "kinecal/files/bags/formats.hpp"
 #include "kinecal/files/samples/sample_file.ipp"
 #include "kinecal/files/text_file.hpp"
 
 namespace kinecal {
 
+namespace detail {
+namespace {
+
+[[nodiscard]] std::vector<Sample> read_stream(const std::string& path, Diagnostics& diagnostics) {
+  const std::string text = read_text_file(path);
+  if (is_bag(std::as_bytes(std::span(text)))) {
+    diagnostics.error({path, 0}, "is a bag, which can be read from a file only; give its name");
+    return {};
+  }
+  std::istringstream in(text);
+  SampleFile file(in, path);
+  file.read(1);
+  return file.take(diagnostics);
+}
+
+}  // namespace
+}  // namespace detail
+
 std::vector<Sample> read_samples(const std::string& path, Diagnostics& diagnostics,
                                  unsigned threads, const ProgressMeter& meter) {
+  if (detail::is_stream(path)) return detail::read_stream(path, diagnostics);
   if (const std::string why = detail::why_no_file(path); !why.empty()) {
     diagnostics.error({path, 0}, why);
     return {};

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "kinecal/files/json/json_value.hpp"
+#include "kinecal/report/json.hpp"
 #include "kinecal/tools/install/stored_result.hpp"
 #include "kinecal/trust/judge.hpp"
 
@@ -33,6 +34,16 @@ inline void read_covariance(const JsonValue& report, StoredResult& result) {
   }
 }
 
+/// 1 where the report does not say it.
+[[nodiscard]] inline std::int64_t format_of(const JsonValue& report) {
+  const std::int64_t format = report.find("format") ? report.integer("format") : 1;
+  if (format < 1 || format > kReportFormat) {
+    throw JsonError(fmt::format("it has format {}, and this version of kinecal reads up to {}",
+                                format, kReportFormat));
+  }
+  return format;
+}
+
 inline void read_noise(const JsonValue& report, StoredResult& result) {
   for (const JsonValue& entry : report.list("noise")) {
     BlockNoise noise;
@@ -54,12 +65,14 @@ inline void read_noise(const JsonValue& report, StoredResult& result) {
                      common->number("freedom"), common->number("scatter"),
                      common->number("effect")};
   }
+  const bool of_components = format_of(report) == 1;
   for (const JsonValue& entry : report.list("error_blocks")) {
     const std::string name = entry.text("name");
     for (const BlockNoise& noise : result.noise) {
       if (noise.block != name) continue;
+      const double rms = entry.at("after").number("rms");
       result.fitted[name].distance =
-          std::sqrt(static_cast<double>(noise.components)) * entry.at("after").number("rms");
+          of_components ? std::sqrt(static_cast<double>(noise.components)) * rms : rms;
     }
   }
 }
@@ -123,6 +136,7 @@ inline void read_images(const JsonValue& report, Config& config) {
 inline void read_calibration(const std::string& content, const std::string& values_file,
                              StoredResult& result) {
   const JsonValue report = JsonValue::parse(content);
+  (void)format_of(report);
   result.verdict = report.text("verdict");
   if (result.verdict == to_string(Grade::do_not_use)) {
     throw InputError(result.report + ": this result was judged 'do not use'; calibrate again");

@@ -1,0 +1,28 @@
+// Proposes what the columns of a table mean, by its header and its values.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "kinecal/kinematics/robot.hpp"
+
+namespace kinecal {
+
+/// The first words of what proposed_columns() writes, by which it is recognised.
+inline constexpr const char* kProposedColumnsMark = "# Columns for 'kinecal init', proposed";
+
+/// The text of a columns.yaml for a table of joint positions and points that a tracker measured.  What was decided by
+/// values and not by names, such as units, is said in comments, and so is every column that is not used.
+///
+/// Joints are recognised by their names in the URDF, with or without "_joint", "_pos", units; or as q1 q2 ..., j1, axis_1
+/// and the like, if an arm of the robot has as many.  Points are three columns x, y, z with a common rest of their names;
+/// of several, those that are called after a tracker.  A table without a header has the joints of the arm, then x, y, z.
+/// @param robot  whose joints the columns hold
+/// @param table  the text
+/// @param file   its name, in messages
+/// @throws InputError  "file: ...": what neither names nor values tell
+[[nodiscard]] std::string proposed_columns(const Robot& robot, std::string_view table,
+                                           const std::string& file);
+
+}  // namespace kinecal

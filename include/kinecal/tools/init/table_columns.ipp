@@ -1,0 +1,151 @@
+// The columns of a table, with what their names and values say: for proposed_columns.cpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kinecal/files/csv/csv_table.hpp"
+
+namespace kinecal::detail {
+
+/// The unit that a column's name has.
+enum class NamedUnit { none, radians, degrees, metres, millimetres };
+
+/// A column of a table.
+struct TableColumn {
+  std::string name;  ///< as in the header; its number, without one
+  std::vector<std::string>
+      words;  ///< of the name, small letters; digits at the end are a word of their own
+  NamedUnit unit = NamedUnit::none;  ///< by the name
+  bool is_number = false;            ///< most cells are
+  double largest = 0.0;              ///< of the values' magnitudes
+
+  /// All words, joined: "shoulder_pan_joint".
+  [[nodiscard]] std::string joined() const { return fmt::format("{}", fmt::join(words, "_")); }
+};
+
+/// A table as rows of the same number of cells.
+struct ReadTable {
+  char separator = ',';
+  bool header = false;  ///< the first row has names
+  std::vector<TableColumn> columns;
+};
+
+[[nodiscard]] inline std::optional<double> cell_number(std::string_view cell) {
+  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '+')) cell.remove_prefix(1);
+  while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
+  double value = 0.0;
+  const auto [end, failed] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (failed != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return value;
+}
+
+/// "Shoulder_Pan_joint [deg]" -> shoulder pan joint deg; "q10" -> q 10.
+[[nodiscard]] inline std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words;
+  const auto kind = [](char c) {
+    const auto u = static_cast<unsigned char>(c);
+    return std::isalpha(u) != 0 || u >= 0x80 ? 1 : std::isdigit(u) != 0 ? 2 : 0;
+  };
+  int before = 0;
+  for (const char c : name) {
+    const int now = kind(c);
+    if (now != 0) {
+      if (now != before) words.emplace_back();
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    before = now;
+  }
+  return words;
+}
+
+/// Takes the unit off a name's words.
+[[nodiscard]] inline NamedUnit take_unit(std::vector<std::string>& words) {
+  constexpr std::pair<std::string_view, NamedUnit> kUnits[] = {
+      {"deg", NamedUnit::degrees},
+      {"degree", NamedUnit::degrees},
+      {"degrees", NamedUnit::degrees},
+      {"\u00b0", NamedUnit::degrees},
+      {"rad", NamedUnit::radians},
+      {"radian", NamedUnit::radians},
+      {"radians", NamedUnit::radians},
+      {"mm", NamedUnit::millimetres},
+      {"m", NamedUnit::metres},
+      {"metres", NamedUnit::metres},
+      {"meters", NamedUnit::metres},
+      {"millimetres", NamedUnit::millimetres},
+      {"millimeters", NamedUnit::millimetres}};
+  if (words.size() < 2) return NamedUnit::none;
+  for (const auto& [word, unit] : kUnits) {
+    if (words.back() != word) continue;
+    words.pop_back();
+    return unit;
+  }
+  return NamedUnit::none;
+}
+
+/// The separator that makes most numbers of the same number of cells in every row.
+[[nodiscard]] inline char separator_of(std::string_view text, const std::string& file) {
+  char best = ',';
+  std::size_t most = 0;
+  for (const char separator : {',', ';', '\t', ' '}) {
+    Diagnostics ignored;
+    const std::vector<CsvRow> rows = csv_rows(text, separator, file, ignored);
+    if (rows.size() < 2 || !ignored.errors.empty()) continue;
+    const std::vector<std::string>& cells = rows[1].cells;
+    if (std::any_of(rows.begin() + 1, rows.end(),
+                    [&](const CsvRow& row) { return row.cells.size() != cells.size(); })) {
+      continue;
+    }
+    const auto numbers =
+        static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [](const auto& cell) {
+          return cell_number(cell).has_value();
+        }));
+    if (numbers <= most) continue;
+    most = numbers;
+    best = separator;
+  }
+  return best;
+}
+
+/// @throws InputError  if it is not a table with numbers
+[[nodiscard]] inline ReadTable read_table(std::string_view text, const std::string& file) {
+  ReadTable table;
+  table.separator = separator_of(text, file);
+  Diagnostics diagnostics;
+  const std::vector<CsvRow> rows = csv_rows(text, table.separator, file, diagnostics);
+  diagnostics.throw_if_errors();
+  if (rows.size() < 2) throw InputError(file + ": is not a table: it has fewer than two rows");
+  const std::vector<std::string>& first = rows.front().cells;
+  table.header = std::any_of(first.begin(), first.end(), [](const std::string& cell) {
+    return !cell.empty() && !cell_number(cell);
+  });
+  for (std::size_t c = 0; c < first.size(); ++c) {
+    TableColumn& column = table.columns.emplace_back();
+    column.name = table.header ? first[c] : fmt::format("{}", c + 1);
+    if (table.header) column.words = words_of(column.name);
+    column.unit = take_unit(column.words);
+    std::size_t numbers = 0;
+    for (std::size_t r = table.header ? 1 : 0; r < rows.size(); ++r) {
+      if (c >= rows[r].cells.size()) continue;
+      const auto value = cell_number(rows[r].cells[c]);
+      if (!value) continue;
+      ++numbers;
+      if (std::isfinite(*value)) column.largest = std::max(column.largest, std::abs(*value));
+    }
+    column.is_number = 2 * numbers >= rows.size() - (table.header ? 1 : 0);
+  }
+  return table;
+}
+
+}  // namespace kinecal::detail
