@@ -20,6 +20,7 @@ struct InputOptions {
   std::string urdf;                     ///< empty: the /robot_description of the samples' bag
   std::string urdf_text = {};           ///< content of a URDF, if neither is there
   std::string config;                   ///< file
+  std::string config_text = {};         ///< content of a configuration, if there is no file
   std::vector<std::string> samples;     ///< files
   std::vector<std::string> cameras;     ///< NAME=FILE, for samples without camera_info
   std::vector<std::string> hold;        ///< parameters that are not calibrated
@@ -80,6 +81,14 @@ struct InitOptions {
 
 /// Writes a first configuration from a URDF and a few answers.
 int init(const InitOptions& options);
+
+struct IdentifyOptions : InputOptions {
+  std::string output = "identified.yaml";  ///< file
+  bool force = false;                      ///< replace it
+};
+
+/// Finds out which parameters of a robot are wrong, and writes a configuration that frees them.
+int identify(IdentifyOptions options);
 
 struct DetectOptions {
   std::string config;                 ///< capture.yaml

@@ -110,7 +110,8 @@ Input read_input(const InputOptions& options) {
   const std::size_t before = diagnostics.errors.size();
   auto configuration = attempt(
       [&] {
-        input.config_text = detail::read_yaml_text(options.config);
+        input.config_text =
+            options.config.empty() ? options.config_text : detail::read_yaml_text(options.config);
         return parse_config(input.config_text, options.config, diagnostics);
       },
       diagnostics);

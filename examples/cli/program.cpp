@@ -177,6 +177,27 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
       ->capture_default_str();
 }
 
+void add_identify(CLI::App& command, IdentifyOptions& options) {
+  command
+      .add_option("--urdf", options.urdf,
+                  "the robot's URDF; default: /robot_description of the bag")
+      ->type_name("FILE");
+  command
+      .add_option("--config", options.config,
+                  "whose models, error blocks and unknown poses are kept; default: as of 'kinecal "
+                  "init --from' "
+                  "the samples")
+      ->type_name("FILE");
+  command.add_option("--samples", options.samples, "recorded samples")
+      ->required()
+      ->type_name("FILE");
+  add_cameras(command, options.cameras);
+  command.add_option("-o,--output", options.output, "the configuration to write")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command.add_flag("--force", options.force, "replace the file");
+}
+
 void add_init(CLI::App& command, InitOptions& options) {
   command.add_option("--urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
   command.add_option("--output", options.output, "the configuration to write")
@@ -841,6 +862,10 @@ void add_commands(Commands& commands, const std::string& line) {
   commands.add<InitOptions>(
       "init", "write a first configuration from a URDF; asks for what the options leave open",
       add_init, init);
+  commands.add<IdentifyOptions>(
+      "identify",
+      "find out which parameters of the robot are wrong, and write a configuration that frees them",
+      add_identify, identify);
   commands.add<InputOptions>(
       "check",
       "check the input without solving: errors, warnings, what the samples cannot determine",

@@ -8,6 +8,7 @@
 #include "kinecal/config/capture/session_follower.hpp"
 #include "kinecal/config/choose_images.hpp"
 #include "kinecal/config/config.hpp"
+#include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/config/doubts/check_offsets.hpp"
 #include "kinecal/config/doubts/enough_samples.hpp"
 #include "kinecal/config/doubts/find_doubts.hpp"

@@ -1,0 +1,177 @@
+// kinecal identify: finds out what is wrong with a robot.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "kinecal/config/assemble.hpp"
+#include "kinecal/config/config_to_yaml.hpp"
+#include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/report/findings.hpp"
+#include "kinecal/report/text.hpp"
+#include "kinecal/text/counted.hpp"
+#include "kinecal/text/printable.hpp"
+#include "kinecal/text/reading.hpp"
+#include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/identify/identified_config.hpp"
+#include "kinecal/tools/init/answers_from_samples.hpp"
+#include "kinecal/tools/init/initial_config.hpp"
+#include "output_file.hpp"
+
+namespace kinecal::cli {
+namespace {
+
+/// The configuration that samples suggest: their sensors, and the poses that the URDF does not have.
+void propose_configuration(IdentifyOptions& options) {
+  Diagnostics diagnostics;
+  const Recording recording = read_recordings(options.samples, diagnostics);
+  print_or_throw(diagnostics);
+  if (options.urdf.empty() && recording.urdf.empty()) {
+    throw InputError("--urdf: is required, because the samples contain no /robot_description");
+  }
+  const Robot robot = options.urdf.empty() ? parse_urdf(recording.urdf, "/robot_description")
+                                           : read_urdf(options.urdf);
+  options.config_text = initial_config(robot, answers_from_samples(robot, recording.samples, {}));
+}
+
+/// What was searched and found.
+struct Search {
+  IdentifyTask task;
+  Identified found;
+  Config config;  ///< that frees what was found
+  JudgedResult judged;
+  std::string robot;
+};
+
+/// Searches, and judges the calibration with what was found.
+Search search(const Config& config, const Robot& robot, std::span<const Sample> samples) {
+  Search all;
+  Diagnostics diagnostics;
+  Calibration calibration =
+      assemble(with_all_candidates(config, robot), robot, samples, diagnostics);
+  diagnostics.throw_if_errors();
+  const AnyProblem& problem = *calibration.steps.front().problem;
+  all.task = identify_task(config, problem);
+  all.found = identify(calibration, samples, all.task.base, all.task.candidates);
+  all.config = identified_config(config, all.task, all.found, problem);
+  if (free_parameters(all.config.steps.front()).empty()) return all;
+  Calibration chosen = assemble(all.config, robot, samples, diagnostics);
+  diagnostics.throw_if_errors();
+  all.judged = calibrate_and_judge(chosen, samples);
+  return all;
+}
+
+/// The name of a step: what it freed or held.
+std::string name_of(const Search& search, const IdentifyStep& step) {
+  if (step.candidate < 0) return "(only unknown poses)";
+  const IdentifyCandidate& of = search.task.candidates[static_cast<std::size_t>(step.candidate)];
+  return (step.freed ? "" : "held again: ") + of.name;
+}
+
+std::string steps_text(const Search& search) {
+  const Identified& found = search.found;
+  const std::string unit = reading_unit(found.unit);
+  TextTable table({"freed", "fitted", "held out", "regions held out", "unit", "times its +-"});
+  for (const IdentifyStep& step : found.steps) {
+    const auto text = [&](double value) { return in_reading_unit(value, found.unit); };
+    table.add({name_of(search, step), text(step.fitted), text(step.held_out),
+               step.region > 0.0 ? text(step.region) : "-", unit,
+               step.candidate < 0 ? "" : fmt::format("{:.1f}", std::abs(step.certainty))});
+  }
+  std::string text = table.str();
+  for (const IdentifyStep& step : found.steps) {
+    if (step.alike.empty() || !step.freed) continue;
+    std::string others;
+    constexpr std::size_t kShown = 4;
+    for (std::size_t i = 0; i < std::min(kShown, step.alike.size()); ++i) {
+      const auto k = static_cast<std::size_t>(step.alike[i]);
+      others += (i == 0 ? "" : ", ") + search.task.candidates[k].name;
+    }
+    if (step.alike.size() > kShown)
+      others += fmt::format(" and {} more", step.alike.size() - kShown);
+    text +=
+        fmt::format("in place of {}, these explain the same: {}\n", name_of(search, step), others);
+  }
+  return text;
+}
+
+/// Comments of the configuration: what each parameter bought.
+std::map<std::string, std::string> comments(const Search& search, const AnyProblem* problem) {
+  std::map<std::string, std::string> why;
+  double before = 0.0;
+  for (const IdentifyStep& step : search.found.steps) {
+    if (step.candidate >= 0 && step.freed && problem != nullptr) {
+      for (const int p :
+           search.task.candidates[static_cast<std::size_t>(step.candidate)].parameters) {
+        const std::string text =
+            fmt::format("held out {} -> {}", reading(before, search.found.unit),
+                        reading(step.held_out, search.found.unit));
+        why.emplace(problem->table()[p].name, text);
+      }
+    }
+    before = step.held_out;
+  }
+  return why;
+}
+
+}  // namespace
+
+int identify(IdentifyOptions options) {
+  std::vector<std::string> inputs = options.samples;
+  inputs.insert(inputs.end(), {options.urdf, options.config});
+  check_output(options.output, inputs, options.force);
+  const bool is_proposed = options.config.empty();
+  if (is_proposed) propose_configuration(options);
+  Input input = read_input(options);
+  print_or_throw(input.diagnostics);
+  if (input.config.steps.size() != 1) {
+    throw InputError(options.config + ": has " + counted(input.config.steps.size(), "step") +
+                     "; identify searches in one");
+  }
+  if (is_proposed) {  // its sigmas are guesses
+    for (BlockConfig& block : input.config.steps.front().error_blocks) block.sigma.reset();
+  }
+  Search all = search(input.config, input.robot, input.samples);
+  if (!all.judged.left_out.empty()) {  // again, without bad samples
+    std::set<int> out;
+    for (const LeftOutSample& sample : all.judged.left_out) out.insert(sample.number);
+    std::vector<Sample> used;
+    for (std::size_t i = 0; i < input.samples.size(); ++i) {
+      if (!out.contains(static_cast<int>(i) + 1)) used.push_back(input.samples[i]);
+    }
+    auto left_out = std::move(all.judged.left_out);
+    all = search(input.config, input.robot, used);
+    all.judged.left_out.insert(all.judged.left_out.begin(), left_out.begin(), left_out.end());
+  }
+  fmt::print("{}\n", printable(fmt::format(
+                         "Robot '{}', {}: {} may be wrong, {} of them these samples support\n\n{}",
+                         input.robot.name(), counted(input.samples.size(), "sample"),
+                         counted(all.task.candidates.size(), "parameter"), all.found.chosen.size(),
+                         steps_text(all))));
+  Diagnostics quiet;
+  const Calibration names =
+      assemble(with_all_candidates(input.config, input.robot), input.robot, {}, quiet);
+  write_text_file(
+      options.output,
+      config_to_yaml(
+          all.config,
+          "What these samples support; 'kinecal identify' found it.  With each parameter, the\n"
+          "error on poses held out before and after it was freed.",
+          comments(all, names.steps.front().problem.get())));
+  std::string call = "kinecal calibrate";
+  if (!options.urdf.empty()) call += " --urdf " + shell_word(options.urdf);
+  call += " --config " + shell_word(options.output) + " --samples";
+  for (const std::string& file : options.samples) call += " " + shell_word(file);
+  Findings findings{std::move(all.judged)};
+  fmt::print("{} · {}\nnext: {} --output calibrated\n", printable(findings_line(findings)),
+             options.output, call);
+  return kDone;
+}
+
+}  // namespace kinecal::cli

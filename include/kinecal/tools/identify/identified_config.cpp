@@ -1,0 +1,173 @@
+// Definitions of identified_config.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/tools/identify/identified_config.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "kinecal/config/registry.hpp"
+#include "kinecal/kinematics/chain.hpp"
+#include "kinecal/kinematics/joint_model.hpp"
+#include "kinecal/parameters/joint_parameters.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// What an engineer names first: zeros, then mounts, sensors, the arm's geometry, its gears, its encoders.
+enum IdentifyRank { kZero, kMount, kOfSensor, kGeometry, kGear, kEncoder };
+
+/// The joints that move some sensor or target, in the order of the robot; not those that mimic others.
+[[nodiscard]] std::vector<const Joint*> moving_joints(const Config& config, const Robot& robot) {
+  std::set<std::string> names;
+  for (const ModelConfig& model : config.steps.front().models) {
+    if (!robot.has_link(model.frame) || !robot.has_link(config.base_link)) continue;
+    for (const ChainJoint& joint : make_chain(robot, config.base_link, model.frame).joints) {
+      names.insert(joint.drive.joint);
+    }
+  }
+  std::vector<const Joint*> joints;
+  for (const Joint& joint : robot.joints()) {
+    if (names.contains(joint.name)) joints.push_back(&joint);
+  }
+  return joints;
+}
+
+[[nodiscard]] bool is_free(const StepConfig& step, const std::string& name) {
+  const std::vector<FreeParamConfig> all = free_parameters(step);
+  return std::any_of(all.begin(), all.end(), [&](const auto& free) { return free.name == name; });
+}
+
+/// True for a frame that is free from the beginning: it is not in the URDF, or no motor moves it.
+[[nodiscard]] bool is_base_frame(const Robot& robot, const FreeFrameConfig& frame) {
+  return !frame.is_fixed && (!robot.has_joint(frame.name) || !moves(robot.joint(frame.name).type));
+}
+
+/// Frees one axis of a frame.
+void free_axis(StepConfig& step, const std::string& frame, std::size_t axis) {
+  auto known = std::find_if(step.free_frames.begin(), step.free_frames.end(),
+                            [&](const FreeFrameConfig& of) { return of.name == frame; });
+  if (known == step.free_frames.end())
+    known = step.free_frames.insert(known, {.name = frame, .place = {}});
+  known->axes[axis] = true;
+}
+
+}  // namespace
+}  // namespace detail
+
+Config with_all_candidates(const Config& config, const Robot& robot) {
+  Config all = config;
+  StepConfig& step = all.steps.front();
+  const auto free = [&](const std::string& name) {
+    if (!detail::is_free(step, name)) step.free_params.push_back({name, step.place});
+  };
+  for (const Joint* joint : detail::moving_joints(config, robot)) {
+    free(joint->name);
+    for (std::size_t k = 0; k < kJointModelSize; ++k) {
+      if (may_have_model(joint->type, k))
+        free(joint->name + "_" + std::string(kJointModelNames[k]));
+    }
+    for (std::size_t axis = 0; axis < 6; ++axis) detail::free_axis(step, joint->name, axis);
+  }
+  for (const ModelConfig& model : step.models) {
+    const SensorEntry* entry = registry().sensor(model.type);
+    if (entry == nullptr) continue;
+    for (const ParameterInfo& info : entry->sensor->parameters()) {
+      free(model.param_name + "_" + std::string(info.name));
+    }
+  }
+  for (FreeFrameConfig& frame : step.free_frames) frame.place = step.place;
+  return all;
+}
+
+IdentifyTask identify_task(const Config& config, const AnyProblem& problem) {
+  const Robot& robot = problem.robot();
+  const ParameterTable& table = problem.table();
+  const StepConfig& step = config.steps.front();
+  IdentifyTask task;
+  std::set<int> taken;
+  const auto index = [&](const std::string& name) { return table.find(name); };
+  for (const FreeFrameConfig& frame : step.free_frames) {
+    if (!detail::is_base_frame(robot, frame)) continue;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      const int p = index(parameter_name(frame.name, kFrameAxes[axis]));
+      if (frame.axes[axis] && p >= 0) task.base.push_back(p);
+    }
+  }
+  for (const FreeParamConfig& parameter : step.free_params) {  // those of error blocks
+    const int p = index(parameter.name);
+    if (p < 0) continue;
+    const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
+    const auto is_block = [&](const BlockConfig& block) { return block.name == owner; };
+    if (std::any_of(step.error_blocks.begin(), step.error_blocks.end(), is_block))
+      task.base.push_back(p);
+  }
+  taken.insert(task.base.begin(), task.base.end());
+  const auto add = [&](int rank, const std::string& name, const std::vector<std::string>& parts) {
+    IdentifyCandidate candidate{name, {}, rank};
+    for (const std::string& part : parts) {
+      const int p = index(part);
+      if (p < 0 || !taken.insert(p).second) return;
+      candidate.parameters.push_back(p);
+    }
+    task.candidates.push_back(std::move(candidate));
+  };
+  const std::vector<const Joint*> joints = detail::moving_joints(config, robot);
+  for (const Joint* joint : joints) add(detail::kZero, joint->name, {joint->name});
+  for (const ModelConfig& model : step.models) {
+    const SensorEntry* entry = registry().sensor(model.type);
+    if (entry == nullptr) continue;
+    for (const ParameterInfo& info : entry->sensor->parameters()) {
+      const std::string name = model.param_name + "_" + std::string(info.name);
+      add(detail::kOfSensor, name, {name});
+    }
+  }
+  for (const Joint* joint : joints) {
+    for (const auto axis : kFrameAxes) {
+      const std::string name = parameter_name(joint->name, axis);
+      add(detail::kGeometry, name, {name});
+    }
+  }
+  for (const Joint* joint : joints) {
+    const std::string gear = joint->name + "_gear_ratio", sine = joint->name + "_eccentric_sin",
+                      cosine = joint->name + "_eccentric_cos";
+    add(detail::kGear, gear, {gear});
+    add(detail::kEncoder, sine + ", " + cosine, {sine, cosine});
+  }
+  return task;
+}
+
+Config identified_config(const Config& config, const IdentifyTask& task, const Identified& found,
+                         const AnyProblem& problem) {
+  Config all = config;
+  StepConfig& step = all.steps.front();
+  const std::vector<FreeParamConfig> before = step.free_params;
+  step.free_params.clear();
+  std::erase_if(step.free_frames, [&](const FreeFrameConfig& frame) {
+    return !frame.is_fixed && !detail::is_base_frame(problem.robot(), frame);
+  });
+  for (const FreeParamConfig& parameter : before) {
+    const int p = problem.table().find(parameter.name);
+    if (std::find(task.base.begin(), task.base.end(), p) != task.base.end())
+      step.free_params.push_back(parameter);
+  }
+  for (const int k : found.chosen) {
+    for (const int p : task.candidates[static_cast<std::size_t>(k)].parameters) {
+      const std::string& name = problem.table()[p].name;
+      const std::string& owner = problem.owners()[static_cast<std::size_t>(p)];
+      std::size_t axis = 0;
+      while (axis < 6 && name != parameter_name(owner, kFrameAxes[axis])) ++axis;
+      if (axis < 6 && problem.frames().contains(owner)) {
+        detail::free_axis(step, owner, axis);
+      } else {
+        step.free_params.push_back({name, step.place});
+      }
+    }
+  }
+  std::erase_if(step.bounds,
+                [&](const BoundConfig& bound) { return !detail::is_free(step, bound.name); });
+  return all;
+}
+
+}  // namespace kinecal

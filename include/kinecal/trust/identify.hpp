@@ -1,0 +1,53 @@
+// Finds out which parameters of a robot are wrong, as far as samples tell.
+//
+// The problem has the parameters of all candidates; a base, such as the unknown pose of a tracker, is always
+// free.  Solving and searching (parameter_search.hpp) alternate, so that large errors are found, too: each search
+// is at the solution of the one before.  The noise of each error block is estimated on the way, robustly.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/solve/calibrate.hpp"
+
+namespace kinecal {
+
+/// What may be wrong.
+struct IdentifyCandidate {
+  std::string name;             ///< for people: "elbow_joint", "wrist_joint: z"
+  std::vector<int> parameters;  ///< table indices, freed together
+  int rank = 0;                 ///< of candidates that explain the same, the lowest is taken
+};
+
+/// One step of the search.  Errors are of the first error block, in its unit.
+struct IdentifyStep {
+  int candidate = -1;      ///< by number; -1: the base alone
+  bool freed = true;       ///< else it is held again
+  double fitted = 0.0;     ///< root of the mean squared distance after it
+  double held_out = 0.0;   ///< the same, of poses held out
+  double region = 0.0;     ///< the same, of regions held out; 0: there are none
+  double certainty = 0.0;  ///< fall of the error on held-out poses, in its standard errors
+  std::vector<int> alike;  ///< other candidates that explain the same
+};
+
+/// What was found.
+struct Identified {
+  std::vector<int> chosen;          ///< candidates, in the order in which they were freed
+  std::vector<IdentifyStep> steps;  ///< the first one is the base alone
+  CalibrationResult result;         ///< with the chosen parameters free
+  std::string unit;                 ///< of the first error block
+};
+
+/// Searches for the parameters that samples support.
+/// @param calibration  of one step, whose problem has all parameters; its free set, sigmas and values change
+/// @param samples      those of the problem, in their order
+/// @param base         table indices that are always free
+/// @throws std::invalid_argument  if the calibration has not one step, or too few samples
+[[nodiscard]] Identified identify(Calibration& calibration, std::span<const Sample> samples,
+                                  const std::vector<int>& base,
+                                  const std::vector<IdentifyCandidate>& candidates);
+
+}  // namespace kinecal

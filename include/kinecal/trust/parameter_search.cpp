@@ -1,0 +1,162 @@
+// Definitions of parameter_search.hpp.
+// SPDX-License-Identifier: Apache-2.0
+#include "kinecal/trust/parameter_search.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "kinecal/trust/f_distribution.hpp"
+
+namespace kinecal {
+
+namespace detail {
+namespace {
+
+/// Least share of a column's effect that the others must leave, or it is one of their combinations.
+constexpr double kOwnShare = 1e-4;
+
+/// The inverse of a matrix of information; empty if it is singular.
+/// @param scale  (columns) lengths of the columns before others were taken off
+[[nodiscard]] Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& squared,
+                                             const Eigen::VectorXd& scale) {
+  const Eigen::VectorXd by = scale.cwiseInverse();
+  const Eigen::LDLT<Eigen::MatrixXd> solver(by.asDiagonal() * squared * by.asDiagonal());
+  if (solver.info() != Eigen::Success || solver.vectorD().minCoeff() <= 0.1 * kOwnShare) return {};
+  const Eigen::MatrixXd inverse =
+      solver.solve(Eigen::MatrixXd::Identity(squared.rows(), squared.cols()));
+  return by.asDiagonal() * inverse * by.asDiagonal();
+}
+
+[[nodiscard]] std::vector<int> joined(std::vector<int> columns, const std::vector<int>& more) {
+  columns.insert(columns.end(), more.begin(), more.end());
+  return columns;
+}
+
+}  // namespace
+}  // namespace detail
+
+ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
+                                 Eigen::VectorXd largest, double unit, int components)
+    : largest_(std::move(largest)) {
+  const Eigen::VectorXd root = fit.loss.cwiseSqrt();
+  jacobian_ = root.asDiagonal() * fit.jacobian;
+  residual_ = root.cwiseProduct(fit.residual);
+  squared_ = jacobian_.transpose() * jacobian_ + fit.prior_hessian;
+  gradient_ = jacobian_.transpose() * residual_ + fit.prior_gradient;
+  scale_ = squared_.diagonal().cwiseSqrt();
+  const auto rows = static_cast<std::size_t>(residual_.size());
+  pose_.resize(rows);
+  fold_.resize(rows);
+  if (!poses.region.empty()) region_.resize(rows);
+  distance_ = Eigen::VectorXd::Zero(residual_.size());
+  for (const RowBlock& block : fit.blocks) {
+    const auto sample = static_cast<std::size_t>(block.sample);
+    for (Eigen::Index row = block.first; row < block.first + block.size; ++row) {
+      const auto r = static_cast<std::size_t>(row);
+      pose_[r] = poses.pose[sample];
+      fold_[r] = poses.fold[sample];
+      if (!region_.empty()) region_[r] = poses.region[sample];
+      poses_ = std::max(poses_, pose_[r] + 1);
+      if (block.term == 0) distance_(row) = 1.0 / unit;
+    }
+  }
+  features_ = (distance_.array() > 0.0).select(fit.loss, 0.0).sum() / components;
+}
+
+ParameterSearch::Whole ParameterSearch::whole_fit(const std::vector<int>& columns) const {
+  Whole whole{columns, {}, residual_, 0.0, {}, {}, false};
+  if (!columns.empty()) {
+    whole.inverse = detail::scaled_inverse(squared_(columns, columns), scale_(columns));
+    if (whole.inverse.size() == 0) return whole;
+    whole.change = -whole.inverse * gradient_(columns);
+    whole.residual += jacobian_(Eigen::all, columns) * whole.change;
+  }
+  whole.squares = whole.residual.squaredNorm();
+  const double freedom = std::max(1.0, static_cast<double>(residual_.size() - std::ssize(columns)));
+  whole.deviation = (whole.squares / freedom * whole.inverse.diagonal()).cwiseSqrt();
+  whole.determined = true;
+  return whole;
+}
+
+bool ParameterSearch::is_plausible(const Whole& whole, std::size_t from) const {
+  constexpr double kHardly = 0.3;  // of the plausible change
+  for (std::size_t i = from; i < whole.columns.size(); ++i) {
+    const double largest = largest_(whole.columns[i]);
+    const auto at = static_cast<Eigen::Index>(i);
+    if (!(std::abs(whole.change(at)) <= largest && whole.deviation(at) <= kHardly * largest))
+      return false;
+  }
+  return true;
+}
+
+Eigen::VectorXd ParameterSearch::predicted(const std::vector<int>& columns,
+                                           const std::vector<int>& part, double* distance) const {
+  const int parts = *std::max_element(part.begin(), part.end()) + 1;
+  std::vector<std::vector<Eigen::Index>> rows(static_cast<std::size_t>(parts));
+  for (std::size_t row = 0; row < part.size(); ++row) {
+    rows[static_cast<std::size_t>(part[row])].push_back(static_cast<Eigen::Index>(row));
+  }
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(poses_);
+  double sum = 0.0;
+  const Eigen::MatrixXd squared = squared_(columns, columns);
+  const Eigen::VectorXd gradient = gradient_(columns), scale = scale_(columns);
+  for (const std::vector<Eigen::Index>& out : rows) {
+    if (out.empty()) continue;
+    Eigen::VectorXd left = residual_(out);
+    if (!columns.empty()) {
+      const Eigen::MatrixXd jacobian = jacobian_(out, columns);
+      const Eigen::MatrixXd inverse =
+          detail::scaled_inverse(squared - jacobian.transpose() * jacobian, scale);
+      if (inverse.size() == 0) return {};
+      left -= jacobian * (inverse * (gradient - jacobian.transpose() * left));
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double value = left(static_cast<Eigen::Index>(i)), metres = value * distance_(out[i]);
+      squares(pose_[static_cast<std::size_t>(out[i])]) += value * value;
+      sum += metres * metres;
+    }
+  }
+  if (distance != nullptr) *distance = sum;
+  return squares;
+}
+
+SearchFit ParameterSearch::fit_of(const std::vector<int>& columns) const {
+  const auto root = [&](double squares) { return std::sqrt(squares / std::max(features_, 1.0)); };
+  constexpr double kUndetermined = std::numeric_limits<double>::infinity();
+  const Whole whole = whole_fit(columns);
+  SearchFit fit{root(whole.residual.cwiseProduct(distance_).squaredNorm()), kUndetermined, 0.0};
+  double squares = 0.0;
+  if (predicted(columns, fold_, &squares).size() > 0) fit.held_out = root(squares);
+  if (!region_.empty()) {
+    fit.region = predicted(columns, region_, &squares).size() > 0 ? root(squares) : kUndetermined;
+  }
+  return fit;
+}
+
+double ParameterSearch::certainty(const Eigen::VectorXd& before,
+                                  const Eigen::VectorXd& after) const {
+  if (after.size() == 0) return -std::numeric_limits<double>::infinity();
+  if (before.size() == 0) return std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd fall = before - after;
+  const double mean = fall.mean(), n = static_cast<double>(fall.size());
+  const double error = std::sqrt((fall.array() - mean).square().sum() / std::max(1.0, n - 1.0) / n);
+  return error > 0.0 ? mean / error : 0.0;
+}
+
+bool ParameterSearch::improves(const std::vector<int>& with, const std::vector<int>& without,
+                               double least, double& sure) const {
+  sure = certainty(predicted(without, fold_, nullptr), predicted(with, fold_, nullptr));
+  if (!(sure > least)) return false;
+  if (region_.empty()) return true;
+  constexpr double kNotWorse =
+      -1.0;  // standard errors: what helps inside the poses must not harm beyond them
+  return certainty(predicted(without, region_, nullptr), predicted(with, region_, nullptr)) >
+         kNotWorse;
+}
+
+}  // namespace kinecal
+
+#include "kinecal/trust/parameter_search_run.ipp"

@@ -1,0 +1,119 @@
+// Which parameters samples support: a search over subsets, at one linearization.
+//
+// All candidates are columns of one linearized problem, so a fit with any subset of them, and its error on
+// poses held out, is linear algebra.  Forward steps free what lowers the error on held-out poses most surely;
+// backward steps hold again what later ones have made superfluous.
+// Source: Hastie, Tibshirani, Friedman, The Elements of Statistical Learning, 3.3 and 7.10.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "kinecal/solve/linear_fit.hpp"
+
+namespace kinecal {
+
+/// Parameters that are freed together.
+struct SearchCandidate {
+  std::vector<int> columns;  ///< of the linearization
+  int rank =
+      0;  ///< of candidates that explain the same, the lowest is taken: what an engineer names first
+};
+
+/// How well a subset predicts; residuals of the first error block, in its unit.
+struct SearchFit {
+  double fitted = 0.0;  ///< root of the mean squared distance
+  double held_out =
+      0.0;  ///< the same, of poses held out; infinite if a fold leaves something undetermined
+  double region = 0.0;  ///< the same, of regions held out; 0: there are none
+};
+
+/// A step of a search.
+struct SearchStep {
+  int candidate = 0;            ///< by number
+  bool freed = true;            ///< else it is held again
+  SearchFit fit = {};           ///< after the step
+  double certainty = 0.0;       ///< fall of the error on held-out poses, in its standard errors
+  std::vector<int> alike = {};  ///< other candidates that explain the same
+};
+
+/// The samples of a search.
+struct SearchPoses {
+  std::vector<int> pose;    ///< of each sample: readings of one pose are held out together
+  std::vector<int> fold;    ///< of each sample
+  std::vector<int> region;  ///< of each sample; empty: none
+};
+
+/// A search at one linearization.
+class ParameterSearch {
+ public:
+  /// @param fit      linearized by all columns, as plain parameters
+  /// @param poses    of the samples of the problem
+  /// @param largest  (columns) plausible change of each parameter
+  /// @param unit     weight of the first error block: its rows are distances times this
+  /// @param components  rows of one of its features
+  ParameterSearch(const LinearFit& fit, const SearchPoses& poses, Eigen::VectorXd largest,
+                  double unit, int components);
+
+  /// How well a subset predicts.
+  /// @param columns  that are free
+  [[nodiscard]] SearchFit fit_of(const std::vector<int>& columns) const;
+
+  /// Searches until no step helps, or until a step changes so much that the problem should be linearized again.
+  /// @param base    columns that are always free
+  /// @param chosen  in: candidates to begin with; out: the result, in the order in which they were freed
+  [[nodiscard]] std::vector<SearchStep> run(const std::vector<int>& base,
+                                            const std::vector<SearchCandidate>& candidates,
+                                            std::vector<int>& chosen) const;
+
+ private:
+  /// A fit of a subset to all rows.
+  struct Whole {
+    std::vector<int> columns;
+    Eigen::MatrixXd inverse;    ///< of the information
+    Eigen::VectorXd residual;   ///< (rows) left
+    double squares = 0.0;       ///< of them
+    Eigen::VectorXd change;     ///< (columns)
+    Eigen::VectorXd deviation;  ///< (columns) standard deviations
+    bool determined = false;    ///< all columns
+  };
+  /// What a candidate explains beside a subset.
+  struct Gain {
+    int candidate = 0;
+    double squares = 0.0;  ///< fall of the sum of squares
+    double chance = 1.0;   ///< that noise does so
+  };
+
+  [[nodiscard]] Whole whole_fit(const std::vector<int>& columns) const;
+  [[nodiscard]] Gain gain_of(const Whole& whole, const SearchCandidate& candidate,
+                             int number) const;
+  [[nodiscard]] std::vector<Gain> gains(const Whole& whole,
+                                        const std::vector<SearchCandidate>& candidates,
+                                        const std::vector<int>& chosen) const;
+  /// Chance of the same if the residuals of a pose err together.
+  [[nodiscard]] double chance_by_poses(const Whole& whole, const SearchCandidate& candidate) const;
+  /// True if every change and deviation is plausible.
+  /// @param from  first of the columns to look at
+  [[nodiscard]] bool is_plausible(const Whole& whole, std::size_t from) const;
+  /// (poses) sum of squared weighted residuals, each pose predicted without its part; empty if undetermined.
+  [[nodiscard]] Eigen::VectorXd predicted(const std::vector<int>& columns,
+                                          const std::vector<int>& part, double* distance) const;
+  /// Fall of held-out errors in standard errors.
+  [[nodiscard]] double certainty(const Eigen::VectorXd& before, const Eigen::VectorXd& after) const;
+  [[nodiscard]] bool improves(const std::vector<int>& with, const std::vector<int>& without,
+                              double least, double& certainty) const;
+
+  Eigen::MatrixXd jacobian_;               ///< (rows x columns) weighted
+  Eigen::VectorXd residual_;               ///< (rows) weighted
+  Eigen::MatrixXd squared_;                ///< J^T J, priors included
+  Eigen::VectorXd gradient_;               ///< J^T r, priors included
+  Eigen::VectorXd scale_;                  ///< (columns) lengths
+  Eigen::VectorXd largest_;                ///< (columns)
+  std::vector<int> pose_, fold_, region_;  ///< of each row
+  Eigen::VectorXd distance_;  ///< (rows) factor to the unit of the first block; 0: another block
+  double features_ = 0.0;     ///< of the first block, weighted
+  int poses_ = 0;
+};
+
+}  // namespace kinecal
