@@ -84,6 +84,7 @@ int init(const InitOptions& options);
 
 struct IdentifyOptions : InputOptions {
   std::string output = "identified.yaml";  ///< file
+  bool geometry_only = false;              ///< no joint models
   bool force = false;                      ///< replace it
 };
 

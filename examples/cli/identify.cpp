@@ -50,14 +50,15 @@ struct Search {
 };
 
 /// Searches, and judges the calibration with what was found.
-Search search(const Config& config, const Robot& robot, std::span<const Sample> samples) {
+Search search(const Config& config, const Robot& robot, std::span<const Sample> samples,
+              bool geometry_only) {
   Search all;
   Diagnostics diagnostics;
   Calibration calibration =
       assemble(with_all_candidates(config, robot), robot, samples, diagnostics);
   diagnostics.throw_if_errors();
   const AnyProblem& problem = *calibration.steps.front().problem;
-  all.task = identify_task(config, problem);
+  all.task = identify_task(config, problem, geometry_only);
   all.found = identify(calibration, samples, all.task.base, all.task.candidates);
   all.config = identified_config(config, all.task, all.found, problem);
   if (free_parameters(all.config.steps.front()).empty()) return all;
@@ -67,11 +68,10 @@ Search search(const Config& config, const Robot& robot, std::span<const Sample> 
   return all;
 }
 
-/// The name of a step: what it freed or held.
+/// The name of a step: what it freed.
 std::string name_of(const Search& search, const IdentifyStep& step) {
   if (step.candidate < 0) return "(only unknown poses)";
-  const IdentifyCandidate& of = search.task.candidates[static_cast<std::size_t>(step.candidate)];
-  return (step.freed ? "" : "held again: ") + of.name;
+  return search.task.candidates[static_cast<std::size_t>(step.candidate)].name;
 }
 
 std::string steps_text(const Search& search) {
@@ -86,7 +86,7 @@ std::string steps_text(const Search& search) {
   }
   std::string text = table.str();
   for (const IdentifyStep& step : found.steps) {
-    if (step.alike.empty() || !step.freed) continue;
+    if (step.alike.empty()) continue;
     std::string others;
     constexpr std::size_t kShown = 4;
     for (std::size_t i = 0; i < std::min(kShown, step.alike.size()); ++i) {
@@ -106,7 +106,7 @@ std::map<std::string, std::string> comments(const Search& search, const AnyProbl
   std::map<std::string, std::string> why;
   double before = 0.0;
   for (const IdentifyStep& step : search.found.steps) {
-    if (step.candidate >= 0 && step.freed && problem != nullptr) {
+    if (step.candidate >= 0 && problem != nullptr) {
       for (const int p :
            search.task.candidates[static_cast<std::size_t>(step.candidate)].parameters) {
         const std::string text =
@@ -137,7 +137,7 @@ int identify(IdentifyOptions options) {
   if (is_proposed) {  // its sigmas are guesses
     for (BlockConfig& block : input.config.steps.front().error_blocks) block.sigma.reset();
   }
-  Search all = search(input.config, input.robot, input.samples);
+  Search all = search(input.config, input.robot, input.samples, options.geometry_only);
   if (!all.judged.left_out.empty()) {  // again, without bad samples
     std::set<int> out;
     for (const LeftOutSample& sample : all.judged.left_out) out.insert(sample.number);
@@ -146,7 +146,7 @@ int identify(IdentifyOptions options) {
       if (!out.contains(static_cast<int>(i) + 1)) used.push_back(input.samples[i]);
     }
     auto left_out = std::move(all.judged.left_out);
-    all = search(input.config, input.robot, used);
+    all = search(input.config, input.robot, used, options.geometry_only);
     all.judged.left_out.insert(all.judged.left_out.begin(), left_out.begin(), left_out.end());
   }
   fmt::print("{}\n", printable(fmt::format(

@@ -192,6 +192,8 @@ void add_identify(CLI::App& command, IdentifyOptions& options) {
       ->required()
       ->type_name("FILE");
   add_cameras(command, options.cameras);
+  command.add_flag("--geometry-only", options.geometry_only,
+                   "without gear ratios and eccentric encoders, which a URDF cannot hold");
   command.add_option("-o,--output", options.output, "the configuration to write")
       ->type_name("FILE")
       ->capture_default_str();

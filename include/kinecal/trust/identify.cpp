@@ -76,26 +76,31 @@ class Identification {
     constexpr int kRounds = 12;
     Identified found;
     found.unit = step_.problem->term(0).options.unit;
-    std::set<std::set<int>> settled;
+    std::set<std::set<int>> seen;
     for (int round = 0; round < kRounds; ++round) {
       found.result = solve(found.chosen);
-      if (!found.result.converged) break;
+      if (!found.result.converged) return found;
       const ParameterSearch search = linearized();
-      if (found.steps.empty())
-        found.steps.push_back(written({.candidate = -1, .fit = search.fit_of(base_)}));
-      const std::vector<SearchStep> steps = search.run(base_, columns_, found.chosen);
-      for (const SearchStep& step : steps) found.steps.push_back(written(step));
-      const std::set<int> now(found.chosen.begin(), found.chosen.end());
-      if (steps.empty() || !settled.insert(now).second) break;
+      std::vector<int> chosen = found.chosen;
+      search.run(base_, columns_, chosen);
+      const std::set<int> now(chosen.begin(), chosen.end());
+      const bool stays = now == std::set<int>(found.chosen.begin(), found.chosen.end());
+      if (stays || !seen.insert(now).second) {
+        found.steps = {written({.candidate = -1, .fit = search.fit_of(base_)})};
+        for (const SearchStep& step : search.path(base_, columns_, found.chosen)) {
+          found.steps.push_back(written(step));
+        }
+        break;
+      }
+      found.chosen = std::move(chosen);
     }
-    found.result = solve(found.chosen);
     return found;
   }
 
  private:
   [[nodiscard]] static IdentifyStep written(const SearchStep& step) {
-    return {step.candidate,  step.freed,     step.fit.fitted, step.fit.held_out,
-            step.fit.region, step.certainty, step.alike};
+    return {step.candidate,  step.fit.fitted, step.fit.held_out,
+            step.fit.region, step.certainty,  step.alike};
   }
 
   /// Solves with some candidates, from the last solution, until the noise stays.

@@ -22,10 +22,9 @@ struct IdentifyCandidate {
   int rank = 0;                 ///< of candidates that explain the same, the lowest is taken
 };
 
-/// One step of the search.  Errors are of the first error block, in its unit.
+/// What one parameter buys, in the order of what they explain.  Errors are of the first error block, in its unit.
 struct IdentifyStep {
   int candidate = -1;      ///< by number; -1: the base alone
-  bool freed = true;       ///< else it is held again
   double fitted = 0.0;     ///< root of the mean squared distance after it
   double held_out = 0.0;   ///< the same, of poses held out
   double region = 0.0;     ///< the same, of regions held out; 0: there are none
@@ -35,7 +34,7 @@ struct IdentifyStep {
 
 /// What was found.
 struct Identified {
-  std::vector<int> chosen;          ///< candidates, in the order in which they were freed
+  std::vector<int> chosen;          ///< candidates
   std::vector<IdentifyStep> steps;  ///< the first one is the base alone
   CalibrationResult result;         ///< with the chosen parameters free
   std::string unit;                 ///< of the first error block

@@ -146,15 +146,15 @@ double ParameterSearch::certainty(const Eigen::VectorXd& before,
   return error > 0.0 ? mean / error : 0.0;
 }
 
-bool ParameterSearch::improves(const std::vector<int>& with, const std::vector<int>& without,
-                               double least, double& sure) const {
-  sure = certainty(predicted(without, fold_, nullptr), predicted(with, fold_, nullptr));
-  if (!(sure > least)) return false;
-  if (region_.empty()) return true;
-  constexpr double kNotWorse =
-      -1.0;  // standard errors: what helps inside the poses must not harm beyond them
-  return certainty(predicted(without, region_, nullptr), predicted(with, region_, nullptr)) >
-         kNotWorse;
+double ParameterSearch::certainty_of(const std::vector<int>& with,
+                                     const std::vector<int>& without) const {
+  const double sure =
+      certainty(predicted(without, fold_, nullptr), predicted(with, fold_, nullptr));
+  if (region_.empty() || !(sure > kSure)) return sure;
+  constexpr double kNotWorse = -1.0;  // what helps inside the poses must not harm beyond them
+  const double beyond =
+      certainty(predicted(without, region_, nullptr), predicted(with, region_, nullptr));
+  return beyond > kNotWorse ? sure : beyond;
 }
 
 }  // namespace kinecal

@@ -29,13 +29,12 @@ struct SearchFit {
   double region = 0.0;  ///< the same, of regions held out; 0: there are none
 };
 
-/// A step of a search.
+/// A parameter that was found, in the order of what they explain.
 struct SearchStep {
-  int candidate = 0;            ///< by number
-  bool freed = true;            ///< else it is held again
-  SearchFit fit = {};           ///< after the step
-  double certainty = 0.0;       ///< fall of the error on held-out poses, in its standard errors
-  std::vector<int> alike = {};  ///< other candidates that explain the same
+  int candidate = 0;       ///< by number
+  SearchFit fit = {};      ///< with it and those before it
+  double certainty = 0.0;  ///< fall of the error on held-out poses by it, in its standard errors
+  std::vector<int> alike = {};  ///< other candidates that would do as well in place of it
 };
 
 /// The samples of a search.
@@ -48,6 +47,8 @@ struct SearchPoses {
 /// A search at one linearization.
 class ParameterSearch {
  public:
+  using Candidates = std::vector<SearchCandidate>;  ///< all that may be freed
+
   /// @param fit      linearized by all columns, as plain parameters
   /// @param poses    of the samples of the problem
   /// @param largest  (columns) plausible change of each parameter
@@ -60,12 +61,16 @@ class ParameterSearch {
   /// @param columns  that are free
   [[nodiscard]] SearchFit fit_of(const std::vector<int>& columns) const;
 
-  /// Searches until no step helps, or until a step changes so much that the problem should be linearized again.
+  /// Searches until no step helps, or until steps change so much that the problem should be linearized again.
   /// @param base    columns that are always free
-  /// @param chosen  in: candidates to begin with; out: the result, in the order in which they were freed
-  [[nodiscard]] std::vector<SearchStep> run(const std::vector<int>& base,
-                                            const std::vector<SearchCandidate>& candidates,
-                                            std::vector<int>& chosen) const;
+  /// @param chosen  candidates; in: to begin with
+  void run(const std::vector<int>& base, const Candidates& candidates,
+           std::vector<int>& chosen) const;
+
+  /// What each of the chosen candidates buys.
+  [[nodiscard]] std::vector<SearchStep> path(const std::vector<int>& base,
+                                             const Candidates& candidates,
+                                             const std::vector<int>& chosen) const;
 
  private:
   /// A fit of a subset to all rows.
@@ -88,8 +93,7 @@ class ParameterSearch {
   [[nodiscard]] Whole whole_fit(const std::vector<int>& columns) const;
   [[nodiscard]] Gain gain_of(const Whole& whole, const SearchCandidate& candidate,
                              int number) const;
-  [[nodiscard]] std::vector<Gain> gains(const Whole& whole,
-                                        const std::vector<SearchCandidate>& candidates,
+  [[nodiscard]] std::vector<Gain> gains(const Whole& whole, const Candidates& candidates,
                                         const std::vector<int>& chosen) const;
   /// Chance of the same if the residuals of a pose err together.
   [[nodiscard]] double chance_by_poses(const Whole& whole, const SearchCandidate& candidate) const;
@@ -101,8 +105,32 @@ class ParameterSearch {
                                           const std::vector<int>& part, double* distance) const;
   /// Fall of held-out errors in standard errors.
   [[nodiscard]] double certainty(const Eigen::VectorXd& before, const Eigen::VectorXd& after) const;
-  [[nodiscard]] bool improves(const std::vector<int>& with, const std::vector<int>& without,
-                              double least, double& certainty) const;
+  /// Fall of the error on held-out poses by some columns, in its standard errors; the smaller one of poses and regions,
+  /// where regions need not fall.
+  [[nodiscard]] double certainty_of(const std::vector<int>& with,
+                                    const std::vector<int>& without) const;
+  /// True if noise does not explain what a candidate does, and the samples determine it.
+  /// @param base  number of columns that are always free
+  [[nodiscard]] bool helps(const Whole& whole, const Gain& gain, const Candidates& candidates,
+                           std::size_t base) const;
+  /// Frees the candidate that explains most, of those that help.
+  [[nodiscard]] bool free_one(const std::vector<int>& base, const Candidates& candidates,
+                              std::vector<int>& chosen) const;
+  /// Holds what does not help beside the others.
+  void hold_superfluous(const std::vector<int>& base, const Candidates& candidates,
+                        std::vector<int>& chosen) const;
+  /// All candidates up to a rank that are determined, beside the chosen ones.
+  [[nodiscard]] std::vector<int> saturated(const std::vector<int>& base,
+                                           const Candidates& candidates, std::vector<int> chosen,
+                                           int rank) const;
+  /// Takes the candidate of the lowest rank among those that do as well.
+  void name_simply(const std::vector<int>& base, const Candidates& candidates,
+                   std::vector<int>& chosen) const;
+  /// Candidates that do as well in place of one.
+  [[nodiscard]] std::vector<int> like(const Whole& without, const Candidates& candidates,
+                                      const std::vector<int>& chosen, int k) const;
+
+  static constexpr double kSure = 1.0;  // standard errors
 
   Eigen::MatrixXd jacobian_;               ///< (rows x columns) weighted
   Eigen::VectorXd residual_;               ///< (rows) weighted

@@ -81,7 +81,7 @@ Config with_all_candidates(const Config& config, const Robot& robot) {
   return all;
 }
 
-IdentifyTask identify_task(const Config& config, const AnyProblem& problem) {
+IdentifyTask identify_task(const Config& config, const AnyProblem& problem, bool geometry_only) {
   const Robot& robot = problem.robot();
   const ParameterTable& table = problem.table();
   const StepConfig& step = config.steps.front();
@@ -104,6 +104,16 @@ IdentifyTask identify_task(const Config& config, const AnyProblem& problem) {
       task.base.push_back(p);
   }
   taken.insert(task.base.begin(), task.base.end());
+  for (const FreeFrameConfig& frame : step.free_frames) {  // how a head or an arm is mounted
+    const bool whole =
+        std::all_of(frame.axes.begin(), frame.axes.end(), [](bool axis) { return axis; });
+    if (detail::is_base_frame(robot, frame) || !whole) continue;
+    IdentifyCandidate& mount = task.candidates.emplace_back();
+    mount.name = "frame of " + frame.name;
+    mount.rank = detail::kMount;
+    for (const auto axis : kFrameAxes)
+      mount.parameters.push_back(index(parameter_name(frame.name, axis)));
+  }
   const auto add = [&](int rank, const std::string& name, const std::vector<std::string>& parts) {
     IdentifyCandidate candidate{name, {}, rank};
     for (const std::string& part : parts) {
@@ -129,6 +139,7 @@ IdentifyTask identify_task(const Config& config, const AnyProblem& problem) {
       add(detail::kGeometry, name, {name});
     }
   }
+  if (geometry_only) return task;
   for (const Joint* joint : joints) {
     const std::string gear = joint->name + "_gear_ratio", sine = joint->name + "_eccentric_sin",
                       cosine = joint->name + "_eccentric_cos";

@@ -27,8 +27,10 @@ struct IdentifyTask {
 };
 
 /// @param config   the configuration whose models and error blocks are kept
+/// @param geometry_only  without joint models, which a URDF cannot hold
 /// @param problem  of with_all_candidates()
-[[nodiscard]] IdentifyTask identify_task(const Config& config, const AnyProblem& problem);
+[[nodiscard]] IdentifyTask identify_task(const Config& config, const AnyProblem& problem,
+                                         bool geometry_only = false);
 
 /// The configuration that frees what was found.
 [[nodiscard]] Config identified_config(const Config& config, const IdentifyTask& task,
