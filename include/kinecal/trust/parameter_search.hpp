@@ -90,6 +90,12 @@ class ParameterSearch {
     double chance = 1.0;   ///< that noise does so
   };
 
+  /// What a candidate must show.
+  struct Evidence {
+    double chance = 0.0;  ///< largest that noise does as much
+    double sure = 0.0;    ///< least fall of the error on held-out poses, in its standard errors
+  };
+
   [[nodiscard]] Whole whole_fit(const std::vector<int>& columns) const;
   [[nodiscard]] Gain gain_of(const Whole& whole, const SearchCandidate& candidate,
                              int number) const;
@@ -112,7 +118,7 @@ class ParameterSearch {
   /// True if noise does not explain what a candidate does, and the samples determine it.
   /// @param base  number of columns that are always free
   [[nodiscard]] bool helps(const Whole& whole, const Gain& gain, const Candidates& candidates,
-                           std::size_t base) const;
+                           std::size_t base, const Evidence& evidence) const;
   /// Frees the candidate that explains most, of those that help.
   [[nodiscard]] bool free_one(const std::vector<int>& base, const Candidates& candidates,
                               std::vector<int>& chosen) const;

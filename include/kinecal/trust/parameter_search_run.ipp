@@ -12,23 +12,23 @@
 namespace kinecal {
 
 bool ParameterSearch::helps(const Whole& whole, const Gain& gain, const Candidates& candidates,
-                            std::size_t base) const {
-  constexpr double kChance = 0.2;  // of a superfluous parameter in a search
+                            std::size_t base, const Evidence& evidence) const {
   const SearchCandidate& of = candidates[static_cast<std::size_t>(gain.candidate)];
-  const double tests = static_cast<double>(candidates.size());
-  if (tests * std::max(gain.chance, chance_by_poses(whole, of)) > kChance) return false;
+  if (std::max(gain.chance, chance_by_poses(whole, of)) > evidence.chance) return false;
   const Whole with = whole_fit(detail::joined(whole.columns, of.columns));
   return with.determined && is_plausible(with, base) &&
-         certainty_of(with.columns, whole.columns) > kSure;
+         certainty_of(with.columns, whole.columns) > evidence.sure;
 }
 
 bool ParameterSearch::free_one(const std::vector<int>& base, const Candidates& candidates,
                                std::vector<int>& chosen) const {
   constexpr std::size_t kTried = 8;  // of the best, before the search ends
+  const Evidence evidence{0.2 / static_cast<double>(candidates.size()),
+                          kSure};  // of a superfluous one in a search
   const Whole whole = whole_fit(detail::columns_of(base, candidates, chosen));
   const std::vector<Gain> all = gains(whole, candidates, chosen);
   for (std::size_t i = 0; i < std::min(kTried, all.size()); ++i) {
-    if (!helps(whole, all[i], candidates, base.size())) continue;
+    if (!helps(whole, all[i], candidates, base.size(), evidence)) continue;
     chosen.push_back(all[i].candidate);
     return true;
   }
@@ -37,13 +37,14 @@ bool ParameterSearch::free_one(const std::vector<int>& base, const Candidates& c
 
 void ParameterSearch::hold_superfluous(const std::vector<int>& base, const Candidates& candidates,
                                        std::vector<int>& chosen) const {
-  for (;;) {  // the least certain first
+  const Evidence evidence{0.02, 0.5};  // beside the others: it has been found already
+  for (;;) {                           // the least certain first
     int weakest = -1;
     double least = 0.0;
     for (const int k : chosen) {
       const Whole without = whole_fit(detail::columns_of(base, candidates, chosen, k));
       const Gain gain = gain_of(without, candidates[static_cast<std::size_t>(k)], k);
-      if (helps(without, gain, candidates, base.size())) continue;
+      if (helps(without, gain, candidates, base.size(), evidence)) continue;
       if (weakest >= 0 && gain.squares >= least) continue;
       weakest = k;
       least = gain.squares;
