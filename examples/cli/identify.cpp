@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -84,7 +85,13 @@ std::string steps_text(const Search& search) {
                step.region > 0.0 ? text(step.region) : "-", unit,
                step.candidate < 0 ? "" : fmt::format("{:.1f}", std::abs(step.certainty))});
   }
-  std::string text = table.str();
+  std::string text;
+  for (const auto& [k, turn] : found.turned) {
+    text += fmt::format("the zero of '{}' is {:+.0f} deg off: the search begins there\n\n",
+                        search.task.candidates[static_cast<std::size_t>(k)].name,
+                        turn * 180.0 / std::numbers::pi);
+  }
+  text += table.str();
   for (const IdentifyStep& step : found.steps) {
     if (step.alike.empty()) continue;
     std::string others;

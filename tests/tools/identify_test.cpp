@@ -135,7 +135,8 @@ class SimulatedArm {
   }
 
   /// Makes some candidates wrong, of the size of real errors; returns their numbers.
-  std::vector<int> spoil(int errors) {
+  /// @param turned  a joint whose zero is a quarter turn off
+  std::vector<int> spoil(int errors, const std::string& turned = "") {
     const Calibration calibration = assembled(wide_, robot_, samples_);
     task_ = identify_task(config_, *calibration.steps.front().problem);
     truth_ = calibration.table;
@@ -145,6 +146,7 @@ class SimulatedArm {
           std::pair("smr_z", 0.05)}) {
       truth_[name].value = value;
     }
+    if (!turned.empty()) truth_[turned].value = 1.5708 + 0.02;
     std::set<int> wrong;
     while (static_cast<int>(wrong.size()) < errors) {
       wrong.insert(random_.integer(0, static_cast<int>(task_.candidates.size()) - 1));
@@ -256,6 +258,18 @@ TEST(Identify, NamesWhatIsWrong) {
       "elsewhere\n",
       robots, exact, alike, missed, invented, worse);
   EXPECT_LE(worse, 0.05 * robots);
+}
+
+TEST(Identify, FindsAZeroThatIsAQuarterTurnOff) {
+  SimulatedArm arm(3);
+  arm.spoil(0, "wrist_2_joint");
+  const Found found = arm.found();
+  ASSERT_EQ(found.identified.turned.size(), 1U);
+  const auto& [candidate, turn] = found.identified.turned.front();
+  EXPECT_EQ(found.task.candidates[static_cast<std::size_t>(candidate)].name, "wrist_2_joint");
+  EXPECT_NEAR(turn, 1.5708, 1e-4);
+  EXPECT_THAT(found.names(), ElementsAre("wrist_2_joint")) << "by 0.02 rad more";
+  EXPECT_LT(arm.error(found.config), 2e-4);
 }
 
 TEST(Identify, WritesAConfigurationThatReadsAsTheSame) {

@@ -2,198 +2,81 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/identify.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
-#include "kinecal/trust/held_out.hpp"
-#include "kinecal/trust/parameter_search.hpp"
-#include "kinecal/trust/plausible_change.ipp"
-#include "kinecal/trust/pose_groups.hpp"
+#include "kinecal/trust/identification.ipp"
 
 namespace kinecal {
 
 namespace detail {
 namespace {
 
-/// All columns that some residual depends on: first the base, then those of candidates.
-[[nodiscard]] FreeSet all_columns(const AnyProblem& problem, const std::vector<int>& base,
-                                  const std::vector<IdentifyCandidate>& candidates) {
-  const std::vector<int> touched = problem.touched_parameters();
-  std::vector<int> all;
-  std::set<int> known;
-  const auto add = [&](int p) {
-    if (std::binary_search(touched.begin(), touched.end(), p) && known.insert(p).second)
-      all.push_back(p);
-  };
-  for (const int p : base) add(p);
-  for (const IdentifyCandidate& candidate : candidates) {
-    for (const int p : candidate.parameters) add(p);
-  }
-  return FreeSet(std::move(all), problem.table().size());
+[[nodiscard]] IdentifyStep written(const SearchStep& step) {
+  return {step.candidate,  step.fit.fitted, step.fit.held_out,
+          step.fit.region, step.certainty,  step.alike};
 }
 
-/// One identification: the problem, and where the search stands.
-class Identification {
- public:
-  Identification(Calibration& calibration, std::span<const Sample> samples,
-                 const std::vector<int>& base, const std::vector<IdentifyCandidate>& candidates)
-      : calibration_(calibration),
-        step_(calibration.steps.front()),
-        all_(all_columns(*step_.problem, base, candidates)) {
-    constexpr int kFolds = 10;
-    const PoseGroups poses = pose_groups(*step_.problem, samples);
-    poses_.pose = poses.of_sample;
-    poses_.fold = folds_of(samples, poses, std::min(kFolds, poses.count));
-    poses_.region = pose_regions(*step_.problem, samples, poses);
-    for (const int p : base) {
-      if (all_.column(p) >= 0) base_.push_back(all_.column(p));
-    }
-    for (const IdentifyCandidate& candidate : candidates) {
-      SearchCandidate& of = columns_.emplace_back();
-      of.rank = candidate.rank;
-      for (const int p : candidate.parameters) {
-        if (all_.column(p) >= 0) of.columns.push_back(all_.column(p));
-      }
-    }
-    largest_.resize(all_.size());
-    for (int c = 0; c < all_.size(); ++c) {
-      largest_(c) =
-          plausible_change(*step_.problem, all_.parameters()[static_cast<std::size_t>(c)]).care;
-    }
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (columns_[k].columns.size() != candidates[k].parameters.size())
-        columns_[k].columns.clear();
-    }
-    for (const Parameter& p : calibration.table) initial_.push_back(p.value);
-    sigmas_.resize(static_cast<std::size_t>(step_.problem->num_terms()), 0.0);
-  }
-
-  Identified run() {
-    constexpr int kRounds = 12;
-    Identified found;
-    found.unit = step_.problem->term(0).options.unit;
-    std::set<std::set<int>> seen;
-    for (int round = 0; round < kRounds; ++round) {
-      found.result = solve(found.chosen);
-      if (!found.result.converged) return found;
-      const ParameterSearch search = linearized();
-      std::vector<int> chosen = found.chosen;
-      search.run(base_, columns_, chosen);
-      const std::set<int> now(chosen.begin(), chosen.end());
-      const bool stays = now == std::set<int>(found.chosen.begin(), found.chosen.end());
-      if (stays || !seen.insert(now).second) {
-        found.steps = {written({.candidate = -1, .fit = search.fit_of(base_)})};
-        for (const SearchStep& step : search.path(base_, columns_, found.chosen)) {
-          found.steps.push_back(written(step));
+/// Zeros that are a quarter or half turn off, as of servos that were screwed on so: no linearization finds them.
+void find_turns(Identification& search, Identified& found) {
+  constexpr double kMetres = 0.01, kPixels = 30.0;  // residuals of less are no such error
+  constexpr double kThird = 1.0 / 3.0;
+  constexpr int kMost = 3;
+  for (int n = 0; n < kMost && search.noise() > (found.unit == "px" ? kPixels : kMetres); ++n) {
+    std::pair<int, double> best{-1, 0.0};
+    double least = kThird * search.noise();
+    for (int k = 0; k < static_cast<int>(search.candidates().size()); ++k) {
+      const std::vector<int>& own = search.candidates()[static_cast<std::size_t>(k)].columns;
+      if (search.candidates()[static_cast<std::size_t>(k)].rank > 0 || own.size() != 1) continue;
+      if (search.parameter(own.front()).unit != "rad") continue;
+      for (const double turn : {0.5, -0.5, 1.0}) {
+        const double by = turn * std::numbers::pi;
+        search.begin_with(own.front(), by);
+        if (search.solve({}).converged && search.noise() < least) {
+          best = {k, by};
+          least = search.noise();
         }
-        break;
-      }
-      found.chosen = std::move(chosen);
-    }
-    return found;
-  }
-
- private:
-  [[nodiscard]] static IdentifyStep written(const SearchStep& step) {
-    return {step.candidate,  step.fit.fitted, step.fit.held_out,
-            step.fit.region, step.certainty,  step.alike};
-  }
-
-  /// Solves with some candidates, from the last solution, until the noise stays.
-  CalibrationResult solve(const std::vector<int>& chosen) {
-    std::vector<int> free;
-    const auto add = [&](const std::vector<int>& columns) {
-      for (const int c : columns) free.push_back(all_.parameters()[static_cast<std::size_t>(c)]);
-    };
-    add(base_);
-    for (const int k : chosen) add(columns_[static_cast<std::size_t>(k)].columns);
-    // What is held again is what it was.
-    for (int p = 0; p < calibration_.table.size(); ++p) {
-      if (std::find(free.begin(), free.end(), p) == free.end()) {
-        calibration_.table[p].value = initial_[static_cast<std::size_t>(p)];
+        search.begin_with(own.front(), -by);
       }
     }
-    CalibrationResult result;
-    result.table = calibration_.table;
-    constexpr int kRounds = 5;
-    for (int round = 0; round < kRounds; ++round) {
-      if (free.empty()) {
-        result.converged = true;
-      } else {
-        step_.free = FreeSet(free, calibration_.table.size());
-        result = calibrate(calibration_);
-        if (!result.converged) return result;
-        calibration_.table = result.table;
-        step_.unknown_frames.clear();  // they are known from here on
-      }
-      values_.clear();
-      for (const Parameter& p : calibration_.table) values_.push_back(p.value);
-      if (!update_noise()) break;
+    if (best.first >= 0) {
+      search.begin_with(search.candidates()[static_cast<std::size_t>(best.first)].columns.front(),
+                        best.second);
+      found.turned.push_back(best);
     }
-    return result;
+    found.result = search.solve({});
+    if (best.first < 0) return;
   }
+}
 
-  /// Sets the noise of each error block to what the median residual shows.
-  /// @returns  whether one has changed
-  bool update_noise() {
-    AnyProblem& problem = *step_.problem;
-    std::vector<std::vector<double>> residuals(sigmas_.size());
-    (void)evaluate(problem, values_, nullptr, [&](int t, int, const TermResiduals& of) {
-      for (Eigen::Index i = 0; i < of.residual.size(); ++i) {
-        if (of.residual(i) != 0.0)
-          residuals[static_cast<std::size_t>(t)].push_back(std::abs(of.residual(i)));
+Identified run(Identification& search, const std::string& unit) {
+  constexpr int kRounds = 12;
+  Identified found;
+  found.unit = unit;
+  found.result = search.solve({});
+  if (found.result.converged) find_turns(search, found);
+  std::set<std::set<int>> seen;
+  for (int round = 0; round < kRounds && found.result.converged; ++round) {
+    const ParameterSearch linear = search.linearized();
+    std::vector<int> chosen = found.chosen;
+    linear.run(search.base(), search.candidates(), chosen);
+    const std::set<int> now(chosen.begin(), chosen.end());
+    const bool stays = now == std::set<int>(found.chosen.begin(), found.chosen.end());
+    if (stays || !seen.insert(now).second) {
+      found.steps = {written({.candidate = -1, .fit = linear.fit_of(search.base())})};
+      for (const SearchStep& step : linear.path(search.base(), search.candidates(), found.chosen)) {
+        found.steps.push_back(written(step));
       }
-    });
-    constexpr double kOfMedian = 1.4826, kSame = 0.05;
-    bool changed = false;
-    for (std::size_t t = 0; t < sigmas_.size(); ++t) {
-      std::vector<double>& all = residuals[t];
-      if (all.empty()) continue;
-      const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-      std::nth_element(all.begin(), middle, all.end());
-      const double sigma = std::max(kOfMedian * *middle, std::numeric_limits<double>::min());
-      if (std::abs(sigma - sigmas_[t]) <= kSame * sigma) continue;
-      sigmas_[t] = sigma;
-      step_.set_sigma(static_cast<int>(t), sigma);
-      changed = true;
+      break;
     }
-    return changed;
+    found.chosen = std::move(chosen);
+    found.result = search.solve(found.chosen);
   }
-
-  /// Linearized at the solution, with what candidates explain back in the residuals: a subset begins with their
-  /// initial values.
-  [[nodiscard]] ParameterSearch linearized() const {
-    const auto evaluator = step_.problem->evaluator(all_, 1);
-    const int n = all_.size();
-    const Coordinates plain{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd(n, 0),
-                            Eigen::VectorXd::Zero(n), Eigen::VectorXd::Ones(n)};
-    LinearFit fit = linear_fit(*evaluator, values_, plain);
-    Eigen::VectorXd back = Eigen::VectorXd::Zero(n);
-    for (const SearchCandidate& candidate : columns_) {
-      for (const int c : candidate.columns) {
-        const auto p = static_cast<std::size_t>(all_.parameters()[static_cast<std::size_t>(c)]);
-        back(c) = initial_[p] - values_[p];
-      }
-    }
-    fit.residual += fit.jacobian * back;
-    fit.prior_gradient += fit.prior_hessian * back;
-    const Term& first = step_.problem->term(0);
-    return {fit, poses_, largest_, first.weight, first.feature_size};
-  }
-
-  Calibration& calibration_;
-  CalibrationStep& step_;
-  FreeSet all_;
-  std::vector<SearchCandidate> columns_;
-  std::vector<int> base_;
-  SearchPoses poses_;
-  Eigen::VectorXd largest_;
-  std::vector<double> initial_, sigmas_, values_;
-};
+  return found;
+}
 
 }  // namespace
 }  // namespace detail
@@ -207,7 +90,8 @@ Identified identify(Calibration& calibration, std::span<const Sample> samples,
   constexpr std::size_t kFewest = 4;
   if (samples.size() < kFewest)
     throw std::invalid_argument("there are too few samples to hold some out");
-  return detail::Identification(calibration, samples, base, candidates).run();
+  detail::Identification search(calibration, samples, base, candidates);
+  return detail::run(search, calibration.steps.front().problem->term(0).options.unit);
 }
 
 }  // namespace kinecal

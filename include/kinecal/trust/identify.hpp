@@ -8,6 +8,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinecal/samples/sample.hpp"
@@ -34,7 +35,9 @@ struct IdentifyStep {
 
 /// What was found.
 struct Identified {
-  std::vector<int> chosen;          ///< candidates
+  std::vector<int> chosen;  ///< candidates
+  /// Zeros that are a quarter or half turn off: candidates, and radians.  Their values begin there.
+  std::vector<std::pair<int, double>> turned;
   std::vector<IdentifyStep> steps;  ///< the first one is the base alone
   CalibrationResult result;         ///< with the chosen parameters free
   std::string unit;                 ///< of the first error block

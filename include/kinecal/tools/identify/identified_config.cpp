@@ -163,6 +163,13 @@ Config identified_config(const Config& config, const IdentifyTask& task, const I
     if (std::find(task.base.begin(), task.base.end(), p) != task.base.end())
       step.free_params.push_back(parameter);
   }
+  for (const auto& [k, turn] : found.turned) {
+    const Parameter& p =
+        problem.table()[task.candidates[static_cast<std::size_t>(k)].parameters.front()];
+    std::erase_if(step.initial_values,
+                  [&](const InitialValueConfig& value) { return value.name == p.name; });
+    step.initial_values.push_back({p.name, p.initial + turn, step.place});
+  }
   for (const int k : found.chosen) {
     for (const int p : task.candidates[static_cast<std::size_t>(k)].parameters) {
       const std::string& name = problem.table()[p].name;

@@ -1,0 +1,191 @@
+// One identification: the problem with all parameters, and where the search stands.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "kinecal/trust/held_out.hpp"
+#include "kinecal/trust/identify.hpp"
+#include "kinecal/trust/parameter_search.hpp"
+#include "kinecal/trust/plausible_change.ipp"
+#include "kinecal/trust/pose_groups.hpp"
+
+namespace kinecal::detail {
+
+/// All columns that some residual depends on: first the base, then those of candidates.
+[[nodiscard]] inline FreeSet all_columns(const AnyProblem& problem, const std::vector<int>& base,
+                                         const std::vector<IdentifyCandidate>& candidates) {
+  const std::vector<int> touched = problem.touched_parameters();
+  std::vector<int> all;
+  std::set<int> known;
+  const auto add = [&](int p) {
+    if (std::binary_search(touched.begin(), touched.end(), p) && known.insert(p).second)
+      all.push_back(p);
+  };
+  for (const int p : base) add(p);
+  for (const IdentifyCandidate& candidate : candidates) {
+    for (const int p : candidate.parameters) add(p);
+  }
+  return FreeSet(std::move(all), problem.table().size());
+}
+
+/// One identification: the problem, and where the search stands.
+class Identification {
+ public:
+  Identification(Calibration& calibration, std::span<const Sample> samples,
+                 const std::vector<int>& base, const std::vector<IdentifyCandidate>& candidates)
+      : calibration_(calibration),
+        step_(calibration.steps.front()),
+        all_(all_columns(*step_.problem, base, candidates)) {
+    unknown_ = step_.unknown_frames;
+    constexpr int kFolds = 10;
+    const PoseGroups poses = pose_groups(*step_.problem, samples);
+    poses_.pose = poses.of_sample;
+    poses_.fold = folds_of(samples, poses, std::min(kFolds, poses.count));
+    poses_.region = pose_regions(*step_.problem, samples, poses);
+    for (const int p : base) {
+      if (all_.column(p) >= 0) base_.push_back(all_.column(p));
+    }
+    for (const IdentifyCandidate& candidate : candidates) {
+      SearchCandidate& of = columns_.emplace_back();
+      of.rank = candidate.rank;
+      for (const int p : candidate.parameters) {
+        if (all_.column(p) >= 0) of.columns.push_back(all_.column(p));
+      }
+    }
+    largest_.resize(all_.size());
+    for (int c = 0; c < all_.size(); ++c) {
+      largest_(c) =
+          plausible_change(*step_.problem, all_.parameters()[static_cast<std::size_t>(c)]).care;
+    }
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (columns_[k].columns.size() != candidates[k].parameters.size())
+        columns_[k].columns.clear();
+    }
+    for (const Parameter& p : calibration.table) initial_.push_back(p.value);
+    sigmas_.resize(static_cast<std::size_t>(step_.problem->num_terms()), 0.0);
+  }
+
+  /// The rank of each candidate's columns.
+  [[nodiscard]] const std::vector<SearchCandidate>& candidates() const { return columns_; }
+  [[nodiscard]] const std::vector<int>& base() const { return base_; }  ///< columns
+  /// The parameter of a column.
+  [[nodiscard]] const Parameter& parameter(int column) const {
+    return calibration_.table[index(column)];
+  }
+  /// Noise of the first error block, in its unit, at the last solution.
+  [[nodiscard]] double noise() const { return sigmas_.front(); }
+
+  /// Begins with another value of a candidate's parameter, and searches for unknown poses again.
+  void begin_with(int column, double change) {
+    initial_[static_cast<std::size_t>(index(column))] += change;
+    for (int p = 0; p < calibration_.table.size(); ++p) {
+      calibration_.table[p].value = initial_[static_cast<std::size_t>(p)];
+    }
+    step_.unknown_frames = unknown_;
+  }
+
+  /// Solves with some candidates, from the last solution, until the noise stays.
+  CalibrationResult solve(const std::vector<int>& chosen) {
+    std::vector<int> free;
+    const auto add = [&](const std::vector<int>& columns) {
+      for (const int c : columns) free.push_back(all_.parameters()[static_cast<std::size_t>(c)]);
+    };
+    add(base_);
+    for (const int k : chosen) add(columns_[static_cast<std::size_t>(k)].columns);
+    // What is held again is what it was.
+    for (int p = 0; p < calibration_.table.size(); ++p) {
+      if (std::find(free.begin(), free.end(), p) == free.end()) {
+        calibration_.table[p].value = initial_[static_cast<std::size_t>(p)];
+      }
+    }
+    CalibrationResult result;
+    result.table = calibration_.table;
+    constexpr int kRounds = 5;
+    for (int round = 0; round < kRounds; ++round) {
+      if (free.empty()) {
+        result.converged = true;
+      } else {
+        step_.free = FreeSet(free, calibration_.table.size());
+        result = calibrate(calibration_);
+        if (!result.converged) return result;
+        calibration_.table = result.table;
+        step_.unknown_frames.clear();  // they are known from here on
+      }
+      values_.clear();
+      for (const Parameter& p : calibration_.table) values_.push_back(p.value);
+      if (!update_noise()) break;
+    }
+    return result;
+  }
+
+  /// Linearized at the solution, with what candidates explain back in the residuals: a subset begins with their
+  /// initial values.
+  [[nodiscard]] ParameterSearch linearized() const {
+    const auto evaluator = step_.problem->evaluator(all_, 1);
+    const int n = all_.size();
+    const Coordinates plain{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd(n, 0),
+                            Eigen::VectorXd::Zero(n), Eigen::VectorXd::Ones(n)};
+    LinearFit fit = linear_fit(*evaluator, values_, plain);
+    Eigen::VectorXd back = Eigen::VectorXd::Zero(n);
+    for (const SearchCandidate& candidate : columns_) {
+      for (const int c : candidate.columns) {
+        const auto p = static_cast<std::size_t>(all_.parameters()[static_cast<std::size_t>(c)]);
+        back(c) = initial_[p] - values_[p];
+      }
+    }
+    fit.residual += fit.jacobian * back;
+    fit.prior_gradient += fit.prior_hessian * back;
+    const Term& first = step_.problem->term(0);
+    return {fit, poses_, largest_, first.weight, first.feature_size};
+  }
+
+ private:
+  [[nodiscard]] int index(int column) const {
+    return all_.parameters()[static_cast<std::size_t>(column)];
+  }
+
+  /// Sets the noise of each error block to what the median residual shows.
+  /// @returns  whether one has changed
+  bool update_noise() {
+    AnyProblem& problem = *step_.problem;
+    std::vector<std::vector<double>> residuals(sigmas_.size());
+    (void)evaluate(problem, values_, nullptr, [&](int t, int, const TermResiduals& of) {
+      for (Eigen::Index i = 0; i < of.residual.size(); ++i) {
+        if (of.residual(i) != 0.0)
+          residuals[static_cast<std::size_t>(t)].push_back(std::abs(of.residual(i)));
+      }
+    });
+    constexpr double kOfMedian = 1.4826, kSame = 0.05;
+    bool changed = false;
+    for (std::size_t t = 0; t < sigmas_.size(); ++t) {
+      std::vector<double>& all = residuals[t];
+      if (all.empty()) continue;
+      const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+      std::nth_element(all.begin(), middle, all.end());
+      const double sigma = std::max(kOfMedian * *middle, std::numeric_limits<double>::min());
+      if (std::abs(sigma - sigmas_[t]) <= kSame * sigma) continue;
+      sigmas_[t] = sigma;
+      step_.set_sigma(static_cast<int>(t), sigma);
+      changed = true;
+    }
+    return changed;
+  }
+
+  Calibration& calibration_;
+  CalibrationStep& step_;
+  FreeSet all_;
+  std::vector<UnknownFrame> unknown_;
+  std::vector<SearchCandidate> columns_;
+  std::vector<int> base_;
+  SearchPoses poses_;
+  Eigen::VectorXd largest_;
+  std::vector<double> initial_, sigmas_, values_;
+};
+
+}  // namespace kinecal::detail
