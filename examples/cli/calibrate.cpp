@@ -18,6 +18,7 @@
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/shell_word.hpp"
+#include "kinecal/tools/identify/would_help.hpp"
 #include "output.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -166,6 +167,8 @@ Fit fit_and_judge(const CalibrateOptions& options, Input& input) {
   judge_causes(
       {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
       fitted.findings);
+  fitted.findings.judgement.helps = would_help(input.config, input.robot, fitted.samples,
+                                               fitted.calibration, fitted.findings.result);
   fitted.findings.call = {options.command, input_options(options),
                           options.dry_run ? "" : options.output, KINECAL_VERSION,
                           read_files(options, input)};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/trust/identify.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -81,15 +82,57 @@ Identified run(Identification& search, const std::string& unit) {
 }  // namespace
 }  // namespace detail
 
-Identified identify(Calibration& calibration, std::span<const Sample> samples,
-                    const std::vector<int>& base,
-                    const std::vector<IdentifyCandidate>& candidates) {
+namespace detail {
+namespace {
+
+/// @throws std::invalid_argument  if the calibration has not one step, or too few samples
+void check_search(const Calibration& calibration, std::span<const Sample> samples) {
   if (calibration.steps.size() != 1) {
-    throw std::invalid_argument("identify() needs a calibration of one step");
+    throw std::invalid_argument("a search needs a calibration of one step");
   }
   constexpr std::size_t kFewest = 4;
   if (samples.size() < kFewest)
     throw std::invalid_argument("there are too few samples to hold some out");
+}
+
+}  // namespace
+}  // namespace detail
+
+std::vector<IdentifyStep> most_helpful(Calibration& calibration, std::span<const Sample> samples,
+                                       const std::vector<int>& base,
+                                       const std::vector<IdentifyCandidate>& candidates) {
+  detail::check_search(calibration, samples);
+  detail::Identification search(calibration, samples, base, candidates);
+  constexpr std::size_t kMost = 2;
+  std::vector<IdentifyStep> steps;
+  std::vector<int> chosen;
+  while (search.solve(chosen).converged) {
+    const ParameterSearch linear = search.linearized();
+    const std::vector<SearchStep> path = linear.path(search.base(), search.candidates(), chosen);
+    if (path.empty()) {
+      steps.push_back(detail::written({.candidate = -1, .fit = linear.fit_of(search.base())}));
+    } else {
+      const auto last = std::find_if(path.begin(), path.end(), [&](const SearchStep& step) {
+        return step.candidate == chosen.back();
+      });
+      IdentifyStep& step = steps.emplace_back(detail::written(*last));
+      const SearchFit all = path.back().fit;  // with what was found before it
+      step.fitted = all.fitted;
+      step.held_out = all.held_out;
+      step.region = all.region;
+    }
+    if (chosen.size() == kMost) return steps;
+    linear.free_one(search.base(), search.candidates(), chosen);
+    linear.name_simply(search.base(), search.candidates(), chosen);
+    if (chosen.size() + 1 == steps.size()) return steps;
+  }
+  return steps;
+}
+
+Identified identify(Calibration& calibration, std::span<const Sample> samples,
+                    const std::vector<int>& base,
+                    const std::vector<IdentifyCandidate>& candidates) {
+  detail::check_search(calibration, samples);
   detail::Identification search(calibration, samples, base, candidates);
   return detail::run(search, calibration.steps.front().problem->term(0).options.unit);
 }

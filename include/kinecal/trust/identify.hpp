@@ -43,6 +43,15 @@ struct Identified {
   std::string unit;                 ///< of the first error block
 };
 
+/// The one or two held candidates that lower the error on held-out poses most, each tested by another solve.
+/// @param calibration  of one step, whose problem has all parameters, at its solution; it changes
+/// @param base         table indices of the parameters that are free
+/// @returns  the first one is the base alone; only that if none helps
+/// @throws std::invalid_argument  as identify()
+[[nodiscard]] std::vector<IdentifyStep> most_helpful(
+    Calibration& calibration, std::span<const Sample> samples, const std::vector<int>& base,
+    const std::vector<IdentifyCandidate>& candidates);
+
 /// Searches for the parameters that samples support.
 /// @param calibration  of one step, whose problem has all parameters; its free set, sigmas and values change
 /// @param samples      those of the problem, in their order

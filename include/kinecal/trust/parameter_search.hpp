@@ -67,6 +67,14 @@ class ParameterSearch {
   void run(const std::vector<int>& base, const Candidates& candidates,
            std::vector<int>& chosen) const;
 
+  /// Frees the candidate that explains most, of those that help.
+  /// @returns  whether there is one
+  bool free_one(const std::vector<int>& base, const Candidates& candidates,
+                std::vector<int>& chosen) const;
+  /// Takes the candidate of the lowest rank among those that do as well.
+  void name_simply(const std::vector<int>& base, const Candidates& candidates,
+                   std::vector<int>& chosen) const;
+
   /// What each of the chosen candidates buys.
   [[nodiscard]] std::vector<SearchStep> path(const std::vector<int>& base,
                                              const Candidates& candidates,
@@ -119,9 +127,6 @@ class ParameterSearch {
   /// @param base  number of columns that are always free
   [[nodiscard]] bool helps(const Whole& whole, const Gain& gain, const Candidates& candidates,
                            std::size_t base, const Evidence& evidence) const;
-  /// Frees the candidate that explains most, of those that help.
-  [[nodiscard]] bool free_one(const std::vector<int>& base, const Candidates& candidates,
-                              std::vector<int>& chosen) const;
   /// Holds what does not help beside the others.
   void hold_superfluous(const std::vector<int>& base, const Candidates& candidates,
                         std::vector<int>& chosen) const;
@@ -129,9 +134,6 @@ class ParameterSearch {
   [[nodiscard]] std::vector<int> saturated(const std::vector<int>& base,
                                            const Candidates& candidates, std::vector<int> chosen,
                                            int rank) const;
-  /// Takes the candidate of the lowest rank among those that do as well.
-  void name_simply(const std::vector<int>& base, const Candidates& candidates,
-                   std::vector<int>& chosen) const;
   /// Candidates that do as well in place of one.
   [[nodiscard]] std::vector<int> like(const Whole& without, const Candidates& candidates,
                                       const std::vector<int>& chosen, int k) const;

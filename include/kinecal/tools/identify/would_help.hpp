@@ -1,0 +1,27 @@
+// What would make a calibration better: parameters that are held, and what freeing them buys.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinecal/config/config.hpp"
+#include "kinecal/kinematics/robot.hpp"
+#include "kinecal/samples/sample.hpp"
+#include "kinecal/solve/calibrate.hpp"
+
+namespace kinecal {
+
+/// Sentences, at most two: "freeing 'elbow_joint_x' lowers the error on held-out poses from 0.56 mm to 0.31 mm".  Each is
+/// tested by another solve.  Empty if nothing lowers it by a tenth, or for several steps.
+/// @param config       of the calibration
+/// @param samples      that were used
+/// @param calibration  whose free parameters stay free
+/// @param result       of it
+[[nodiscard]] std::vector<std::string> would_help(const Config& config, const Robot& robot,
+                                                  std::span<const Sample> samples,
+                                                  const Calibration& calibration,
+                                                  const CalibrationResult& result);
+
+}  // namespace kinecal
