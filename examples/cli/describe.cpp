@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "output_file.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -227,7 +228,7 @@ int describe(const CLI::App& app, const DescribeOptions& options) {
                            : options.format == "fish" ? fish_completion(app)
                                                       : zsh_completion(app);
   if (options.output.empty()) {
-    fmt::print("{}", text);
+    say("{}", text);
   } else {
     check_output(options.output, {}, options.force);
     write_file(options.output, text);

@@ -76,6 +76,19 @@ RobotScene one_of_everything() {
   return scene;
 }
 
+TEST(SceneJson, SaysWhichSampleIsLeftOutAndHidesNoText) {
+  RobotScene scene = one_of_everything();
+  EXPECT_FALSE(YAML::Load(scene_json(scene))["samples"][0]["left_out"]);
+  scene.samples[0].left_out = true;
+  const std::string hidden = "a\u202Eb\x1b";
+  scene.samples[0].source = scene.samples[0].note = scene.blocks[0] = scene.joints[0].name = hidden;
+  scene.links[0].name = scene.cameras[0].name = scene.samples[0].features[0].name = hidden;
+  const std::string text = scene_json(scene);
+  EXPECT_TRUE(YAML::Load(text)["samples"][0]["left_out"].as<bool>());
+  EXPECT_EQ(text.find("\u202E"), std::string::npos);
+  EXPECT_EQ(text.find("u001b"), std::string::npos);
+}
+
 TEST(SceneJson, HasOneOfEverything) {
   const std::string text = scene_json(one_of_everything());
   const YAML::Node json = YAML::Load(text);  // JSON is YAML
