@@ -94,7 +94,7 @@ TEST(Html, ElidesLongNamesWithTheWholeNameAsTooltip) {
     EXPECT_LT(text.size(), 300u) << found.node().parent().name();
     if (text.find("…") == std::string::npos) continue;
     ++elided;
-    EXPECT_EQ(found.node().parent().attribute("title").value(), name);
+    EXPECT_THAT(found.node().parent().attribute("title").value(), testing::StartsWith(name));
   }
   EXPECT_GT(elided, 12) << "error block, parameters, steps, inputs, samples and their faults";
   EXPECT_EQ(document.select_node("//pre[@class='command']/code").node().text().get(), name)

@@ -41,7 +41,8 @@ std::string html_inputs(const std::vector<InputFile>& inputs, const std::string&
     rows.push_back({input.role, input.name, input.sha256, fmt::format("{}", input.bytes)});
   }
   return fmt::format("{}<p>{}, repeated by</p>\n<pre class=\"command\"><code>{}</code></pre>\n",
-                     html_table(rows, "tttn"), html_text(version), html_sentence(command, true));
+                     html_table(rows, "tttn"), html_sentence(version),
+                     html_sentence(command, true));
 }
 
 std::string html_lines(std::string_view text) {

@@ -46,16 +46,16 @@ namespace kinecal::detail {
   std::string html =
       scroll_region("samples") +
       "<table class=\"numbers\"><thead><tr><th scope=\"col\">sample</th>"
-      "<th scope=\"col\" class=\"text\">recorded at</th><th scope=\"col\">times the noise</th>"
-      "<th scope=\"col\" class=\"long\">remark</th></tr></thead><tbody>";
+      "<th scope=\"col\">times the noise</th><th scope=\"col\" class=\"long\">remark</th>"
+      "<th scope=\"col\" class=\"text\">recorded at</th></tr></thead><tbody>";
   for (std::size_t i = 0; i < std::min(kListed, worst.size()); ++i) {
     const ReportedSample& sample = *worst[i];
     html += fmt::format(
-        "<tr{}><td><a href=\"#sample={}\" data-sample=\"{}\">{}</a></td><td class=\"text\">{}</td>"
-        "<td>{}</td><td class=\"long\">{}{}</td></tr>\n",
+        "<tr{}><td><a href=\"#sample={}\" data-sample=\"{}\">{}</a></td><td>{}</td>"
+        "<td class=\"long\">{}{}</td><td class=\"text\">{}</td></tr>\n",
         sample.bad ? " class=\"bad\"" : "", sample.number, sample.number, sample.number,
-        html_name(sample.source), sample.times > 0.0 ? fmt::format("{:.1f}", sample.times) : "-",
-        sample.left_out ? "left out: " : "", html_sentence(sample.why));
+        sample.times > 0.0 ? fmt::format("{:.1f}", sample.times) : "-",
+        sample.left_out ? "left out: " : "", html_sentence(sample.why), html_name(sample.source));
   }
   html += "</tbody></table></div>\n";
   if (worst.size() > kListed) {

@@ -113,7 +113,7 @@ namespace kinecal::detail {
       "<header class=\"verdict {}\">\n"
       "<h1>{}: <strong>{}</strong></h1>\n<p class=\"note\">{}</p>\n{}{}"
       "<div class=\"facts\">{}{}{}</div>\n</header>\n",
-      class_of(data.verdict), html_name(data.robot), to_string(data.verdict), html_text(about),
+      class_of(data.verdict), html_name(data.robot), to_string(data.verdict), html_sentence(about),
       reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n", html_next(data.next),
       fit_sentence(data), what_was_wrong(data), bad_samples(data));
 }

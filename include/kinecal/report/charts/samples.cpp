@@ -34,12 +34,15 @@ namespace {
 [[nodiscard]] std::vector<LegendEntry> samples_legend(const ReportData& data,
                                                       const ReportedBlock& block, const Axis& y) {
   std::vector<LegendEntry> legend = {{Swatch::dot, "after", "worst of a sample"}};
-  const auto any = [&](bool ReportedSample::*flag) {
-    return std::any_of(data.samples.begin(), data.samples.end(),
-                       [&](const ReportedSample& sample) { return sample.*flag; });
+  const auto any = [&](auto is) {
+    return std::any_of(data.samples.begin(), data.samples.end(), is);
   };
-  if (any(&ReportedSample::bad)) legend.push_back({Swatch::dot, "bad", "does not fit"});
-  if (any(&ReportedSample::left_out)) legend.push_back({Swatch::cross, "out", "left out"});
+  if (any([](const ReportedSample& sample) { return sample.bad && !sample.left_out; })) {
+    legend.push_back({Swatch::dot, "bad", "does not fit"});
+  }
+  if (any([](const ReportedSample& sample) { return sample.left_out; })) {
+    legend.push_back({Swatch::cross, "out", "left out"});
+  }
   for (LegendEntry& entry : noise_entries(y, block)) legend.push_back(std::move(entry));
   return legend;
 }
@@ -63,11 +66,15 @@ namespace {
   Chart chart{"residuals", "samples-" + slug,
               "Residuals in capture order: " + shortened(block.name, 60),
               samples_caption(data, chosen.size(), sorted_finite(distances).size()), ""};
-  const PlotArea area{46.0, 64.0, kChartWidth - 20.0, 288.0};
+  const std::vector<LegendEntry> legend =
+      samples_legend(data, block, distance_axis(block, sorted, 1.0, 0.0));
+  Drawing measured("", "", 0.0);  // to measure the height of the legend
+  const double top = draw_legend(measured, legend, 0.0) + 28.0;
+  const PlotArea area{46.0, top, kChartWidth - 20.0, top + 224.0};
   Drawing drawing(chart.name, chart.title, area.bottom + 38.0);
   const Axis x = samples_axis(data, block, area);
   const Axis y = distance_axis(block, sorted, area.bottom, area.top + 14.0);
-  draw_legend(drawing, samples_legend(data, block, y), 0.0);
+  draw_legend(drawing, legend, 0.0);
   drawing.axis_y(area, y, axis_name("distance", block.unit));
   drawing.axis_x(area, x, "sample", true);
   draw_noise_lines(drawing, area, y, block);
