@@ -734,7 +734,7 @@ void add_plot(CLI::App& command, PlotOptions& options) {
           std::map<std::string, double>{{"mm", 1.0}, {"cm", 10.0}, {"in", 25.4}},
           CLI::AsNumberWithUnit::CASE_SENSITIVE, "LENGTH"))
       ->check(CLI::Range(10.0, 2000.0))
-      ->capture_default_str();
+      ->option_text("LENGTH=160mm");
   command.add_flag("--force", options.force, "replace files that are in the folder");
   command.footer("As PDF: rsvg-convert -f pdf -o NAME.pdf NAME.svg");
 }

@@ -9,6 +9,7 @@
 
 #include <regex>
 #include <set>
+#include <vector>
 
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
@@ -243,15 +244,15 @@ TEST_F(Manners, NoMarkThatTurnsTheDirectionOfWritingReachesTheTerminal) {
   const std::string input = "--urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml ";
   ASSERT_EQ(kinecal(kCalibrate + "--force --report report.html").code, 0);
   write("wrong.yaml", "base_link: base_link\ncalibration_steps: [" + odd + "]\n");
-  for (const std::string& call :
-       {"calibrate " + input + "--dry-run", "calibrate " + input + "--dry-run --verbose",
-        "calibrate " + input + "--dry-run --json", "check " + input,
-        std::string("inspect samples.yaml"), "verify out samples.yaml", "evaluate out samples.yaml",
-        "compare out out", "init --force --urdf ur5e.urdf --target tracker --arm " + odd,
-        "init --force --urdf ur5e.urdf --target tracker", "plot report.html --list",
-        "plot report.html " + odd + " -o figures", "check --urdf ur5e.urdf --config wrong.yaml",
-        "inspect " + odd, odd, "calibrate --" + odd, "calibrate-log " + input + "--output log",
-        "select-poses " + input + "--poses 5 --output few.yaml"}) {
+  for (const std::string& call : std::vector<std::string>{
+           "calibrate " + input + "--dry-run", "calibrate " + input + "--dry-run --verbose",
+           "calibrate " + input + "--dry-run --json", "check " + input, "inspect samples.yaml",
+           "verify out samples.yaml", "evaluate out samples.yaml", "compare out out",
+           "init --force --urdf ur5e.urdf --target tracker --arm " + odd,
+           "init --force --urdf ur5e.urdf --target tracker", "plot report.html --list",
+           "plot report.html " + odd + " -o figures", "check --urdf ur5e.urdf --config wrong.yaml",
+           "inspect " + odd, odd, "calibrate --" + odd, "calibrate-log " + input + "--output log",
+           "select-poses " + input + "--poses 5 --output few.yaml"}) {
     const Outcome outcome = kinecal(call);
     EXPECT_THAT(outcome.out + outcome.err, Not(HasSubstr("\u202E"))) << call;
     EXPECT_FALSE((outcome.out + outcome.err).empty()) << call;

@@ -375,7 +375,7 @@ function shortened(text, most) {
 }
 /// Text of a file inside a sentence: letters that run from right to left do not turn the rest of it.
 function quoted(text, most = 80) {
-  const short = shortened(text, most);
+  const short = shortened(text.replace(/\S{81,}/g, (word) => shortened(word, 80)), most);
   return /^[ -~…]*$/.test(short) ? short : `\u2068${short}\u2069`;
 }
 function describe(sample) {
