@@ -50,10 +50,10 @@ namespace {
 /// What the marks mean that no legend has.
 [[nodiscard]] std::string samples_caption(const ReportData& data, std::size_t drawn,
                                           std::size_t all) {
-  std::string text = "Each dot is a feature, the dark ones are the worst of their samples.";
+  std::string text = "Each dot is a feature, the large ones are the worst of their samples.";
   if (std::any_of(data.samples.begin(), data.samples.end(),
                   [](const ReportedSample& sample) { return sample.left_out; })) {
-    text += " Crosses at the upper edge are farther off.";
+    text += " Crosses at the upper edge are farther off, or have no feature in this block.";
   }
   return text + chosen_text(drawn, all, "features");
 }
