@@ -17,6 +17,7 @@
 #include "kinecal/config/doubts/judge_causes.hpp"
 #include "kinecal/report.hpp"
 #include "kinecal/text/counted.hpp"
+#include "kinecal/text/printable.hpp"
 #include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/identify/would_help.hpp"
 #include "output.hpp"
@@ -24,6 +25,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "scene.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -38,7 +40,7 @@ double seconds_since(Clock::time_point start) {
 Progress progress_line() {
   if (isatty(STDERR_FILENO) == 0) return {};
   return [](const std::string& step, int iteration, double cost) {
-    fmt::print(stderr, "\r{}: iteration {}, cost {:.6g} \033[K", step, iteration, cost);
+    fmt::print(stderr, "\r{}: iteration {}, cost {:.6g} \033[K", printable(step), iteration, cost);
   };
 }
 
@@ -177,7 +179,7 @@ Fit fit_and_judge(const CalibrateOptions& options, Input& input) {
 
 void show_findings(const Findings& findings, const Manner& manner) {
   if (manner.json) {
-    fmt::print("{}", json_report(findings));
+    say("{}", json_report(findings));
   } else if (!manner.quiet) {
     show(manner.verbose ? summary_text(findings) : findings_text(findings), manner);
   }
@@ -237,9 +239,9 @@ int calibrate(const CalibrateOptions& options) {
   }
   if (!manner.json) show(last_line(findings, options, files.size()), manner);
   if (is_usable) return kDone;
-  fmt::print(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
-             findings.result.steps.empty() ? "" : findings.result.steps.back().name,
-             findings.judgement.reasons.front());
+  say(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
+      findings.result.steps.empty() ? "" : findings.result.steps.back().name,
+      findings.judgement.reasons.front());
   return kNotUsable;
 }
 

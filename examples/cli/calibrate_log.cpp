@@ -26,6 +26,7 @@
 #include "kinecal/trust/judge_shards.hpp"
 #include "output.hpp"
 #include "processes.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -304,14 +305,13 @@ class LogRun {
 
 /// Prints and writes what the first process has found.
 int report(const ResultOptions& options, LogRun& run, const Findings& findings) {
-  fmt::print("{}", summary_text(findings));
+  say("{}", summary_text(findings));
   std::fflush(stdout);
   const CalibrationResult& result = findings.result;
   if (findings.judgement.verdict == Grade::do_not_use) {
     run.forget_checkpoints();
-    fmt::print(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
-               result.steps.empty() ? "" : result.steps.back().name,
-               findings.judgement.reasons.front());
+    say(stderr, "error: calibration of step '{}' failed, no results written: {}\n",
+        result.steps.empty() ? "" : result.steps.back().name, findings.judgement.reasons.front());
     return kNotUsable;
   }
   const Input& first = run.first();
@@ -334,9 +334,9 @@ int calibrate_log_in(const Processes& processes, const ResultOptions& options) {
   if (processes.rank() > 0) return kDone;
   const int code = report(options, run, findings);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  fmt::print("{} of {}, {:.3f} s: {}\n",
-             counted(static_cast<std::size_t>(run.content().samples), "sample"),
-             counted(options.samples.size(), "file"), taken.count(), solving_text(findings.result));
+  say("{} of {}, {:.3f} s: {}\n",
+      counted(static_cast<std::size_t>(run.content().samples), "sample"),
+      counted(options.samples.size(), "file"), taken.count(), solving_text(findings.result));
   return code;
 }
 

@@ -11,21 +11,21 @@
 #include "kinecal/files/cameras/read_camera_file.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/results/file_set.hpp"
-#include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
 
 void print_row(const char* title, std::span<const double> numbers) {
-  fmt::print("{:<14}", title);
-  for (const double number : numbers) fmt::print(" {}", number);
-  fmt::print("\n");
+  say("{:<14}", title);
+  for (const double number : numbers) say(" {}", number);
+  say("\n");
 }
 
 void print_camera(const CameraInfo& camera) {
-  fmt::print("{:<14} {} x {} pixels\n", "size", camera.width, camera.height);
-  fmt::print("{:<14} {}\n", "distortion", printable(camera.distortion_model));
+  say("{:<14} {} x {} pixels\n", "size", camera.width, camera.height);
+  say("{:<14} {}\n", "distortion", camera.distortion_model);
   print_row("D", camera.d);
   print_row("K", camera.k);
   print_row("R", camera.r);
@@ -57,7 +57,7 @@ int camera(const CameraOptions& options) {
   write_text_file(options.output, options.keys == "message"
                                       ? to_camera_message_yaml(camera)
                                       : to_camera_info_yaml(camera, options.name));
-  fmt::print("wrote {}\n", options.output);
+  say("wrote {}\n", options.output);
   return kDone;
 }
 

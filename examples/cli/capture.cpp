@@ -26,13 +26,13 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/urdf/velocity_limits.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"
 #include "report.hpp"
 #include "robot_link.hpp"
+#include "terminal.hpp"
 #include "truth.hpp"
 
 namespace kinecal::cli {
@@ -105,15 +105,14 @@ class Follower {
     for (const CapturePose& pose : left) ahead_.push_back(at_pose(pose, sample));
     const FollowedState state = follower_->add(sample, ahead_);
     if (!state.problem.empty()) {
-      fmt::print("  warning: {}\n", printable(state.problem));
+      say("  warning: {}\n", state.problem);
       return;
     }
     for (const int number : state.online.dropped) {
-      fmt::print("  warning: sample {} does not fit the others\n", number);
+      say("  warning: sample {} does not fit the others\n", number);
     }
     if (!state.online.fits) {
-      fmt::print(
-          "  warning: this sample does not fit the others ({:.1f} times their noise): "
+      say("  warning: this sample does not fit the others ({:.1f} times their noise): "
           "is everything where it was?\n",
           state.online.times);
     }
@@ -128,22 +127,21 @@ class Follower {
  private:
   void print_state(const FollowedState& state) const {
     const auto [frame, in] = follower_->frames();
-    fmt::print("  '{}' in '{}': +- {:.2f} mm, {:.3f} deg", frame, in, 1e3 * state.online.position,
-               state.online.rotation / kDegree);
+    say("  '{}' in '{}': +- {:.2f} mm, {:.3f} deg", frame, in, 1e3 * state.online.position,
+        state.online.rotation / kDegree);
     if (state.next) {
       const bool turns = robot_.joint(state.next->joint).type != JointType::prismatic;
-      fmt::print("; next, move {} by {:+.0f} {}", state.next->joint,
-                 turns ? state.next->change / kDegree : 1e3 * state.next->change,
-                 turns ? "deg" : "mm");
+      say("; next, move {} by {:+.0f} {}", state.next->joint,
+          turns ? state.next->change / kDegree : 1e3 * state.next->change, turns ? "deg" : "mm");
     }
-    fmt::print("\n");
+    say("\n");
   }
 
   /// Asks the whole calibration, and prints why it does not agree.
   void confirm() {
     const std::string why = why_go_on(*until_, calibrate_all(), ahead_);
     enough_ = why.empty();
-    if (!enough_) fmt::print("  not enough yet: {}\n", printable(why));
+    if (!enough_) say("  not enough yet: {}\n", why);
   }
 
   Robot robot_;
@@ -172,7 +170,7 @@ void print_pose(std::size_t number, std::size_t count, const CapturedPose& captu
   }
   if (!captured.failure.empty()) text = "skipped: " + captured.failure;
   const std::string of = count > 0 ? fmt::format(" of {}", count) : "";
-  fmt::print("pose {}{}: {}{}\n", number, of, printable(text), left);
+  say("pose {}{}: {}{}\n", number, of, text, left);
   std::fflush(stdout);
 }
 
@@ -180,7 +178,7 @@ void print_pose(std::size_t number, std::size_t count, const CapturedPose& captu
 NextPose next_pose(const CaptureOptions& options, const std::vector<CapturePose>& poses) {
   if (!options.manual) return poses_of(poses);
   return []() -> std::optional<CapturePose> {
-    fmt::print("put the robot into the next pose, then press Enter; q ends the session\n");
+    say("put the robot into the next pose, then press Enter; q ends the session\n");
     std::fflush(stdout);
     std::string line;
     if (!std::getline(std::cin, line) || line == "q") return std::nullopt;
@@ -349,11 +347,11 @@ struct Session {
 /// @param before  samples of an earlier session
 void print_session(const Session& session, std::size_t before) {
   const double minutes = std::chrono::duration<double, std::ratio<60>>(session.spent).count();
-  fmt::print("{}: {} of {} in {:.1f} minutes of the robot's time{}\n", session.options.output,
-             counted(session.samples.size(), "sample"), counted(session.done, "pose"), minutes,
-             before > 0 ? fmt::format(" ({} from before)", before) : "");
+  say("{}: {} of {} in {:.1f} minutes of the robot's time{}\n", session.options.output,
+      counted(session.samples.size(), "sample"), counted(session.done, "pose"), minutes,
+      before > 0 ? fmt::format(" ({} from before)", before) : "");
   if (session.follower && session.follower->enough()) {
-    fmt::print("'{}' is reached\n", session.options.until);
+    say("'{}' is reached\n", session.options.until);
   }
   std::fflush(stdout);
 }
@@ -384,29 +382,28 @@ int capture(const CaptureOptions& options) {
   const std::string lost = is_complete ? "" : session.run(config);
   if (!session.thumbnails.empty()) {
     write_text_file(options.sheet, contact_sheet(session.thumbnails));
-    fmt::print("{}: what was found in {}\n", options.sheet,
-               counted(session.thumbnails.size(), "view"));
+    say("{}: what was found in {}\n", options.sheet, counted(session.thumbnails.size(), "view"));
   }
   if (is_complete) {
-    fmt::print("{}: {} from before; all poses of {} are captured\n", options.output,
-               counted(before, "sample"), options.poses);
+    say("{}: {} from before; all poses of {} are captured\n", options.output,
+        counted(before, "sample"), options.poses);
   } else if (session.done > 0) {
     print_session(session, before);
   }
   const bool is_interrupted = !is_complete && Interruption::is_asked();
   if (is_interrupted || !lost.empty()) {
-    fmt::print(stderr, "error: {}{}\n", is_interrupted ? "interrupted" : printable(lost),
-               session.samples.empty() ? "" : "; --resume goes on from here");
+    say(stderr, "error: {}{}\n", is_interrupted ? "interrupted" : lost,
+        session.samples.empty() ? "" : "; --resume goes on from here");
     return is_interrupted ? kInterrupted : kBadInput;
   }
   if (session.samples.empty()) {
-    fmt::print(stderr, "error: nothing was found in any pose\n");
+    say(stderr, "error: nothing was found in any pose\n");
     return kBadInput;
   }
   const int code = options.result.empty() ? kDone : calibrate(calibration_of(options));
   if (session.follower && options.robot.starts_with(kSimulated)) {
     const std::string scene = options.robot.substr(kSimulated.size());
-    fmt::print("{}", truth_text(session.robot, scene, session.follower->calibrate_all()));
+    say("{}", truth_text(session.robot, scene, session.follower->calibrate_all()));
   }
   return code;
 }

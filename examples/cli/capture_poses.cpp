@@ -18,10 +18,10 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"
 #include "robot_link.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -89,7 +89,7 @@ class PoseRecorder {
     }
     poses_.push_back(std::move(pose));
     write_pose_file(file_, poses_);
-    fmt::print("pose {}: {}\n", poses_.size(), features());
+    say("pose {}: {}\n", poses_.size(), features());
   }
 
   /// Removes the last pose.
@@ -97,7 +97,7 @@ class PoseRecorder {
     if (poses_.empty()) throw PoseError("there is no pose to remove");
     poses_.pop_back();
     write_pose_file(file_, poses_);
-    fmt::print("pose {} is removed\n", poses_.size() + 1);
+    say("pose {} is removed\n", poses_.size() + 1);
   }
 
   /// Takes names of features for the next poses: "led_finder board", or "all".
@@ -113,7 +113,7 @@ class PoseRecorder {
       chosen.push_back(name);
     }
     features_ = chosen;
-    fmt::print("the next poses: {}\n", features());
+    say("the next poses: {}\n", features());
   }
 
  private:
@@ -168,8 +168,7 @@ class PoseRecorder {
 
 /// Asks until a person ends it.
 void record_poses(PoseRecorder& recorder) {
-  fmt::print(
-      "move the robot, then press Enter to record its pose; u removes the last pose, q ends\n"
+  say("move the robot, then press Enter to record its pose; u removes the last pose, q ends\n"
       "all poses capture all features; type the names of some for the next poses: {}, or all\n",
       listed(recorder.known()));
   std::fflush(stdout);
@@ -186,7 +185,7 @@ void record_poses(PoseRecorder& recorder) {
         recorder.choose(line);
       }
     } catch (const PoseError& error) {
-      fmt::print("nothing is recorded: {}\n", printable(error.what()));
+      say("nothing is recorded: {}\n", error.what());
     }
     std::fflush(stdout);
   }
@@ -207,7 +206,7 @@ int capture_poses(const CapturePosesOptions& options) {
   if (options.resume && std::filesystem::exists(options.output)) {
     before = read_pose_file(options.output);
     check_before(before, config, robot);
-    fmt::print("{}: {} from before\n", options.output, counted(before.size(), "pose"));
+    say("{}: {} from before\n", options.output, counted(before.size(), "pose"));
   }
   CaptureConfig joints_only = config;
   joints_only.finders.clear();
@@ -222,17 +221,16 @@ int capture_poses(const CapturePosesOptions& options) {
     lost = error.what();
   }
   const std::size_t count = recorder.poses().size();
-  if (count > 0) fmt::print("{}: {}\n", options.output, counted(count, "pose"));
+  if (count > 0) say("{}: {}\n", options.output, counted(count, "pose"));
   std::fflush(stdout);
   if (Interruption::is_asked()) {
-    fmt::print(stderr, "error: interrupted{}\n", count > 0 ? "; --resume goes on from here" : "");
+    say(stderr, "error: interrupted{}\n", count > 0 ? "; --resume goes on from here" : "");
     return kInterrupted;
   }
   if (!lost.empty()) {
-    fmt::print(stderr, "error: {}{}\n", printable(lost),
-               count > 0 ? "; --resume goes on from here" : "");
+    say(stderr, "error: {}{}\n", lost, count > 0 ? "; --resume goes on from here" : "");
   } else if (count == 0) {
-    fmt::print(stderr, "error: no pose was recorded\n");
+    say(stderr, "error: no pose was recorded\n");
   }
   return lost.empty() && count > 0 ? kDone : kBadInput;
 }

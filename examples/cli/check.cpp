@@ -11,6 +11,7 @@
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/trust/observability.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -42,21 +43,21 @@ int check(const InputOptions& options) {
   print(input.diagnostics);
   const std::size_t errors = input.diagnostics.errors.size();
   if (errors > 0) {
-    fmt::print(stderr, "{} found\n", counted(errors, "error"));
+    say(stderr, "{} found\n", counted(errors, "error"));
     return kBadInput;
   }
   for (const CalibrationStep& step : input.calibration.steps) {
     if (input.samples.empty()) {
-      fmt::print("step '{}': fits the robot; samples were not given\n", step.name);
+      say("step '{}': fits the robot; samples were not given\n", step.name);
     } else {
-      fmt::print("step '{}': {}, {}\n", step.name,
-                 counted(static_cast<std::size_t>(step.problem->num_samples()), "sample"),
-                 counted(static_cast<std::size_t>(step.free.size()), "free parameter"));
+      say("step '{}': {}, {}\n", step.name,
+          counted(static_cast<std::size_t>(step.problem->num_samples()), "sample"),
+          counted(static_cast<std::size_t>(step.free.size()), "free parameter"));
     }
   }
-  fmt::print("{}", not_determined(input.calibration));
+  say("{}", not_determined(input.calibration));
   const std::size_t doubts = input.diagnostics.doubts.size();
-  fmt::print("no errors found{}\n", doubts == 0 ? "" : ", but " + counted(doubts, "doubt"));
+  say("no errors found{}\n", doubts == 0 ? "" : ", but " + counted(doubts, "doubt"));
   return kDone;
 }
 

@@ -280,6 +280,7 @@ struct PlotOptions {
   std::string report;              ///< HTML that calibrate wrote
   std::vector<std::string> names;  ///< of charts; empty: all
   std::string output;              ///< folder
+  double width = 160.0;            ///< of a chart on paper, millimetres
   bool list = false;               ///< print their names
   bool force = false;              ///< replace files
 };

@@ -16,11 +16,11 @@
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/tools/install/stored_result.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "output_file.hpp"
 #include "report.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -260,7 +260,7 @@ std::string page_of(const Assembled& a, const Assembled& b, const Comparison& al
       "<h1>{}: <strong>{} of {} moved</strong></h1>\n<p class=\"note\">{}: "
       "{}</p>\n<div>{}</div>\n</header>\n"
       "<main>\n<section id=\"parameters\"><h2>Differences</h2>\n",
-      all.moved.empty() ? "good" : "care", detail::html_text(a.result.robot.name()),
+      all.moved.empty() ? "good" : "care", detail::html_name(a.result.robot.name()),
       all.moved.size(), counted(all.moved.size() + all.equal.size(), "parameter"),
       detail::html_text(title),
       fmt::format("by more than {} standard deviations of the difference", kMoved),
@@ -279,7 +279,7 @@ int compare(const CompareOptions& options) {
   check_same_robot(a, b);
   Comparison all = compared(a, b);
   compare_poses(a, b, all);
-  fmt::print("{}", printable(text_of(a, b, all)));
+  say("{}", text_of(a, b, all));
   if (!options.report.empty()) {
     write_text_file(options.report,
                     is_page(options.report) ? page_of(a, b, all) : json_of(a, b, all));

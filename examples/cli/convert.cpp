@@ -20,6 +20,7 @@
 #include "kinecal/text/counted.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -140,7 +141,7 @@ int convert(const ConvertOptions& options) {
   }
   print(diagnostics);
   if (!words) return kBadInput;
-  fmt::print("wrote {}: {}\n", options.output, *words);
+  say("wrote {}: {}\n", options.output, *words);
   return kDone;
 }
 

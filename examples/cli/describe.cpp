@@ -8,6 +8,7 @@
 
 #include "kinecal/files/results/file_set.hpp"
 #include "output_file.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -228,7 +229,7 @@ int describe(const CLI::App& app, const DescribeOptions& options) {
                            : options.format == "fish" ? fish_completion(app)
                                                       : zsh_completion(app);
   if (options.output.empty()) {
-    fmt::print("{}", text);
+    say("{}", text);
   } else {
     check_output(options.output, {}, options.force);
     write_text_file(options.output, text);

@@ -27,6 +27,7 @@
 #include "kinecal/tools/detect/detect_all.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -169,15 +170,15 @@ void print_refusals(const std::vector<Look>& looks) {
     for (const std::string& refused : look.refused) {
       const std::size_t others = std::exchange(refusals[refused], 0);
       if (others == 0) continue;
-      fmt::print(stderr, "warning: {}{}\n", printable(look.source + ": " + refused),
-                 others > 1 ? " (and in " + counted(others - 1, "other view") + ")" : "");
+      say(stderr, "warning: {}{}\n", look.source + ": " + refused,
+          others > 1 ? " (and in " + counted(others - 1, "other view") + ")" : "");
     }
   }
   if (single > 0) {
-    fmt::print(stderr,
-               "note: {} used with a single image each: whether it moved is not known; record more "
-               "images a second\n",
-               single == 1 ? "1 standstill is" : std::to_string(single) + " standstills are");
+    say(stderr,
+        "note: {} used with a single image each: whether it moved is not known; record more "
+        "images a second\n",
+        single == 1 ? "1 standstill is" : std::to_string(single) + " standstills are");
   }
 }
 
@@ -251,14 +252,12 @@ int detect(const DetectOptions& options) {
     write_text_file(options.sheet, contact_sheet(thumbnails_of(std::move(found.looks))));
   }
   if (samples.empty()) {
-    fmt::print(stderr, "error: nothing was found in {}; {} was not written\n", seen,
-               options.output);
+    say(stderr, "error: nothing was found in {}; {} was not written\n", seen, options.output);
     return kBadInput;
   }
-  fmt::print("wrote {}: {} of {}: {}; {} refused{}\n", options.output, found.used, seen,
-             counted(found.features, "feature"), count - found.used,
-             printable(count_of_targets(samples)));
-  if (!options.sheet.empty()) fmt::print("wrote {}\n", options.sheet);
+  say("wrote {}: {} of {}: {}; {} refused{}\n", options.output, found.used, seen,
+      counted(found.features, "feature"), count - found.used, count_of_targets(samples));
+  if (!options.sheet.empty()) say("wrote {}\n", options.sheet);
   return kDone;
 }
 

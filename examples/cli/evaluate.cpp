@@ -10,7 +10,6 @@
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/text/reading.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
@@ -53,7 +52,7 @@ int evaluate(const RecheckOptions& options) {
   text += "\n" + fit_text(result, fresh) + "\n" + worst_text(result, fresh);
   const std::vector<FitChange> changes = fit_changes(result, fresh);
   if (!changes.empty()) text += "\n" + change_line(changes);
-  show(printable(text), options.manner);
+  show(text, options.manner);
   if (!options.report.empty()) write_text_file(options.report, json(result, fresh));
   const bool fails = options.fail_above > 0.0 &&
                      std::any_of(changes.begin(), changes.end(), [&](const FitChange& change) {

@@ -33,9 +33,12 @@ Fit fit(const Input& input, Calibration calibration, const CalibrateOptions& opt
     }
     procedure.exclude[number - 1] = "--exclude";
   }
-  Fit fitted{std::move(calibration), {}, {}};
+  Fit fitted{std::move(calibration), {}, {}, {}};
   JudgedResult judged = calibrate_and_judge(fitted.calibration, input.samples, procedure);
   fitted.samples = used_samples(judged, input.samples);
+  for (const LeftOutSample& left : judged.left_out) {
+    fitted.left_out.push_back(input.samples[static_cast<std::size_t>(left.number - 1)]);
+  }
   fitted.findings = findings_of(input.robot, fitted.calibration, std::move(judged), fitted.samples);
   fitted.findings.images = images_of(input.config);
   return fitted;

@@ -13,7 +13,8 @@ namespace kinecal::cli {
 /// A calibration and what was found.
 struct Fit {
   Calibration calibration;
-  std::vector<Sample> samples;  ///< those of the calibration
+  std::vector<Sample> samples;   ///< those of the calibration
+  std::vector<Sample> left_out;  ///< those of Findings::left_out
   Findings findings;
 };
 

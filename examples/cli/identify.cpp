@@ -17,13 +17,13 @@
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/text/reading.hpp"
 #include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
 #include "output_file.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -156,11 +156,9 @@ int identify(IdentifyOptions options) {
     all = search(input.config, input.robot, used, options.geometry_only);
     all.judged.left_out.insert(all.judged.left_out.begin(), left_out.begin(), left_out.end());
   }
-  fmt::print("{}\n", printable(fmt::format(
-                         "Robot '{}', {}: {} may be wrong, {} of them these samples support\n\n{}",
-                         input.robot.name(), counted(input.samples.size(), "sample"),
-                         counted(all.task.candidates.size(), "parameter"), all.found.chosen.size(),
-                         steps_text(all))));
+  say("Robot '{}', {}: {} may be wrong, {} of them these samples support\n\n{}", input.robot.name(),
+      counted(input.samples.size(), "sample"), counted(all.task.candidates.size(), "parameter"),
+      all.found.chosen.size(), steps_text(all));
   Diagnostics quiet;
   const Calibration names =
       assemble(with_all_candidates(input.config, input.robot), input.robot, {}, quiet);
@@ -176,8 +174,7 @@ int identify(IdentifyOptions options) {
   call += " --config " + shell_word(options.output) + " --samples";
   for (const std::string& file : options.samples) call += " " + shell_word(file);
   Findings findings{std::move(all.judged)};
-  fmt::print("{} · {}\nnext: {} --output calibrated\n", printable(findings_line(findings)),
-             options.output, call);
+  say("{} · {}\nnext: {} --output calibrated\n", findings_line(findings), options.output, call);
   return kDone;
 }
 

@@ -14,7 +14,6 @@
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/text/shell_word.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_capture.hpp"
@@ -24,6 +23,7 @@
 #include "output_file.hpp"
 #include "question.hpp"
 #include "report.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -64,7 +64,7 @@ void ask_targets(const Robot& robot, InitOptions& options) {
     if (!check_target(robot, options, word).empty()) continue;
     question.choices.push_back({word, std::string(known.says)});
   }
-  if (!has_camera) fmt::print("No link of the URDF looks like a camera.\n");
+  if (!has_camera) say("No link of the URDF looks like a camera.\n");
   words = {
       ask(question, [&](const std::string& word) { return check_target(robot, options, word); })};
   const InitTarget target = init_target(words.front())->target;
@@ -218,7 +218,7 @@ void check_given(const Robot& robot, const InitOptions& options) {
 void warn_of_idle(const InitOptions& options, InitTarget target, std::string_view word) {
   const auto warn = [&](bool is_used, const std::string& given, const char* option) {
     if (is_used || given.empty()) return;
-    fmt::print(stderr, "warning: {} is not used with target {}\n", option, word);
+    say(stderr, "warning: {} is not used with target {}\n", option, word);
   };
   warn(needs_arm(target), options.arm, "--arm");
   warn(needs_camera(target), options.camera, "--camera");
@@ -250,11 +250,10 @@ std::vector<Sample> read_from(const Robot& robot, const InitOptions& options) {
   const bool is_there = std::filesystem::exists(columns);
   if (is_there &&
       (!options.force || !detail::read_text_file(columns).starts_with(kProposedColumnsMark))) {
-    fmt::print("{} is there and is used\n", columns);
+    say("{} is there and is used\n", columns);
   } else {
     write_text_file(columns, proposed_columns(robot, detail::read_text_file(table), table));
-    fmt::print(
-        "wrote {}\n  what each column of {} means, as far as names and values tell: look at it\n",
+    say("wrote {}\n  what each column of {} means, as far as names and values tell: look at it\n",
         columns, table);
   }
   std::vector<Sample> samples = read_csv_samples(table, columns, diagnostics);
@@ -281,7 +280,7 @@ InitAnswers answer_from_samples(const Robot& robot, const InitOptions& options) 
                         found.camera_type == "camera2d" ? "pixels" : "points");
   }
   if (!found.target_frame.empty()) text += fmt::format("; frame '{}'", found.target_frame);
-  fmt::print("{}\n", printable(text));
+  say("{}\n", text);
   return found;
 }
 
@@ -358,12 +357,12 @@ void write_capture(const Robot& robot, const InitAnswers& answers, const InitOpt
   if (text.empty()) return;
   const bool is_asked_for = !options.capture.empty() && options.force;
   if (!is_asked_for && (is_of_others(file) || (std::filesystem::exists(file) && !options.force))) {
-    fmt::print("note: {} is there and is kept; with this configuration, it needs\n  {}\n", file,
-               capture_names(robot, answers));
+    say("note: {} is there and is kept; with this configuration, it needs\n  {}\n", file,
+        capture_names(robot, answers));
     return;
   }
   write_text_file(file, text);
-  fmt::print("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", file);
+  say("wrote {}\n  fill in what is zero: its sizes decide the scale of the result\n", file);
 }
 
 }  // namespace
@@ -379,17 +378,16 @@ int init(const InitOptions& options) {
   check();  // the file may have appeared meanwhile
   write_text_file(options.output, made.text);
   if (made.text.find("sigma: ") != std::string::npos) {
-    fmt::print(
-        "note: each sigma in {} is a guess of a residual, errors of the robot included; replace "
+    say("note: each sigma in {} is a guess of a residual, errors of the robot included; replace "
         "it\n  by the noise that kinecal calibrate reports, or remove it\n",
         options.output);
   }
-  fmt::print("wrote {}\n", options.output);
+  say("wrote {}\n", options.output);
   if (options.from.empty()) write_capture(robot, made.answers, options);
   const std::string files =
       fmt::format("--urdf {} --config {}", shell_word(options.urdf), shell_word(options.output));
   if (options.from.empty()) {
-    fmt::print("next: kinecal check {}\n", files);
+    say("next: kinecal check {}\n", files);
   } else {
     std::string samples, before;
     if (const std::string columns = columns_file(options); !columns.empty()) {
@@ -399,7 +397,7 @@ int init(const InitOptions& options) {
     } else {
       for (const std::string& file : options.from) samples += " --samples " + shell_word(file);
     }
-    fmt::print("next: {}kinecal calibrate {}{} --output calibrated\n", before, files, samples);
+    say("next: {}kinecal calibrate {}{} --output calibrated\n", before, files, samples);
   }
   return kDone;
 }

@@ -17,8 +17,8 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
-#include "kinecal/text/printable.hpp"
 #include "progress.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -156,16 +156,16 @@ void print_or_throw(const Diagnostics& diagnostics) {
 
 void print(const Diagnostics& diagnostics) {
   for (const std::string& note : diagnostics.notes) {
-    fmt::print(stderr, "note: {}\n", printable(note));
+    say(stderr, "note: {}\n", note);
   }
   for (const std::string& warning : diagnostics.warnings) {
-    fmt::print(stderr, "warning: {}\n", printable(warning));
+    say(stderr, "warning: {}\n", warning);
   }
   for (const std::string& error : diagnostics.errors) {
-    fmt::print(stderr, "error: {}\n", printable(error));
+    say(stderr, "error: {}\n", error);
   }
   for (const std::string& doubt : diagnostics.doubts) {
-    fmt::print(stderr, "doubt: {}\n", printable(doubt));
+    say(stderr, "doubt: {}\n", doubt);
   }
 }
 

@@ -12,7 +12,7 @@
 #include "kinecal/files/recordings/pose_messages.hpp"
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/printable.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -72,7 +72,7 @@ void print_joints(const std::vector<Sample>& samples) {
                fmt::format("{:.4f}", range.upper),
                fmt::format("{:.4f}", range.upper - range.lower)});
   }
-  fmt::print("Joints (radians or metres)\n{}\n", printable(table.str()));
+  say("Joints (radians or metres)\n{}\n", table.str());
 }
 
 void print_sensors(const std::vector<Sample>& samples) {
@@ -85,7 +85,7 @@ void print_sensors(const std::vector<Sample>& samples) {
                sensor.least == sensor.most ? fmt::format("{}", sensor.most)
                                            : fmt::format("{}-{}", sensor.least, sensor.most)});
   }
-  fmt::print("Sensors\n{}\n", printable(table.str()));
+  say("Sensors\n{}\n", table.str());
 }
 
 /// Prints gaps: joints or sensors that only some samples have, features without numbers.
@@ -109,13 +109,13 @@ void print_gaps(const std::vector<Sample>& samples) {
                               : fmt::format("{} features are not numbers", sensor.not_numbers));
     }
   }
-  fmt::print("Gaps\n{}", gaps.empty() ? "  none\n" : printable(gaps));
+  say("Gaps\n{}", gaps.empty() ? "  none\n" : gaps);
 }
 
 void print_topics(const std::string& file, const std::vector<TopicContent>& topics) {
-  fmt::print("{}: {}\n", printable(file), to_string(recording_format(file)));
+  say("{}: {}\n", file, to_string(recording_format(file)));
   if (topics.empty()) {
-    fmt::print("no messages\n\n");
+    say("no messages\n\n");
     return;
   }
   TextTable table({"topic", "type", "used as", "messages", "kB"}, 3);
@@ -124,7 +124,7 @@ void print_topics(const std::string& file, const std::vector<TopicContent>& topi
                fmt::format("{}", topic.messages),
                fmt::format("{:.1f}", 1e-3 * double(topic.bytes))});
   }
-  fmt::print("{}\n", printable(table.str()));
+  say("{}\n", table.str());
 }
 
 /// Prints poses to capture: joints, and the features to look for.
@@ -137,11 +137,11 @@ void print_poses(const std::vector<CapturePose>& poses) {
     for (const std::string& finder : poses[i].features) ++finders[finder];
     if (poses[i].features.empty()) ++finders["(all)"];
   }
-  fmt::print("{} to capture\n\n", counted(poses.size(), "pose"));
+  say("{} to capture\n\n", counted(poses.size(), "pose"));
   print_joints(samples);
   TextTable table({"looked for", "poses"});
   for (const auto& [finder, count] : finders) table.add({finder, fmt::format("{}", count)});
-  fmt::print("Features\n{}\n", printable(table.str()));
+  say("Features\n{}\n", table.str());
 }
 
 /// Prints the topics of bags, and poses.
@@ -188,7 +188,7 @@ int inspect(const std::vector<std::string>& files) {
   if (of_bags.errors.empty()) print(of_samples);  // else they would be printed twice
   if (!of_bags.errors.empty() || !of_samples.errors.empty()) return kBadInput;
   if (used.empty()) return kDone;
-  fmt::print("{}\n\n", counted(samples.size(), "sample"));
+  say("{}\n\n", counted(samples.size(), "sample"));
   print_joints(samples);
   print_sensors(samples);
   print_gaps(samples);

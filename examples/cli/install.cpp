@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "kinecal/text/printable.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -34,30 +35,29 @@ int install_result(const InstallOptions& options) {
   const ResultFolder result = read_result_folder(options.result);
   if (const std::string unfit = why_unfit(result, options.result); !unfit.empty()) {
     if (!options.force) {
-      fmt::print(stderr, "error: {}; nothing installed; --force installs it anyway\n", unfit);
+      say(stderr, "error: {}; nothing installed; --force installs it anyway\n", unfit);
       return kNotUsable;
     }
-    fmt::print(stderr, "warning: {}\n", unfit);
+    say(stderr, "warning: {}\n", unfit);
   }
   Diagnostics diagnostics;
   const Installation done =
       kinecal::install(result, options.folder, options.launch, names, diagnostics);
   print(diagnostics);
-  for (const std::string& name : done.added) fmt::print("wrote {}\n", in_folder(options, name));
+  for (const std::string& name : done.added) say("wrote {}\n", in_folder(options, name));
   const std::string launch = in_folder(options, options.launch);
   if (done.backup.empty()) {
-    fmt::print("{} is unchanged: this calibration is already installed\n", launch);
+    say("{} is unchanged: this calibration is already installed\n", launch);
   } else {
-    fmt::print("changed {}; the previous version is {}, --restore puts it back\n", launch,
-               done.backup);
+    say("changed {}; the previous version is {}, --restore puts it back\n", launch, done.backup);
   }
   return kDone;
 }
 
 int restore(const InstallOptions& options) {
   const std::string undone = restore_installed(options.folder, options.launch, options.force);
-  fmt::print("restored {}; the version that it replaced is {}\n",
-             in_folder(options, options.launch), undone);
+  say("restored {}; the version that it replaced is {}\n", in_folder(options, options.launch),
+      undone);
   return kDone;
 }
 
@@ -69,8 +69,7 @@ int install(const InstallOptions& options) {
     throw InputError("a result is required (or --restore, or --date)");
   }
   if (!options.date) return install_result(options);
-  fmt::print("{}\n", printable(installed_date(options.folder, options.launch,
-                                              launch_names(options.names))));
+  say("{}\n", installed_date(options.folder, options.launch, launch_names(options.names)));
   return kDone;
 }
 

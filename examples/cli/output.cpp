@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "kinecal/report.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 
@@ -25,7 +26,7 @@ std::vector<OutputFile> output_files(const Robot& robot, const UrdfFile& urdf,
 void write(OutputFolder& folder, const std::vector<OutputFile>& files) {
   folder.write(files);
   for (const OutputFile& file : files) {
-    fmt::print("wrote {}\n", (folder.path() / file.name).string());
+    say("wrote {}\n", (folder.path() / file.name).string());
   }
 }
 

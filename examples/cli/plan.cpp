@@ -16,13 +16,13 @@
 #include "kinecal/report/text.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/frame_name.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "output_file.hpp"
 #include "plan_page.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
 #include "remaining_error.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -306,17 +306,17 @@ void write_outputs(const PlanOptions& options, const StudyInput& input, const Po
   if (!options.output.empty() && !set.chosen.empty()) {
     const std::vector<int> order = short_order(choice, set.chosen);
     write_pose_file(options.output, poses_of_choice(input, order));
-    fmt::print("{}{}\n", options.output,
-               findings.reached ? std::string()
-                                : fmt::format(": the best {}, which do not reach {}",
-                                              poses_text(choice, static_cast<int>(order.size())),
-                                              millimetres(findings.curve.wanted)));
+    say("{}{}\n", options.output,
+        findings.reached ? std::string()
+                         : fmt::format(": the best {}, which do not reach {}",
+                                       poses_text(choice, static_cast<int>(order.size())),
+                                       millimetres(findings.curve.wanted)));
   } else if (!options.output.empty()) {
-    fmt::print("{}: not written, no more poses are needed\n", options.output);
+    say("{}: not written, no more poses are needed\n", options.output);
   }
   if (options.report.empty()) return;
   write_text_file(options.report, plan_page(input, findings));
-  fmt::print("{}\n", options.report);
+  say("{}\n", options.report);
 }
 
 }  // namespace
@@ -347,8 +347,7 @@ int plan(const PlanOptions& options) {
     not_reached(choice, sets, set, wanted, findings);
   }
   check_remaining(*input, choice, set, wanted, findings);
-  fmt::print("{}",
-             printable(findings.about + "\n" + curve_text(findings.curve) + "\n" + findings.lost));
+  say("{}", findings.about + "\n" + curve_text(findings.curve) + "\n" + findings.lost);
   write_outputs(options, *input, choice, set, findings);
   return findings.reached ? kDone : kNotUsable;
 }

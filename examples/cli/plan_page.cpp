@@ -44,7 +44,7 @@ std::string plan_page(const StudyInput& input, const PlanFindings& findings) {
       "<section id=\"poses\"><h2>How many poses</h2>\n<div class=\"pair\">{}<figure>"
       "<h3>In numbers</h3>{}</figure></div>\n</section>\n"
       "<section id=\"parameters\"><h2>What these poses determine</h2>\n{}</section>\n{}</main>\n",
-      findings.reached ? "good" : "care", detail::html_text(input.robot.name()),
+      findings.reached ? "good" : "care", detail::html_name(input.robot.name()),
       detail::html_text(findings.title), detail::html_paragraphs(findings.about),
       detail::html_figure(pose_curve_chart(findings.curve)), curve_table(findings.curve), lost,
       study_inputs(input));

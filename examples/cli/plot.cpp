@@ -15,8 +15,8 @@
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/report/chart_style.hpp"
 #include "kinecal/text/nearest_name.hpp"
-#include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -44,8 +44,14 @@ bool is_chart_name(std::string_view name) {
 
 std::string unescaped(std::string_view text) {
   std::string plain(text);
-  for (const auto& [from, to] :
-       {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&#39;", "'"}, {"&amp;", "&"}}) {
+  for (const auto& [from, to] :  // the marks around a name that is written from right to left go
+       {std::pair{"\u2068", ""},
+        {"\u2069", ""},
+        {"&lt;", "<"},
+        {"&gt;", ">"},
+        {"&quot;", "\""},
+        {"&#39;", "'"},
+        {"&amp;", "&"}}) {
     const std::string_view entity = from;
     for (std::size_t at = 0; (at = plain.find(entity, at)) != std::string::npos; ++at) {
       plain.replace(at, entity.size(), to);
@@ -118,20 +124,20 @@ int plot(const PlotOptions& options) {
     std::size_t width = 0;
     for (const PlottedChart& chart : charts) width = std::max(width, chart.name.size());
     for (const PlottedChart& chart : charts) {
-      fmt::print("{:<{}}  {}\n", chart.name, width, printable(chart.title));
+      say("{:<{}}  {}\n", chart.name, width, chart.title);
     }
     return kDone;
   }
   std::vector<OutputFile> files;
   for (const PlottedChart& chart : charts) {
-    files.push_back({chart.name + ".svg", stand_alone(chart.svg) + "\n"});
+    files.push_back({chart.name + ".svg", stand_alone(chart.svg, options.width) + "\n"});
     check_output((std::filesystem::path(options.output) / files.back().name).string(),
                  {options.report}, options.force);
   }
   OutputFolder folder(options.output);
   folder.write(files);
   for (const OutputFile& file : files) {
-    fmt::print("wrote {}\n", (folder.path() / file.name).string());
+    say("wrote {}\n", (folder.path() / file.name).string());
   }
   return kDone;
 }

@@ -13,6 +13,7 @@
 #include "kinecal/files/urdf/velocity_limits.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/trust/pose_change.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -118,8 +119,8 @@ void drop_poses_of_have(StudyInput& input, double least_distance) {
                     least_distance));
   }
   if (dropped == 0) return;
-  fmt::print(stderr, "note: {} to choose from left out: --have has the same or nearly so\n",
-             counted(dropped, "pose"));
+  say(stderr, "note: {} to choose from left out: --have has the same or nearly so\n",
+      counted(dropped, "pose"));
   input.samples.resize(kept);
   input.poses.resize(kept);
   input.setup.samples = input.samples;

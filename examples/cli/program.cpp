@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -750,7 +751,16 @@ void add_plot(CLI::App& command, PlotOptions& options) {
   command.add_option("-o,--output", options.output, "folder for NAME.svg")
       ->type_name("DIR")
       ->excludes(list);
+  command
+      .add_option("--width", options.width,
+                  "width of a chart on paper, in mm, or with a unit: 85mm (a column), 16cm, 3.5in")
+      ->transform(CLI::AsNumberWithUnit(
+          std::map<std::string, double>{{"mm", 1.0}, {"cm", 10.0}, {"in", 25.4}},
+          CLI::AsNumberWithUnit::CASE_SENSITIVE, "LENGTH"))
+      ->check(CLI::Range(10.0, 2000.0))
+      ->option_text("LENGTH=160mm");
   command.add_flag("--force", options.force, "replace files that are in the folder");
+  command.footer("As PDF: rsvg-convert -f pdf -o NAME.pdf NAME.svg");
 }
 
 void add_rpy(CLI::App& command, RpyOptions& options) {
@@ -965,8 +975,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(arguments);
   } catch (const CLI::ParseError& e) {
-    app.failure_message(
-        [&](const CLI::App*, const CLI::Error& error) { return commands.refusal(given, error); });
+    app.failure_message([&](const CLI::App*, const CLI::Error& error) {
+      return kinecal::printable(commands.refusal(given, error));
+    });
     return app.exit(e) == 0 ? kDone : kBadInput;
   }
   const int code = commands.run_called();

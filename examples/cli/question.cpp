@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "kinecal/files/diagnostics.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -21,17 +22,16 @@ std::string listed(const std::vector<Choice>& all) {
 
 void print(const Question& question) {
   if (question.choices.size() == 1) {
-    fmt::print("{} [{}]: ", question.asks, question.choices.front().answer);
+    say("{} [{}]: ", question.asks, question.choices.front().answer);
     std::fflush(stdout);
     return;
   }
-  fmt::print("{}\n", question.asks);
+  say("{}\n", question.asks);
   int number = 0;
   for (const Choice& choice : question.choices) {
-    fmt::print("  {}  {}{}{}\n", ++number, choice.answer, choice.says.empty() ? "" : ": ",
-               choice.says);
+    say("  {}  {}{}{}\n", ++number, choice.answer, choice.says.empty() ? "" : ": ", choice.says);
   }
-  fmt::print("{}: ", question.choices.empty() ? "name" : "number or name [1]");
+  say("{}: ", question.choices.empty() ? "name" : "number or name [1]");
   std::fflush(stdout);
 }
 
@@ -63,7 +63,7 @@ bool on_a_terminal() {
 std::string ask(const Question& question, const WhyNot& why_not) {
   if (!on_a_terminal()) {
     if (question.choices.size() == 1) {
-      fmt::print("{} {} (the only one)\n", question.option, question.choices.front().answer);
+      say("{} {} (the only one)\n", question.option, question.choices.front().answer);
       return question.choices.front().answer;
     }
     throw InputError(question.option + " is required, because the input is not a terminal" +
@@ -87,9 +87,9 @@ std::string ask(const Question& question, const WhyNot& why_not) {
     }
     const auto answer = understood(question, line);
     if (!answer) {
-      fmt::print("  there is no such number\n");
+      say("  there is no such number\n");
     } else if (const std::string why = why_not(*answer); !why.empty()) {
-      fmt::print("  {}\n", why);
+      say("  {}\n", why);
     } else {
       return *answer;
     }

@@ -91,7 +91,8 @@ std::string day() {
 }
 
 std::string page(const CalibrateOptions& options, const Input& input, const Fit& fitted) {
-  ReportData data = report_data(fitted.calibration, fitted.findings, fitted.samples);
+  ReportData data =
+      report_data(fitted.calibration, fitted.findings, fitted.samples, fitted.left_out);
   data.version = version();
   data.command = options.command;
   data.date = day();

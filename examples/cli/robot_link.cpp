@@ -12,8 +12,8 @@
 #include "interruption.hpp"
 #include "kinecal/robots/pipe_robot.hpp"
 #include "kinecal/robots/ros_robot.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/tools/simulation/simulation_plan.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -112,14 +112,12 @@ AnyRobot connect(const std::string& address, const CaptureConfig& config, const 
     if (after("pipe:").find_first_not_of(' ') == std::string::npos) {
       throw InputError("--robot: '" + address + "' has no command; write pipe:COMMAND");
     }
-    return whole_robot(std::make_shared<PipeRobot>(
-                           PipeOptions{.command = after("pipe:"),
-                                       .interrupted = [] { return Interruption::is_asked(); },
-                                       .slow =
-                                           [](const std::string& what) {
-                                             fmt::print(stderr, "note: {}\n", printable(what));
-                                           }}),
-                       config);
+    return whole_robot(
+        std::make_shared<PipeRobot>(
+            PipeOptions{.command = after("pipe:"),
+                        .interrupted = [] { return Interruption::is_asked(); },
+                        .slow = [](const std::string& what) { say(stderr, "note: {}\n", what); }}),
+        config);
   }
   if (address.starts_with(kSimulated)) return simulated(after(kSimulated), config, robot, limits);
   throw InputError("--robot: '" + address +

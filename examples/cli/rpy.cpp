@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "kinecal/files/diagnostics.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -37,8 +38,8 @@ Vector3<double> three_numbers(const std::vector<std::string>& texts) {
 void print(const char* what, const Vector3<double>& v) {
   const Vector3<double> r = v + Vector3<double>::Zero();  // never -0
   const Vector3<double> d = r * (180.0 / std::numbers::pi);
-  fmt::print("{}, rad  {} {} {}\n", what, r.x(), r.y(), r.z());
-  fmt::print("{}, deg  {:.6f} {:.6f} {:.6f}\n", what, d.x(), d.y(), d.z());
+  say("{}, rad  {} {} {}\n", what, r.x(), r.y(), r.z());
+  say("{}, deg  {:.6f} {:.6f} {:.6f}\n", what, d.x(), d.y(), d.z());
 }
 
 }  // namespace

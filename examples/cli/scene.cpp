@@ -11,12 +11,14 @@
 #include "kinecal/report/scene_mcap.hpp"
 #include "kinecal/report/scene_meshes.hpp"
 #include "output_file.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 
 RobotScene scene_of(const Input& input, const Fit& fitted,
                     const std::vector<std::string>& mesh_paths, const SceneLimits& limits) {
-  RobotScene scene = robot_scene(fitted.calibration, fitted.findings, fitted.samples, limits);
+  RobotScene scene =
+      robot_scene(fitted.calibration, fitted.findings, fitted.samples, limits, fitted.left_out);
   Diagnostics diagnostics;
   add_visuals(visuals(input.urdf_text, input.urdf, diagnostics),
               mesh_places(input.urdf, mesh_paths), input.urdf, scene, diagnostics);
@@ -32,7 +34,7 @@ void write_scene_file(const std::string& file, const Input& input, const Fit& fi
   std::ostringstream bytes;
   write_scene(scene, bytes, best_mcap_compression());
   write_text_file(file, bytes.str());
-  fmt::print(stderr, "wrote {}{}\n", file, scene.thinned.empty() ? "" : ": " + scene.thinned);
+  say(stderr, "wrote {}{}\n", file, scene.thinned.empty() ? "" : ": " + scene.thinned);
 }
 
 }  // namespace kinecal::cli

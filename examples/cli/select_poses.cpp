@@ -9,11 +9,11 @@
 #include "commands.hpp"
 #include "kinecal/study/study_summary.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
 #include "remaining_error.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -58,9 +58,8 @@ PoseSelection select(const SelectPosesOptions& options, const PoseChoice& choice
                                                 .failures = options.failures});
   const std::size_t found = selection.chosen.size();
   if (static_cast<int>(found) < options.count) {
-    fmt::print(stderr, "warning: only {} of {} are further than {} of a joint's range apart\n",
-               found, counted(choice.candidates.information.size(), "pose"),
-               options.least_distance);
+    say(stderr, "warning: only {} of {} are further than {} of a joint's range apart\n", found,
+        counted(choice.candidates.information.size(), "pose"), options.least_distance);
   }
   return selection;
 }
@@ -135,13 +134,13 @@ int select_poses(const SelectPosesOptions& options) {
   const PoseChoice choice = pose_choice(*input);
   const PoseSelection selection = select(options, choice);
   const std::vector<int> order = short_order(choice, selection.chosen);
-  fmt::print("{}{}  in this order: {} with the URDF's speeds and 3 s a stop\n",
-             printable(selected_text(*input, choice, selection.chosen)),
-             printable(comparison_text(options, *input, choice, selection.chosen)),
-             duration_text(session_seconds(choice, order)));
+  say("{}{}  in this order: {} with the URDF's speeds and 3 s a stop\n",
+      selected_text(*input, choice, selection.chosen),
+      comparison_text(options, *input, choice, selection.chosen),
+      duration_text(session_seconds(choice, order)));
   if (options.output.empty()) return kDone;
   write_pose_file(options.output, poses_of_choice(*input, order));
-  fmt::print("{}\n", options.output);
+  say("{}\n", options.output);
   return kDone;
 }
 

@@ -12,6 +12,7 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/tools/simulation/photographs.hpp"
 #include "progress.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -77,7 +78,7 @@ int simulate(const SimulateOptions& options) {
       if (meter) meter(static_cast<double>(n) / static_cast<double>(poses.size()), "rendering");
     });
   }
-  for (const std::string& skipped : files.skipped) fmt::print(stderr, "warning: {}\n", skipped);
+  for (const std::string& skipped : files.skipped) say(stderr, "warning: {}\n", skipped);
   files.others.push_back({"robot.urdf", detail::read_text_file(options.urdf)});
   files.others.push_back({"scene.yaml", scene_text(options)});
   const std::size_t images = files.images.size();
@@ -85,9 +86,8 @@ int simulate(const SimulateOptions& options) {
   const std::string what =
       images > 0 ? fmt::format("{} images", images)
                  : fmt::format("scene.yaml, and {} poses for a session", poses.size());
-  fmt::print("{}: {} of '{}' on '{}' by '{}'; truth.yaml has {} errors of the URDF\n",
-             folder.string(), what, plan.target.type, plan.target.link, plan.setup.camera.frame,
-             plan.setup.truth.size());
+  say("{}: {} of '{}' on '{}' by '{}'; truth.yaml has {} errors of the URDF\n", folder.string(),
+      what, plan.target.type, plan.target.link, plan.setup.camera.frame, plan.setup.truth.size());
   return kDone;
 }
 

@@ -16,7 +16,6 @@
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/files/text_file.hpp"
-#include "kinecal/text/printable.hpp"
 #include "output_file.hpp"
 #include "processes.hpp"
 #include "progress.hpp"
@@ -24,6 +23,7 @@
 #include "study_journal.hpp"
 #include "study_page.hpp"
 #include "study_tables.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -51,8 +51,8 @@ std::vector<int> poses_of_study(const StudyOptions& options, std::size_t availab
   for (int& count : poses) {
     if (count <= most) continue;
     if (!options.poses.empty()) {
-      fmt::print(stderr, "warning: --poses: {} are asked for, the camera sees the target in {}\n",
-                 count, most);
+      say(stderr, "warning: --poses: {} are asked for, the camera sees the target in {}\n", count,
+          most);
     }
     count = most;
   }
@@ -231,17 +231,17 @@ void report(const StudyOptions& options, const StudyInput& input, const std::vec
             const StudyTrials& trials, OutputFolder* output) {
   const StudyResult result = result_of(options, input, poses, trials);
   const std::string text = study_text(input, result);
-  fmt::print("{}", printable(text));
+  say("{}", text);
   if (result.solves_per_second > 0.0) {
-    fmt::print("{:.0f} solves per second and core\n", result.solves_per_second);
+    say("{:.0f} solves per second and core\n", result.solves_per_second);
   }
   if (output != nullptr && result.done < result.jobs) {
-    fmt::print("{}: run the same command again to go on\n", options.output);
+    say("{}: run the same command again to go on\n", options.output);
     return;
   }
   if (!options.report.empty()) {
     write_text_file(options.report, study_page(input, result));
-    fmt::print("{}\n", options.report);
+    say("{}\n", options.report);
   }
   if (output == nullptr) return;
   std::string lines = trial_columns(free_names(input)) + "\n";
@@ -298,7 +298,7 @@ int study_in(const Processes& processes, const StudyOptions& options) {
     (void)processes.gather("");  // nobody adds to a journal before all have read them
   }
   if (!done.empty() && processes.rank() == 0) {
-    fmt::print(stderr, "note: {} calibrations were done before\n", done.size());
+    say(stderr, "note: {} calibrations were done before\n", done.size());
   }
   const Interruption interruption;
   StudyRun run(options, *input, poses, processes, std::move(done), journal ? &*journal : nullptr);

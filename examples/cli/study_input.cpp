@@ -16,6 +16,7 @@
 #include "kinecal/trust/compared_frames.hpp"
 #include "kinecal/trust/ruined.hpp"
 #include "pose_file.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -65,10 +66,10 @@ ParameterTable take_poses(const StudyFiles& files, int count, StudyInput& input)
   PoseSamples made = pose_samples(input.plan, input.config, poses);
   constexpr std::size_t kShown = 3;
   for (std::size_t i = 0; i < made.skipped.size() && i < kShown; ++i) {
-    fmt::print(stderr, "warning: {}{}\n", made.skipped[i],
-               i + 1 == kShown && made.skipped.size() > kShown
-                   ? fmt::format(" (and {})", counted(made.skipped.size() - kShown, "other pose"))
-                   : "");
+    say(stderr, "warning: {}{}\n", made.skipped[i],
+        i + 1 == kShown && made.skipped.size() > kShown
+            ? fmt::format(" (and {})", counted(made.skipped.size() - kShown, "other pose"))
+            : "");
   }
   if (made.samples.empty()) throw InputError("the camera sees the target in none of the poses");
   for (const std::size_t i : made.poses) {

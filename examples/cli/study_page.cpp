@@ -133,7 +133,7 @@ std::string study_page(const StudyInput& input, const StudyResult& result) {
       "<div>{}</div>\n</header>\n<main>\n"
       "<section id=\"repeatability\"><h2>Repeatability</h2>\n{}</section>\n"
       "<section id=\"tables\"><h2>Tables</h2>\n{}</section>\n{}</main>\n",
-      failed == 0 && text.linear ? "good" : "care", detail::html_text(input.robot.name()), title,
+      failed == 0 && text.linear ? "good" : "care", detail::html_name(input.robot.name()), title,
       detail::html_paragraphs(text.about + text.sums + text.linearity), charts_of(input, result),
       tables_of(text), study_inputs(input));
   return html_file({input.robot.name() + ": " + title, version(), body, ""});

@@ -66,7 +66,7 @@ std::size_t terminal_width(int descriptor) {
 }
 
 void show(const std::string& text, const Manner& manner) {
-  std::string shown = text;
+  std::string shown = printable(text);
   if (isatty(STDOUT_FILENO) != 0) shown = wrapped(shown, terminal_width(STDOUT_FILENO));
   fmt::print("{}", is_colored(manner) ? colored(shown) : shown);
   std::fflush(stdout);

@@ -1,9 +1,18 @@
 // Text for people: colored and as wide as the terminal; as it is in a file or a pipe.
+//
+// Every command prints with say() or show(): neither passes on a control character that a file or an
+// argument holds.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/core.h>
+
 #include <cstddef>
+#include <cstdio>
 #include <string>
+#include <utility>
+
+#include "kinecal/text/printable.hpp"
 
 namespace kinecal::cli {
 
@@ -14,6 +23,16 @@ struct Manner {
   bool verbose = false;        ///< also raw values, and what each step did
   bool json = false;           ///< the report as JSON, and nothing else
 };
+
+/// Prints as fmt::print() does, but printable().
+template <class... T>
+void say(std::FILE* out, fmt::format_string<T...> format, T&&... arguments) {
+  fmt::print(out, "{}", printable(fmt::format(format, std::forward<T>(arguments)...)));
+}
+template <class... T>
+void say(fmt::format_string<T...> format, T&&... arguments) {
+  say(stdout, format, std::forward<T>(arguments)...);
+}
 
 /// Columns of the terminal behind a file descriptor; 80 if that is not known.
 [[nodiscard]] std::size_t terminal_width(int descriptor);

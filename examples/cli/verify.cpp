@@ -12,10 +12,10 @@
 #include "kinecal/files/json/json_text.hpp"
 #include "kinecal/files/results/file_set.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/text/printable.hpp"
 #include "kinecal/trust/pose_change.hpp"
 #include "new_samples.hpp"
 #include "output_file.hpp"
+#include "terminal.hpp"
 
 namespace kinecal::cli {
 namespace {
@@ -245,8 +245,7 @@ int verify(const RecheckOptions& options) {
   print(fresh.diagnostics);
   if (!fresh.diagnostics.errors.empty()) return kBadInput;
   if (!std::isfinite(fresh.misfit)) {
-    fmt::print(
-        "verdict: does not hold\n  - with this result, a recorded point is behind a camera\n");
+    say("verdict: does not hold\n  - with this result, a recorded point is behind a camera\n");
     return kNotUsable;
   }
   const Check check{result, fresh,
@@ -261,7 +260,7 @@ int verify(const RecheckOptions& options) {
   text += "\n";
   if (const std::string moved = movers_text(check); !moved.empty()) text += moved + "\n";
   text += fit_text(result, fresh) + "\n" + worst_text(result, fresh) + "\n" + next_text(check);
-  show(printable(text), options.manner);
+  show(text, options.manner);
   if (!options.report.empty()) write_text_file(options.report, json(check));
   return check.drift.holds ? kDone : kNotUsable;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "kinecal/text/characters.hpp"
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/fixed_string.hpp"
 #include "kinecal/text/frame_name.hpp"

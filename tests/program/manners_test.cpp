@@ -9,6 +9,7 @@
 
 #include <regex>
 #include <set>
+#include <vector>
 
 #include "support/paths.hpp"
 #include "support/run_program.hpp"
@@ -258,6 +259,50 @@ TEST_F(Manners, NoControlCharacterOfAFileReachesTheTerminal) {
   replace("ur5e.urdf", "elbow_joint", "elbow&#27;[0m");
   EXPECT_THAT(kinecal("init --urdf ur5e.urdf --target tracker --force").err,
               AllOf(HasSubstr("has a control character"), Not(HasSubstr("\x1b"))));
+}
+
+TEST_F(Manners, NoMarkThatTurnsTheDirectionOfWritingReachesTheTerminal) {
+  prepare();
+  const std::string odd = "elbow\u202Etnioj";
+  for (const char* file : {"ur5e.urdf", "samples.yaml", "calibrate.yaml"}) {
+    replace(file, "elbow_joint", odd);
+  }
+  const std::string input = "--urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml ";
+  ASSERT_EQ(kinecal(kCalibrate + "--force --report report.html").code, 0);
+  write("wrong.yaml", "base_link: base_link\ncalibration_steps: [" + odd + "]\n");
+  for (const std::string& call : std::vector<std::string>{
+           "calibrate " + input + "--dry-run", "calibrate " + input + "--dry-run --verbose",
+           "calibrate " + input + "--dry-run --json", "check " + input, "inspect samples.yaml",
+           "verify out samples.yaml", "evaluate out samples.yaml", "compare out out",
+           "init --force --urdf ur5e.urdf --target tracker --arm " + odd,
+           "init --force --urdf ur5e.urdf --target tracker", "plot report.html --list",
+           "plot report.html " + odd + " -o figures", "check --urdf ur5e.urdf --config wrong.yaml",
+           "inspect " + odd, odd, "calibrate --" + odd, "calibrate-log " + input + "--output log",
+           "select-poses " + input + "--poses 5 --output few.yaml"}) {
+    const Outcome outcome = kinecal(call);
+    EXPECT_THAT(outcome.out + outcome.err, Not(HasSubstr("\u202E"))) << call;
+    EXPECT_FALSE((outcome.out + outcome.err).empty()) << call;
+  }
+  EXPECT_THAT(kinecal("inspect samples.yaml").out, HasSubstr("elbow\\u202etnioj"));
+  EXPECT_THAT(kinecal("calibrate " + input + "--dry-run --json").out, HasSubstr("\\u202e"));
+  EXPECT_THAT(read("report.html"), Not(HasSubstr("\u202E")));
+}
+
+TEST(Sources, OfTheProgramPrintWithoutControlCharacters) {
+  for (const auto& file : fs::directory_iterator(test::source_folder() + "/examples/cli")) {
+    if (file.path().stem() == "terminal") continue;
+    std::ifstream in(file.path());
+    for (std::string line; std::getline(in, line);) {
+      const bool prints = line.find("fmt::print(") != std::string::npos ||
+                          line.find("printf(") != std::string::npos ||
+                          line.find("std::cout") != std::string::npos ||
+                          line.find("std::cerr") != std::string::npos;
+      const bool is_safe = line.find("\\033[K") != std::string::npos ||  // a line of progress
+                           line.find("printable(") != std::string::npos ||
+                           line.find("cannot write to the standard output") != std::string::npos;
+      EXPECT_TRUE(!prints || is_safe) << file.path() << ": use say(): " << line;
+    }
+  }
 }
 
 TEST_F(Manners, CountsAgreeInNumber) {

@@ -55,6 +55,21 @@ TEST_F(Plot, WritesTheChartsThatAreNamed) {
   EXPECT_TRUE(fs::exists(folder_ / "figures/samples-ground.svg"));
 }
 
+TEST_F(Plot, ChartsAreAsWideOnPaperAsIsAskedFor) {
+  for (const auto& [option, width] : {std::pair{"", "160mm"},
+                                      {"--width 85", "85mm"},
+                                      {"--width 8.5cm", "85mm"},
+                                      {"--width 2in", "50.8mm"}}) {
+    ASSERT_EQ(plot(std::string("out.html correlation -o figures --force ") + option).code, 0);
+    const test::SvgChart svg(read("figures/correlation.svg"));
+    EXPECT_STREQ(svg.root().attribute("width").value(), width) << option;
+    EXPECT_TRUE(std::string(svg.root().attribute("height").value()).ends_with("mm"));
+  }
+  EXPECT_EQ(plot("out.html correlation -o none --width 0").code, 1);
+  EXPECT_EQ(plot("out.html correlation -o none --width 85pt").code, 1);
+  EXPECT_THAT(run(test::kinecal_program() + " plot --help").out, HasSubstr("rsvg-convert -f pdf"));
+}
+
 TEST_F(Plot, ListsNamesAndTitles) {
   const test::Outcome outcome = plot("out.html --list");
   EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -69,6 +69,16 @@ TEST_F(ReportPage, IsWrittenWhateverTheVerdictAndBesideJson) {
   EXPECT_THAT(read("out.html"), HasSubstr("sigma"));
 }
 
+TEST_F(ReportPage, HasTheSamplesThatWereLeftOutInItsSceneAndCharts) {
+  ASSERT_EQ(calibrate("--dry-run --exclude 5,11 --report page.html").code, 0);
+  const std::string page = read("page.html");
+  for (const std::string number : {"5", "11"}) {
+    EXPECT_THAT(page, testing::ContainsRegex("<circle class=\"target\"[^>]* data-sample=\"" +
+                                             number + "\""));
+    EXPECT_THAT(page, testing::ContainsRegex("\"number\":" + number + ",[^{]*\"left_out\":true"));
+  }
+}
+
 TEST_F(ReportPage, ReplacesNoInput) {
   const std::string before = read("samples.yaml");
   for (const std::string input : {"samples.yaml", "./calibrate.yaml", "mobile_manipulator.urdf"}) {

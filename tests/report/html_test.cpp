@@ -69,7 +69,7 @@ TEST(Html, IsWellFormedWhateverNamesContain) {
        {std::string("<script>alert(1)</script>"), std::string("\"'><img src=x onerror=alert(1)>"),
         std::string("]]> --> &amp; \\u2028 \xe2\x80\xa8"), std::string("\xd7\xa2\xd7\x91\xd7\xa8"),
         std::string("\xf0\x9f\xa4\x96"), std::string(5000, 'x'), std::string("\xff\xfe\x01 broken"),
-        std::string()}) {
+        std::string("gpj.\u202Eexe \u2066\u200F"), std::string()}) {
     const std::string page = html_report(hostile(name), "");
     pugi::xml_document document;
     const auto parsed = document.load_string(markup_of(page).c_str());
@@ -77,9 +77,55 @@ TEST(Html, IsWellFormedWhateverNamesContain) {
     EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
     EXPECT_THAT(page, Not(HasSubstr("<img")));
     EXPECT_EQ(page.find_first_of("\x01\xff\xfe"), std::string::npos);
+    EXPECT_THAT(page, Not(HasSubstr("\u202E"))) << "turns the direction of writing";
+    EXPECT_THAT(page, Not(HasSubstr("\u200F")));
     EXPECT_TRUE(document.select_node("//header[@class='verdict good']"));
     EXPECT_FALSE(document.select_node("//@onerror | //@onclick | //@style"));
   }
+}
+
+TEST(Html, ElidesLongNamesWithTheWholeNameAsTooltip) {
+  const std::string name(5000, 'x');
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(markup_of(html_report(hostile(name), "")).c_str()));
+  int elided = 0;
+  for (const pugi::xpath_node& found : document.select_nodes("//td//text() | //li//text()")) {
+    const std::string text = found.node().value();
+    EXPECT_LT(text.size(), 300u) << found.node().parent().name();
+    if (text.find("…") == std::string::npos) continue;
+    ++elided;
+    EXPECT_THAT(found.node().parent().attribute("title").value(), testing::StartsWith(name));
+  }
+  EXPECT_GT(elided, 12) << "error block, parameters, steps, inputs, samples and their faults";
+  EXPECT_EQ(document.select_node("//pre[@class='command']/code").node().text().get(), name)
+      << "it is copied";
+}
+
+TEST(Html, IsolatesNamesThatAreWrittenFromRightToLeft) {
+  const std::string name = "זרוע ימין";
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(markup_of(html_report(hostile(name), "")).c_str()));
+  int isolated = 0;
+  for (const pugi::xpath_node& found : document.select_nodes("//body//text()")) {
+    const pugi::xml_node parent = found.node().parent();
+    const std::string text = found.node().value(), element = parent.name();
+    if (text.find("זרוע") == std::string::npos) continue;
+    const bool in_bdi = element == "bdi", has_marks = text.find("\u2068") != std::string::npos;
+    EXPECT_TRUE(in_bdi || has_marks || element == "title" || element == "desc") << element << text;
+    ++isolated;
+  }
+  EXPECT_GT(isolated, 20);
+}
+
+TEST(HtmlSentence, KeepsItsWordsAndElidesLongOnes) {
+  const std::string page = [] {
+    ReportData data = hostile("arm");
+    data.reasons = {"noise of 'זרוע ימין' is 40 mm, that of " + std::string(200, 'y') + " 2 mm"};
+    return html_report(data, "");
+  }();
+  EXPECT_THAT(page, HasSubstr("<li>noise of <bdi>\u2068&#39;זרוע ימין&#39;\u2069</bdi> is 40 mm, "
+                              "that of <bdi title=\"yyyy"));
+  EXPECT_THAT(page, HasSubstr("yyy</bdi> 2 mm</li>"));
 }
 
 TEST(Html, AllowsItsOwnStyleAndScriptOnly) {

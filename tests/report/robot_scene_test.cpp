@@ -208,6 +208,36 @@ TEST(RobotScene, FeaturesHaveTheErrorOfTheResult) {
               noisy.result.steps[0].final_cost, 1e-6);
 }
 
+TEST(RobotScene, SamplesThatWereLeftOutAreShownAndMarked) {
+  test::NoisyScene noisy(20);
+  noisy.samples[7].observations[0].features[1].point.x() += 0.2;
+  noisy.solve();
+  const std::vector<Sample> all = noisy.samples;
+  const JudgedResult judged = calibrate_and_judge(noisy.calibration, all);
+  ASSERT_THAT(judged.left_out, SizeIs(1));
+  const std::vector<Sample> used = used_samples(judged, all), left = {all[7]};
+  const Findings findings =
+      findings_of(test::mobile_manipulator(), noisy.calibration, judged, used);
+  const RobotScene scene = robot_scene(noisy.calibration, findings, used, {}, left);
+  ASSERT_THAT(scene.samples, SizeIs(20));
+  EXPECT_THAT(scene.thinned, IsEmpty());
+  for (int i = 0; i < 20; ++i) {
+    const SceneSample& sample = scene.samples[static_cast<std::size_t>(i)];
+    EXPECT_EQ(sample.number, i + 1);
+    EXPECT_EQ(sample.left_out, i == 7);
+    EXPECT_THAT(sample.features, SizeIs(4));
+  }
+  const SceneSample& out = scene.samples[7];
+  EXPECT_TRUE(out.bad);
+  EXPECT_EQ(out.note, findings.left_out[0].why);
+  EXPECT_EQ(out.source, all[7].source);
+  EXPECT_NEAR(*out.features[1].distance, 0.2, 0.02);
+  EXPECT_NEAR(distance(*out.features[1].after), *out.features[1].distance, kExact);
+  EXPECT_THAT(robot_scene(noisy.calibration, findings, used).samples, SizeIs(19));
+  EXPECT_EQ(robot_scene(noisy.calibration, findings, used, {.samples = 4}, left).thinned,
+            "4 of 20 samples");
+}
+
 TEST(RobotScene, OfManySamplesBadOnesAreKeptAndOthersEvenly) {
   test::NoisyScene noisy(60);
   noisy.samples[33].observations[0].features[1].point.x() += 0.05;

@@ -11,6 +11,7 @@
 
 #include "kinecal/files/checksum.hpp"
 #include "kinecal/files/json/json_text.hpp"
+#include "kinecal/text/characters.hpp"
 
 namespace kinecal {
 namespace {
@@ -76,6 +77,19 @@ RobotScene one_of_everything() {
   return scene;
 }
 
+TEST(SceneJson, SaysWhichSampleIsLeftOutAndHidesNoText) {
+  RobotScene scene = one_of_everything();
+  EXPECT_FALSE(YAML::Load(scene_json(scene))["samples"][0]["left_out"]);
+  scene.samples[0].left_out = true;
+  const std::string hidden = "a\u202Eb\x1b";
+  scene.samples[0].source = scene.samples[0].note = scene.blocks[0] = scene.joints[0].name = hidden;
+  scene.links[0].name = scene.cameras[0].name = scene.samples[0].features[0].name = hidden;
+  const std::string text = scene_json(scene);
+  EXPECT_TRUE(YAML::Load(text)["samples"][0]["left_out"].as<bool>());
+  EXPECT_EQ(text.find("\u202E"), std::string::npos);
+  EXPECT_EQ(text.find("u001b"), std::string::npos);
+}
+
 TEST(SceneJson, HasOneOfEverything) {
   const std::string text = scene_json(one_of_everything());
   const YAML::Node json = YAML::Load(text);  // JSON is YAML
@@ -125,7 +139,7 @@ TEST(SceneJson, NamesCannotEndAScriptNorBreakTheText) {
     EXPECT_THAT(text, Not(HasSubstr(forbidden)));
   }
   const auto json = nlohmann::json::parse(text);
-  EXPECT_EQ(json["links"][1]["name"], evil);
+  EXPECT_EQ(json["links"][1]["name"], detail::one_line(evil));
   EXPECT_EQ(json["names"][0], scene.names[0]);
   EXPECT_THAT(json["samples"][0]["source"].get<std::string>(),
               AllOf(StartsWith("bad \xEF\xBF\xBD"), HasSubstr("\xEF\xBF\xBD bytes\xEF\xBF\xBD")));

@@ -148,5 +148,16 @@ TEST(Svg, AFileOfItsOwnHasItsStyleAndNoVariables) {
   EXPECT_STREQ(chart.all("/svg/rect")[0].attribute("fill").value(), "white");
 }
 
+TEST(Svg, AFileOfItsOwnHasASizeOnPaper) {
+  const std::string svg = Drawing("chart", "title", 240.0).str("words");  // 480 x 240
+  const test::SvgChart usual(stand_alone(svg)), narrow(stand_alone(svg, 85.0));
+  EXPECT_STREQ(usual.root().attribute("width").value(), "160mm");
+  EXPECT_STREQ(usual.root().attribute("height").value(), "80mm");
+  EXPECT_STREQ(narrow.root().attribute("width").value(), "85mm");
+  EXPECT_STREQ(narrow.root().attribute("height").value(), "42.5mm");
+  EXPECT_THAT(usual.text("/svg/style"), Not(HasSubstr("width: 100%"))) << "it would win";
+  EXPECT_THAT(stand_alone("<svg class=\"chart\"></svg>"), Not(HasSubstr("mm")));
+}
+
 }  // namespace
 }  // namespace kinecal::detail

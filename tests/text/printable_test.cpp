@@ -17,15 +17,29 @@ TEST(Printable, LeavesLettersOfAllAlphabets) {
 
 TEST(Printable, ShowsControlCharactersAsNumbers) {
   EXPECT_EQ(printable("\x1b[31mred\r"), "\\x1b[31mred\\x0d");
-  EXPECT_EQ(printable("a\x7f"), "a\\x7f");
+  EXPECT_EQ(printable("a\x7f"), "a\\u007f");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
   EXPECT_EQ(printable("\xc2\x9b"
                       "31m"),
-            "\\xc2\\x9b31m")
+            "\\u009b31m")
       << "CSI of eight bits, as UTF-8";
   for (const char* text : {"\x1b", "a\r", "\x7f", "\xc2\x9b"}) {
     EXPECT_TRUE(has_control_characters(text));
   }
+}
+
+TEST(Printable, ShowsWhatTurnsTheDirectionOfWritingAsNumbers) {
+  EXPECT_EQ(printable("gpj.\u202Eexe"), "gpj.\\u202eexe");
+  for (const char* turns : {"\u202A", "\u202B", "\u202C", "\u202D", "\u2066", "\u2067", "\u2068",
+                            "\u2069", "\u200E", "\u200F", "\u061C", "\u2028"}) {
+    EXPECT_EQ(printable(turns).size(), 6u) << printable(turns);
+    EXPECT_FALSE(has_control_characters(turns)) << "a robot may have such a name";
+  }
+  EXPECT_EQ(printable("זרוע"), "זרוע") << "letters are no marks";
+}
+
+TEST(Printable, LeavesJsonTheSameJson) {
+  EXPECT_EQ(printable("{\"name\": \"a\u202Eb\x7f\"}\n"), "{\"name\": \"a\\u202eb\\u007f\"}\n");
 }
 
 TEST(Printable, ShowsWhatIsNotUtf8AsNumbers) {

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/report/chart_style.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdlib>
+
 namespace kinecal {
 
 std::string chart_style() {
@@ -41,7 +45,9 @@ std::string chart_style() {
 .chart .dots path { stroke: var(--after, #1c62b9); stroke-width: 4; stroke-linecap: round; stroke-opacity: .45; }
 .chart .dots.worst path { stroke-width: 5.5; stroke-opacity: 1; }
 .chart .dots.bad path { stroke: var(--bad, #c0262d); stroke-width: 5.5; stroke-opacity: .9; }
-.chart .dots.out path { stroke: var(--faint, #667080); stroke-opacity: .7; }
+.chart .out path, .chart path.out { stroke: var(--muted, #55616c); stroke-width: 1.8; }
+.chart circle.target { fill: transparent; }
+.chart text.halo { paint-order: stroke; stroke: var(--card, #ffffff); stroke-width: 3px; stroke-linejoin: round; }
 .chart .dots.small path { stroke-width: 3; }
 .chart .arrows path { stroke: var(--after, #1c62b9); stroke-width: 1; stroke-opacity: .6; }
 .chart .arrows.bad path { stroke: var(--bad, #c0262d); stroke-width: 1.6; stroke-opacity: .9; }
@@ -71,7 +77,10 @@ namespace {
 /// The style with the colours of a light page instead of variables, which most drawing programs do
 /// not support.
 [[nodiscard]] std::string style_without_variables() {
-  const std::string style = chart_style();
+  std::string style = chart_style();
+  constexpr std::string_view kSize =
+      "display: block; width: 100%; max-width: 42rem; height: auto; ";
+  style.erase(style.find(kSize), kSize.size());  // of the page; a file has its own
   std::string plain;
   std::size_t at = 0;
   for (std::size_t use; (use = style.find("var(", at)) != std::string::npos;) {
@@ -82,15 +91,31 @@ namespace {
   return plain + style.substr(at);
 }
 
+/// " width=\"85mm\" height=\"51mm\"" of an svg's first tag.
+[[nodiscard]] std::string physical_size(std::string_view tag, double width) {
+  constexpr std::string_view kBox = "viewBox=\"0 0 ";
+  const std::size_t box = tag.find(kBox);
+  double across = 0.0, down = 0.0;
+  if (box != std::string_view::npos) {
+    const std::string numbers(tag.substr(box + kBox.size()));
+    char* end = nullptr;
+    across = std::strtod(numbers.c_str(), &end);
+    down = std::strtod(end, nullptr);
+  }
+  if (!(across > 0.0 && down > 0.0)) return "";
+  return fmt::format(R"( width="{:.6g}mm" height="{:.6g}mm")", width, width * down / across);
+}
+
 }  // namespace
 }  // namespace detail
 
-std::string stand_alone(std::string_view svg) {
+std::string stand_alone(std::string_view svg, double width) {
   const std::size_t tag = svg.find('>');
   if (tag == std::string_view::npos) return {};
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  text += svg.substr(0, tag + 1);
-  text += "\n<style>\n" + detail::style_without_variables() + "</style>\n";
+  text += svg.substr(0, tag);
+  text += detail::physical_size(svg.substr(0, tag), width);
+  text += ">\n<style>\n" + detail::style_without_variables() + "</style>\n";
   text += R"(<rect width="100%" height="100%" fill="white"/>)";
   text += svg.substr(tag + 1);
   return text;

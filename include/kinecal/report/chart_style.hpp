@@ -14,7 +14,8 @@ namespace kinecal {
 
 /// A chart as a file: the svg with an XML declaration, this style with fixed colours, and a white
 /// background.
-/// @param svg  that of a Chart
-[[nodiscard]] std::string stand_alone(std::string_view svg);
+/// @param svg    that of a Chart
+/// @param width  on paper, millimetres
+[[nodiscard]] std::string stand_alone(std::string_view svg, double width = 160.0);
 
 }  // namespace kinecal

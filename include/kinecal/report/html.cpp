@@ -41,14 +41,15 @@ std::string html_inputs(const std::vector<InputFile>& inputs, const std::string&
     rows.push_back({input.role, input.name, input.sha256, fmt::format("{}", input.bytes)});
   }
   return fmt::format("{}<p>{}, repeated by</p>\n<pre class=\"command\"><code>{}</code></pre>\n",
-                     html_table(rows, "tttn"), html_text(version), html_text(command));
+                     html_table(rows, "tttn"), html_sentence(version),
+                     html_sentence(command, true));
 }
 
 std::string html_lines(std::string_view text) {
   std::string html;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    html += html_text(text.substr(at, end - at)) + "\n";
+    html += html_sentence(text.substr(at, end - at), true) + "\n";
     at = end + 1;
   }
   return html;
@@ -58,7 +59,7 @@ std::string html_paragraphs(std::string_view text) {
   std::string html;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    if (end > at) html += "<p>" + html_text(text.substr(at, end - at)) + "</p>\n";
+    if (end > at) html += "<p>" + html_sentence(text.substr(at, end - at)) + "</p>\n";
     at = end + 1;
   }
   return html;

@@ -33,6 +33,10 @@ namespace detail {
 /// Plain text as escaped HTML; replaces what is not UTF-8, or not allowed in HTML.
 [[nodiscard]] std::string html_text(std::string_view text);
 
+/// A name of the user's: a long one is shortened, with the whole name as tooltip; one from right to left does
+/// not turn what is beside it.
+[[nodiscard]] std::string html_name(std::string_view name);
+
 /// The same for lines that stay lines: for <pre>.
 [[nodiscard]] std::string html_lines(std::string_view text);
 

@@ -10,6 +10,7 @@
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/svg_text.hpp"
 #include "kinecal/report/text.hpp"
+#include "kinecal/text/characters.hpp"
 #include "kinecal/text/reading.hpp"
 
 namespace kinecal::detail {
@@ -18,10 +19,47 @@ std::string html_text(std::string_view text) {
   return svg_escaped(text);
 }
 
-/// A name of the user's: a long one is shortened, one from right to left does not turn what is beside it.
-[[nodiscard]] inline std::string html_name(std::string_view name) {
-  constexpr std::size_t kMost = 80;
-  return "<bdi>" + html_text(shortened(name, kMost)) + "</bdi>";
+inline constexpr std::size_t kMostOfName = 80;  ///< characters
+
+std::string html_name(std::string_view name) {
+  const std::string text = shortened(name, kMostOfName);
+  const bool whole = text.find("…") == std::string::npos || name.find("…") != std::string::npos;
+  return (whole ? "<bdi>" : "<bdi title=\"" + html_text(name) + "\">") + html_text(text) + "</bdi>";
+}
+
+/// True if a word has to be isolated from its neighbours.
+[[nodiscard]] inline bool has_right_to_left(std::string_view word) {
+  for (std::size_t at = 0; at < word.size();) {
+    if (is_right_to_left(next_character(word, at))) return true;
+  }
+  return false;
+}
+
+/// A sentence, in which names of the user's are as in html_name(): words that are long or from right to left.
+/// @param whole  keeps long words: they are to be copied
+[[nodiscard]] inline std::string html_sentence(std::string_view text, bool whole = false) {
+  std::string html;
+  while (!text.empty()) {
+    const auto word_at = [&](std::size_t at) {
+      return text.substr(at, std::min(text.find(' ', at + 1), text.size()) - at);
+    };
+    std::size_t end = word_at(0).size();
+    if (!has_right_to_left(text.substr(0, end))) {
+      const std::string_view word = text.substr(0, end);
+      const std::size_t space = word.front() == ' ' ? 1 : 0;
+      html += whole || word.size() <= kMostOfName
+                  ? html_text(word)
+                  : html_text(word.substr(0, space)) + html_name(word.substr(space));
+    } else {
+      while (end < text.size() && has_right_to_left(word_at(end))) end += word_at(end).size();
+      const std::size_t space = text.front() == ' ' ? 1 : 0;
+      const std::string_view name = text.substr(space, end - space);
+      html.append(space, ' ');
+      html += whole ? "<bdi>" + html_text(name) + "</bdi>" : html_name(name);
+    }
+    text.remove_prefix(end);
+  }
+  return html;
 }
 
 std::string html_figure(const Chart& chart) {
@@ -44,10 +82,11 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows,
       const char* kind = columns[c] == 't'   ? " class=\"text\""
                          : columns[c] == 'l' ? " class=\"long\""
                                              : "";
-      html += r == 0
-                  ? fmt::format("<th scope=\"col\"{}>{}</th>", kind, html_text(rows[r][c]))
-                  : fmt::format("<td{}>{}</td>", kind,
-                                columns[c] == 't' ? html_name(rows[r][c]) : html_text(rows[r][c]));
+      html += r == 0 ? fmt::format("<th scope=\"col\"{}>{}</th>", kind, html_text(rows[r][c]))
+                     : fmt::format("<td{}>{}</td>", kind,
+                                   columns[c] == 't'   ? html_name(rows[r][c])
+                                   : columns[c] == 'l' ? html_sentence(rows[r][c])
+                                                       : html_text(rows[r][c]));
     }
     html += r == 0 ? "</tr></thead><tbody>" : "</tr>\n";
   }

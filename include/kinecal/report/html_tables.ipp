@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinecal/report/charts/chart.hpp"
 #include "kinecal/report/html.hpp"
 #include "kinecal/report/html_sections.ipp"
 #include "kinecal/report/text.hpp"
@@ -16,17 +17,20 @@ namespace kinecal::detail {
 /// Before, fitted and held out, of each error block.
 [[nodiscard]] inline std::string fit_figures(const ReportData& data) {
   std::vector<std::vector<std::string>> rows = {
-      {"error block", "unit", "features", "before", "fitted", "held out", "noise", "sigma given"}};
+      {"error block", "before", "fitted", "held out", "noise", "sigma given", "unit", "features"}};
   for (const ReportedBlock& block : data.blocks) {
     const auto text = [&](double value) { return in_reading_unit(value, block.unit); };
-    rows.push_back({block.name, reading_unit(block.unit), fmt::format("{}", block.features.size()),
-                    text(block.rms_before), text(block.rms_after),
+    const auto used =
+        std::count_if(block.features.begin(), block.features.end(),
+                      [&](const auto& feature) { return !sample_of(data, feature).left_out; });
+    rows.push_back({block.name, text(block.rms_before), text(block.rms_after),
                     block.held_out ? text(*block.held_out) : "-",
                     block.sigma > 0.0 ? text(block.sigma) : "-",
-                    block.sigma_given > 0.0 ? text(block.sigma_given) : "-"});
+                    block.sigma_given > 0.0 ? text(block.sigma_given) : "-",
+                    reading_unit(block.unit), fmt::format("{}", used)});
   }
   return "<p>Distances of features, root of the mean square; noise of a coordinate.</p>\n" +
-         html_table(rows, "ttnnnnnn");
+         html_table(rows, "tnnnnntn");
 }
 
 /// Samples that do not fit, and the worst of the others.
@@ -42,16 +46,16 @@ namespace kinecal::detail {
   std::string html =
       scroll_region("samples") +
       "<table class=\"numbers\"><thead><tr><th scope=\"col\">sample</th>"
-      "<th scope=\"col\" class=\"text\">recorded at</th><th scope=\"col\">times the noise</th>"
-      "<th scope=\"col\" class=\"long\">remark</th></tr></thead><tbody>";
+      "<th scope=\"col\">times the noise</th><th scope=\"col\" class=\"long\">remark</th>"
+      "<th scope=\"col\" class=\"text\">recorded at</th></tr></thead><tbody>";
   for (std::size_t i = 0; i < std::min(kListed, worst.size()); ++i) {
     const ReportedSample& sample = *worst[i];
     html += fmt::format(
-        "<tr{}><td><a href=\"#sample={}\" data-sample=\"{}\">{}</a></td><td class=\"text\">{}</td>"
-        "<td>{}</td><td class=\"long\">{}{}</td></tr>\n",
+        "<tr{}><td><a href=\"#sample={}\" data-sample=\"{}\">{}</a></td><td>{}</td>"
+        "<td class=\"long\">{}{}</td><td class=\"text\">{}</td></tr>\n",
         sample.bad ? " class=\"bad\"" : "", sample.number, sample.number, sample.number,
-        html_text(sample.source), sample.times > 0.0 ? fmt::format("{:.1f}", sample.times) : "-",
-        sample.left_out ? "left out: " : "", html_text(sample.why));
+        sample.times > 0.0 ? fmt::format("{:.1f}", sample.times) : "-",
+        sample.left_out ? "left out: " : "", html_sentence(sample.why), html_name(sample.source));
   }
   html += "</tbody></table></div>\n";
   if (worst.size() > kListed) {
@@ -83,7 +87,7 @@ namespace kinecal::detail {
   if (!data.hold.empty()) {
     std::string hold = "--hold";
     for (const std::string& name : data.hold) hold += " " + name;
-    html += "<p>Hold these to determine the others: <code>" + html_text(hold) +
+    html += "<p>Hold these to determine the others: <code>" + html_sentence(hold, true) +
             "</code>. Poses that move the joints between them apart, or another target, determine "
             "them as well.</p>";
   }
@@ -92,15 +96,15 @@ namespace kinecal::detail {
 
 [[nodiscard]] inline std::string parameter_figures(const ReportData& data) {
   std::vector<std::vector<std::string>> rows = {
-      {"parameter", "unit", "calibrated", "±", "from", ""}};
+      {"parameter", "calibrated", "±", "from", "unit", ""}};
   for (const ReportedParameter& parameter : data.parameters) {
     const auto [value, unit] = for_people(parameter.value, parameter.unit);
-    rows.push_back({parameter.name, unit, value,
+    rows.push_back({parameter.name, value,
                     parameter.sigma ? for_people(*parameter.sigma, parameter.unit).first : "-",
-                    for_people(parameter.initial, parameter.unit).first, parameter.note});
+                    for_people(parameter.initial, parameter.unit).first, unit, parameter.note});
   }
   return unobservable_text(data) + "<p>With one standard deviation.</p>\n" +
-         html_table(rows, "ttnnnt");
+         html_table(rows, "tnnntt");
 }
 
 [[nodiscard]] inline std::string step_figures(const ReportData& data) {
@@ -113,7 +117,7 @@ namespace kinecal::detail {
   }
   std::string html = html_table(rows, "tlnnnnn");
   for (const StepResult& step : data.steps) {
-    if (step.starts.searched()) html += "<p>" + html_text(to_string(step.starts)) + "</p>\n";
+    if (step.starts.searched()) html += "<p>" + html_sentence(to_string(step.starts)) + "</p>\n";
   }
   return html;
 }

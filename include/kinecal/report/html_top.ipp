@@ -60,7 +60,7 @@ namespace kinecal::detail {
     if (!sample.bad || ++bad > kListed) continue;
     items +=
         fmt::format("<li><a href=\"#sample={0}\" data-sample=\"{0}\">sample {0}</a> {1}: {2}</li>",
-                    sample.number, html_text(sample.source), html_text(sample.why));
+                    sample.number, html_name(sample.source), html_sentence(sample.why));
   }
   if (items.empty()) return "<div><h3>Bad captures</h3><p>none</p></div>\n";
   if (bad > kListed) items += fmt::format("<li>and {} more</li>", bad - kListed);
@@ -90,10 +90,10 @@ namespace kinecal::detail {
 [[nodiscard]] inline std::string html_next(const std::string& next) {
   if (next.empty()) return "";
   const std::size_t line = std::min(next.find("\n"), next.size());
-  std::string html = "<p>Next: " + html_text(next.substr(0, line)) + "</p>";
+  std::string html = "<p>Next: " + html_sentence(next.substr(0, line)) + "</p>";
   if (line < next.size()) {
-    html += "<pre><code>" + html_text(next.substr(next.find_first_not_of("\n ", line))) +
-            "</code></pre>";
+    html += "<pre class=\"command\"><code>" +
+            html_sentence(next.substr(next.find_first_not_of("\n ", line)), true) + "</code></pre>";
   }
   return html + "\n";
 }
@@ -101,7 +101,8 @@ namespace kinecal::detail {
 /// Verdict, reasons, what was wrong, bad captures.
 [[nodiscard]] inline std::string html_top(const ReportData& data) {
   std::string reasons;
-  for (const std::string& reason : data.reasons) reasons += "<li>" + html_text(reason) + "</li>";
+  for (const std::string& reason : data.reasons)
+    reasons += "<li>" + html_sentence(reason) + "</li>";
   const auto left_out = std::count_if(data.samples.begin(), data.samples.end(),
                                       [](const ReportedSample& sample) { return sample.left_out; });
   std::string about = fmt::format("{} samples", data.samples.size() - left_out);
@@ -112,7 +113,7 @@ namespace kinecal::detail {
       "<header class=\"verdict {}\">\n"
       "<h1>{}: <strong>{}</strong></h1>\n<p class=\"note\">{}</p>\n{}{}"
       "<div class=\"facts\">{}{}{}</div>\n</header>\n",
-      class_of(data.verdict), html_name(data.robot), to_string(data.verdict), html_text(about),
+      class_of(data.verdict), html_name(data.robot), to_string(data.verdict), html_sentence(about),
       reasons.empty() ? "" : "<ul class=\"reasons\">" + reasons + "</ul>\n", html_next(data.next),
       fit_sentence(data), what_was_wrong(data), bad_samples(data));
 }

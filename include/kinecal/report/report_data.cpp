@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "kinecal/report/json_state.ipp"
+#include "kinecal/report/left_out.ipp"
 #include "kinecal/report/reported_block.ipp"
 
 namespace kinecal {
@@ -18,14 +19,16 @@ namespace detail {
 /// The error blocks of all steps that ran; if a block is in several steps, the last one counts.
 [[nodiscard]] inline std::vector<ReportedBlock> reported_blocks(const Calibration& calibration,
                                                                 const Findings& findings,
-                                                                std::span<const Sample> samples) {
+                                                                std::span<const Sample> samples,
+                                                                std::span<const Sample> left_out) {
   std::vector<ReportedBlock> blocks;
   std::set<std::string> seen;
   std::vector<double> initial;
   for (const Parameter& parameter : calibration.table) initial.push_back(parameter.value);
   for (std::size_t s = findings.result.steps.size(); s-- > 0;) {
-    const AnyProblem& problem = *calibration.steps[s].problem;
-    std::vector<ReportedBlock> of_step = reported_blocks(problem, initial, findings, samples);
+    const ProblemWithLeftOut all(*calibration.steps[s].problem, samples, left_out);
+    std::vector<ReportedBlock> of_step =
+        reported_blocks(all.problem(), initial, findings, all.samples(), samples.size());
     std::erase_if(of_step, [&](const ReportedBlock& block) { return seen.contains(block.name); });
     for (const ReportedBlock& block : of_step) seen.insert(block.name);
     blocks.insert(blocks.begin(), std::move_iterator(of_step.begin()),
@@ -101,14 +104,14 @@ inline void add_correlations(const Findings& findings, ReportData& data) {
 }  // namespace detail
 
 ReportData report_data(const Calibration& calibration, const Findings& findings,
-                       std::span<const Sample> samples) {
+                       std::span<const Sample> samples, std::span<const Sample> left_out) {
   ReportData data;
   data.robot = findings.robot;
   data.verdict = findings.judgement.verdict;
   data.reasons = findings.judgement.reasons;
   data.next = next_step(findings);
   data.steps = findings.result.steps;
-  data.blocks = detail::reported_blocks(calibration, findings, samples);
+  data.blocks = detail::reported_blocks(calibration, findings, samples, left_out);
   data.samples = detail::reported_samples(findings);
   data.parameters = detail::reported_parameters(calibration, findings);
   data.recorded = detail::recorded_on(samples);

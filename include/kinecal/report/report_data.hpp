@@ -57,7 +57,7 @@ struct ReportedBlock {
   std::optional<double> held_out = {};  ///< the same for held-out samples
   std::array<double, 2> image = {
       0.0, 0.0};  ///< width and height of the camera's image, pixels; 0: unknown
-  std::vector<ReportedFeature> features = {};  ///< in the order of samples
+  std::vector<ReportedFeature> features = {};  ///< in the order of samples, also of those left out
 };
 
 /// A sample, used or left out.
@@ -109,8 +109,10 @@ struct ReportData {
 /// Collects the content of a calibration's report, except its inputs, date and command.
 /// @param calibration  the one that was solved, with its samples
 /// @param samples      those of its problems, in their order
+/// @param left_out     those of Findings::left_out, in their order; empty: without their residuals
 [[nodiscard]] ReportData report_data(const Calibration& calibration, const Findings& findings,
-                                     std::span<const Sample> samples);
+                                     std::span<const Sample> samples,
+                                     std::span<const Sample> left_out = {});
 
 /// Adds the positions of planes' features in the base, for those in a scene of the same
 /// calibration.

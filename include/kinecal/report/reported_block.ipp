@@ -58,14 +58,18 @@ inline void add_sight(const AnyProblem& problem, const Term& term, const Sample&
   return all;
 }
 
-/// The root of the mean squared distance; NaN if a residual is undefined.
+/// The root of the mean squared distance in the first samples; NaN if a residual is undefined.
 [[nodiscard]] inline double root_mean_square(const std::vector<ReportedFeature>& features,
-                                             double ReportedFeature::*distance) {
+                                             double ReportedFeature::*distance,
+                                             std::size_t samples) {
   double squares = 0.0;
+  int count = 0;
   for (const ReportedFeature& feature : features) {
+    if (static_cast<std::size_t>(feature.sample) >= samples) continue;
     squares += feature.*distance * (feature.*distance);
+    ++count;
   }
-  return features.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(features.size()));
+  return count == 0 ? 0.0 : std::sqrt(squares / count);
 }
 
 /// An error block without features.
@@ -89,10 +93,13 @@ inline void add_sight(const AnyProblem& problem, const Term& term, const Sample&
 
 /// The error blocks of a problem with all features, in the order of samples.
 /// @param initial  values of all parameters before the calibration
+/// @param samples  those used, then those left out
+/// @param used     number of the former
 [[nodiscard]] inline std::vector<ReportedBlock> reported_blocks(const AnyProblem& problem,
                                                                 const std::vector<double>& initial,
                                                                 const Findings& findings,
-                                                                std::span<const Sample> samples) {
+                                                                std::span<const Sample> samples,
+                                                                std::size_t used) {
   std::vector<ReportedBlock> blocks;
   for (int t = 0; t < problem.num_terms(); ++t) {
     blocks.push_back(reported_block(problem.term(t), findings));
@@ -125,8 +132,8 @@ inline void add_sight(const AnyProblem& problem, const Term& term, const Sample&
   for (ReportedBlock& block : blocks) {
     std::stable_sort(block.features.begin(), block.features.end(),
                      [](const auto& a, const auto& b) { return a.sample < b.sample; });
-    block.rms_before = root_mean_square(block.features, &ReportedFeature::before);
-    block.rms_after = root_mean_square(block.features, &ReportedFeature::after);
+    block.rms_before = root_mean_square(block.features, &ReportedFeature::before, used);
+    block.rms_after = root_mean_square(block.features, &ReportedFeature::after, used);
   }
   return blocks;
 }

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "kinecal/evaluation/any_evaluator.hpp"
+#include "kinecal/report/left_out.ipp"
 #include "kinecal/report/scene_features.ipp"
 #include "kinecal/report/scene_robot.ipp"
 
@@ -56,13 +57,23 @@ namespace {
   return chosen;
 }
 
+/// Marks a sample as left out.
+void mark_left_out(const LeftOutSample& left, SceneSample& shown) {
+  shown.number = left.number;
+  shown.bad = shown.left_out = true;
+  shown.note = left.why;
+}
+
 /// Number, source location, joint positions and fault, without features.
+/// @param i     index among those used, then those left out
+/// @param used  number of the former
 [[nodiscard]] SceneSample scene_sample(const RobotScene& scene, const Findings& findings,
-                                       const Sample& sample, std::size_t i) {
+                                       const Sample& sample, std::size_t i, std::size_t used) {
   SceneSample shown{
       .number = i < findings.numbers.size() ? findings.numbers[i] : static_cast<int>(i) + 1,
       .source = sample.source,
       .bad = false,
+      .left_out = false,
       .note = {},
       .q = {},
       .features = {},
@@ -71,7 +82,8 @@ namespace {
     const double q = sample.position(name).value_or(0.0);
     shown.q.push_back(std::isfinite(q) ? q : 0.0);
   }
-  if (findings.assessments.empty()) return shown;
+  if (i >= used) mark_left_out(findings.left_out[i - used], shown);
+  if (i >= used || findings.assessments.empty()) return shown;
   const Assessment& last = findings.assessments.back();
   const auto error = std::find_if(
       last.captures.begin(), last.captures.end(),
@@ -86,20 +98,26 @@ namespace {
 }  // namespace detail
 
 RobotScene robot_scene(const Calibration& calibration, const Findings& findings,
-                       std::span<const Sample> samples, const SceneLimits& limits) {
+                       std::span<const Sample> samples, const SceneLimits& limits,
+                       std::span<const Sample> left_out) {
   const CalibrationStep* step = detail::last_step(calibration, findings.result);
   if (step == nullptr) return {};
-  const AnyProblem& problem = *step->problem;
-  RobotScene scene = detail::scene_of_robot(problem, findings.result.table, samples);
+  const std::size_t used = samples.size(), of_left = std::min(left_out.size(), limits.samples / 2);
+  const detail::ProblemWithLeftOut all(*step->problem, samples, left_out.first(of_left));
+  RobotScene scene = detail::scene_of_robot(all.problem(), findings.result.table, all.samples());
   scene.robot = findings.robot;
-  const auto shown = detail::shown_samples(findings, samples.size(), limits.samples);
-  if (shown.size() < samples.size()) {
-    scene.thinned = fmt::format("{} of {} samples", shown.size(), samples.size());
+  std::vector<std::size_t> shown = detail::shown_samples(findings, used, limits.samples - of_left);
+  for (std::size_t i = 0; i < of_left; ++i) shown.push_back(used + i);
+  if (shown.size() < used + left_out.size()) {
+    scene.thinned = fmt::format("{} of {} samples", shown.size(), used + left_out.size());
   }
   for (const std::size_t i : shown) {
-    scene.samples.push_back(detail::scene_sample(scene, findings, samples[i], i));
+    scene.samples.push_back(detail::scene_sample(scene, findings, all.samples()[i], i, used));
   }
-  detail::add_features(problem, findings.result.table, samples, shown, limits.features, scene);
+  detail::add_features(all.problem(), findings.result.table, all.samples(), shown, limits.features,
+                       scene);
+  std::stable_sort(scene.samples.begin(), scene.samples.end(),
+                   [](const SceneSample& a, const SceneSample& b) { return a.number < b.number; });
   return scene;
 }
 

@@ -72,7 +72,8 @@ struct SceneFeature {
 struct SceneSample {
   int number = 0;         ///< from 1, in the order of the files
   std::string source;     ///< source location
-  bool bad = false;       ///< it does not fit the others
+  bool bad = false;       ///< it does not fit the others, or is left out
+  bool left_out = false;  ///< the result does not use it
   std::string note;       ///< the fault; empty if it is not bad
   std::vector<double> q;  ///< positions of RobotScene::names; zero if not measured
   std::vector<SceneFeature> features;
@@ -113,10 +114,12 @@ struct SceneLimits {
 
 /// The scene of a finished calibration, without visuals: see add_visuals().  Error blocks that
 /// compare neither points, pixels nor planes have no features in it.
-/// @param samples  those of the calibration, in their order
+/// @param samples   those of the calibration, in their order
+/// @param left_out  those of Findings::left_out, in their order; empty: they are not shown
 [[nodiscard]] RobotScene robot_scene(const Calibration& calibration, const Findings& findings,
                                      std::span<const Sample> samples,
-                                     const SceneLimits& limits = {});
+                                     const SceneLimits& limits = {},
+                                     std::span<const Sample> left_out = {});
 
 /// The pose of a joint's child link in its parent link.
 /// @param q          of RobotScene::names

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kinecal/report/scene_pieces.ipp"
+#include "kinecal/text/characters.hpp"
 
 namespace kinecal {
 
@@ -40,7 +41,7 @@ namespace {
 }
 
 [[nodiscard]] Json scene_tree(const SceneLink& link) {
-  Json json = {{"name", link.name}};
+  Json json = {{"name", one_line(link.name)}};
   for (const SceneVisual& visual : link.visuals) {
     const bool is_found = visual.visual.shape != VisualShape::mesh || visual.mesh >= 0;
     if (is_found) json["visuals"].push_back(scene_tree(visual));
@@ -70,7 +71,7 @@ void add_before_after(const std::optional<T>& before, const std::optional<T>& af
 }
 
 [[nodiscard]] Json scene_tree(const SceneJoint& joint) {
-  Json json = {{"name", joint.name},
+  Json json = {{"name", one_line(joint.name)},
                {"type", to_string(joint.type)},
                {"parent", joint.parent},
                {"child", joint.child},
@@ -88,15 +89,16 @@ void add_before_after(const std::optional<T>& before, const std::optional<T>& af
 }
 
 [[nodiscard]] Json scene_tree(const SceneFeature& feature) {
-  Json json = {{"block", feature.block}, {"name", feature.name}};
+  Json json = {{"block", feature.block}, {"name", one_line(feature.name)}};
   add_before_after(feature.before, feature.after, json);
   if (!feature.error.empty()) json["error"] = feature.error;
   return json;
 }
 
 [[nodiscard]] Json scene_tree(const SceneSample& sample) {
-  Json json = {{"number", sample.number}, {"source", sample.source}, {"bad", sample.bad}};
-  if (!sample.note.empty()) json["note"] = sample.note;
+  Json json = {{"number", sample.number}, {"source", one_line(sample.source)}, {"bad", sample.bad}};
+  if (sample.left_out) json["left_out"] = true;
+  if (!sample.note.empty()) json["note"] = one_line(sample.note);
   json["q"] = rounded_list(sample.q, kAngleDigits);
   if (!sample.cloud.empty()) {
     json["cloud"] = base64_of(sample.cloud);
@@ -109,15 +111,15 @@ void add_before_after(const std::optional<T>& before, const std::optional<T>& af
 
 [[nodiscard]] Json scene_tree(const SceneCamera& camera) {
   const auto pixels = [](double value) { return rounded(value, 3); };
-  return {{"name", camera.name},
-          {"link", camera.link},
-          {"pose", pose_json({})},
-          {"width", pixels(camera.width)},
-          {"height", pixels(camera.height)},
-          {"fx", pixels(camera.fx)},
-          {"fy", pixels(camera.fy)},
-          {"cx", pixels(camera.cx)},
+  return {{"name", one_line(camera.name)},   {"link", camera.link},
+          {"pose", pose_json({})},           {"width", pixels(camera.width)},
+          {"height", pixels(camera.height)}, {"fx", pixels(camera.fx)},
+          {"fy", pixels(camera.fy)},         {"cx", pixels(camera.cx)},
           {"cy", pixels(camera.cy)}};
+}
+
+[[nodiscard]] Json scene_tree(const std::string& name) {
+  return one_line(name);
 }
 
 template <class Items>
@@ -146,9 +148,9 @@ std::string scene_json(const RobotScene& scene) {
                        {"links", scene_list(scene.links)},
                        {"joints", scene_list(scene.joints)},
                        {"meshes", scene_list(scene.meshes)},
-                       {"names", scene.names},
+                       {"names", scene_list(scene.names)},
                        {"samples", scene_list(scene.samples)},
-                       {"blocks", scene.blocks},
+                       {"blocks", scene_list(scene.blocks)},
                        {"cameras", scene_list(scene.cameras)}};
   if (!scene.workspace.empty()) json["workspace"] = detail::workspace_json(scene);
   if (!scene.thinned.empty()) json["thinned"] = scene.thinned;

@@ -100,7 +100,7 @@ class SceneMessages {
     if (after) {
       std::string text = fmt::format("sample {}", sample.number);
       if (worst != nullptr) text += fmt::format(": {} is {} off", worst->name, worst->error);
-      if (sample.bad) text += "\n" + sample.note;
+      if (sample.bad) text += (sample.left_out ? "\nleft out: " : "\n") + sample.note;
       entity.add_text(text, Vector3<double>(0.0, 0.0, kTextHeight), paint);
     }
     return update_text({std::move(entity)}, times_[n]);

@@ -30,6 +30,13 @@ void append_dot(std::string& data, Place place) {
   data += "h0";  // round ends make it a dot
 }
 
+void append_cross(std::string& data, Place place) {
+  constexpr double kHalf = 3.5;
+  const auto [x, y] = place;
+  data += 'M' + pair_text({x - kHalf, y - kHalf}) + 'L' + pair_text({x + kHalf, y + kHalf}) + 'M' +
+          pair_text({x + kHalf, y - kHalf}) + 'L' + pair_text({x - kHalf, y + kHalf});
+}
+
 /// Ends a mark whose tag is still open.
 void Drawing::close(int sample, std::string_view title, const char* tag) {
   if (sample > 0) marks_ += fmt::format(R"( data-sample="{}")", sample);
@@ -104,7 +111,7 @@ void Drawing::name(Place place, std::string_view name, double width, const char*
                    Anchor anchor, double turned) {
   constexpr std::size_t kLongest = 60;
   const double font = std::string_view(classes).starts_with("small") ? kSmallFont : kFontSize;
-  const double bold = std::string_view(classes).starts_with("strong") ? 1.1 : 1.0;
+  const double bold = std::string_view(classes).starts_with("strong") ? 1.18 : 1.0;
   std::string shown = shortened(name, kLongest);
   for (std::size_t most = kLongest; most > 4 && bold * font * text_width(shown) > width;) {
     shown = shortened(name, --most);

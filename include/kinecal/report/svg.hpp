@@ -85,5 +85,7 @@ class Drawing {
 
 /// Marks of a sample as one path: dots where its features are.
 void append_dot(std::string& data, Place place);
+/// The same as a cross.
+void append_cross(std::string& data, Place place);
 
 }  // namespace kinecal::detail

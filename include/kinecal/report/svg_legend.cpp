@@ -21,6 +21,12 @@ inline void draw_swatch(Drawing& drawing, const LegendEntry& entry, Place middle
     case Swatch::ring:
       drawing.circle({x, y}, 4.5, entry.classes);
       break;
+    case Swatch::cross: {
+      std::string cross;
+      append_cross(cross, middle);
+      drawing.path(cross, entry.classes);
+      break;
+    }
   }
 }
 

@@ -10,7 +10,7 @@
 namespace kinecal::detail {
 
 /// The symbol before a legend's text.
-enum class Swatch { square, line, dot, ring };
+enum class Swatch { square, line, dot, ring, cross };
 
 /// An entry of a legend.
 struct LegendEntry {

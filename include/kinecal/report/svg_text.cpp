@@ -8,9 +8,17 @@
 #include <cmath>
 #include <vector>
 
-#include "kinecal/report/svg_characters.ipp"
+#include "kinecal/text/characters.hpp"
 
 namespace kinecal::detail {
+
+/// The characters of a text on one line.
+[[nodiscard]] inline std::vector<char32_t> characters_of(std::string_view text) {
+  const std::string line = one_line(text);
+  std::vector<char32_t> characters;
+  for (std::size_t at = 0; at < line.size();) characters.push_back(next_character(line, at));
+  return characters;
+}
 
 std::string svg_escaped(std::string_view text) {
   std::string escaped;

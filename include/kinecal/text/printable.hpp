@@ -13,8 +13,9 @@ namespace kinecal {
 /// True if a text has control characters other than line ends and tabs, or is not UTF-8.
 [[nodiscard]] bool has_control_characters(std::string_view text);
 
-/// The text with control characters, and bytes that are not UTF-8, as "\x1b".  Keeps line ends and
-/// tabs.
+/// The text with control characters of ASCII, and bytes that are not UTF-8, as "\x1b", and with others that
+/// must not be shown, such as those that change the direction of writing, as "\u202e".  Keeps line ends and
+/// tabs.  JSON stays the same JSON.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace kinecal

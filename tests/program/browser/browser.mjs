@@ -87,7 +87,7 @@ export class Browser {
   }
 
   /// Opens a file.
-  /// @param view  {width, height, dark, scale, reducedMotion, webgl}; lengths in CSS pixels
+  /// @param view  {width, height, dark, scale, reducedMotion, webgl, media}; lengths in CSS pixels
   async open(file, view = {}) {
     const { targetId } = await this.send("Target.createTarget", { url: "about:blank" });
     const { sessionId } =
@@ -154,12 +154,12 @@ export class Page {
   }
 
   async load({ width = 1200, height = 900, dark = false, scale = 1, reducedMotion = true,
-    webgl = true, hash = "" } = {}) {
+    webgl = true, media = "", hash = "" } = {}) {
     for (const domain of ["Page", "Runtime", "Log", "Network", "Audits", "DOM"]) {
       await this.#send(`${domain}.enable`);
     }
     await this.resize(width, height, scale);
-    await this.#send("Emulation.setEmulatedMedia", { features: [
+    await this.#send("Emulation.setEmulatedMedia", { media, features: [
       { name: "prefers-color-scheme", value: dark ? "dark" : "light" },
       { name: "prefers-reduced-motion", value: reducedMotion ? "reduce" : "no-preference" }] });
     if (!webgl) {

@@ -8,7 +8,8 @@ import { existsSync, mkdirSync } from "node:fs";
 import { basename, join } from "node:path";
 import { Browser } from "./browser.mjs";
 
-const PHONE = 400, WIDE = 1600;
+const PHONE = 360, WIDE = 1600;
+const A4 = 688;  // pixels between the margins
 const ROLES = new Set(["button", "checkbox", "slider", "link", "image", "img", "application", "textbox",
   "combobox", "radio", "region", "navigation", "Canvas"]);
 
@@ -219,6 +220,19 @@ async function checkSampleLinks(check, page) {
     `#sample=${numbers[0]} does not select the sample`);
 }
 
+/// Each sample that was left out can be clicked in a chart, and is shown and marked.
+async function checkLeftOut(check, page) {
+  const numbers = await page.evaluate(`[...new Set([...document.querySelectorAll("svg .target[data-sample]")]
+    .map((e) => Number(e.dataset.sample)))]`);
+  if (!numbers.length || !await page.evaluate(`!!document.querySelector("#view3d.live")`)) return;
+  await page.click(`svg .target[data-sample="${numbers[0]}"]`);
+  const text = await page.evaluate(`document.querySelector("#view3d-status").textContent + "|" +
+    document.querySelector("#view3d .badge").textContent`);
+  check.expect(text.startsWith(`Sample ${numbers[0]}`) && text.includes("left out") &&
+    text.endsWith(`sample ${numbers[0]}: left out`) || text.includes("is not among"),
+  `a click on sample ${numbers[0]}, which was left out, shows "${text}"`);
+}
+
 async function checkWidth(check, page, width) {
   const wide = await page.evaluate(`(() => {
     const limit = document.documentElement.clientWidth + 1;
@@ -230,6 +244,15 @@ async function checkWidth(check, page, width) {
       .map((e) => e.tagName.toLowerCase() + "." + (e.getAttribute("class") ?? "")) : null;
   })()`);
   check.expect(wide === null, `the page is wider than ${width} pixels: ${wide?.join(", ")}`);
+}
+
+/// On paper nothing is cut: what is wider than A4 would shrink the whole page, and nobody can scroll.
+async function checkPaper(check, page) {
+  await checkWidth(check, page, A4);
+  const cut = await page.evaluate(`[...document.querySelectorAll("body *")].filter((e) =>
+    getComputedStyle(e).overflowX !== "visible" && e.scrollWidth > e.clientWidth + 1 && e.clientWidth > 0 &&
+    !e.closest(".stage, svg")).slice(0, 3).map((e) => e.tagName.toLowerCase() + "." + e.className)`);
+  check.expect(!cut.length, `on paper, these are cut: ${cut.join(", ")}`);
 }
 
 async function pictures(check, page, folder, name) {
@@ -252,14 +275,16 @@ async function checkReport(browser, file, folder) {
     await checkTables(check, page);
     await checkView(check, page);
     await checkSampleLinks(check, page);
+    await checkLeftOut(check, page);
   });
   await check.visit({ width: PHONE, height: 800, dark: true, scale: 2 }, async (page) => {
     await pictures(check, page, folder, `${name}-${PHONE}-dark`);
     await checkWidth(check, page, PHONE);
   });
+  await check.visit({ width: A4, height: 1000, media: "print" }, (page) => checkPaper(check, page));
   await check.visit({ width: WIDE, height: 1000, webgl: false }, async (page) => {
     check.expect(await page.evaluate(`!document.querySelector("#view3d") ||
-      !!document.querySelector("#view3d .controls .note")`), "without WebGL, the view does not say so");
+      document.querySelector("#view3d .note")?.getBoundingClientRect().height > 0`), "without WebGL, the view does not say so");
   });
   if (folder) {
     for (const view of [{ width: WIDE, height: 1000, dark: true }, { width: PHONE, height: 800 }]) {

@@ -40,6 +40,25 @@ TEST(Charts, AreWellFormedDescribedAndOfOneName) {
   expect_sound(all);
 }
 
+TEST(Charts, DashedLinesHaveALegend) {
+  int dashed = 0;
+  for (const Chart& chart : charts(test::report_data())) {
+    const test::SvgChart svg(chart);
+    for (const char* kind : {"sigma", "given"}) {
+      int swatches = 0, lines = 0;
+      for (const auto& path : svg.all(("//path[@class='" + std::string(kind) + "']").c_str())) {
+        const std::vector<double> ends = test::numbers_of(path);
+        ASSERT_EQ(ends.size(), 4u);
+        const bool is_swatch = ends[1] == ends[3] && ends[2] - ends[0] == 20.0;
+        (is_swatch && path.next_sibling("text") ? swatches : lines) += 1;
+      }
+      EXPECT_EQ(swatches, lines > 0 ? 1 : 0) << chart.name << ": " << kind;
+      dashed += lines;
+    }
+  }
+  EXPECT_GT(dashed, 6);
+}
+
 TEST(Charts, OfASectionAreTogether) {
   std::vector<std::string> sections;
   for (const Chart& chart : charts(test::report_data())) {
@@ -144,7 +163,7 @@ TEST(Charts, OfManyFeaturesTheWorstAreDrawnAndItIsSaid) {
   EXPECT_THAT(chart.caption, testing::HasSubstr("2000 of 200\u2009000 features are shown"));
   const test::SvgChart svg(chart);
   std::size_t dots = 0;
-  for (const pugi::xml_node& path : svg.all("//g/path")) {
+  for (const pugi::xml_node& path : svg.all("//g[starts-with(@class, 'dots')]/path")) {
     dots += (test::numbers_of(path).size()) / 3;
   }
   EXPECT_EQ(dots, 2000u);

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
 #include "kinecal/report/charts/planes.hpp"
 #include "kinecal/report/charts/radial.hpp"
 #include "kinecal/report/charts/workspace.hpp"
@@ -113,15 +117,45 @@ TEST(PlaneCharts, PointsStandWhereTheyLieInTheColourOfTheirSign) {
   EXPECT_NEAR(chart.value('y', points[0].attribute("cy").as_double()), -0.5, 0.005);
 }
 
+/// The cells of a map: those of equal width and height.
+std::vector<pugi::xml_node> cells_of(const test::SvgChart& chart, const std::string& classes) {
+  return chart.all(("//rect[@class='" + classes + "' and @width=@height]").c_str());
+}
+
 TEST(WorkspaceCharts, OfPointsBehindOneAnotherTheWorstIsShown) {
   ReportData data;
   data.workspace = {
       {{{0.5, 0.0, 0.2}}, 5e-3}, {{{0.5, 0.0, 0.9}}, 1e-3}, {{{0.9, 0.3, 0.2}}, 1e-3}};
   const test::SvgChart chart(workspace_charts(data).at(0));
-  EXPECT_EQ(chart.all("//circle[@class='scale5' and @r>4]").size(), 2u)
-      << "from above and the side";
-  EXPECT_EQ(chart.all("//circle[@class='scale1' and @r>4]").size(), 3u) << "one of them hidden";
+  EXPECT_EQ(cells_of(chart, "scale5").size(), 2u) << "from above and the side";
+  EXPECT_EQ(cells_of(chart, "scale1").size(), 3u) << "one of them hidden; all others are blank";
+  EXPECT_STREQ(cells_of(chart, "scale5")[0].child("title").text().get(), "5 mm");
   EXPECT_THAT(chart.text("/svg/desc"), testing::HasSubstr("at 3 places, from 1 to 5 mm"));
+}
+
+TEST(WorkspaceCharts, AreMapsOfEqualScaleWithTheBaseAndABarOfColors) {
+  ReportData data;
+  for (int i = 0; i < 40; ++i) data.workspace.push_back({{{0.02 * i, 0.3, 1.0}}, 1e-3 + 1e-4 * i});
+  const test::SvgChart chart(workspace_charts(data).at(0));
+  std::array<std::vector<std::array<double, 2>>, 2> ticks;  // x of the first map, y: place, metres
+  for (const pugi::xml_node& tick : chart.all("//text[@class='tick']")) {
+    const bool is_x = std::string(tick.attribute("text-anchor").value()) == "middle";
+    const double at = tick.attribute(is_x ? "x" : "y").as_double();
+    auto& of = ticks[is_x ? 0 : 1];
+    const double value = std::atof(tick.text().get());
+    if (of.empty() || (of.size() == 1 && of[0][1] != value)) of.push_back({at, value});
+  }
+  ASSERT_EQ(ticks[0].size() + ticks[1].size(), 4u);
+  const auto scale = [](const auto& of) {
+    return std::abs((of[1][0] - of[0][0]) / (of[1][1] - of[0][1]));  // units of the drawing a metre
+  };
+  EXPECT_NEAR(scale(ticks[0]), scale(ticks[1]), 0.02 * scale(ticks[0]));
+  const auto bases = chart.all("//text[text()='base']");
+  EXPECT_EQ(bases.size(), 2u);
+  EXPECT_NEAR(chart.value('x', bases[0].attribute("x").as_double() - 6.0), 0.0, 0.01);
+  EXPECT_EQ(chart.all("//rect[@width!=@height and starts-with(@class, 'scale')]").size(), 5u);
+  EXPECT_EQ(chart.all("//text[text()='standard deviation of the position, mm']").size(), 1u);
+  EXPECT_EQ(chart.all("//text[text()='x, m']").size(), 2u);
 }
 
 }  // namespace

@@ -46,19 +46,31 @@ TEST(SampleCharts, MarkBadSamplesAndThoseLeftOut) {
   EXPECT_EQ(bad[0].attribute("data-sample").as_int(), 18);
   EXPECT_EQ(bad[1].attribute("data-sample").as_int(), 65);
   EXPECT_THAT(bad[0].child("title").text().get(), testing::StartsWith("sample 18, feature "));
-  const auto crosses = chart.all("//path[@class='faint thick']");
+  const auto crosses = chart.all("//g[@class='out']/path");
   ASSERT_EQ(crosses.size(), 1u);
   EXPECT_EQ(crosses[0].attribute("data-sample").as_int(), 37);
+  const auto target = chart.all("//circle[@class='target' and @r>=8]");
+  ASSERT_EQ(target.size(), 1u) << "a cross alone is hard to click";
+  EXPECT_EQ(target[0].attribute("data-sample").as_int(), 37);
+  EXPECT_STREQ(target[0].child("title").text().get(), "sample 37: left out");
 }
 
-TEST(SampleCharts, ASampleThatWasLeftOutButEvaluatedIsGrey) {
+TEST(SampleCharts, ASampleThatWasLeftOutIsACrossAndDoesNotStretchTheAxis) {
   ReportData data = test::report_data(8);
+  const std::string before = test::chart_named(sample_charts(data), "samples-ground").svg;
+  for (ReportedBlock& block : data.blocks) {
+    for (ReportedFeature& feature : block.features) {
+      if (feature.sample == 3) feature.after = 0.7;
+    }
+  }
   data.samples[3].left_out = true;
-  const test::SvgChart chart(test::chart_named(sample_charts(data), "samples-hand_eye"));
-  const auto grey = chart.all("//g[@class='dots out']/path");
-  ASSERT_EQ(grey.size(), 1u);
-  EXPECT_EQ(grey[0].attribute("data-sample").as_int(), 4);
-  EXPECT_TRUE(chart.all("//path[@class='faint thick']").empty());
+  const test::SvgChart chart(test::chart_named(sample_charts(data), "samples-ground"));
+  const auto target = chart.all("//g[@class='out']/circle");
+  ASSERT_EQ(target.size(), 1u);
+  EXPECT_EQ(target[0].attribute("data-sample").as_int(), 4);
+  EXPECT_THAT(target[0].child("title").text().get(), testing::HasSubstr("700 mm, left out"));
+  EXPECT_LT(chart.value('y', target[0].attribute("cy").as_double()), 100.0) << "at the edge";
+  EXPECT_TRUE(chart.all("//g[starts-with(@class, 'dots')]/path[@data-sample='4']").empty());
 }
 
 TEST(FeatureCharts, NameTheFeatureThatFitsWorst) {

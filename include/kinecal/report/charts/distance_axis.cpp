@@ -17,6 +17,15 @@ std::vector<double> distances_of(const ReportedBlock& block) {
   return distances;
 }
 
+std::vector<double> used_distances(const ReportData& data, const ReportedBlock& block) {
+  std::vector<double> distances = distances_of(block);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const bool left_out = sample_of(data, block.features[i]).left_out;
+    if (left_out) distances[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return distances;
+}
+
 Axis distance_axis(const ReportedBlock& block, const std::vector<double>& sorted, double bottom,
                    double top) {
   const double factor = people_factor(block.unit);
@@ -44,18 +53,31 @@ Axis samples_axis(const ReportData& data, const ReportedBlock& block, const Plot
   return Axis::exact(first - room, last + room, area.left, area.right);
 }
 
-std::vector<double> draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,
-                                     const ReportedBlock& block) {
-  const double noise = people_factor(block.unit) * expected_distance(block, block.sigma);
-  std::vector<double> drawn;
-  if (!(noise > 0.0) || !std::isfinite(noise)) return drawn;
+/// Where a multiple of the distance expected from noise is on an axis; NaN if it is beyond.
+[[nodiscard]] inline double noise_on_axis(const Axis& y, const ReportedBlock& block, double times) {
+  const double noise = times * people_factor(block.unit) * expected_distance(block, block.sigma);
+  const bool is_drawn = noise > 0.0 && noise >= y.low() && noise <= y.high();
+  return is_drawn ? y.at(noise) : std::numeric_limits<double>::quiet_NaN();
+}
+
+void draw_noise_lines(Drawing& drawing, const PlotArea& area, const Axis& y,
+                      const ReportedBlock& block) {
   for (const double times : {1.0, 3.0}) {
-    if (times * noise > y.high() || times * noise < y.low()) continue;
-    const double at = y.at(times * noise);
+    const double at = noise_on_axis(y, block, times);
+    if (!std::isfinite(at)) continue;
     drawing.line({area.left, at}, {area.right, at}, times == 1.0 ? "sigma" : "given");
-    drawn.push_back(times);
   }
-  return drawn;
+}
+
+std::vector<LegendEntry> noise_entries(const Axis& y, const ReportedBlock& block) {
+  std::vector<LegendEntry> entries;
+  if (std::isfinite(noise_on_axis(y, block, 1.0))) {
+    entries.push_back({Swatch::line, "sigma", "noise"});
+  }
+  if (std::isfinite(noise_on_axis(y, block, 3.0))) {
+    entries.push_back({Swatch::line, "given", "3 × noise"});
+  }
+  return entries;
 }
 
 }  // namespace kinecal::detail

@@ -106,9 +106,10 @@ void draw_strip(Drawing& drawing, const ReportData& data, const ReportedBlock& b
     chart.caption += fmt::format(" Of {} features, the {} with the largest medians are shown.",
                                  count_text(all), boxes.size());
   }
-  const PlotArea area{46.0, 26.0, kChartWidth - 10.0, 240.0};
+  const PlotArea area{46.0, 46.0, kChartWidth - 10.0, 260.0};
   Drawing drawing(chart.name, chart.title, area.bottom + 38.0);
   const Axis y = distance_axis(block, sorted_finite(distances), area.bottom, area.top);
+  draw_legend(drawing, noise_entries(y, block), 0.0);
   drawing.axis_y(area, y, axis_name("distance", block.unit));
   draw_noise_lines(drawing, area, y, block);
   const double step = (area.right - area.left) / static_cast<double>(boxes.size());
@@ -144,7 +145,7 @@ std::vector<Chart> feature_charts(const ReportData& data) {
   const std::vector<std::string> slugs = detail::block_slugs(data);
   for (std::size_t b = 0; b < data.blocks.size(); ++b) {
     const ReportedBlock& block = data.blocks[b];
-    const std::vector<double> distances = detail::distances_of(block);
+    const std::vector<double> distances = detail::used_distances(data, block);
     std::size_t all = 0;
     const auto boxes = detail::feature_boxes(block, distances, all);
     if (all < 2) continue;

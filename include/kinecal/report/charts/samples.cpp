@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "kinecal/report/charts/distance_axis.hpp"
+#include "kinecal/report/charts/sample_marks.ipp"
 #include "kinecal/report/svg.hpp"
 #include "kinecal/report/svg_legend.hpp"
 #include "kinecal/report/svg_text.hpp"
@@ -18,100 +18,6 @@ namespace kinecal {
 
 namespace detail {
 namespace {
-
-/// The drawn mark of a sample's worst feature.
-struct WorstMark {
-  std::size_t feature = 0;  ///< index into the block's
-  double distance = 0.0;
-};
-
-/// Paths of dots, one for each sample, by its number.
-using Dots = std::map<int, std::string>;
-
-/// The marks of a block's samples; each list of dots is one group of the svg.
-struct SampleMarks {
-  Dots others, worst, bad, left_out;
-  std::map<int, WorstMark> worst_of;  ///< by number
-};
-
-[[nodiscard]] SampleMarks sample_marks(const ReportData& data, const ReportedBlock& block,
-                                       const std::vector<double>& distances,
-                                       const std::vector<std::size_t>& chosen, const Axis& x,
-                                       const Axis& y) {
-  SampleMarks marks;
-  for (const std::size_t i : chosen) {
-    const int number = sample_number(data, block.features[i]);
-    WorstMark& worst = marks.worst_of.try_emplace(number, WorstMark{i, distances[i]}).first->second;
-    if (distances[i] > worst.distance) worst = {i, distances[i]};
-  }
-  constexpr std::size_t kFew = 400;  // with more samples, most dots would be dark
-  const double dark =
-      marks.worst_of.size() <= kFew ? 0.0 : quantile(sorted_finite(distances), 0.998);
-  for (const std::size_t i : chosen) {
-    const int number = sample_number(data, block.features[i]);
-    const ReportedSample& sample = sample_of(data, block.features[i]);
-    const bool is_worst = marks.worst_of[number].feature == i;
-    Dots& dots = sample.left_out       ? marks.left_out
-                 : !is_worst           ? marks.others
-                 : sample.bad          ? marks.bad
-                 : distances[i] < dark ? marks.others
-                                       : marks.worst;
-    append_dot(dots[number], {x.at(number), y.at(distances[i])});
-  }
-  return marks;
-}
-
-void draw_dots(Drawing& drawing, const ReportData& data, const ReportedBlock& block,
-               const SampleMarks& marks, const Dots& dots, const char* classes) {
-  if (dots.empty()) return;
-  drawing.open_group(classes);
-  for (const auto& [number, path] : dots) {
-    const std::size_t worst = marks.worst_of.at(number).feature;
-    const bool titled = &dots != &marks.others;  // otherwise the worst one has the title
-    drawing.path(path, "", number,
-                 titled ? feature_text(data, block, block.features[worst]) : std::string());
-  }
-  drawing.close_group();
-}
-
-/// Numbers beside the three worst samples, unless one would cover another.
-void number_worst(Drawing& drawing, const SampleMarks& marks, const Axis& x, const Axis& y) {
-  std::vector<std::pair<int, WorstMark>> order(marks.worst_of.begin(), marks.worst_of.end());
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
-    return a.second.distance > b.second.distance;
-  });
-  order.resize(std::min<std::size_t>(order.size(), 3));
-  std::vector<Place> taken;
-  for (const auto& [number, worst] : order) {
-    const Place place = {x.at(number), y.at(worst.distance)};
-    constexpr double kWide = 40.0, kHigh = 13.0;
-    if (std::none_of(taken.begin(), taken.end(), [&](const Place& other) {
-          return std::abs(other[0] - place[0]) < kWide && std::abs(other[1] - place[1]) < kHigh;
-        })) {
-      const bool at_right = place[0] > x.to() - kWide;
-      drawing.text({place[0] + (at_right ? -7.0 : 7.0), place[1] + 4.0}, std::to_string(number),
-                   "small", at_right ? Anchor::end : Anchor::start);
-    }
-    taken.push_back(place);
-  }
-}
-
-/// Crosses at the top for samples left out that have no feature in the block.
-void draw_left_out(Drawing& drawing, const ReportData& data, const SampleMarks& marks,
-                   const Axis& x, double top) {
-  Dots crosses;
-  for (const ReportedSample& sample : data.samples) {
-    const bool drawn = marks.worst_of.count(sample.number) > 0;
-    if (!sample.left_out || drawn || sample.number <= 0 || crosses.size() >= kMostMarks) continue;
-    const double at = x.at(sample.number);
-    crosses[sample.number] =
-        fmt::format("M{0} {2}L{1} {3}M{1} {2}L{0} {3}", coordinate(at - 3.5), coordinate(at + 3.5),
-                    coordinate(top + 3.0), coordinate(top + 10.0));
-  }
-  for (const auto& [number, path] : crosses) {
-    drawing.path(path, "faint thick", number, fmt::format("sample {}: left out", number));
-  }
-}
 
 [[nodiscard]] std::string samples_description(const ReportData& data, const ReportedBlock& block,
                                               const std::vector<double>& distances,
@@ -126,50 +32,59 @@ void draw_left_out(Drawing& drawing, const ReportData& data, const SampleMarks& 
 }
 
 [[nodiscard]] std::vector<LegendEntry> samples_legend(const ReportData& data,
-                                                      const ReportedBlock& block) {
+                                                      const ReportedBlock& block, const Axis& y) {
   std::vector<LegendEntry> legend = {{Swatch::dot, "after", "worst of a sample"}};
-  const auto any = [&](bool ReportedSample::*flag) {
-    return std::any_of(data.samples.begin(), data.samples.end(),
-                       [&](const ReportedSample& sample) { return sample.*flag; });
+  const auto any = [&](auto is) {
+    return std::any_of(data.samples.begin(), data.samples.end(), is);
   };
-  if (any(&ReportedSample::bad)) legend.push_back({Swatch::dot, "bad", "does not fit"});
-  if (any(&ReportedSample::left_out)) legend.push_back({Swatch::dot, "faint", "left out"});
-  if (block.sigma > 0.0) legend.push_back({Swatch::line, "sigma", "noise"});
+  if (any([](const ReportedSample& sample) { return sample.bad && !sample.left_out; })) {
+    legend.push_back({Swatch::dot, "bad", "does not fit"});
+  }
+  if (any([](const ReportedSample& sample) { return sample.left_out; })) {
+    legend.push_back({Swatch::cross, "out", "left out"});
+  }
+  for (LegendEntry& entry : noise_entries(y, block)) legend.push_back(std::move(entry));
   return legend;
 }
 
-/// The meaning of the lines drawn by draw_noise_lines().
-[[nodiscard]] std::string noise_lines_text(const std::vector<double>& times) {
-  if (times.empty()) return "";
-  if (times.size() > 1) return " Lines: what noise makes one expect, and three times that.";
-  return times.front() == 1.0 ? " Line: what noise makes one expect."
-                              : " Line: three times what noise makes one expect.";
+/// What the marks mean that no legend has.
+[[nodiscard]] std::string samples_caption(const ReportData& data, std::size_t drawn,
+                                          std::size_t all) {
+  std::string text = "Each dot is a feature, the large ones are the worst of their samples.";
+  if (std::any_of(data.samples.begin(), data.samples.end(),
+                  [](const ReportedSample& sample) { return sample.left_out; })) {
+    text += " Crosses at the upper edge are farther off, or have no feature in this block.";
+  }
+  return text + chosen_text(drawn, all, "features");
 }
 
 [[nodiscard]] Chart sample_chart(const ReportData& data, const ReportedBlock& block,
                                  const std::string& slug) {
-  const std::vector<double> distances = distances_of(block), sorted = sorted_finite(distances);
+  const std::vector<double> distances = distances_of(block), used = used_distances(data, block),
+                            sorted = sorted_finite(used);
   const auto chosen = chosen_marks(distances);
   Chart chart{"residuals", "samples-" + slug,
               "Residuals in capture order: " + shortened(block.name, 60),
-              "Each dot is a feature, the dark ones are the worst of their samples.", ""};
-  const PlotArea area{46.0, 46.0, kChartWidth - 20.0, 270.0};
+              samples_caption(data, chosen.size(), sorted_finite(distances).size()), ""};
+  const std::vector<LegendEntry> legend =
+      samples_legend(data, block, distance_axis(block, sorted, 1.0, 0.0));
+  Drawing measured("", "", 0.0);  // to measure the height of the legend
+  const double top = draw_legend(measured, legend, 0.0) + 28.0;
+  const PlotArea area{46.0, top, kChartWidth - 20.0, top + 224.0};
   Drawing drawing(chart.name, chart.title, area.bottom + 38.0);
-  draw_legend(drawing, samples_legend(data, block), 0.0);
   const Axis x = samples_axis(data, block, area);
   const Axis y = distance_axis(block, sorted, area.bottom, area.top + 14.0);
+  draw_legend(drawing, legend, 0.0);
   drawing.axis_y(area, y, axis_name("distance", block.unit));
   drawing.axis_x(area, x, "sample", true);
-  chart.caption += noise_lines_text(draw_noise_lines(drawing, area, y, block)) +
-                   chosen_text(chosen.size(), sorted.size(), "features");
+  draw_noise_lines(drawing, area, y, block);
   const SampleMarks marks = sample_marks(data, block, distances, chosen, x, y);
   draw_dots(drawing, data, block, marks, marks.others, "dots");
-  draw_dots(drawing, data, block, marks, marks.left_out, "dots out");
   draw_dots(drawing, data, block, marks, marks.worst, "dots worst");
   draw_dots(drawing, data, block, marks, marks.bad, "dots bad");
-  draw_left_out(drawing, data, marks, x, area.top);
+  draw_left_out(drawing, data, block, marks, x, y, area.top);
   number_worst(drawing, marks, x, y);
-  chart.svg = drawing.str(samples_description(data, block, distances, sorted));
+  chart.svg = drawing.str(samples_description(data, block, used, sorted));
   return chart;
 }
 

@@ -9,7 +9,7 @@
 //               "drive": [i, multiplier, offset]   position = multiplier q[i] + offset; i = -1: offset
 //               "before": {"t": [3], "r": [3], "offset": 0}, "after": ...  corrections; absent: none}],
 //   "meshes": [{"vertices": float32 xyz, "triangles": uint32 abc}],       base64, little-endian
-//   "samples": [{"number": 1, "source": "a.yaml:12", "bad": false, "note", "q": [...],
+//   "samples": [{"number": 1, "source": "a.yaml:12", "bad": false, "left_out": false, "note", "q": [...],
 //                "times": 3.2   of sigma, its worst feature: ranks samples (all have it, or none: then by
 //                               the largest distance of "after")
 //                "cloud": base64 float32 xyz in the frame of link "cloud_link": 3,

@@ -43,8 +43,8 @@ try {
   painter = gl && new Painter(gl, scene.meshes);
 } catch { /* its shaders do not run here */ }
 if (!painter) {
-  panel.append(element("p", { class: "note" },
-    "This browser cannot draw in 3-D (WebGL 2); the picture does not move."));
+  panel.before(element("p", { class: "note" }, "The robot in 3-D is not shown, because this browser has no " +
+    "WebGL 2; the charts and tables hold all figures."));
   return;
 }
 
@@ -225,7 +225,7 @@ function draw() {
   }
   if (show.points && exact) {
     if (show.before) drawFeatures("before", before);
-    if (show.after) drawFeatures("after", after);
+    if (show.after) drawFeatures("after", here().left_out ? colour("bad") : after);
   }
   placeLabels(show.frames ? (show.after ? is : was) : []);
 }
@@ -343,44 +343,50 @@ const labels = element("div", { class: "labels", "aria-hidden": "true" });
 function placeLabels(poses) {
   const { camera } = cameraView(), placed = [];
   const named = scene.corrected.filter((joint) => poses[joint.child]).map((joint) =>
-    ({ text: `${joint.name ?? ""} ${correctionText(joint)}`, place: poses[joint.child] }));
-  labels.replaceChildren(...named.flatMap(({ text, place }) => {
+    ({ name: shortened(joint.name ?? "", 24), value: correctionText(joint), place: poses[joint.child] }));
+  labels.replaceChildren(...named.flatMap(({ name, value, place }) => {
     const [x, y, w] = [0, 1, 3].map((i) =>
       camera[i] * place[0] + camera[4 + i] * place[1] + camera[8 + i] * place[2] + camera[12 + i]);
     const left = (0.5 + x / w / 2) * canvas.clientWidth, top = (0.5 - y / w / 2) * canvas.clientHeight;
-    const width = 7 * Math.min(text.length, 34) + 16;
+    const width = 7 * (name.length + 1 + value.length) + 16;
     const covers = placed.some(([l, t, s]) =>
       left < l + s && l < left + width && Math.abs(top - t) < 17);
     if (w <= 0 || left < 0 || top < 10 || left + width > canvas.clientWidth || covers ||
         top > canvas.clientHeight - 10) return [];
     placed.push([left, top, width]);
-    const label = element("span", {}, text);
+    const label = element("span", {}, element("bdi", {}, name), ` ${value}`);
     label.style.transform = `translate(${left.toFixed(1)}px, ${top.toFixed(1)}px)`;
     return [label];
   }));
 }
 
 // Controls.
+const badge = element("div", { class: "badge bad" });
 const status = element("p", { class: "status", role: "status", id: "view3d-status" });
 const slider = element("input", { type: "range", min: 0, max: Math.max(0, samples.length - 1), step: 1,
   value: 0, id: "view3d-sample" });
 const factor = element("input", { type: "range", min: 1, max: 50, step: 1, value: 1, id: "view3d-factor" });
 const factorText = element("output", { for: "view3d-factor" }, "1×");
 
+/// A text of at most so many characters, shortened in the middle.
+function shortened(text, most) {
+  const all = [...text], head = Math.ceil((most - 1) / 2);
+  return all.length > most ? `${all.slice(0, head).join("")}…${all.slice(head + 1 - most).join("")}` : text;
+}
 /// Text of a file inside a sentence: letters that run from right to left do not turn the rest of it.
-function quoted(text) {
-  const short = text.length > 300 ? `${text.slice(0, 300)}…` : text;
-  return /^[ -~]*$/.test(short) ? short : `\u2068${short}\u2069`;
+function quoted(text, most = 80) {
+  const short = shortened(text.replace(/\S{81,}/g, (word) => shortened(word, 80)), most);
+  return /^[ -~…]*$/.test(short) ? short : `\u2068${short}\u2069`;
 }
 function describe(sample) {
   let text = `Sample ${sample.number ?? state.sample + 1}`;
   if (sample.source) text += `, ${quoted(sample.source)}`;
-  if (sample.bad) text += ", bad";
-  if (sample.note) text += `: ${quoted(sample.note)}`;
+  if (sample.bad) text += sample.left_out ? ", left out" : ", bad";
+  if (sample.note) text += `: ${quoted(sample.note, 400)}`;
   const { worst } = sample;
   if (worst) {
     const parts = [scene.blocks[worst.block], worst.name, worst.error].filter(Boolean);
-    text += `. Largest error: ${parts.map(quoted).join(", ")}`;
+    text += `. Largest error: ${parts.map((part) => quoted(part)).join(", ")}`;
   }
   return `${text.replace(/[.]$/, "")}.`;
 }
@@ -399,6 +405,7 @@ function show(index, ranked = -1) {
   slider.setAttribute("aria-valuetext", text);
   status.textContent = ranked < 0 ? text : `${text} Number ${ranked + 1} of the worst.`;
   status.classList.toggle("bad", sample.bad === true);
+  badge.textContent = sample.left_out ? `sample ${sample.number ?? index + 1}: left out` : "";
   redraw();
   const points = featurePoints();
   if (leaves(points.length ? points : robotPoints())) look(fitted(shown()));
@@ -411,8 +418,8 @@ function selectWorst(step) {
 /// Selects the sample of a number and scrolls to the view.
 function selectNumber(wanted) {
   const index = samples.findIndex((s, i) => (s.number ?? i + 1) === wanted);
-  if (index < 0) return;
-  select(index);
+  if (index >= 0) select(index);
+  else status.textContent = `Sample ${wanted} is not among the ${samples.length} that this page shows in 3-D.`;
   figure.scrollIntoView({ behavior: still.matches ? "instant" : "smooth", block: "nearest" });
 }
 function setFactor(value) {
@@ -583,7 +590,7 @@ function begin() {
   const { middle, low } = ball(robotPoints());
   scene.ground = Math.min(0, low[2]);
   scene.middle = [middle[0], middle[1], scene.ground];
-  stage.append(legend());
+  stage.append(legend(), badge);
   fillPanel();
   panel.append(element("p", { class: "hint", id: "view3d-hint" },
     element("span", { class: "for-mouse" }, "Drag to turn, with Shift to move. After a click the wheel zooms ",

@@ -1,26 +1,23 @@
-// Characters of UTF-8, and which of them a chart may show.
+// Definitions of characters.hpp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "kinecal/text/characters.hpp"
 
 namespace kinecal::detail {
 
-inline constexpr char32_t kNoCharacter = 0xFFFD;
-
-/// True if XML may contain a character and readers see it in its place.
-[[nodiscard]] inline bool is_shown(char32_t c) {
+KINECAL_INLINE bool is_shown(char32_t c) {
   const bool control = c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0xFFFE || c == 0xFFFF;
-  const bool turns =
-      (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069) || c == 0x200E || c == 0x200F;
+  const bool turns = (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069) || c == 0x200E ||
+                     c == 0x200F || c == 0x061C;
   return !control && !turns && c != 0x2028 && c != 0x2029;
 }
 
-/// The character at a position; moves the position past it.
-[[nodiscard]] inline char32_t next_character(std::string_view text, std::size_t& at) {
+KINECAL_INLINE char32_t next_character(std::string_view text, std::size_t& at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(at++);
   if (first < 0x80) return first;
@@ -42,18 +39,7 @@ inline constexpr char32_t kNoCharacter = 0xFFFD;
   return c;
 }
 
-/// Line ends and tabs become spaces; characters that must not be shown become U+FFFD.
-[[nodiscard]] inline std::vector<char32_t> characters_of(std::string_view text) {
-  std::vector<char32_t> characters;
-  for (std::size_t at = 0; at < text.size();) {
-    const char32_t c = next_character(text, at);
-    const bool blank = c == '\n' || c == '\t' || c == '\r';
-    characters.push_back(blank ? U' ' : is_shown(c) ? c : kNoCharacter);
-  }
-  return characters;
-}
-
-inline void append_character(std::string& text, char32_t c) {
+KINECAL_INLINE void append_character(std::string& text, char32_t c) {
   const auto tail = [&](int shift) { text += static_cast<char>(0x80U | ((c >> shift) & 0x3FU)); };
   if (c < 0x80) {
     text += static_cast<char>(c);
@@ -69,13 +55,20 @@ inline void append_character(std::string& text, char32_t c) {
   }
 }
 
-/// Hebrew, Arabic and their neighbours.
-[[nodiscard]] inline bool is_right_to_left(char32_t c) {
+KINECAL_INLINE std::string one_line(std::string_view text) {
+  std::string line;
+  line.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const char32_t c = next_character(text, at);
+    const bool blank = c == '\n' || c == '\t' || c == '\r';
+    append_character(line, blank ? U' ' : is_shown(c) ? c : kNoCharacter);
+  }
+  return line;
+}
+
+KINECAL_INLINE bool is_right_to_left(char32_t c) {
   return (c >= 0x590 && c < 0x900) || (c >= 0xFB1D && c < 0xFE00) || (c >= 0xFE70 && c < 0xFF00) ||
          (c >= 0x10800 && c < 0x11000) || (c >= 0x1E800 && c < 0x1F000);
 }
-
-/// The marks that shortened() sets around a name.
-inline constexpr char32_t kIsolate = 0x2068, kEndOfIsolate = 0x2069;
 
 }  // namespace kinecal::detail
