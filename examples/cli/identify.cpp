@@ -159,6 +159,12 @@ int identify(IdentifyOptions options) {
   say("Robot '{}', {}: {} may be wrong, {} of them these samples support\n\n{}", input.robot.name(),
       counted(input.samples.size(), "sample"), counted(all.task.candidates.size(), "parameter"),
       all.found.chosen.size(), steps_text(all));
+  Findings findings{std::move(all.judged)};
+  if (findings.judgement.verdict == Grade::do_not_use) {
+    for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
+    say("{} · {} was not written\n", findings_line(findings), options.output);
+    return kNotUsable;
+  }
   Diagnostics quiet;
   const Calibration names =
       assemble(with_all_candidates(input.config, input.robot), input.robot, {}, quiet);
@@ -173,7 +179,6 @@ int identify(IdentifyOptions options) {
   if (!options.urdf.empty()) call += " --urdf " + shell_word(options.urdf);
   call += " --config " + shell_word(options.output) + " --samples";
   for (const std::string& file : options.samples) call += " " + shell_word(file);
-  Findings findings{std::move(all.judged)};
   say("{} · {}\nnext: {} --output calibrated\n", findings_line(findings), options.output, call);
   return kDone;
 }

@@ -255,7 +255,9 @@ void add_init(CLI::App& command, InitOptions& options) {
 }
 
 void add_simulate(CLI::App& command, SimulateOptions& options) {
-  command.add_option("urdf", options.urdf, "the robot's URDF")->required()->type_name("FILE");
+  command.add_option("urdf,--urdf", options.urdf, "the robot's URDF")
+      ->required()
+      ->type_name("FILE");
   command.add_option("-o,--output", options.output, "folder for images and tables")
       ->required()
       ->type_name("DIR");

@@ -76,6 +76,20 @@ class Manners : public test::ProgramTest {
 const std::string kCalibrate =
     "calibrate --urdf ur5e.urdf --config calibrate.yaml --samples samples.yaml --output out ";
 
+TEST_F(Manners, IdentifyWritesAConfigurationThatCalibrates) {
+  prepare();
+  const std::string files = "--urdf ur5e.urdf --samples samples.yaml";
+  const Outcome found = kinecal("identify " + files);
+  EXPECT_EQ(found.code, 0) << found.err;
+  EXPECT_THAT(found.out, AllOf(HasSubstr("wrist_1_joint"), HasSubstr("\ngood · measured "),
+                               HasSubstr("next: kinecal calibrate "
+                                         "--urdf ur5e.urdf --config identified.yaml")));
+  EXPECT_EQ(kinecal("check --config identified.yaml " + files).code, 0);
+  const Outcome again = kinecal("identify " + files);
+  EXPECT_EQ(again.code, 1);
+  EXPECT_THAT(again.err, HasSubstr("identified.yaml: exists; use --force"));
+}
+
 TEST_F(Manners, ADashIsTheStandardInputOrOutput) {
   prepare();
   const std::string program = test::kinecal_program();

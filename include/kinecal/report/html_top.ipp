@@ -103,6 +103,8 @@ namespace kinecal::detail {
   std::string reasons;
   for (const std::string& reason : data.reasons)
     reasons += "<li>" + html_sentence(reason) + "</li>";
+  for (const std::string& help : data.helps)
+    reasons += "<li>Would help: " + html_sentence(help) + "</li>";
   const auto left_out = std::count_if(data.samples.begin(), data.samples.end(),
                                       [](const ReportedSample& sample) { return sample.left_out; });
   std::string about = fmt::format("{} samples", data.samples.size() - left_out);

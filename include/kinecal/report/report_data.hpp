@@ -85,6 +85,7 @@ struct ReportData {
   std::string robot;  ///< its name
   Grade verdict = Grade::good;
   std::vector<std::string> reasons;  ///< for the verdict: causes, then worst first
+  std::vector<std::string> helps;    ///< held parameters that would lower the error
   std::string next;                  ///< what to do: see next_step()
   std::string version;               ///< "kinecal 0.2.0"
   std::string command;               ///< repeats the run

@@ -81,13 +81,17 @@ class Identification {
   /// Noise of the first error block, in its unit, at the last solution.
   [[nodiscard]] double noise() const { return sigmas_.front(); }
 
-  /// Begins with another value of a candidate's parameter, and searches for unknown poses again.
-  void begin_with(int column, double change) {
-    initial_[static_cast<std::size_t>(index(column))] += change;
+  /// Begins with the initial values again, and searches for unknown poses.
+  void begin_again() {
     for (int p = 0; p < calibration_.table.size(); ++p) {
       calibration_.table[p].value = initial_[static_cast<std::size_t>(p)];
     }
     step_.unknown_frames = unknown_;
+  }
+  /// The same with another initial value of a candidate's parameter.
+  void begin_with(int column, double change) {
+    initial_[static_cast<std::size_t>(index(column))] += change;
+    begin_again();
   }
 
   /// Solves with some candidates, from the last solution, until the noise stays.

@@ -73,8 +73,14 @@ Identified run(Identification& search, const std::string& unit) {
       }
       break;
     }
+    CalibrationResult result = search.solve(chosen);
+    if (!result.converged) {  // too far for the last solution to be a start
+      search.begin_again();
+      result = search.solve(chosen);
+    }
+    if (!result.converged) break;
     found.chosen = std::move(chosen);
-    found.result = search.solve(found.chosen);
+    found.result = std::move(result);
   }
   return found;
 }

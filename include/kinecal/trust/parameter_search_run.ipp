@@ -107,6 +107,15 @@ void ParameterSearch::run(const std::vector<int>& base, const Candidates& candid
   std::set<std::set<int>> seen;  // so that it ends
   int ranks = 0;
   for (const SearchCandidate& candidate : candidates) ranks = std::max(ranks, candidate.rank);
+  if (chosen.empty()) {  // zeros together: what is far off makes anything look like a help
+    constexpr int kZeros = 0;
+    const std::vector<int> zeros = saturated(base, candidates, chosen, kZeros);
+    const bool far = whole_fit(columns(zeros)).squares < kFar * begin;
+    if (far && certainty_of(columns(zeros), columns(chosen)) > kSure) {
+      chosen = zeros;
+      return;
+    }
+  }
   for (;;) {
     while (seen.insert(std::set<int>(chosen.begin(), chosen.end())).second &&
            free_one(base, candidates, chosen)) {
@@ -122,6 +131,7 @@ void ParameterSearch::run(const std::vector<int>& base, const Candidates& candid
       hold_superfluous(base, candidates, all);
       if (certainty_of(columns(all), columns(best)) > kSure) best = std::move(all);
     }
+    if (best == chosen) hold_superfluous(base, candidates, best);
     if (best == chosen || !seen.insert(std::set<int>(best.begin(), best.end())).second) break;
     chosen = std::move(best);
     if (whole_fit(columns(chosen)).squares < kFar * begin) return;
