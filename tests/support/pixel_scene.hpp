@@ -11,6 +11,7 @@ namespace kinecal::test {
 
 /// A camera that looks at features of the hand: a board's corners, or a few LEDs.
 struct PixelScene {
+  static constexpr std::size_t kOff = 3;
   int count = 30;             ///< samples
   int columns = 7, rows = 5;  ///< of the board; 2 x 2 are LEDs
   double k1 = 0.0, k2 = 0.0;  ///< of the lens
@@ -18,7 +19,9 @@ struct PixelScene {
   double joints = 0.0;        ///< radians, by which joints do not repeat
   double focal = 1.0;         ///< true over recorded focal length
   unsigned seed = 1;
-  std::vector<double> taken = {};  ///< distortion in camera_info
+  std::optional<double> sigma = {};  ///< stated, pixels
+  double off = 0.0;                  ///< pixels, by which features of the sample kOff are off
+  std::vector<double> taken = {};    ///< distortion in camera_info
   std::vector<std::string> free = {"shoulder_lift", "elbow",      "wrist",     "head_tilt",
                                    "head_pan_x",    "head_pan_y", "head_pan_z"};
 
@@ -71,7 +74,8 @@ struct PixelScene {
         arm.features.push_back({"hand", hand_T_camera * p});
         const Eigen::Vector2d seen = pixel(p);
         const double u = noise * normal(random), v = noise * normal(random);
-        eye.features.push_back({"camera_optical_frame", {seen.x() + u, seen.y() + v, 0}});
+        const double by = &sample == &all[kOff] ? off : 0.0;
+        eye.features.push_back({"camera_optical_frame", {seen.x() + u + by, seen.y() + v, 0}});
       }
       for (double& q : sample.joint_positions) q += joints * normal(random);
       sample.observations = {arm, eye};
@@ -79,18 +83,24 @@ struct PixelScene {
     return all;
   }
 
+  /// A problem without samples.
+  [[nodiscard]] std::unique_ptr<AnyProblem> problem() const {
+    std::unique_ptr<AnyProblem> made =
+        make_problem(mobile_manipulator(), "base_link", table_with_units(), kSceneFrames);
+    made->add_built_in(ChainPoint{}, {"arm", "hand"});
+    made->add_built_in(PinholeCamera{}, {"eye", "camera_optical_frame"});
+    made->add_built_in("pixels", PointToPixel{}, {"arm", "eye"}, {.sigma = sigma});
+    return made;
+  }
+  [[nodiscard]] FreeSet free_set() const { return free_of(table_with_units(), free); }
+
   /// Calibrates and judges.
   [[nodiscard]] JudgedResult judged() const {
     const std::vector<Sample> all = samples();
-    std::unique_ptr<AnyProblem> problem = make_problem(
-        mobile_manipulator(), "base_link", table_with_units(), kSceneFrames);
-    problem->add_built_in(ChainPoint{}, {"arm", "hand"});
-    problem->add_built_in(PinholeCamera{}, {"eye", "camera_optical_frame"});
-    problem->add_built_in("pixels", PointToPixel{}, {"arm", "eye"}, {});
-    for (const Sample& sample : all) problem->add_sample(sample);
+    std::unique_ptr<AnyProblem> filled = problem();
+    for (const Sample& sample : all) filled->add_sample(sample);
     Calibration calibration{table_with_units(), {}};
-    calibration.steps.push_back(
-        {"calibrate", 1000, std::move(problem), free_of(table_with_units(), free), {}});
+    calibration.steps.push_back({"calibrate", 1000, std::move(filled), free_set(), {}});
     return calibrate_and_judge(calibration, all);
   }
   [[nodiscard]] std::optional<LensPattern> found() const {

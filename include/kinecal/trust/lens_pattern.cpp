@@ -151,7 +151,7 @@ struct LensSearch {
 std::optional<LensPattern> lens_pattern(const AnyProblem& problem, const FreeSet& free,
                                         const LinearFit& fit, ParameterValues values,
                                         std::span<const Sample> samples, const PoseGroups& poses) {
-  constexpr double kChance = 1e-5;
+  constexpr double kChance = 1e-3;
   std::optional<LensPattern> best;
   if (detail::is_exact(problem, fit)) return best;
   const detail::LensSearch search{problem, free, fit, values, samples, poses};
