@@ -31,7 +31,7 @@ inline constexpr std::size_t kViewsOfSheet = 24;
 
 /// PNGs of all views, kViewsOfSheet each.  Features are green crosses; thin blue lines are the grid that was fitted to
 /// them, so that a wrong corner lies beside its lines; corners that were dropped are magenta.  An orange square
-/// is around the first corner, and a line leads to the next.  Without a grid, dotted lines join neighbours in the
+/// is around the first corner, and an arrow leads to the next.  Without a grid, dotted lines join neighbours in the
 /// order of their ids.  Below are the number of the view, its name and the RMS distance of corners and grid.  A view
 /// without features has a red frame and the reason below.
 /// @throws std::invalid_argument  if there are no views
