@@ -8,12 +8,13 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "kinecal/solve/linear_fit.hpp"
 #include "kinecal/trust/f_distribution.hpp"
-#include "kinecal/trust/pose_groups.hpp"
+#include "kinecal/trust/pose_rows.ipp"
 
 namespace kinecal::detail {
 
@@ -22,19 +23,6 @@ struct ColumnTest {
   double change = 0.0;
   double chance = 1.0;
 };
-
-/// Blocks of rows by the pose of their sample, without those in which a column is zero.
-[[nodiscard]] inline std::vector<std::vector<RowBlock>> blocks_by_pose(
-    const LinearFit& fit, const PoseGroups& poses, const Eigen::MatrixXd& added) {
-  std::vector<std::vector<RowBlock>> all(static_cast<std::size_t>(poses.count));
-  for (const RowBlock& block : fit.blocks) {
-    if (added.middleRows(block.first, block.size).isZero(0.0)) continue;
-    const int pose = poses.of_sample[static_cast<std::size_t>(block.sample)];
-    all[static_cast<std::size_t>(pose)].push_back(block);
-  }
-  std::erase_if(all, [](const std::vector<RowBlock>& blocks) { return blocks.empty(); });
-  return all;
-}
 
 /// Tests the first of some columns beside those of a fit and the other ones.
 /// @param added  (rows x columns) derivatives of the weighted residuals
@@ -57,7 +45,12 @@ struct ColumnTest {
   gradient = scale.cwiseProduct(gradient);
   const Eigen::VectorXd of_first =
       sums.ldlt().solve(Eigen::VectorXd::Unit(all, own));  // column of the inverse
-  const auto by_pose = blocks_by_pose(fit, poses, added);
+  auto by_pose = blocks_by_pose(fit, poses);
+  std::erase_if(by_pose, [&](const std::vector<std::size_t>& blocks) {
+    return std::all_of(blocks.begin(), blocks.end(), [&](std::size_t b) {
+      return added.middleRows(fit.blocks[b].first, fit.blocks[b].size).isZero(0.0);
+    });
+  });
   const auto n = static_cast<double>(by_pose.size());
   if (by_pose.size() < kFewest || !(of_first(own) > 0.0) || 1.0 / of_first(own) < kOwn) return {};
   Eigen::VectorXd changes(std::ssize(by_pose)), effects(std::ssize(by_pose));
@@ -65,7 +58,8 @@ struct ColumnTest {
     Eigen::MatrixXd others = sums;
     Eigen::VectorXd of_others = gradient;
     double effect = 0.0;
-    for (const RowBlock& block : by_pose[pose]) {
+    for (const std::size_t b : by_pose[pose]) {
+      const RowBlock& block = fit.blocks[b];
       const auto of = rows.middleRows(block.first, block.size);
       const auto loss = fit.loss.segment(block.first, block.size);
       others -= of.transpose() * loss.asDiagonal() * of;

@@ -89,8 +89,9 @@ class CameraPixels {
   }
 
  private:
+  /// The recorded principal point: a fitted one has moved with the lens.
   [[nodiscard]] Eigen::Vector2d center(const Observation& seen) const {
-    return mounted_.sensor().predict({0.0, 0.0, 1.0}, mounted_.sensor().settings(seen), own_);
+    return mounted_.sensor().predict({0.0, 0.0, 1.0}, mounted_.sensor().settings(seen));
   }
 
   const MountedSensor& mounted_;

@@ -41,14 +41,14 @@ constexpr int kSheetColumns = 3, kSheetGap = 6, kReasonLines = 3;
 }
 
 /// Draws a thumbnail and its text at its place.
-void draw(Sheet& sheet, const Thumbnail& view, int x, int y, int number) {
+void draw(ContactPicture& sheet, const Thumbnail& view, int x, int y, int number) {
   for (int v = 0; v < view.image.height; ++v) {
     for (int u = 0; u < view.image.width; ++u) {
       const std::uint8_t gray = view.image(u, v);
       sheet.dot(x + u, y + v, {gray, gray, gray});
     }
   }
-  const Tile tile{sheet, view, x, y};
+  const ContactTile tile{sheet, view, x, y};
   const bool found = view.refusal.empty();
   for (const GridLine& line : view.grid) tile.line(line, 0.0, 0.5, kGridColour);
   if (found && !view.grid.empty()) draw_first(tile);
@@ -59,13 +59,13 @@ void draw(Sheet& sheet, const Thumbnail& view, int x, int y, int number) {
   }
   if (!found) sheet.frame(x, y, view.image.width, view.image.height, kRefusedColour);
   const auto letters = static_cast<std::size_t>(std::max(kThumbnailWidth, view.image.width) /
-                                                (kGlyphWidth * Sheet::kLetter));
+                                                (kGlyphWidth * ContactPicture::kLetter));
   int line = y + view.image.height + 3;
   sheet.text(x, line, caption(view, number).substr(0, letters), kInk);
   for (int i = 0; i < kReasonLines; ++i) {
     const std::size_t begin = static_cast<std::size_t>(i) * letters;
     if (begin >= view.refusal.size()) break;
-    line += kGlyphHeight * Sheet::kLetter;
+    line += kGlyphHeight * ContactPicture::kLetter;
     sheet.text(x, line, std::string_view(view.refusal).substr(begin, letters), kRefusedColour);
   }
 }
@@ -79,11 +79,12 @@ void draw(Sheet& sheet, const Thumbnail& view, int x, int y, int number) {
     widest = std::max(widest, view.image.width);
   }
   const int cell_width = widest + kSheetGap;
-  const int cell_height = tallest + (kReasonLines + 1) * kGlyphHeight * Sheet::kLetter + kSheetGap;
+  const int cell_height =
+      tallest + (kReasonLines + 1) * kGlyphHeight * ContactPicture::kLetter + kSheetGap;
   const int count = static_cast<int>(views.size());
   const int columns = std::min(count, kSheetColumns);
   const int rows = (count + columns - 1) / columns;
-  Sheet sheet{{columns * cell_width + kSheetGap, rows * cell_height + kSheetGap, kPaper}};
+  ContactPicture sheet{{columns * cell_width + kSheetGap, rows * cell_height + kSheetGap, kPaper}};
   for (int i = 0; i < count; ++i) {
     draw(sheet, views[static_cast<std::size_t>(i)], kSheetGap + i % columns * cell_width,
          kSheetGap + i / columns * cell_height, first + i);

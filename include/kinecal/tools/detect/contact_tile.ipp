@@ -17,7 +17,7 @@ inline constexpr Rgb kPaper{245, 245, 245}, kInk{30, 30, 30}, kFoundColour{0, 20
     kFirstColour{255, 140, 0};
 
 /// A picture to draw on; ignores anything outside.
-struct Sheet {
+struct ContactPicture {
   Image<Rgb> picture;
 
   void dot(int x, int y, const Rgb& colour) {
@@ -44,8 +44,8 @@ struct Sheet {
 };
 
 /// The picture of a view at its place on the sheet; draws nothing beyond it.
-struct Tile {
-  Sheet& sheet;
+struct ContactTile {
+  ContactPicture& sheet;
   const Thumbnail& view;
   int x = 0, y = 0;
 
@@ -67,7 +67,7 @@ struct Tile {
 };
 
 /// A cross, open at its center.
-inline void draw_mark(const Tile& tile, const Mark& mark, const Rgb& colour) {
+inline void draw_mark(const ContactTile& tile, const Mark& mark, const Rgb& colour) {
   for (const int d : {-4, -3, -2, 2, 3, 4}) {
     tile.dot(mark.u + d, mark.v, colour);
     tile.dot(mark.u, mark.v + d, colour);
@@ -75,7 +75,7 @@ inline void draw_mark(const Tile& tile, const Mark& mark, const Rgb& colour) {
 }
 
 /// A square around a mark.
-inline void draw_square(const Tile& tile, const Mark& mark, int half, const Rgb& colour) {
+inline void draw_square(const ContactTile& tile, const Mark& mark, int half, const Rgb& colour) {
   for (int d = -half; d <= half; ++d) {
     for (const int side : {-half, half}) {
       tile.dot(mark.u + d, mark.v + side, colour);
@@ -85,7 +85,7 @@ inline void draw_square(const Tile& tile, const Mark& mark, int half, const Rgb&
 }
 
 /// Joins marks that follow each other in the order of their ids, if they are neighbours.
-inline void draw_neighbours(const Tile& tile) {
+inline void draw_neighbours(const ContactTile& tile) {
   const std::vector<Mark>& marks = tile.view.marks;
   std::vector<double> steps;
   for (std::size_t i = 1; i < marks.size(); ++i) {
@@ -104,7 +104,8 @@ inline void draw_neighbours(const Tile& tile) {
 }
 
 /// An arrow from a mark past the next one: twice the way, at least 30 pixels.
-inline void draw_arrow(const Tile& tile, const Mark& from, const Mark& to, const Rgb& colour) {
+inline void draw_arrow(const ContactTile& tile, const Mark& from, const Mark& to,
+                       const Rgb& colour) {
   constexpr double kTimes = 2.0, kLeast = 30.0, kShort = 9.0, kHead = 6.0, kStep = 0.5;
   const double du = to.u - from.u, dv = to.v - from.v, way = std::hypot(du, dv);
   if (!(way > 0.0)) return;
@@ -119,7 +120,7 @@ inline void draw_arrow(const Tile& tile, const Mark& from, const Mark& to, const
 }
 
 /// The first corner, and the way to the next.
-inline void draw_first(const Tile& tile) {
+inline void draw_first(const ContactTile& tile) {
   constexpr int kHalf = 7;
   const Mark* first = nullptr;
   for (const Mark& mark : tile.view.marks) {
