@@ -28,7 +28,7 @@ struct ColumnTest {
 /// @param added  (rows x columns) derivatives of the weighted residuals
 [[nodiscard]] inline ColumnTest test_column(const LinearFit& fit, const Eigen::MatrixXd& added,
                                             const PoseGroups& poses) {
-  constexpr double kOwn = 1e-3, kRidge = 1e-10;
+  constexpr double kOwn = 1e-3, kRidge = 1e-10, kAlike = 0.01;
   constexpr std::size_t kFewest = 6;
   const Eigen::Index own = fit.size(), all = own + added.cols();
   Eigen::MatrixXd rows(fit.residual.size(), all);
@@ -43,6 +43,17 @@ struct ColumnTest {
   sums = scale.asDiagonal() * sums * scale.asDiagonal();
   sums.diagonal().array() += kRidge;
   gradient = scale.cwiseProduct(gradient);
+  const auto by_own = sums.topLeftCorner(own, own).ldlt();
+  for (Eigen::Index c = own + 1; c < all;
+       ++c) {  // what the fit has: beside it, only residuals are left
+    const Eigen::VectorXd cross = sums.col(c).head(own);
+    if (1.0 - cross.dot(by_own.solve(cross)) > kAlike) continue;
+    rows.col(c).setZero();
+    sums.row(c).setZero();
+    sums.col(c).setZero();
+    sums(c, c) = 1.0;
+    gradient(c) = 0.0;
+  }
   const Eigen::VectorXd of_first =
       sums.ldlt().solve(Eigen::VectorXd::Unit(all, own));  // column of the inverse
   auto by_pose = blocks_by_pose(fit, poses);
