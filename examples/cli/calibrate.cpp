@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -36,16 +35,16 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// A line that is overwritten while a step runs; only on a terminal.
+/// A line that is overwritten while a step runs.
 Progress progress_line() {
-  if (isatty(STDERR_FILENO) == 0) return {};
+  if (!shows_progress()) return {};
   return [](const std::string& step, int iteration, double cost) {
     fmt::print(stderr, "\r{}: iteration {}, cost {:.6g} \033[K", printable(step), iteration, cost);
   };
 }
 
 void end_progress_line() {
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");
+  if (shows_progress()) fmt::print(stderr, "\r\033[K");
 }
 
 bool same_file(const std::filesystem::path& one, const std::filesystem::path& other) {
@@ -209,6 +208,7 @@ std::string last_line(const Findings& findings, const CalibrateOptions& options,
 }  // namespace
 
 int calibrate(const CalibrateOptions& options) {
+  set_progress(!options.manner.quiet);
   const Clock::time_point start = Clock::now();
   std::optional<OutputFolder> folder = output_folder(options);
   Input input = read_input(options);

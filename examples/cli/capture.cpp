@@ -26,12 +26,12 @@
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/files/urdf/velocity_limits.hpp"
 #include "kinecal/text/counted.hpp"
-#include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect.hpp"
 #include "output_file.hpp"
 #include "pose_file.hpp"
 #include "report.hpp"
 #include "robot_link.hpp"
+#include "sheets.hpp"
 #include "terminal.hpp"
 #include "truth.hpp"
 
@@ -233,7 +233,7 @@ void check_options(const CaptureOptions& options) {
   }
   check_output(options.output, inputs, options.force || options.resume);
   inputs.push_back(options.output);
-  if (!options.sheet.empty()) check_picture(options.sheet, inputs, options.force);
+  if (!options.sheet.empty()) check_sheets(options.sheet, inputs, options.force);
   if (!options.result.empty()) check_results(calibration_of(options));
   check_reports(calibration_of(options));
   if (!(options.velocity > 0.0)) throw InputError("--velocity must be a number from 0.01 to 1");
@@ -305,9 +305,9 @@ struct Session {
     if (options.sheet.empty()) return;
     for (const FinderOutcome& outcome : captured.outcomes) {
       if (outcome.view.image.empty()) continue;
-      thumbnails.push_back(thumbnail(outcome.view.image, outcome.found.marks,
-                                     fmt::format("pose {}", done),
-                                     outcome.found ? "" : outcome.found.refusal));
+      thumbnails.push_back(
+          thumbnail(outcome.view.image, outcome.found.marks, fmt::format("pose {}", done),
+                    outcome.found ? "" : outcome.found.refusal, outcome.found.grid));
     }
   }
 
@@ -381,8 +381,8 @@ int capture(const CaptureOptions& options) {
   }
   const std::string lost = is_complete ? "" : session.run(config);
   if (!session.thumbnails.empty()) {
-    write_text_file(options.sheet, contact_sheet(session.thumbnails));
-    say("{}: what was found in {}\n", options.sheet, counted(session.thumbnails.size(), "view"));
+    say("{}: what was found in {}\n", write_sheets(options.sheet, session.thumbnails),
+        counted(session.thumbnails.size(), "view"));
   }
   if (is_complete) {
     say("{}: {} from before; all poses of {} are captured\n", options.output,

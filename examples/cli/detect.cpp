@@ -23,10 +23,10 @@
 #include "kinecal/text/counted.hpp"
 #include "kinecal/text/nearest_name.hpp"
 #include "kinecal/text/printable.hpp"
-#include "kinecal/tools/detect/contact_sheet.hpp"
 #include "kinecal/tools/detect/detect_all.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
+#include "sheets.hpp"
 #include "terminal.hpp"
 
 namespace kinecal::cli {
@@ -226,7 +226,7 @@ int detect(const DetectOptions& options) {
   check_output(options.output, inputs, options.force);
   (void)output_encoding(options.output);
   inputs.push_back(options.output);
-  if (!options.sheet.empty()) check_picture(options.sheet, inputs, options.force);
+  if (!options.sheet.empty()) check_sheets(options.sheet, inputs, options.force);
   check_recordings(options.bags);
   Diagnostics diagnostics;
   const DetectionInput task = read_task(options, diagnostics);
@@ -248,8 +248,9 @@ int detect(const DetectOptions& options) {
                                                     : "view";
   const std::string seen = counted(count, noun);
   const std::vector<Sample>& samples = found.samples;
+  std::string sheets;
   if (!options.sheet.empty()) {
-    write_text_file(options.sheet, contact_sheet(thumbnails_of(std::move(found.looks))));
+    sheets = write_sheets(options.sheet, thumbnails_of(std::move(found.looks)));
   }
   if (samples.empty()) {
     say(stderr, "error: nothing was found in {}; {} was not written\n", seen, options.output);
@@ -257,7 +258,7 @@ int detect(const DetectOptions& options) {
   }
   say("wrote {}: {} of {}: {}; {} refused{}\n", options.output, found.used, seen,
       counted(found.features, "feature"), count - found.used, count_of_targets(samples));
-  if (!options.sheet.empty()) say("wrote {}\n", options.sheet);
+  if (!sheets.empty()) say("wrote {}\n", sheets);
   return kDone;
 }
 

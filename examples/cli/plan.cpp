@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "commands.hpp"
 #include "kinecal/config/capture/session_follower.hpp"
@@ -21,6 +22,7 @@
 #include "plan_page.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
+#include "progress.hpp"
 #include "remaining_error.hpp"
 #include "terminal.hpp"
 
@@ -67,7 +69,8 @@ struct PoseSet {
 /// of its own, which can be better but takes a search.
 class PoseSets {
  public:
-  PoseSets(const PoseChoice& choice, double wanted) : choice_(choice) {
+  PoseSets(const PoseChoice& choice, double wanted, ProgressMeter meter)
+      : choice_(choice), meter_(std::move(meter)) {
     std::vector<int> every(static_cast<std::size_t>(candidates()));
     std::iota(every.begin(), every.end(), 0);
     of_all_ = expected_position(choice, every);
@@ -96,7 +99,7 @@ class PoseSets {
     set = {{largest_.begin(), largest_.begin() + count}, firsts_[static_cast<std::size_t>(count)]};
     constexpr double kLittleWork = 2e4;
     if (count == 0 || count == most() || !is_quick(count, kLittleWork)) return set;
-    std::vector<int> own = kinecal::select_poses(choice_.candidates, {.count = count}).chosen;
+    std::vector<int> own = selected(count);
     const double position = expected_position(choice_, own);
     if (static_cast<int>(own.size()) == count && position < set.position) set = {own, position};
     return set;
@@ -128,8 +131,12 @@ class PoseSets {
     return static_cast<int>(enough - firsts_.begin());
   }
 
+  [[nodiscard]] std::vector<int> selected(int count) const {
+    return kinecal::select_poses(choice_.candidates, {.count = count, .meter = meter_}).chosen;
+  }
+
   void search(int count) {
-    largest_ = kinecal::select_poses(choice_.candidates, {.count = count}).chosen;
+    largest_ = selected(count);
     firsts_.clear();
     for (auto end = largest_.begin();; ++end) {
       firsts_.push_back(end == largest_.begin() && choice_.have.empty()
@@ -140,6 +147,7 @@ class PoseSets {
   }
 
   const PoseChoice& choice_;
+  ProgressMeter meter_;
   double of_all_ = 0.0;
   bool differ_ = false;
   std::vector<int> largest_;    ///< the most useful first
@@ -175,7 +183,7 @@ std::optional<int> knee_of(const PoseCurve& curve) {
 /// Accuracy by number of poses, selected and random.
 /// @param enough  a number of poses that must be there
 PoseCurve curve_of(const PoseChoice& choice, PoseSets& sets, double wanted,
-                   std::optional<int> enough) {
+                   std::optional<int> enough, const ProgressMeter& meter) {
   PoseCurve curve;
   curve.wanted = wanted;
   curve.have = static_cast<int>(choice.have.size());
@@ -190,7 +198,7 @@ PoseCurve curve_of(const PoseChoice& choice, PoseSets& sets, double wanted,
     if (count > sets.most()) break;
     curve.selected.push_back({count, sets.at(count).position});
     if (!compared.contains(count)) continue;
-    curve.random.push_back({count, random_position(choice, count)});
+    curve.random.push_back({count, random_position(choice, count, meter)});
   }
   curve.knee = knee_of(curve);
   if (!curve.knee || counts.contains(*curve.knee)) return curve;
@@ -277,11 +285,11 @@ void reached(const PoseChoice& choice, const PoseSet& set, PlanFindings& finding
 
 /// Says what calibrations leave without noise, if that spoils the accuracy.
 void check_remaining(const StudyInput& input, const PoseChoice& choice, const PoseSet& set,
-                     double wanted, PlanFindings& findings) {
+                     double wanted, PlanFindings& findings, const ProgressMeter& meter) {
   if (!std::isfinite(set.position)) return;
   const double tolerated = tolerated_error(set.position, std::max(wanted, set.position));
   const RemainingError remaining =
-      remaining_error(input, with_existing(choice, set.chosen), tolerated);
+      remaining_error(input, with_existing(choice, set.chosen), tolerated, meter);
   if (!(remaining.position > tolerated)) return;
   findings.reached = false;
   findings.curve.enough.reset();
@@ -328,12 +336,14 @@ int plan(const PlanOptions& options) {
   const double wanted = wanted_position(options.accuracy, *input);
   drop_poses_of_have(*input, SelectOptions{}.least_distance);
   const PoseChoice choice = pose_choice(*input);
-  PoseSets sets(choice, wanted);
+  std::optional<ProgressLine> line(std::in_place);
+  PoseSets sets(choice, wanted, line->meter());
   const std::optional<PoseSet> enough = sets.enough(wanted);
   const PoseSet set = enough ? *enough : sets.at(sets.most());
   PlanFindings findings;
   findings.curve =
-      curve_of(choice, sets, wanted, enough ? std::optional(set.accuracy().poses) : std::nullopt);
+      curve_of(choice, sets, wanted, enough ? std::optional(set.accuracy().poses) : std::nullopt,
+               line->meter());
   findings.lost = lost_text(*input, choice);
   findings.about = fmt::format("'{}' in '{}', one standard deviation\n", input->setup.frame.name(),
                                input->setup.in.name());
@@ -346,7 +356,8 @@ int plan(const PlanOptions& options) {
   } else {
     not_reached(choice, sets, set, wanted, findings);
   }
-  check_remaining(*input, choice, set, wanted, findings);
+  check_remaining(*input, choice, set, wanted, findings, line->meter());
+  line.reset();
   say("{}", findings.about + "\n" + curve_text(findings.curve) + "\n" + findings.lost);
   write_outputs(options, *input, choice, set, findings);
   return findings.reached ? kDone : kNotUsable;

@@ -181,7 +181,7 @@ std::string millimetres(double metres) {
   return text + " mm";
 }
 
-double random_position(const PoseChoice& choice, int count) {
+double random_position(const PoseChoice& choice, int count, const ProgressMeter& meter) {
   constexpr int kSets = 51;  // their median
   const int all = static_cast<int>(choice.candidates.information.size());
   std::vector<double> values;
@@ -189,6 +189,7 @@ double random_position(const PoseChoice& choice, int count) {
   std::vector<int> order(static_cast<std::size_t>(all));
   for (int i = 0; i < all; ++i) order[static_cast<std::size_t>(i)] = i;
   for (int set = 0; set < kSets; ++set) {
+    if (meter) meter(static_cast<double>(set) / kSets, fmt::format("random sets of {}", count));
     for (int i = 0; i < count; ++i) {
       std::swap(order[static_cast<std::size_t>(i)],
                 order[static_cast<std::size_t>(random.integer(i, all - 1))]);
@@ -199,11 +200,11 @@ double random_position(const PoseChoice& choice, int count) {
   return values[kSets / 2];
 }
 
-int random_poses_for(const PoseChoice& choice, double position) {
+int random_poses_for(const PoseChoice& choice, double position, const ProgressMeter& meter) {
   int low = 0, high = static_cast<int>(choice.candidates.information.size()) + 1;
   while (high - low > 1) {  // the median falls with the number
     const int middle = (low + high) / 2;
-    (random_position(choice, middle) <= position ? high : low) = middle;
+    (random_position(choice, middle, meter) <= position ? high : low) = middle;
   }
   return high;
 }

@@ -47,11 +47,15 @@ void drop_poses_of_have(StudyInput& input, double least_distance);
 [[nodiscard]] std::string millimetres(double metres);
 
 /// Median of expected_position() of random sets, metres.
-[[nodiscard]] double random_position(const PoseChoice& choice, int count);
+/// @param meter  called now and then
+[[nodiscard]] double random_position(const PoseChoice& choice, int count,
+                                     const ProgressMeter& meter = {});
 
 /// The least number of poses with which the median of random sets is as good, and that median; one
 /// more than all if there is none.
-[[nodiscard]] int random_poses_for(const PoseChoice& choice, double position);
+/// @param meter  called now and then
+[[nodiscard]] int random_poses_for(const PoseChoice& choice, double position,
+                                   const ProgressMeter& meter = {});
 
 /// Seconds of a session with poses in this order: moves, and what each stop takes.
 [[nodiscard]] double session_seconds(const PoseChoice& choice, const std::vector<int>& order);

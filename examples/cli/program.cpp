@@ -495,7 +495,9 @@ void add_detect(CLI::App& command, DetectOptions& options) {
   command.add_option("-o,--output", options.output, "samples: .yaml, .bag or .mcap")
       ->required()
       ->type_name("FILE");
-  command.add_option("--contact-sheet", options.sheet, "a picture of all detections, PNG")
+  command
+      .add_option("--contact-sheet", options.sheet,
+                  "pictures of all detections, PNG; more than 24: sheet-2.png, ...")
       ->type_name("FILE");
   command
       .add_option("--threads", options.threads,
@@ -592,8 +594,9 @@ void add_capture(CLI::App& command, CaptureOptions& options) {
       ->check(kNotEmpty)
       ->type_name("FILE");
   command
-      .add_option("--contact-sheet", options.sheet,
-                  "a PNG of all views with what was found in them")
+      .add_option(
+          "--contact-sheet", options.sheet,
+          "pictures of all views with what was found in them, PNG; more than 24: sheet-2.png, ...")
       ->check(kNotEmpty)
       ->type_name("FILE");
   command.add_flag("--force", options.force, "replace files that are there");

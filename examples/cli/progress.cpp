@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "kinecal/text/printable.hpp"
@@ -19,7 +20,17 @@ std::string duration(double seconds) {
   return fmt::format("{:.0f} min", std::ceil(seconds / 60.0));
 }
 
+std::atomic<bool> progress_is_wanted = true;
+
 }  // namespace
+
+void set_progress(bool wanted) {
+  progress_is_wanted = wanted;
+}
+
+bool shows_progress() {
+  return progress_is_wanted && isatty(STDERR_FILENO) != 0;
+}
 
 std::string progress_text(double fraction, const std::string& what, double seconds) {
   const double done = std::clamp(fraction, 0.0, 1.0);
@@ -28,14 +39,14 @@ std::string progress_text(double fraction, const std::string& what, double secon
   return text;
 }
 
-ProgressLine::ProgressLine() : on_a_terminal_(isatty(STDERR_FILENO) != 0) {}
+ProgressLine::ProgressLine() : is_shown_(shows_progress()) {}
 
 ProgressLine::~ProgressLine() {
   if (is_visible_) fmt::print(stderr, "\r\033[K");
 }
 
 ProgressMeter ProgressLine::meter() {
-  if (!on_a_terminal_) return {};
+  if (!is_shown_) return {};
   return [this](double fraction, const std::string& what) { show(fraction, what); };
 }
 

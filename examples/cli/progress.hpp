@@ -14,8 +14,14 @@ namespace kinecal::cli {
 /// @param seconds   since the task began
 [[nodiscard]] std::string progress_text(double fraction, const std::string& what, double seconds);
 
-/// The line.  Overwritten ten times a second and erased at the end; prints nothing if standard
-/// error is not a terminal.
+/// Shows progress from now on, or not: --quiet.
+void set_progress(bool wanted);
+
+/// Whether progress is shown: it is wanted, and standard error is a terminal.
+[[nodiscard]] bool shows_progress();
+
+/// The line.  Overwritten ten times a second and erased at the end; prints nothing unless
+/// shows_progress().
 class ProgressLine {
  public:
   ProgressLine();
@@ -31,7 +37,7 @@ class ProgressLine {
 
   void show(double fraction, const std::string& what);
 
-  bool on_a_terminal_;
+  bool is_shown_;
   std::string task_;  ///< what was done at the last call
   Clock::time_point begin_, shown_;
   bool is_visible_ = false;

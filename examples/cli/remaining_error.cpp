@@ -35,14 +35,17 @@ StudySetup setup_of_set(const StudyInput& input, const std::vector<int>& set) {
 /// Calibrations of drawn robots with exact samples.
 /// @param count    the first samples of the setup, to calibrate with
 /// @param change   of each robot's true values
+/// @param meter    called for each robot
 /// @returns  of the error: robots and position
 template <class Change>
 RemainingError calibrate_exactly(const StudyInput& input, const StudySetup& setup,
-                                 std::size_t count, const Config& config, Change change) {
+                                 std::size_t count, const Config& config, Change change,
+                                 const ProgressMeter& meter) {
   RemainingError remaining;
   double sum = 0.0;
   const std::unique_ptr<AnyProblem> problem = setup.make();
   for (int number = 0; number < kRobots; ++number) {
+    if (meter) meter(static_cast<double>(number) / kRobots, "calibrating without noise");
     std::vector<double> truth = study_truth(setup, number);
     change(truth);
     try {
@@ -102,17 +105,18 @@ std::string listed(const std::vector<std::string>& names) {
 }  // namespace
 
 RemainingError remaining_error(const StudyInput& input, const std::vector<int>& set,
-                               double tolerated) {
+                               double tolerated, const ProgressMeter& meter) {
   const StudySetup setup = setup_of_set(input, set);
   const std::vector<std::string> priors = priors_of(input.config);
   const std::vector<int> held = held_elsewhere(input);
   const auto left_by = [&](const Config& config, bool as_configured) {
-    return calibrate_exactly(input, setup, set.size(), config, [&](std::vector<double>& truth) {
+    const auto change = [&](std::vector<double>& truth) {
       for (const int p : held) {
         const auto i = static_cast<std::size_t>(p);
         if (as_configured) truth[i] = input.configured[i];
       }
-    });
+    };
+    return calibrate_exactly(input, setup, set.size(), config, change, meter);
   };
   const auto helps = [&](const Config& config, bool as_configured) {
     const RemainingError left = left_by(config, as_configured);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/samples/progress_meter.hpp"
 #include "study_input.hpp"
 
 namespace kinecal::cli {
@@ -21,8 +22,9 @@ struct RemainingError {
 /// Calibrates drawn robots without noise.
 /// @param set        the samples to calibrate with, by index
 /// @param tolerated  metres; a cause is sought if more remains
+/// @param meter      called for each calibration
 [[nodiscard]] RemainingError remaining_error(const StudyInput& input, const std::vector<int>& set,
-                                             double tolerated);
+                                             double tolerated, const ProgressMeter& meter = {});
 
 /// What remains, and why: a line.
 [[nodiscard]] std::string remaining_text(const RemainingError& remaining);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "commands.hpp"
 #include "kinecal/study/study_summary.hpp"
@@ -12,6 +14,7 @@
 #include "output_file.hpp"
 #include "pose_choice.hpp"
 #include "pose_file.hpp"
+#include "progress.hpp"
 #include "remaining_error.hpp"
 #include "terminal.hpp"
 
@@ -26,7 +29,7 @@ struct Simulated {
 
 /// Simulates calibrations with some samples.
 Simulated simulated(const StudyInput& input, const PoseChoice& choice,
-                    const std::vector<int>& chosen, int trials) {
+                    const std::vector<int>& chosen, int trials, const ProgressMeter& meter) {
   StudySetup setup = input.setup;
   setup.samples.clear();
   for (const int i : chosen) setup.samples.push_back(choice.samples[static_cast<std::size_t>(i)]);
@@ -34,6 +37,7 @@ Simulated simulated(const StudyInput& input, const PoseChoice& choice,
   std::vector<StudyTrial> done;
   const int count = static_cast<int>(chosen.size());
   for (int repeat = 0; repeat < trials; ++repeat) {
+    if (meter) meter(static_cast<double>(repeat) / trials, "simulating calibrations");
     done.push_back(run_study_job(setup, robot, {0, count, repeat}));
   }
   std::vector<StudyGroup> groups = summarize(setup, {&robot, 1}, done, 1.0);
@@ -51,11 +55,14 @@ PoseSelection select(const SelectPosesOptions& options, const PoseChoice& choice
                                                          {"d", PoseCriterion::d},
                                                          {"e", PoseCriterion::e}};
   const auto candidates = static_cast<int>(choice.candidates.information.size());
+  std::optional<ProgressLine> line(std::in_place);
   PoseSelection selection =
       kinecal::select_poses(choice.candidates, {.count = std::min(options.count, candidates),
                                                 .criterion = criteria.at(options.criterion),
                                                 .least_distance = options.least_distance,
-                                                .failures = options.failures});
+                                                .failures = options.failures,
+                                                .meter = line->meter()});
+  line.reset();
   const std::size_t found = selection.chosen.size();
   if (static_cast<int>(found) < options.count) {
     say(stderr, "warning: only {} of {} are further than {} of a joint's range apart\n", found,
@@ -66,7 +73,7 @@ PoseSelection select(const SelectPosesOptions& options, const PoseChoice& choice
 
 /// What the selected poses are worth.
 std::string selected_text(const StudyInput& input, const PoseChoice& choice,
-                          const std::vector<int>& chosen) {
+                          const std::vector<int>& chosen, const ProgressMeter& meter) {
   const double selected = expected_position(choice, chosen);
   const std::string what = fmt::format("{} of {} selected: '{}' in '{}'", chosen.size(),
                                        counted(choice.candidates.information.size(), "pose"),
@@ -75,7 +82,8 @@ std::string selected_text(const StudyInput& input, const PoseChoice& choice,
     return what + " is not determined: they determine less than all poses do; choose more\n";
   }
   const double tolerated = tolerated_error(selected, selected);
-  const RemainingError remaining = remaining_error(input, with_existing(choice, chosen), tolerated);
+  const RemainingError remaining =
+      remaining_error(input, with_existing(choice, chosen), tolerated, meter);
   if (!(remaining.position > tolerated)) {
     return what + " will be known to " + millimetres(selected) + " (one standard deviation)\n";
   }
@@ -87,7 +95,8 @@ std::string selected_text(const StudyInput& input, const PoseChoice& choice,
 
 /// Random sets, and all poses.
 std::string comparison_text(const SelectPosesOptions& options, const StudyInput& input,
-                            const PoseChoice& choice, const std::vector<int>& chosen) {
+                            const PoseChoice& choice, const std::vector<int>& chosen,
+                            const ProgressMeter& meter) {
   const RandomSets random = random_sets(choice.candidates, static_cast<int>(chosen.size()),
                                         options.random, PoseCriterion::gripper, 1);
   std::vector<int> all(choice.candidates.information.size());
@@ -99,14 +108,14 @@ std::string comparison_text(const SelectPosesOptions& options, const StudyInput&
   std::string text = fmt::format("  best of {} random sets: {}; all poses: {}\n", options.random,
                                  millimetres(expected_position(choice, random.best)),
                                  millimetres(expected_position(choice, all)));
-  const int equal = random_poses_for(choice, selected);
+  const int equal = random_poses_for(choice, selected, meter);
   text += equal > static_cast<int>(all.size())
               ? "  random sets are never as good\n"
               : fmt::format("  random sets need {} for as much (median)\n",
                             counted(static_cast<std::size_t>(equal), "pose"));
   if (options.trials < 2 || !choice.have.empty()) return text;  // of the new ones alone
   const auto of = [&](const std::vector<int>& set) {
-    return simulated_text(simulated(input, choice, set, options.trials));
+    return simulated_text(simulated(input, choice, set, options.trials, meter));
   };
   return text + fmt::format("  simulated {} times: {}; best random set: {}\n", options.trials,
                             of(chosen), of(random.best));
@@ -134,9 +143,12 @@ int select_poses(const SelectPosesOptions& options) {
   const PoseChoice choice = pose_choice(*input);
   const PoseSelection selection = select(options, choice);
   const std::vector<int> order = short_order(choice, selection.chosen);
-  say("{}{}  in this order: {} with the URDF's speeds and 3 s a stop\n",
-      selected_text(*input, choice, selection.chosen),
-      comparison_text(options, *input, choice, selection.chosen),
+  std::optional<ProgressLine> line(std::in_place);
+  const std::string text =
+      selected_text(*input, choice, selection.chosen, line->meter()) +
+      comparison_text(options, *input, choice, selection.chosen, line->meter());
+  line.reset();
+  say("{}  in this order: {} with the URDF's speeds and 3 s a stop\n", text,
       duration_text(session_seconds(choice, order)));
   if (options.output.empty()) return kDone;
   write_pose_file(options.output, poses_of_choice(*input, order));

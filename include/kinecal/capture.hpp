@@ -7,6 +7,7 @@
 #include "kinecal/capture/april_tags.hpp"
 #include "kinecal/capture/board_fit.hpp"
 #include "kinecal/capture/board_flips.hpp"
+#include "kinecal/capture/board_grid.hpp"
 #include "kinecal/capture/board_order.hpp"
 #include "kinecal/capture/capture_pose.hpp"
 #include "kinecal/capture/charuco_finder.hpp"

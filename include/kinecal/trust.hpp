@@ -19,6 +19,7 @@
 #include "kinecal/trust/judge.hpp"
 #include "kinecal/trust/judge_crate.hpp"
 #include "kinecal/trust/judge_shards.hpp"
+#include "kinecal/trust/lens_pattern.hpp"
 #include "kinecal/trust/measured_numbers.hpp"
 #include "kinecal/trust/neighbours.hpp"
 #include "kinecal/trust/noise.hpp"

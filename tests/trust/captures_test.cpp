@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "support/noisy_scene.hpp"
+#include "support/pixel_scene.hpp"
 
 namespace kinecal {
 namespace {
@@ -46,6 +47,23 @@ TEST(Captures, NamesTheTenThatAreRuinedAndNoOther) {
     const std::vector<int> ruined = ruin_ten(scene, seed);
     EXPECT_EQ(bad_ones(scene.solve_and_assess()), ruined) << "seed " << seed;
   }
+}
+
+/// 0.09 px at a sigma of 0.5 px, though nine times the noise that the other samples have.
+TEST(Captures, ASampleWithinTheStatedSigmaIsNotBad) {
+  const test::PixelScene within{.noise = 0.01, .sigma = 0.5, .off = 0.09};
+  const JudgedResult judged = within.judged();
+  EXPECT_TRUE(judged.left_out.empty());
+  EXPECT_TRUE(judged.causes.empty());
+  EXPECT_EQ(judged.judgement.verdict, Grade::good);
+  EXPECT_FALSE(judged.assessments.back().captures[test::PixelScene::kOff].bad);
+}
+
+TEST(Captures, ASampleBeyondTheStatedSigmaIsBadIfNoNoiseExplainsIt) {
+  const test::PixelScene beyond{.noise = 0.01, .sigma = 0.5, .off = 0.8};
+  const JudgedResult judged = beyond.judged();
+  ASSERT_EQ(judged.left_out.size(), 1u);
+  EXPECT_EQ(judged.left_out[0].number, static_cast<int>(test::PixelScene::kOff) + 1);
 }
 
 /// Moves all features of some samples by the same length, in a direction of their own: a slip.

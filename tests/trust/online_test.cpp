@@ -1,11 +1,13 @@
 #include "kinecal/trust/online.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <utility>
 
 #include "kinecal/trust/assess.hpp"
 #include "support/alike_samples.hpp"
+#include "support/pixel_scene.hpp"
 
 namespace kinecal::test {
 namespace {
@@ -105,6 +107,26 @@ TEST(Online, LeavesOutASampleThatDoesNotFitAndGoesOn) {
     }
   }
   EXPECT_EQ(online.values(), clean.values());
+}
+
+/// How a session takes samples of which one is off by some pixels.
+std::vector<bool> fits_of(const PixelScene& scene) {
+  const Eigen::VectorXd start = table_with_units().values();
+  OnlineCalibration online([&scene] { return scene.problem(); }, scene.free_set(),
+                           NoisyScene::span(start), kHand, kCamera);
+  std::vector<Sample> samples = scene.samples();
+  std::swap(samples[PixelScene::kOff], samples.back());  // when the noise is known
+  std::vector<bool> fits;
+  for (const Sample& sample : samples) {
+    const OnlineState state = online.add(sample);
+    fits.push_back(state.fits && state.dropped.empty());
+  }
+  return fits;
+}
+
+TEST(Online, TakesASampleWithinTheStatedSigmaHoweverSmallTheNoiseIs) {
+  EXPECT_THAT(fits_of({.noise = 0.01, .sigma = 0.5, .off = 0.09}), testing::Each(true));
+  EXPECT_FALSE(fits_of({.noise = 0.01, .sigma = 0.5, .off = 0.8}).back());
 }
 
 TEST(Online, ForgetsABadSampleAmongTheFirstOnes) {

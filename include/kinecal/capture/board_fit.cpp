@@ -116,8 +116,10 @@ BoardFit fit_board(const std::vector<TargetCorner>& corners, const CameraInfo& c
   }
   const detail::CornerFit fit = detail::best_fit(view, camera);
   if (!std::isfinite(fit.typical)) return board;
-  for (const Eigen::Vector2d& miss : fit.misses) {
+  for (std::size_t i = 0; i < fit.misses.size(); ++i) {
+    const Eigen::Vector2d& miss = fit.misses[i];
     board.off.push_back(miss.allFinite() ? miss.norm() : std::numeric_limits<double>::infinity());
+    board.fitted.emplace_back(view.pixels[i] - miss);
   }
   board.typical = fit.typical;
   board.gap = detail::median_gap(view.pixels);
@@ -129,11 +131,10 @@ BoardFit fit_board(const std::vector<TargetCorner>& corners, const CameraInfo& c
   return board;
 }
 
-std::string drop_wrong_corners(const CameraInfo& camera, std::vector<TargetCorner>& found) {
+std::string board_fault(const BoardFit& fit) {
   constexpr double kMostWrong = 0.4;
-  const BoardFit fit = fit_board(found, camera);
   if (fit.off.empty()) return "";
-  const double all = static_cast<double>(found.size());
+  const double all = static_cast<double>(fit.off.size());
   if (!fit.agrees()) {
     return "its corners do not agree with one flat board: half of them are more than " +
            detail::one_digit(fit.typical) +
@@ -141,16 +142,27 @@ std::string drop_wrong_corners(const CameraInfo& camera, std::vector<TargetCorne
            "distances match the print?";
   }
   if (fit.wrong() > kMostWrong * all) {
-    return std::to_string(fit.wrong()) + " of its " + std::to_string(found.size()) +
+    return std::to_string(fit.wrong()) + " of its " + std::to_string(fit.off.size()) +
            " corners are more than " + detail::one_digit(fit.limit) +
            " pixels from where the others put them";
   }
+  return "";
+}
+
+void drop_wrong_corners(const BoardFit& fit, std::vector<TargetCorner>& found) {
+  if (fit.off.empty()) return;
   std::vector<TargetCorner> left;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (fit.off[i] <= fit.limit) left.push_back(found[i]);
   }
   found = std::move(left);
-  return "";
+}
+
+std::string drop_wrong_corners(const CameraInfo& camera, std::vector<TargetCorner>& found) {
+  const BoardFit fit = fit_board(found, camera);
+  std::string fault = board_fault(fit);
+  if (fault.empty()) drop_wrong_corners(fit, found);
+  return fault;
 }
 
 }  // namespace kinecal

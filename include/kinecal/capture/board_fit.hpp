@@ -22,9 +22,10 @@ namespace kinecal {
 /// How the corners of a view agree with each other.
 struct BoardFit {
   std::vector<double> off;  ///< distance of each corner from where the others put it, pixels
-  double typical = 0.0;     ///< median of these
-  double limit = 0.0;       ///< a corner that is farther off is wrong
-  double gap = 0.0;         ///< median distance of neighbouring corners, pixels
+  std::vector<Eigen::Vector2d> fitted;  ///< that place, of each corner
+  double typical = 0.0;                 ///< median of these
+  double limit = 0.0;                   ///< a corner that is farther off is wrong
+  double gap = 0.0;                     ///< median distance of neighbouring corners, pixels
 
   /// True if most corners agree.
   [[nodiscard]] bool agrees() const;
@@ -38,7 +39,14 @@ struct BoardFit {
 [[nodiscard]] BoardFit fit_board(const std::vector<TargetCorner>& corners,
                                  const CameraInfo& camera);
 
-/// Drops corners that are far from where the others put them.
+/// Why a view cannot be used: its corners do not agree, or too many are wrong.  Empty if it can.
+[[nodiscard]] std::string board_fault(const BoardFit& fit);
+
+/// Drops corners that are farther off than the limit.
+/// @param found  those that were fitted; those that are left
+void drop_wrong_corners(const BoardFit& fit, std::vector<TargetCorner>& found);
+
+/// Fits the corners of a view, and drops those that are far from where the others put them.
 /// @param found  the corners of a view; those that are left
 /// @returns      why the view cannot be used; empty if it can
 [[nodiscard]] std::string drop_wrong_corners(const CameraInfo& camera,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kinecal/capture/board_fit.hpp"
+#include "kinecal/capture/board_grid.hpp"
 #include "kinecal/capture/corner_depth.hpp"
 
 namespace kinecal {
@@ -18,6 +19,21 @@ inline constexpr double kFarthestDepth = 12.0;  // from a corner, pixels: 600 po
 std::string pixels_text(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
+
+namespace {
+
+/// Marks of corners with what their fit says.
+[[nodiscard]] std::vector<Mark> fitted_marks(const std::vector<TargetCorner>& corners,
+                                             const BoardFit& fit) {
+  std::vector<Mark> marks = kinecal::marks_of(corners);
+  for (std::size_t i = 0; i < fit.off.size(); ++i) {
+    marks[i].off = fit.off[i];
+    marks[i].dropped = fit.off[i] > fit.limit;
+  }
+  return marks;
+}
+
+}  // namespace
 
 }  // namespace detail
 
@@ -50,13 +66,14 @@ std::vector<Mark> marks_of(const std::vector<TargetCorner>& corners) {
 
 Found observed(const View& view, const TargetSettings& settings,
                std::vector<TargetCorner> corners) {
-  const std::size_t all = corners.size();
-  if (view.camera) {
-    const std::string fault = drop_wrong_corners(*view.camera, corners);
-    if (!fault.empty()) return refused(fault, marks_of(corners));
-  }
   std::sort(corners.begin(), corners.end(),
             [](const TargetCorner& a, const TargetCorner& b) { return a.id < b.id; });
+  const BoardFit fit = view.camera ? fit_board(corners, *view.camera) : BoardFit();
+  std::vector<Mark> marks = detail::fitted_marks(corners, fit);
+  std::vector<GridLine> grid = board_grid(corners, fit);
+  const std::string fault = board_fault(fit);
+  if (!fault.empty()) return refused(fault, std::move(marks));
+  drop_wrong_corners(fit, corners);
   Observation camera{settings.camera_sensor, {}, view.camera}, chain{settings.chain_sensor, {}, {}};
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const TargetCorner& c = corners[i];
@@ -77,10 +94,11 @@ Found observed(const View& view, const TargetSettings& settings,
       camera.features.empty()) {
     return refused("depth is missing at " + std::to_string(missing) + " of " +
                        std::to_string(corners.size()) + " corners",
-                   marks_of(corners));
+                   std::move(marks));
   }
-  Found found{{std::move(camera), std::move(chain)}, "", marks_of(corners), {}};
-  if (corners.size() < all) found.notes.emplace_back(kWrongCornersNote);
+  const bool has_dropped = corners.size() < marks.size();
+  Found found{{std::move(camera), std::move(chain)}, "", std::move(marks), {}, std::move(grid)};
+  if (has_dropped) found.notes.emplace_back(kWrongCornersNote);
   return found;
 }
 

@@ -48,6 +48,14 @@ struct Mark {
   double u = 0.0;          ///< column, pixels
   double v = 0.0;          ///< row, pixels
   std::string label = {};  ///< such as the feature's id
+  std::optional<double> off =
+      {};                ///< distance from where the others put it, pixels; if it is known
+  bool dropped = false;  ///< too far off to be a feature
+};
+
+/// A line in pictures of what was found: a piece of a target's grid where it was fitted, pixels.
+struct GridLine {
+  double u0 = 0.0, v0 = 0.0, u1 = 0.0, v1 = 0.0;
 };
 
 /// The result of a finder: observations of two or more sensors with the same features, such as a
@@ -57,6 +65,7 @@ struct Found {
   std::string refusal;      ///< why not: "squares of 3.1 pixels; at least 8 are needed"
   std::vector<Mark> marks;  ///< where its features are in the image; also for refused ones
   std::vector<std::string> notes = {};  ///< what else is to be said, the same in each such view
+  std::vector<GridLine> grid = {};      ///< of a flat target, if enough corners show where it is
 
   /// True if features were found.
   [[nodiscard]] explicit operator bool() const { return !observations.empty(); }
@@ -64,7 +73,7 @@ struct Found {
 
 /// The result if nothing was found, with the reason.
 [[nodiscard]] inline Found refused(std::string why, std::vector<Mark> marks = {}) {
-  return {{}, std::move(why), std::move(marks), {}};
+  return {{}, std::move(why), std::move(marks), {}, {}};
 }
 
 }  // namespace kinecal

@@ -3,6 +3,7 @@
 #include "kinecal/study/select_poses.hpp"
 
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include "kinecal/study/pose_design.ipp"
@@ -24,10 +25,10 @@ class PoseSearch {
   }
 
   [[nodiscard]] PoseSelection run() {
-    std::vector<int> chosen = greedy(all(), options_.count, {});
+    std::vector<int> chosen = greedy(all(), options_.count, "selecting poses");
     exchange(chosen);
     PoseSelection selection;
-    selection.chosen = greedy(chosen, static_cast<int>(chosen.size()), {});
+    selection.chosen = greedy(chosen, static_cast<int>(chosen.size()), "ordering poses");
     DesignSums sum = design_.nothing();
     for (const int pose : selection.chosen) {
       sum = sum.plus(design_.of(pose));
@@ -62,11 +63,17 @@ class PoseSearch {
     });
   }
 
+  void report(std::size_t done, std::size_t of, const std::string& what) const {
+    if (options_.meter) options_.meter(static_cast<double>(done) / static_cast<double>(of), what);
+  }
+
   /// Adds the pose that helps most, again and again.
   [[nodiscard]] std::vector<int> greedy(const std::vector<int>& from, int count,
-                                        std::vector<int> chosen) const {
-    DesignSums sum = design_.sum(chosen);
+                                        const std::string& what) const {
+    std::vector<int> chosen;
+    DesignSums sum = design_.nothing();
     while (static_cast<int>(chosen.size()) < count) {
+      report(chosen.size(), static_cast<std::size_t>(count), what);
       double least = std::numeric_limits<double>::infinity();
       int best = -1;
       for (const int pose : from) {
@@ -117,6 +124,7 @@ class PoseSearch {
     for (int round = 0; round < kRounds && improved; ++round) {
       improved = false;
       for (std::size_t i = 0; i < chosen.size(); ++i) {
+        report(i, chosen.size(), "exchanging poses, round " + std::to_string(round + 1));
         const int leaves = chosen[i];
         const DesignSums others = sum.minus(design_.of(leaves));
         int best = leaves;

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "kinecal/samples/progress_meter.hpp"
 #include "kinecal/trust/plain_matrix.hpp"
 
 namespace kinecal {
@@ -48,6 +49,7 @@ struct SelectOptions {
   PoseCriterion criterion = PoseCriterion::gripper;
   double least_distance = 0.02;  ///< of the joint that differs most, as a share of its range
   int failures = 0;              ///< number of poses that may fail
+  ProgressMeter meter = {};      ///< called for each pose that is looked for
 };
 
 /// Poses that were chosen.

@@ -12,6 +12,7 @@
 #include "kinecal/trust/captures.hpp"
 #include "kinecal/trust/common_noise.hpp"
 #include "kinecal/trust/held_out.hpp"
+#include "kinecal/trust/lens_pattern.hpp"
 #include "kinecal/trust/neighbours.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "kinecal/trust/pose_uncertainty.hpp"
@@ -45,6 +46,7 @@ struct Assessment {
   double noise_without_bad = 1.0;      ///< ratio to that of all samples
   std::optional<RecordingChange> change;   ///< during the recording
   std::optional<ResidualPattern> pattern;  ///< that the model does not contain
+  std::optional<LensPattern> lens;         ///< a camera's lens that is not as it was taken
   std::vector<IdleGroup> idle;             ///< whose parameters improve nothing
   std::vector<PriorPull> pulls;            ///< priors that the samples contradict
   std::optional<PoseUncertainty> pose;     ///< of the frames that the first error block compares

@@ -123,6 +123,11 @@ class CaptureSearch {
     const bool in = !bad_[static_cast<std::size_t>(f.sample)];
     return distance(f) / (sigma_of(f) * std::sqrt(in ? 1.0 - leverage : 1.0 + leverage));
   }
+  /// A weighted distance that the stated sigma of the error block allows; 0 without one.
+  [[nodiscard]] double stated(const FeatureRows& f) const {
+    const TermOptions& options = problem_.term(f.term).options;
+    return options.sigma ? std::abs(options.scale) : 0.0;
+  }
   /// Equal noise in all directions, or the tail of the features that fit, once bad ones are out.
   enum class Tail { normal, as_seen };
 
@@ -145,7 +150,9 @@ class CaptureSearch {
     }
     std::vector<bool> bad(bad_.size(), false);
     for (const FeatureRows& f : features_) {
-      if (times(f) > limit(f)) bad[static_cast<std::size_t>(f.sample)] = true;
+      if (times(f) > limit(f) && distance(f) > stated(f)) {
+        bad[static_cast<std::size_t>(f.sample)] = true;
+      }
     }
     bad_ = std::move(bad);
   }

@@ -6,7 +6,7 @@
 //
 // which is k F, F of the F distribution with k and 0.37 (rows - parameters) degrees of freedom: 0.37 is the
 // efficiency of the median, from which s comes.  A sample is bad if one of its features exceeds what
-// happens by chance in 1 of 1000 data sets.  The fit is first found robustly (least trimmed squares, then
+// happens by chance in 1 of 1000 data sets, and the sigma that was stated for its error block.  The fit is first found robustly (least trimmed squares, then
 // M-estimates by Tukey), then by least squares without the bad samples, until the set is stable.  The
 // result does not depend on the order of samples.
 // Source: Rousseeuw, Leroy, Robust Regression and Outlier Detection, 1987; Yohai, High Breakdown-Point and

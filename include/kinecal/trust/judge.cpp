@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kinecal/trust/judge_change.ipp"
+#include "kinecal/trust/judge_lens.ipp"
 #include "kinecal/trust/judge_noise.ipp"
 #include "kinecal/trust/judge_values.ipp"
 #include "kinecal/trust/plausible_change.ipp"
@@ -160,7 +161,9 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     detail::judge_freedom(assessments[s], judgement);
     if (last) detail::judge_held_out(assessments[s], judgement);
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
-    if (last) detail::judge_change(assessments[s], *step.problem, judgement);
+    if (last && !detail::judge_lens(assessments[s], judgement)) {
+      detail::judge_change(assessments[s], *step.problem, judgement);
+    }
     detail::judge_values(step, result, assessments[s], judgement);
     if (last) detail::judge_weak(assessments[s], result.table, judgement);
     if (last) detail::judge_priors(assessments[s], result.table, judgement);

@@ -24,6 +24,8 @@
 //                                                       or 20 px only
 //                                                       a prior that moves a parameter by 4
 //                                                       standard deviations
+//                                                       residuals of a camera that grow with the
+//                                                       distance from the center: its lens
 //                                                       doubts about the input
 //
 // Freedom is the number of residuals minus the number of determined parameters.  Undetermined

@@ -25,6 +25,18 @@ inline bool is_misfit(double ratio, double rows, double freedom, double tests) {
   return ratio > kTimes * kTimes && f_tail(ratio, rows, freedom) < kOnceIn / tests;
 }
 
+/// The mean square of weighted residuals that the stated sigmas allow, however small the noise is; 0 if one was
+/// not stated.
+inline double stated_square(const AnyProblem& problem) {
+  double most = 0.0;
+  for (int t = 0; t < problem.num_terms(); ++t) {
+    const TermOptions& options = problem.term(t).options;
+    if (!options.sigma) return 0.0;
+    most = std::max(most, options.scale * options.scale);
+  }
+  return most;
+}
+
 }  // namespace detail
 
 /// The worst sample, if it does not fit the others.
@@ -50,7 +62,9 @@ inline std::optional<std::size_t> OnlineCalibration::Inside::misfit(AnyEvaluator
   // noise.
   const double n = rows[worst], all = problem->num_residuals();
   const double usual = *middle / std::pow(1.0 - 2.0 / (9.0 * n), 3.0) * (all / freedom);
-  if (!(usual > 0.0)) return std::nullopt;
+  if (!(usual > 0.0) || !(squares[worst] / n > detail::stated_square(*problem))) {
+    return std::nullopt;
+  }
   if (!detail::is_misfit(squares[worst] / n / usual, n, freedom,
                          static_cast<double>(samples.size()))) {
     return std::nullopt;
@@ -79,7 +93,9 @@ inline bool OnlineCalibration::Inside::add_if_it_fits(const Sample& sample, Onli
     int rows = 0;
     const double x = innovation(*evaluator, rows);
     state.times = std::sqrt(std::max(0.0, x));
-    if (rows > 0 && (!std::isfinite(x) || detail::is_misfit(x, rows, freedom, 1.0))) {
+    const bool is_off =
+        detail::is_misfit(x, rows, freedom, 1.0) && x * noise2 > detail::stated_square(*problem);
+    if (rows > 0 && (!std::isfinite(x) || is_off)) {
       leave_out(samples.size() - 1);
       return false;
     }

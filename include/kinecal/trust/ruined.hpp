@@ -2,8 +2,8 @@
 //
 // A sample is ruined if it is bad (captures.hpp) in the fit of the samples that are not.  Ruined
 // samples are left out and the others fitted again, until none is found.  If more than a quarter of
-// a fit's samples would be ruined, or if a change during the recording or the error of a joint explains
-// as much, the model is more likely wrong, and none is left out.
+// a fit's samples would be ruined, or if a change during the recording or the error of a joint or lens
+// explains as much, the model is more likely wrong, and none is left out.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -17,7 +17,7 @@ namespace kinecal {
 [[nodiscard]] double noise_without_bad(const LinearFit& fit,
                                        const std::vector<CaptureError>& captures);
 
-/// True if a change during the recording, or a pattern of residuals, explains more than leaving out bad samples
+/// True if a change during the recording, a pattern of residuals or a lens explains more than leaving out bad samples
 /// does: they are no matter of single samples.
 [[nodiscard]] bool explains_more(const Assessment& last);
 

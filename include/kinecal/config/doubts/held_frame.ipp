@@ -126,8 +126,10 @@ struct HeldGroup {
   for (const HeldGroup& group : groups) held.push_back(group.parameters);
   constexpr double kLeft = 0.75;
   const auto& pattern = judged.assessments.back().pattern;
+  const auto& lens = judged.assessments.back().lens;
+  const double known = std::min(pattern ? pattern->noise_left : 1.0, lens ? lens->noise_left : 1.0);
   return best_sentence(groups, held_changes(problem, more.steps.back().free, values, free, held),
-                       pattern ? kLeft * std::min(1.0, pattern->noise_left) : kLeft);
+                       kLeft * std::min(1.0, known));
 }
 
 }  // namespace kinecal::detail

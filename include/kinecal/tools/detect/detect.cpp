@@ -85,6 +85,7 @@ Detection detect(const View& view, std::span<const ViewFinder> finders, const st
   for (const ViewFinder& finder : finders) {
     Found found = finder.find(view);
     detection.marks.insert(detection.marks.end(), found.marks.begin(), found.marks.end());
+    detection.grid.insert(detection.grid.end(), found.grid.begin(), found.grid.end());
     for (const std::string& note : found.notes) {
       if (found) detection.notes.push_back(finder.name + ": " + note);
     }

@@ -23,6 +23,7 @@ struct Detection {
   std::vector<Sample> samples;  ///< empty if nothing was found; several if finders observe with
                                 ///< the same sensors
   std::vector<Mark> marks;      ///< of all finders, in pixels of the view
+  std::vector<GridLine> grid;   ///< of their targets, in pixels of the view
   std::vector<std::string> refused;  ///< "april_tag_finder: no tag is in the image"
   std::vector<std::string> notes;    ///< "april_tag_finder: the tags are turned by 180 degrees"
   std::size_t features = 0;          ///< found by all finders

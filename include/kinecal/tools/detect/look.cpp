@@ -65,10 +65,12 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
 }
 
 /// The picture of a view; of none, a gray one.
-[[nodiscard]] Thumbnail view_picture(const std::optional<View>& view, std::vector<Mark> marks,
+[[nodiscard]] Thumbnail view_picture(const std::optional<View>& view, Detection& found,
                                      const std::string& name, const std::string& reasons) {
   constexpr std::uint8_t kGray = 200;
-  if (view && !view->image.empty()) return thumbnail(view->image, std::move(marks), name, reasons);
+  if (view && !view->image.empty()) {
+    return thumbnail(view->image, std::move(found.marks), name, reasons, std::move(found.grid));
+  }
   return thumbnail(GrayImage(kThumbnailWidth, kThumbnailWidth * 3 / 4, kGray), {}, name, reasons);
 }
 
@@ -99,7 +101,7 @@ void join_observations(std::vector<Sample>& all, std::vector<Sample> more) {
     all.features += found.features;
     std::move(found.notes.begin(), found.notes.end(), std::back_inserter(all.notes));
     if (thumbnails) {
-      all.thumbnails.push_back(view_picture(views[c].view, std::move(found.marks), title, reasons));
+      all.thumbnails.push_back(view_picture(views[c].view, found, title, reasons));
     }
     join_observations(all.samples, std::move(found.samples));
   }

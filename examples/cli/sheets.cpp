@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sheets.hpp"
+
+#include <filesystem>
+
+#include "kinecal/files/results/file_set.hpp"
+#include "output_file.hpp"
+
+namespace kinecal::cli {
+
+void check_sheets(const std::string& output, const std::vector<std::string>& inputs, bool force) {
+  check_picture(output, inputs, force);
+  for (std::size_t number = 1; std::filesystem::exists(sheet_name(output, number)); ++number) {
+    check_picture(sheet_name(output, number), inputs, force);
+  }
+}
+
+std::string write_sheets(const std::string& output, const std::vector<Thumbnail>& thumbnails) {
+  const std::vector<std::string> sheets = contact_sheets(thumbnails);
+  std::string names;
+  for (std::size_t number = 0; number < sheets.size(); ++number) {
+    const std::string name = sheet_name(output, number);
+    write_text_file(name, sheets[number]);
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  for (std::size_t number = sheets.size(); number > 0; ++number) {
+    std::error_code failed;
+    if (!std::filesystem::remove(sheet_name(output, number), failed)) break;
+  }
+  return names;
+}
+
+}  // namespace kinecal::cli
