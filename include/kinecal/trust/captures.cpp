@@ -126,10 +126,6 @@ class CaptureSearch {
   /// Equal noise in all directions, or the tail of the features that fit, once bad ones are out.
   enum class Tail { normal, as_seen };
 
-  /// In standard deviations; beyond it a feature is bad.
-  [[nodiscard]] double limit(const FeatureRows& f) const {
-    return limit_[static_cast<std::size_t>(f.term)];
-  }
   void mark(Tail tail = Tail::normal) {
     if (features_.empty()) return;
     constexpr double kFalse = 1e-3, kEfficiency = 0.37;  // share of false alarms; of the median
@@ -146,7 +142,7 @@ class CaptureSearch {
     for (const FeatureRows& f : features_) {
       const TermOptions& options = problem_.term(f.term).options;
       const double stated = options.sigma ? std::abs(options.scale) : 0.0;
-      if (times(f) > limit(f) && distance(f) > stated)
+      if (times(f) > limit_[static_cast<std::size_t>(f.term)] && distance(f) > stated)
         bad[static_cast<std::size_t>(f.sample)] = true;
     }
     bad_ = std::move(bad);
@@ -162,7 +158,7 @@ class CaptureSearch {
       if (so_far > of.times) {
         of.others = of.term == f.term ? std::max(of.others, of.distance) : 0.0;
         of.times = so_far;
-        of.limit = limit(f);
+        of.limit = limit_[static_cast<std::size_t>(f.term)];
         of.term = f.term;
         of.feature = problem_.feature(f.term, f.sample, f.number);
         of.distance = d;
