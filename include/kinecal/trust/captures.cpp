@@ -123,22 +123,12 @@ class CaptureSearch {
     const bool in = !bad_[static_cast<std::size_t>(f.sample)];
     return distance(f) / (sigma_of(f) * std::sqrt(in ? 1.0 - leverage : 1.0 + leverage));
   }
-  /// A weighted distance that the stated sigma of the error block allows; 0 without one.
-  [[nodiscard]] double stated(const FeatureRows& f) const {
-    const TermOptions& options = problem_.term(f.term).options;
-    return options.sigma ? std::abs(options.scale) : 0.0;
-  }
   /// Equal noise in all directions, or the tail of the features that fit, once bad ones are out.
   enum class Tail { normal, as_seen };
 
-  /// In standard deviations; beyond it a feature is bad.
-  [[nodiscard]] double limit(const FeatureRows& f) const {
-    return limit_[static_cast<std::size_t>(f.term)];
-  }
   void mark(Tail tail = Tail::normal) {
     if (features_.empty()) return;
-    constexpr double kFalse = 1e-3;       // share of good data sets with a false alarm
-    constexpr double kEfficiency = 0.37;  // of the median, as an estimate of the noise
+    constexpr double kFalse = 1e-3, kEfficiency = 0.37;  // share of false alarms; of the median
     const double rows = static_cast<double>(fit_.residual.size());
     const double b = std::max(2.0, kEfficiency * rows * freedom(rows) / poses_.readings());
     limit_.assign(tail_.size(), 0.0);
@@ -150,9 +140,10 @@ class CaptureSearch {
     }
     std::vector<bool> bad(bad_.size(), false);
     for (const FeatureRows& f : features_) {
-      if (times(f) > limit(f) && distance(f) > stated(f)) {
+      const TermOptions& options = problem_.term(f.term).options;
+      const double stated = options.sigma ? std::abs(options.scale) : 0.0;
+      if (times(f) > limit_[static_cast<std::size_t>(f.term)] && distance(f) > stated)
         bad[static_cast<std::size_t>(f.sample)] = true;
-      }
     }
     bad_ = std::move(bad);
   }
@@ -167,7 +158,7 @@ class CaptureSearch {
       if (so_far > of.times) {
         of.others = of.term == f.term ? std::max(of.others, of.distance) : 0.0;
         of.times = so_far;
-        of.limit = limit(f);
+        of.limit = limit_[static_cast<std::size_t>(f.term)];
         of.term = f.term;
         of.feature = problem_.feature(f.term, f.sample, f.number);
         of.distance = d;
