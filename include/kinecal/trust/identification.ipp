@@ -67,6 +67,10 @@ class Identification {
       if (columns_[k].columns.size() != candidates[k].parameters.size())
         columns_[k].columns.clear();
     }
+    // Once: each solve begins where the last one ended.
+    for (const auto& [parameter, value] : step_.assignments)
+      calibration.table[parameter].value = value;
+    step_.assignments.clear();
     for (const Parameter& p : calibration.table) initial_.push_back(p.value);
     sigmas_.resize(static_cast<std::size_t>(step_.problem->num_terms()), 0.0);
   }

@@ -62,25 +62,31 @@ Identified run(Identification& search, const std::string& unit) {
   std::set<std::set<int>> seen;
   for (int round = 0; round < kRounds && found.result.converged; ++round) {
     const ParameterSearch linear = search.linearized();
+    const std::vector<int> base = linear.independent(search.base());
     std::vector<int> chosen = found.chosen;
-    linear.run(search.base(), search.candidates(), chosen);
+    linear.run(base, search.candidates(), chosen);
     const std::set<int> now(chosen.begin(), chosen.end());
     const bool stays = now == std::set<int>(found.chosen.begin(), found.chosen.end());
-    if (stays || !seen.insert(now).second) {
-      found.steps = {written({.candidate = -1, .fit = linear.fit_of(search.base())})};
-      for (const SearchStep& step : linear.path(search.base(), search.candidates(), found.chosen)) {
-        found.steps.push_back(written(step));
-      }
-      break;
-    }
+    if (stays || !seen.insert(now).second) break;
     CalibrationResult result = search.solve(chosen);
     if (!result.converged) {  // too far for the last solution to be a start
       search.begin_again();
       result = search.solve(chosen);
     }
-    if (!result.converged) break;
+    if (!result.converged) {
+      search.begin_again();
+      found.result = search.solve(found.chosen);
+      break;
+    }
     found.chosen = std::move(chosen);
     found.result = std::move(result);
+  }
+  if (!found.result.converged) return found;
+  const ParameterSearch linear = search.linearized();
+  const std::vector<int> base = linear.independent(search.base());
+  found.steps = {written({.candidate = -1, .fit = linear.fit_of(base)})};
+  for (const SearchStep& step : linear.path(base, search.candidates(), found.chosen)) {
+    found.steps.push_back(written(step));
   }
   return found;
 }
@@ -114,9 +120,10 @@ std::vector<IdentifyStep> most_helpful(Calibration& calibration, std::span<const
   std::vector<int> chosen;
   while (search.solve(chosen).converged) {
     const ParameterSearch linear = search.linearized();
-    const std::vector<SearchStep> path = linear.path(search.base(), search.candidates(), chosen);
+    const std::vector<int> base = linear.independent(search.base());
+    const std::vector<SearchStep> path = linear.path(base, search.candidates(), chosen);
     if (path.empty()) {
-      steps.push_back(detail::written({.candidate = -1, .fit = linear.fit_of(search.base())}));
+      steps.push_back(detail::written({.candidate = -1, .fit = linear.fit_of(base)}));
     } else {
       const auto last = std::find_if(path.begin(), path.end(), [&](const SearchStep& step) {
         return step.candidate == chosen.back();
@@ -128,8 +135,8 @@ std::vector<IdentifyStep> most_helpful(Calibration& calibration, std::span<const
       step.region = all.region;
     }
     if (chosen.size() == kMost) return steps;
-    linear.free_one(search.base(), search.candidates(), chosen);
-    linear.name_simply(search.base(), search.candidates(), chosen);
+    linear.free_one(base, search.candidates(), chosen);
+    linear.name_simply(base, search.candidates(), chosen);
     if (chosen.size() + 1 == steps.size()) return steps;
   }
   return steps;

@@ -66,6 +66,21 @@ ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
   features_ = (distance_.array() > 0.0).select(fit.loss, 0.0).sum() / components;
 }
 
+std::vector<int> ParameterSearch::independent(const std::vector<int>& columns) const {
+  std::vector<int> kept;
+  for (const int c : columns) {
+    const Whole whole = whole_fit(kept);
+    double left = squared_(c, c);
+    if (!kept.empty()) {
+      const Eigen::VectorXd cross = squared_(kept, std::vector<int>{c});
+      left -= cross.dot(whole.inverse * cross);
+    }
+    if (left > detail::kOwnShare * squared_(c, c)) kept.push_back(c);
+    if (!whole_fit(kept).determined) kept.pop_back();
+  }
+  return kept;
+}
+
 ParameterSearch::Whole ParameterSearch::whole_fit(const std::vector<int>& columns) const {
   Whole whole{columns, {}, residual_, 0.0, {}, {}, false};
   if (!columns.empty()) {

@@ -57,12 +57,15 @@ class ParameterSearch {
   ParameterSearch(const LinearFit& fit, const SearchPoses& poses, Eigen::VectorXd largest,
                   double unit, int components);
 
+  /// Columns without those that are combinations of others before them.
+  [[nodiscard]] std::vector<int> independent(const std::vector<int>& columns) const;
+
   /// How well a subset predicts.
-  /// @param columns  that are free
+  /// @param columns  that are free, independent
   [[nodiscard]] SearchFit fit_of(const std::vector<int>& columns) const;
 
   /// Searches until no step helps, or until steps change so much that the problem should be linearized again.
-  /// @param base    columns that are always free
+  /// @param base    columns that are always free, independent
   /// @param chosen  candidates; in: to begin with
   void run(const std::vector<int>& base, const Candidates& candidates,
            std::vector<int>& chosen) const;

@@ -52,6 +52,7 @@ double ParameterSearch::chance_by_poses(const Whole& whole,
 ParameterSearch::Gain ParameterSearch::gain_of(const Whole& whole, const SearchCandidate& candidate,
                                                int number) const {
   Gain gain{number};
+  if (!whole.determined) return gain;
   const std::vector<int>& own = candidate.columns;
   const auto q = static_cast<double>(own.size());
   Eigen::MatrixXd rest = squared_(own, own);

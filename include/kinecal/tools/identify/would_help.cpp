@@ -43,6 +43,7 @@ std::vector<std::string> would_help(const Config& config, const Robot& robot,
     if (index >= 0) wide.table[index].value = p.value;
   }
   wide.steps.front().unknown_frames.clear();  // they are known by now
+  wide.steps.front().assignments.clear();
   const std::vector<int> base = detail::free_in(wide.table, calibration);
   std::vector<IdentifyCandidate> candidates =
       identify_task(config, *wide.steps.front().problem).candidates;
