@@ -133,10 +133,10 @@ class ParameterSearch {
   /// Holds what does not help beside the others.
   void hold_superfluous(const std::vector<int>& base, const Candidates& candidates,
                         std::vector<int>& chosen) const;
-  /// All candidates up to a rank that are determined, beside the chosen ones.
+  /// All candidates of some ranks that are determined, beside the chosen ones, rank by rank.
   [[nodiscard]] std::vector<int> saturated(const std::vector<int>& base,
                                            const Candidates& candidates, std::vector<int> chosen,
-                                           int rank) const;
+                                           const std::vector<int>& ranks) const;
   /// Candidates that do as well in place of one.
   [[nodiscard]] std::vector<int> like(const Whole& without, const Candidates& candidates,
                                       const std::vector<int>& chosen, int k) const;

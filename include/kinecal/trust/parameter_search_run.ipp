@@ -13,6 +13,7 @@ namespace kinecal {
 
 bool ParameterSearch::helps(const Whole& whole, const Gain& gain, const Candidates& candidates,
                             std::size_t base, const Evidence& evidence) const {
+  if (!whole.determined) return false;
   const SearchCandidate& of = candidates[static_cast<std::size_t>(gain.candidate)];
   if (std::max(gain.chance, chance_by_poses(whole, of)) > evidence.chance) return false;
   const Whole with = whole_fit(detail::joined(whole.columns, of.columns));
@@ -56,8 +57,8 @@ void ParameterSearch::hold_superfluous(const std::vector<int>& base, const Candi
 
 std::vector<int> ParameterSearch::saturated(const std::vector<int>& base,
                                             const Candidates& candidates, std::vector<int> chosen,
-                                            int rank) const {
-  for (int r = 0; r <= rank; ++r) {
+                                            const std::vector<int>& ranks) const {
+  for (const int r : ranks) {
     for (;;) {
       const Whole whole = whole_fit(detail::columns_of(base, candidates, chosen));
       const std::vector<Gain> all = gains(whole, candidates, chosen);
@@ -103,13 +104,20 @@ void ParameterSearch::run(const std::vector<int>& base, const Candidates& candid
   const auto columns = [&](const std::vector<int>& of) {
     return detail::columns_of(base, candidates, of);
   };
+  std::vector<int> determined;  // at this linearization
+  for (const int k : chosen) {
+    determined.push_back(k);
+    if (!whole_fit(columns(determined)).determined) determined.pop_back();
+  }
+  chosen = determined;
   const double begin = whole_fit(columns(chosen)).squares;
   std::set<std::set<int>> seen;  // so that it ends
   int ranks = 0;
   for (const SearchCandidate& candidate : candidates) ranks = std::max(ranks, candidate.rank);
-  if (chosen.empty()) {  // zeros together: what is far off makes anything look like a help
-    constexpr int kZeros = 0;
-    const std::vector<int> zeros = saturated(base, candidates, chosen, kZeros);
+  if (chosen
+          .empty()) {  // zeros and mounts together: what is far off makes anything look like a help
+    // A mount has the zero of its joint in it, so it is first.
+    const std::vector<int> zeros = saturated(base, candidates, chosen, {1, 0});
     const bool far = whole_fit(columns(zeros)).squares < kFar * begin;
     if (far && certainty_of(columns(zeros), columns(chosen)) > kSure) {
       chosen = zeros;
@@ -124,8 +132,10 @@ void ParameterSearch::run(const std::vector<int>& base, const Candidates& candid
     }
     // Many small errors at once, none of which shows alone: begin with all, and hold what is superfluous.
     std::vector<int> best = chosen;
+    std::vector<int> up_to;
     for (int rank = 0; rank <= ranks; ++rank) {
-      std::vector<int> all = saturated(base, candidates, chosen, rank);
+      up_to.push_back(rank);
+      std::vector<int> all = saturated(base, candidates, chosen, up_to);
       if (all.size() == chosen.size() || !(certainty_of(columns(all), columns(best)) > kSure))
         continue;
       hold_superfluous(base, candidates, all);
