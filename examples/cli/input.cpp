@@ -112,7 +112,9 @@ Input read_input(const InputOptions& options) {
       [&] {
         input.config_text =
             options.config.empty() ? options.config_text : detail::read_yaml_text(options.config);
-        return parse_config(input.config_text, options.config, diagnostics);
+        const bool is_proposed = options.config.empty();
+        return parse_config(input.config_text, is_proposed ? "(proposed)" : options.config,
+                            diagnostics);
       },
       diagnostics);
   const bool configuration_is_good = diagnostics.errors.size() == before;
