@@ -120,10 +120,10 @@ std::vector<IdentifyStep> most_helpful(Calibration& calibration, std::span<const
   std::vector<int> chosen;
   while (search.solve(chosen).converged) {
     const ParameterSearch linear = search.linearized();
-    const std::vector<int> base = linear.independent(search.base());
-    const std::vector<SearchStep> path = linear.path(base, search.candidates(), chosen);
+    const std::vector<int> columns = linear.independent(search.base());
+    const std::vector<SearchStep> path = linear.path(columns, search.candidates(), chosen);
     if (path.empty()) {
-      steps.push_back(detail::written({.candidate = -1, .fit = linear.fit_of(base)}));
+      steps.push_back(detail::written({.candidate = -1, .fit = linear.fit_of(columns)}));
     } else {
       const auto last = std::find_if(path.begin(), path.end(), [&](const SearchStep& step) {
         return step.candidate == chosen.back();
@@ -135,8 +135,8 @@ std::vector<IdentifyStep> most_helpful(Calibration& calibration, std::span<const
       step.region = all.region;
     }
     if (chosen.size() == kMost) return steps;
-    linear.free_one(base, search.candidates(), chosen);
-    linear.name_simply(base, search.candidates(), chosen);
+    linear.free_one(columns, search.candidates(), chosen);
+    linear.name_simply(columns, search.candidates(), chosen);
     if (chosen.size() + 1 == steps.size()) return steps;
   }
   return steps;
