@@ -114,8 +114,8 @@ class Identification {
     }
     CalibrationResult result;
     result.table = calibration_.table;
-    constexpr int kRounds = 5;
-    for (int round = 0; round < kRounds; ++round) {
+    constexpr int kSolves = 5;
+    for (int round = 0; round < kSolves; ++round) {
       if (free.empty()) {
         result.converged = true;
       } else {

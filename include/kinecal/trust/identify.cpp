@@ -54,13 +54,13 @@ void find_turns(Identification& search, Identified& found) {
 }
 
 Identified run(Identification& search, const std::string& unit) {
-  constexpr int kRounds = 12;
+  constexpr int kLinearizations = 12;
   Identified found;
   found.unit = unit;
   found.result = search.solve({});
   if (found.result.converged) find_turns(search, found);
   std::set<std::set<int>> seen;
-  for (int round = 0; round < kRounds && found.result.converged; ++round) {
+  for (int round = 0; round < kLinearizations && found.result.converged; ++round) {
     const ParameterSearch linear = search.linearized();
     const std::vector<int> base = linear.independent(search.base());
     std::vector<int> chosen = found.chosen;
