@@ -150,6 +150,8 @@ std::optional<OutputFolder> output_folder(const CalibrateOptions& options) {
   if (options.output.empty() && !options.dry_run) {
     throw InputError("--output is required (or --dry-run)");
   }
+  if (options.output == "-")
+    throw InputError("--output: '-' is no folder, and the results are several files");
   check_reports(options);
   if (!options.scene.empty()) check_scene(options);
   if (options.dry_run) return std::nullopt;
@@ -168,8 +170,10 @@ Fit fit_and_judge(const CalibrateOptions& options, Input& input) {
   judge_causes(
       {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
       fitted.findings);
-  fitted.findings.judgement.helps = would_help(input.config, input.robot, fitted.samples,
-                                               fitted.calibration, fitted.findings.result);
+  if (fitted.findings.judgement.causes == 0) {  // else a cause is named already
+    fitted.findings.judgement.helps = would_help(input.config, input.robot, fitted.samples,
+                                                 fitted.calibration, fitted.findings.result);
+  }
   fitted.findings.call = {options.command, input_options(options),
                           options.dry_run ? "" : options.output, KINECAL_VERSION,
                           read_files(options, input)};

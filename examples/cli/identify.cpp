@@ -13,6 +13,8 @@
 #include "kinecal/config/assemble.hpp"
 #include "kinecal/config/config_to_yaml.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/results/standard_output.hpp"
+#include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/report/findings.hpp"
 #include "kinecal/report/text.hpp"
@@ -32,13 +34,19 @@ namespace {
 void propose_configuration(IdentifyOptions& options) {
   Diagnostics diagnostics;
   const Recording recording = read_recordings(options.samples, diagnostics);
-  print_or_throw(diagnostics);
+  diagnostics.throw_if_errors();  // warnings come when they are read again
   if (options.urdf.empty() && recording.urdf.empty()) {
     throw InputError("--urdf: is required, because the samples contain no /robot_description");
   }
   const Robot robot = options.urdf.empty() ? parse_urdf(recording.urdf, "/robot_description")
                                            : read_urdf(options.urdf);
-  options.config_text = initial_config(robot, answers_from_samples(robot, recording.samples, {}));
+  try {
+    options.config_text = initial_config(robot, answers_from_samples(robot, recording.samples, {}));
+  } catch (const InputError& error) {
+    throw InputError(
+        "the samples do not tell what observes what; give --config, as of 'kinecal init'.  " +
+        std::string(error.what()));
+  }
 }
 
 /// What was searched and found.
@@ -52,7 +60,7 @@ struct Search {
 
 /// Searches, and judges the calibration with what was found.
 Search search(const Config& config, const Robot& robot, std::span<const Sample> samples,
-              bool geometry_only) {
+              bool geometry_only, const std::vector<std::string>& doubts) {
   Search all;
   Diagnostics diagnostics;
   Calibration calibration =
@@ -65,7 +73,7 @@ Search search(const Config& config, const Robot& robot, std::span<const Sample> 
   if (free_parameters(all.config.steps.front()).empty()) return all;
   Calibration chosen = assemble(all.config, robot, samples, diagnostics);
   diagnostics.throw_if_errors();
-  all.judged = calibrate_and_judge(chosen, samples);
+  all.judged = calibrate_and_judge(chosen, samples, {.doubts = doubts});
   return all;
 }
 
@@ -144,7 +152,8 @@ int identify(IdentifyOptions options) {
   if (is_proposed) {  // its sigmas are guesses
     for (BlockConfig& block : input.config.steps.front().error_blocks) block.sigma.reset();
   }
-  Search all = search(input.config, input.robot, input.samples, options.geometry_only);
+  Search all = search(input.config, input.robot, input.samples, options.geometry_only,
+                      input.diagnostics.doubts);
   if (!all.judged.left_out.empty()) {  // again, without bad samples
     std::set<int> out;
     for (const LeftOutSample& sample : all.judged.left_out) out.insert(sample.number);
@@ -152,16 +161,18 @@ int identify(IdentifyOptions options) {
     for (std::size_t i = 0; i < input.samples.size(); ++i) {
       if (!out.contains(static_cast<int>(i) + 1)) used.push_back(input.samples[i]);
     }
-    auto left_out = std::move(all.judged.left_out);
-    all = search(input.config, input.robot, used, options.geometry_only);
-    all.judged.left_out.insert(all.judged.left_out.begin(), left_out.begin(), left_out.end());
+    all = search(input.config, input.robot, used, options.geometry_only, {});
+    Diagnostics quiet;  // as 'kinecal calibrate' judges it, with all samples
+    Calibration found = assemble(all.config, input.robot, input.samples, quiet);
+    quiet.throw_if_errors();
+    all.judged = calibrate_and_judge(found, input.samples, {.doubts = input.diagnostics.doubts});
   }
   say("Robot '{}', {}: {} may be wrong, {} of them these samples support\n\n{}", input.robot.name(),
       counted(input.samples.size(), "sample"), counted(all.task.candidates.size(), "parameter"),
       all.found.chosen.size(), steps_text(all));
   Findings findings{std::move(all.judged)};
+  for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
   if (findings.judgement.verdict == Grade::do_not_use) {
-    for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
     say("{} · {} was not written\n", findings_line(findings), options.output);
     return kNotUsable;
   }
@@ -175,11 +186,16 @@ int identify(IdentifyOptions options) {
           "What these samples support; 'kinecal identify' found it.  With each parameter, the\n"
           "error on poses held out before and after it was freed.",
           comments(all, names.steps.front().problem.get())));
+  say("{} · {}\n", findings_line(findings), options.output);
+  if (std::any_of(inputs.begin(), inputs.end(), detail::is_stream) ||
+      is_standard_output(options.output))
+    return kDone;
   std::string call = "kinecal calibrate";
   if (!options.urdf.empty()) call += " --urdf " + shell_word(options.urdf);
   call += " --config " + shell_word(options.output) + " --samples";
   for (const std::string& file : options.samples) call += " " + shell_word(file);
-  say("{} · {}\nnext: {} --output calibrated\n", findings_line(findings), options.output, call);
+  for (const std::string& camera : options.cameras) call += " --camera " + shell_word(camera);
+  say("next: {} --output calibrated\n", call);
   return kDone;
 }
 

@@ -11,6 +11,7 @@
 #include "input.hpp"
 #include "kinecal/files/csv/read_csv_samples.hpp"
 #include "kinecal/files/results/file_set.hpp"
+#include "kinecal/files/results/standard_output.hpp"
 #include "kinecal/files/text_file.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
 #include "kinecal/text/nearest_name.hpp"
@@ -384,6 +385,10 @@ int init(const InitOptions& options) {
   }
   say("wrote {}\n", options.output);
   if (options.from.empty()) write_capture(robot, made.answers, options);
+  std::vector<std::string> named = options.from;
+  named.push_back(options.urdf);
+  const bool streams = std::any_of(named.begin(), named.end(), detail::is_stream);
+  if (streams || is_standard_output(options.output)) return kDone;  // no command could be pasted
   const std::string files =
       fmt::format("--urdf {} --config {}", shell_word(options.urdf), shell_word(options.output));
   if (options.from.empty()) {

@@ -28,6 +28,17 @@ using Comments = std::map<std::string, std::string>;
   return found == why.end() ? "" : "  # " + found->second;
 }
 
+/// "  # x: held out 0.2 mm -> 0.1 mm; roll: ..."
+[[nodiscard]] std::string comment_of_axes(const Comments& why, const FreeFrameConfig& frame) {
+  std::string text;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto found = why.find(parameter_name(frame.name, kFrameAxes[i]));
+    if (!frame.axes[i] || found == why.end()) continue;
+    text += fmt::format("{}{}: {}", text.empty() ? "  # " : "; ", kAxesOfFrames[i], found->second);
+  }
+  return text;
+}
+
 [[nodiscard]] std::string models_text(const StepConfig& step) {
   std::string text = "\nmodels:\n";
   for (const ModelConfig& model : step.models) {
@@ -80,7 +91,7 @@ using Comments = std::map<std::string, std::string>;
     for (std::size_t i = 0; i < 6; ++i) {
       frames += fmt::format(", {}: {}", kAxesOfFrames[i], frame.axes[i]);
     }
-    frames += "}" + comment_of(why, frame.name) + "\n";
+    frames += "}" + comment_of_axes(why, frame) + "\n";
   }
   for (const FrameInitialValueConfig& frame : step.frame_initial_values) {
     initial += pose_text(frame.name, frame.xyz, frame.rpy);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <string>
 #include <system_error>
 
@@ -29,21 +30,29 @@ bool is_stream(const std::string& path) {
          !why_no_file(path).empty();
 }
 
-std::string read_text_file(const std::string& path) {
-  if (path == "-") {
-    static const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-    return text;
-  }
-  if (!is_stream(path)) {
-    if (const std::string why = why_no_file(path); !why.empty()) {
-      throw InputError(path + ": " + why);
-    }
-  }
+namespace {
+
+[[nodiscard]] std::string read_all(const std::string& path) {
+  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw InputError(path + ": cannot be read: " + std::generic_category().message(errno));
   }
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+std::string read_text_file(const std::string& path) {
+  if (is_stream(path)) {
+    static std::map<std::string, std::string> read;
+    const auto known = read.find(path);
+    return known != read.end() ? known->second : read.emplace(path, read_all(path)).first->second;
+  }
+  if (const std::string why = why_no_file(path); !why.empty()) {
+    throw InputError(path + ": " + why);
+  }
+  return read_all(path);
 }
 
 }  // namespace kinecal::detail

@@ -13,7 +13,7 @@ namespace kinecal::detail {
 /// True for what can be read once only: the standard input, "-", and a pipe made by the shell: /dev/fd/63.
 [[nodiscard]] bool is_stream(const std::string& path);
 
-/// Reads a file or stream.  The standard input is read once, and remembered.
+/// Reads a file or stream.  Streams are read once, and remembered: not from several threads.
 /// @throws InputError  if the file is missing, is a folder or a named pipe, or cannot be read
 [[nodiscard]] std::string read_text_file(const std::string& path);
 

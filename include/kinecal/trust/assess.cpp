@@ -114,6 +114,7 @@ Assessment assess(const AnyProblem& problem, const FreeSet& free, ParameterValue
   found.rows = fit.residual.size();
   const PoseGroups single = pose_groups(problem, samples);
   found.readings = single.readings();
+  found.one_pose = are_one_pose(problem, samples);
   found.neighbours = neighbours(problem, fit, single);
   const PoseGroups poses = joined(single, found.neighbours.together);
   found.size = detail::robot_size(problem);

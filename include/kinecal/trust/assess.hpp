@@ -53,6 +53,7 @@ struct Assessment {
   double elsewhere = 0.0;  ///< +- of that position over the limits of the joints, median, metres
   std::int64_t rows = 0;   ///< residuals, without priors
   double readings = 1.0;   ///< samples per pose: see pose_groups()
+  bool one_pose = false;   ///< all samples are of one pose of the robot
   Neighbours neighbours;   ///< whether consecutive poses err alike
   double size = 0.0;       ///< of the robot: longest chain, sum of its links, metres
 

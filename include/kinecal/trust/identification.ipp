@@ -14,25 +14,9 @@
 #include "kinecal/trust/parameter_search.hpp"
 #include "kinecal/trust/plausible_change.ipp"
 #include "kinecal/trust/pose_groups.hpp"
+#include "kinecal/trust/search_columns.ipp"
 
 namespace kinecal::detail {
-
-/// All columns that some residual depends on: first the base, then those of candidates.
-[[nodiscard]] inline FreeSet all_columns(const AnyProblem& problem, const std::vector<int>& base,
-                                         const std::vector<IdentifyCandidate>& candidates) {
-  const std::vector<int> touched = problem.touched_parameters();
-  std::vector<int> all;
-  std::set<int> known;
-  const auto add = [&](int p) {
-    if (std::binary_search(touched.begin(), touched.end(), p) && known.insert(p).second)
-      all.push_back(p);
-  };
-  for (const int p : base) add(p);
-  for (const IdentifyCandidate& candidate : candidates) {
-    for (const int p : candidate.parameters) add(p);
-  }
-  return FreeSet(std::move(all), problem.table().size());
-}
 
 /// One identification: the problem, and where the search stands.
 class Identification {
@@ -84,6 +68,17 @@ class Identification {
   }
   /// Noise of the first error block, in its unit, at the last solution.
   [[nodiscard]] double noise() const { return sigmas_.front(); }
+
+  /// True if no chosen parameter has moved farther than robots are wrong.
+  [[nodiscard]] bool is_plausible(const std::vector<int>& chosen) const {
+    for (const int k : chosen) {
+      for (const int c : columns_[static_cast<std::size_t>(k)].columns) {
+        const auto p = static_cast<std::size_t>(index(c));
+        if (!(std::abs(values_[p] - initial_[p]) <= largest_(c))) return false;
+      }
+    }
+    return true;
+  }
 
   /// Begins with the initial values again, and searches for unknown poses.
   void begin_again() {
@@ -149,8 +144,9 @@ class Identification {
     }
     fit.residual += fit.jacobian * back;
     fit.prior_gradient += fit.prior_hessian * back;
-    const Term& first = step_.problem->term(0);
-    return {fit, poses_, largest_, first.weight, first.feature_size};
+    if (sigmas_.size() > 1) return {fit, poses_, largest_, 0.0, 1};
+    const Term& only = step_.problem->term(0);
+    return {fit, poses_, largest_, only.weight, only.feature_size};
   }
 
  private:

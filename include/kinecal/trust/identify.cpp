@@ -69,11 +69,12 @@ Identified run(Identification& search, const std::string& unit) {
     const bool stays = now == std::set<int>(found.chosen.begin(), found.chosen.end());
     if (stays || !seen.insert(now).second) break;
     CalibrationResult result = search.solve(chosen);
-    if (!result.converged) {  // too far for the last solution to be a start
+    if (!result.converged ||
+        !search.is_plausible(chosen)) {  // too far for the last solution to be a start
       search.begin_again();
       result = search.solve(chosen);
     }
-    if (!result.converged) {
+    if (!result.converged || !search.is_plausible(chosen)) {
       search.begin_again();
       found.result = search.solve(found.chosen);
       break;
@@ -103,8 +104,9 @@ void check_search(const Calibration& calibration, std::span<const Sample> sample
     throw std::invalid_argument("a search needs a calibration of one step");
   }
   constexpr std::size_t kFewest = 4;
-  if (samples.size() < kFewest)
-    throw std::invalid_argument("there are too few samples to hold some out");
+  if (samples.size() < kFewest || are_one_pose(*calibration.steps.front().problem, samples)) {
+    throw std::invalid_argument("the samples are of too few poses to hold some out");
+  }
 }
 
 }  // namespace
@@ -147,7 +149,8 @@ Identified identify(Calibration& calibration, std::span<const Sample> samples,
                     const std::vector<IdentifyCandidate>& candidates) {
   detail::check_search(calibration, samples);
   detail::Identification search(calibration, samples, base, candidates);
-  return detail::run(search, calibration.steps.front().problem->term(0).options.unit);
+  const AnyProblem& problem = *calibration.steps.front().problem;
+  return detail::run(search, problem.num_terms() == 1 ? problem.term(0).options.unit : "1");
 }
 
 }  // namespace kinecal

@@ -23,13 +23,15 @@ struct IdentifyCandidate {
   int rank = 0;                 ///< of candidates that explain the same, the lowest is taken
 };
 
-/// What one parameter buys, in the order of what they explain.  Errors are of the first error block, in its unit.
+/// What one parameter buys, in the order of what they explain.  Errors are of the error block, in its unit; of several,
+/// in units of their noise.
 struct IdentifyStep {
-  int candidate = -1;      ///< by number; -1: the base alone
-  double fitted = 0.0;     ///< root of the mean squared distance after it
-  double held_out = 0.0;   ///< the same, of poses held out
-  double region = 0.0;     ///< the same, of regions held out; 0: there are none
-  double certainty = 0.0;  ///< fall of the error on held-out poses, in its standard errors
+  int candidate = -1;     ///< by number; -1: the base alone
+  double fitted = 0.0;    ///< root of the mean squared distance after it
+  double held_out = 0.0;  ///< the same, of poses held out
+  double region = 0.0;    ///< the same, of regions held out; 0: there are none
+  double certainty =
+      0.0;  ///< rise of the error on held-out poses without it alone, in its standard errors
   std::vector<int> alike;  ///< other candidates that explain the same
 };
 

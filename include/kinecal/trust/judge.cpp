@@ -160,6 +160,13 @@ Judgement judge(const Calibration& calibration, const CalibrationResult& result,
     detail::judge_determined(assessments[s], last, judgement);
     detail::judge_freedom(assessments[s], judgement);
     if (last) detail::judge_held_out(assessments[s], judgement);
+    if (last && assessments[s].one_pose) {
+      judgement.wants_samples = true;
+      judgement.add(Grade::use_with_care,
+                    "all samples are of one pose of the robot, and nothing shows how the result "
+                    "does in others; record "
+                    "other poses");
+    }
     if (last) detail::judge_captures(assessments[s], *step.problem, judgement);
     if (last && !detail::judge_lens(assessments[s], judgement)) {
       detail::judge_change(assessments[s], *step.problem, judgement);

@@ -60,7 +60,7 @@ ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
       fold_[r] = poses.fold[sample];
       if (!region_.empty()) region_[r] = poses.region[sample];
       poses_ = std::max(poses_, pose_[r] + 1);
-      if (block.term == 0) distance_(row) = 1.0 / unit;
+      distance_(row) = unit > 0.0 ? 1.0 / unit : 1.0;
     }
   }
   features_ = (distance_.array() > 0.0).select(fit.loss, 0.0).sum() / components;

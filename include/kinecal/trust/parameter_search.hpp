@@ -21,7 +21,7 @@ struct SearchCandidate {
       0;  ///< of candidates that explain the same, the lowest is taken: what an engineer names first
 };
 
-/// How well a subset predicts; residuals of the first error block, in its unit.
+/// How well a subset predicts; residuals in the unit of the error block, or of their noise.
 struct SearchFit {
   double fitted = 0.0;  ///< root of the mean squared distance
   double held_out =
@@ -31,9 +31,10 @@ struct SearchFit {
 
 /// A parameter that was found, in the order of what they explain.
 struct SearchStep {
-  int candidate = 0;       ///< by number
-  SearchFit fit = {};      ///< with it and those before it
-  double certainty = 0.0;  ///< fall of the error on held-out poses by it, in its standard errors
+  int candidate = 0;   ///< by number
+  SearchFit fit = {};  ///< with it and those before it
+  double certainty =
+      0.0;  ///< rise of the error on held-out poses without it alone, in its standard errors
   std::vector<int> alike = {};  ///< other candidates that would do as well in place of it
 };
 
@@ -52,7 +53,8 @@ class ParameterSearch {
   /// @param fit      linearized by all columns, as plain parameters
   /// @param poses    of the samples of the problem
   /// @param largest  (columns) plausible change of each parameter
-  /// @param unit     weight of the first error block: its rows are distances times this
+  /// @param unit     weight of the only error block: its rows are distances times this; 0: there are several, and
+  ///                 distances are in units of their noise
   /// @param components  rows of one of its features
   ParameterSearch(const LinearFit& fit, const SearchPoses& poses, Eigen::VectorXd largest,
                   double unit, int components);

@@ -163,11 +163,11 @@ std::vector<SearchStep> ParameterSearch::path(const std::vector<int>& base,
         std::max_element(left.begin(), left.end(), [&](int a, int b) { return gain(a) < gain(b); });
     SearchStep step{.candidate = *next};
     left.erase(next);
-    const std::vector<int> before = whole.columns;
     free.push_back(step.candidate);
     const std::vector<int> after = detail::columns_of(base, candidates, free);
     step.fit = fit_of(after);
-    step.certainty = certainty_of(after, before);
+    step.certainty = certainty_of(detail::columns_of(base, candidates, chosen),
+                                  detail::columns_of(base, candidates, chosen, step.candidate));
     step.alike = like(whole_fit(detail::columns_of(base, candidates, chosen, step.candidate)),
                       candidates, chosen, step.candidate);
     steps.push_back(std::move(step));

@@ -62,9 +62,12 @@ PoseGroups each_its_own(std::size_t samples) {
   return groups;
 }
 
-PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples) {
-  const std::map<std::string, double> joints = detail::repeatable_joints(problem);
-  if (joints.empty()) return each_its_own(samples.size());
+namespace detail {
+namespace {
+
+/// @param joints  not empty
+[[nodiscard]] PoseGroups groups_of(const std::map<std::string, double>& joints,
+                                   std::span<const Sample> samples) {
   struct Pose {
     Eigen::VectorXd at;  // positions in units of repeatability
     int number;
@@ -72,7 +75,7 @@ PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> sample
   std::multimap<double, Pose> poses;  // by the first joint's position
   PoseGroups groups;
   for (const Sample& sample : samples) {
-    const Eigen::VectorXd at = detail::positions_of(sample, joints);
+    const Eigen::VectorXd at = positions_of(sample, joints);
     const auto end = poses.upper_bound(at(0) + 1.0);
     const auto known = std::find_if(poses.lower_bound(at(0) - 1.0), end, [&](const auto& pose) {
       return (pose.second.at - at).template lpNorm<Eigen::Infinity>() <= 1.0;
@@ -84,8 +87,22 @@ PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> sample
       poses.emplace(at(0), Pose{at, groups.count++});
     }
   }
-  if (groups.count < 2) return each_its_own(samples.size());
   return groups;
+}
+
+}  // namespace
+}  // namespace detail
+
+PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples) {
+  const std::map<std::string, double> joints = detail::repeatable_joints(problem);
+  if (joints.empty()) return each_its_own(samples.size());
+  PoseGroups groups = detail::groups_of(joints, samples);
+  return groups.count < 2 ? each_its_own(samples.size()) : groups;
+}
+
+bool are_one_pose(const AnyProblem& problem, std::span<const Sample> samples) {
+  const std::map<std::string, double> joints = detail::repeatable_joints(problem);
+  return !joints.empty() && samples.size() > 1 && detail::groups_of(joints, samples).count == 1;
 }
 
 std::vector<int> pose_regions(const AnyProblem& problem, std::span<const Sample> samples,

@@ -33,6 +33,9 @@ struct PoseGroups {
 /// @param samples  those of the problem, in their order
 [[nodiscard]] PoseGroups pose_groups(const AnyProblem& problem, std::span<const Sample> samples);
 
+/// True if joints move a sensor or target of the problem, and all of several samples are of one pose.
+[[nodiscard]] bool are_one_pose(const AnyProblem& problem, std::span<const Sample> samples);
+
 /// Four regions of poses, of as many poses each: halved at the median of the joint that moves most, and each half
 /// again.  Empty if no joint moves or if there are fewer than 20 poses.
 /// @param poses  of the samples: a pose is in one region

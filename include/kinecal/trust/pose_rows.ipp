@@ -43,7 +43,8 @@ struct SharedDirections {
   /// None: features err independently.
   explicit SharedDirections(Eigen::Index rows) : axes(rows, 0) {}
   /// @param a  (rows x any)
-  explicit SharedDirections(const Eigen::MatrixXd& a) {
+  explicit SharedDirections(const Eigen::MatrixXd& a) : axes(a.rows(), 0) {
+    if (a.cols() == 0) return;  // no joint moves the sensor
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a.transpose() * a);
     constexpr double kRounding = 1e-9;
     const Eigen::VectorXd& all = solver.eigenvalues();

@@ -27,6 +27,7 @@ std::string_view to_string(RecordingFormat format) {
 }
 
 RecordingFormat recording_format(const std::string& path) {
+  if (detail::is_stream(path)) return RecordingFormat::yaml;
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return RecordingFormat::ros2_bag;
   if (!detail::why_no_file(path).empty()) return RecordingFormat::yaml;

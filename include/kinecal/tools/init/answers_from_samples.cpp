@@ -136,6 +136,8 @@ void add_camera(const Robot& robot, std::span<const Sample> samples, const SeenS
 InitAnswers answers_from_samples(const Robot& robot, std::span<const Sample> samples,
                                  InitAnswers given) {
   if (samples.empty()) throw InputError("--from: there are no samples");
+  if (samples.size() == 1)
+    throw InputError("--from: there is only one sample, which does not show what moves");
   const std::vector<detail::SeenSensor> sensors = detail::sensors_of(samples);
   std::vector<const detail::SeenSensor*> cameras, chains;
   for (const detail::SeenSensor& sensor : sensors) {

@@ -12,21 +12,9 @@
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/tools/init/robot_parts.hpp"
 #include "kinecal/tools/init/table_columns.ipp"
+#include "kinecal/tools/init/whole_arm.ipp"
 
 namespace kinecal::detail {
-
-/// Joints with their columns, by index.
-using ColumnOfJoint = std::vector<std::pair<std::string, int>>;
-
-/// The driven joints on the way to a link, from the base on.
-[[nodiscard]] inline std::vector<std::string> driven_joints(const Robot& robot,
-                                                            const std::string& link) {
-  std::vector<std::string> names;
-  for (const Joint* joint : joints_to_root(robot, link)) {
-    if (moves(joint->type) && !joint->mimic) names.insert(names.begin(), joint->name);
-  }
-  return names;
-}
 
 /// Columns named after joints of the URDF: "position.shoulder_pan_joint", "shoulder pan [deg]".
 [[nodiscard]] inline ColumnOfJoint joints_by_name(const Robot& robot, const ReadTable& table) {
@@ -161,6 +149,7 @@ using ColumnOfJoint = std::vector<std::pair<std::string, int>>;
                                                    const std::string& file) {
   if (!table.header) return joints_by_count(robot, table, file);
   ColumnOfJoint joints = joints_by_name(robot, table);
+  if (!joints.empty()) check_whole_arm(robot, joints, file);
   if (joints.empty()) joints = joints_by_number(robot, table, file);
   if (joints.empty()) {
     std::string driven;

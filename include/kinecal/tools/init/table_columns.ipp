@@ -70,7 +70,8 @@ struct ReadTable {
 }
 
 /// Takes the unit off a name's words.
-[[nodiscard]] inline NamedUnit take_unit(std::vector<std::string>& words) {
+/// @throws InputError  if it is one that columns.yaml does not have
+[[nodiscard]] inline NamedUnit take_unit(std::vector<std::string>& words, const std::string& name) {
   constexpr std::pair<std::string_view, NamedUnit> kUnits[] = {
       {"deg", NamedUnit::degrees},
       {"degree", NamedUnit::degrees},
@@ -86,6 +87,15 @@ struct ReadTable {
       {"millimetres", NamedUnit::millimetres},
       {"millimeters", NamedUnit::millimetres}};
   if (words.size() < 2) return NamedUnit::none;
+  for (const std::string_view other :
+       {"cm", "dm", "um", "in", "inch", "inches", "ft", "grad", "gon", "mrad", "turns", "rev"}) {
+    if (words.back() == other) {
+      throw InputError(
+          fmt::format("column '{}' looks like one in {}; kinecal reads metres, millimetres, "
+                      "radians and degrees: convert it",
+                      name, other));
+    }
+  }
   for (const auto& [word, unit] : kUnits) {
     if (words.back() != word) continue;
     words.pop_back();
@@ -108,7 +118,8 @@ struct ReadTable {
       continue;
     }
     const auto numbers =
-        static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [](const auto& cell) {
+        static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [&](std::string cell) {
+          if (separator != ',') std::replace(cell.begin(), cell.end(), ',', '.');
           return cell_number(cell).has_value();
         }));
     if (numbers <= most) continue;
@@ -130,11 +141,26 @@ struct ReadTable {
   table.header = std::any_of(first.begin(), first.end(), [](const std::string& cell) {
     return !cell.empty() && !cell_number(cell);
   });
+  if (table.separator != ',') {
+    for (const std::string& cell : rows[1].cells) {
+      const std::size_t comma = cell.find(',');
+      if (comma == std::string::npos) continue;
+      std::string point = cell;
+      point[comma] = '.';
+      if (cell_number(point))
+        throw InputError(fmt::format("{}:{}: '{}': write a decimal point, not a comma", file,
+                                     rows[1].line, cell));
+    }
+  }
   for (std::size_t c = 0; c < first.size(); ++c) {
     TableColumn& column = table.columns.emplace_back();
     column.name = table.header ? first[c] : fmt::format("{}", c + 1);
     if (table.header) column.words = words_of(column.name);
-    column.unit = take_unit(column.words);
+    try {
+      column.unit = take_unit(column.words, column.name);
+    } catch (const InputError& error) {
+      throw InputError(file + ": " + error.what());
+    }
     std::size_t numbers = 0;
     for (std::size_t r = table.header ? 1 : 0; r < rows.size(); ++r) {
       if (c >= rows[r].cells.size()) continue;
