@@ -40,8 +40,8 @@ namespace detail {
     const BlockSums& block = sums.blocks[static_cast<std::size_t>(t)];
     all.push_back({term.name, term.options.type, term.options.unit,
                    static_cast<std::int64_t>(block.figures(BlockSums::features)),
-                   block.statistics(BlockSums::mean_before, 0, term.feature_size),
-                   block.statistics(BlockSums::mean_after, 1, term.feature_size)});
+                   block.statistics(BlockSums::mean_before, 0),
+                   block.statistics(BlockSums::mean_after, 1)});
   }
   return all;
 }

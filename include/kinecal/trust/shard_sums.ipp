@@ -64,9 +64,9 @@ struct BlockSums {
   [[nodiscard]] static bool is_sum(Eigen::Index figure) {
     return figure != max_before && figure != max_after;
   }
-  [[nodiscard]] Statistics statistics(Figure mean, Eigen::Index column, int components) const {
+  [[nodiscard]] Statistics statistics(Figure mean, Eigen::Index column) const {
     const double count = std::max(1.0, figures(features));
-    return {std::sqrt(figures(mean + 1) / (count * components)), figures(mean) / count,
+    return {std::sqrt(figures(mean + 1) / count), figures(mean) / count,
             DistanceBins::median(bins.col(column)), figures(mean + 2)};
   }
 };

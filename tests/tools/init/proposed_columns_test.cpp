@@ -107,10 +107,9 @@ TEST(ProposedColumns, RefuseWhatTheyWouldHaveToGuess) {
   const std::string header = "q1,q2,q3,q4,q5,q6,", row = std::string(kSix) + ",1,2,3\n";
   EXPECT_THAT(refusal_of(header + "x [cm],y [cm],z [cm]\n" + row + row),
               HasSubstr("log.csv: column 'x [cm]' looks like one in cm"));
-  EXPECT_THAT(
-      refusal_of("pan,shoulder_lift,elbow,wrist_1,wrist_2,wrist_3,x,y,z\n" + row + row),
-      HasSubstr(
-          "5 of the 6 joints that move 'tool0' have a column, and 'shoulder_pan_joint' has none"));
+  EXPECT_THAT(refusal_of("pan,shoulder_lift,elbow,wrist_1,wrist_2,wrist_3,x,y,z\n" + row + row),
+              HasSubstr("5 of the 6 joints that move 'reflector' have a column, and "
+                        "'shoulder_pan_joint' has none"));
   EXPECT_THAT(refusal_of("q1;q2;q3;q4;q5;q6;x;y;z\n0,1;0,2;0,3;0,4;0,5;0,6;1,5;2;3\n0,1;0,2;0,3;0,"
                          "4;0,5;0,6;1,5;2;3\n"),
               HasSubstr("log.csv:2: '0,1': write a decimal point, not a comma"));

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "kinecal/config/registry.hpp"
+#include "kinecal/geometry/rpy.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/joint_model.hpp"
 #include "kinecal/parameters/joint_parameters.hpp"
@@ -182,6 +183,21 @@ Config identified_config(const Config& config, const IdentifyTask& task, const I
         step.free_params.push_back({name, step.place});
       }
     }
+  }
+  for (const FreeFrameConfig& frame :
+       step.free_frames) {  // poses that were searched for are known now
+    if (frame.is_fixed || problem.robot().has_joint(frame.name) || found.result.table.size() == 0)
+      continue;
+    Eigen::Matrix<double, 6, 1> pose;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      pose(static_cast<Eigen::Index>(axis)) =
+          found.result.table[parameter_name(frame.name, kFrameAxes[axis])].value;
+    }
+    std::erase_if(step.frame_initial_values,
+                  [&](const auto& initial) { return initial.name == frame.name; });
+    step.frame_initial_values.push_back({frame.name, pose.head<3>(),
+                                         rpy_from_rotation(exp(Vector3<double>(pose.tail<3>()))),
+                                         frame.place});
   }
   std::erase_if(step.bounds,
                 [&](const BoundConfig& bound) { return !detail::is_free(step, bound.name); });
