@@ -7,55 +7,11 @@
 
 #include "kinecal/config/registry.hpp"
 #include "kinecal/geometry/rpy.hpp"
-#include "kinecal/kinematics/chain.hpp"
 #include "kinecal/kinematics/joint_model.hpp"
 #include "kinecal/parameters/joint_parameters.hpp"
+#include "kinecal/tools/identify/candidates.ipp"
 
 namespace kinecal {
-
-namespace detail {
-namespace {
-
-/// What an engineer names first: zeros, then mounts, sensors, the arm's geometry, its gears, its encoders.
-enum IdentifyRank { kZero, kMount, kOfSensor, kGeometry, kGear, kEncoder };
-
-/// The joints that move some sensor or target, in the order of the robot; not those that mimic others.
-[[nodiscard]] std::vector<const Joint*> moving_joints(const Config& config, const Robot& robot) {
-  std::set<std::string> names;
-  for (const ModelConfig& model : config.steps.front().models) {
-    if (!robot.has_link(model.frame) || !robot.has_link(config.base_link)) continue;
-    for (const ChainJoint& joint : make_chain(robot, config.base_link, model.frame).joints) {
-      names.insert(joint.drive.joint);
-    }
-  }
-  std::vector<const Joint*> joints;
-  for (const Joint& joint : robot.joints()) {
-    if (names.contains(joint.name)) joints.push_back(&joint);
-  }
-  return joints;
-}
-
-[[nodiscard]] bool is_free(const StepConfig& step, const std::string& name) {
-  const std::vector<FreeParamConfig> all = free_parameters(step);
-  return std::any_of(all.begin(), all.end(), [&](const auto& free) { return free.name == name; });
-}
-
-/// True for a frame that is free from the beginning: it is not in the URDF, or no motor moves it.
-[[nodiscard]] bool is_base_frame(const Robot& robot, const FreeFrameConfig& frame) {
-  return !frame.is_fixed && (!robot.has_joint(frame.name) || !moves(robot.joint(frame.name).type));
-}
-
-/// Frees one axis of a frame.
-void free_axis(StepConfig& step, const std::string& frame, std::size_t axis) {
-  auto known = std::find_if(step.free_frames.begin(), step.free_frames.end(),
-                            [&](const FreeFrameConfig& of) { return of.name == frame; });
-  if (known == step.free_frames.end())
-    known = step.free_frames.insert(known, {.name = frame, .place = {}});
-  known->axes[axis] = true;
-}
-
-}  // namespace
-}  // namespace detail
 
 Config with_all_candidates(const Config& config, const Robot& robot) {
   Config all = config;
