@@ -58,6 +58,13 @@ struct Search {
   std::string robot;
 };
 
+JudgedResult judged(Calibration& calibration, std::span<const Sample> samples,
+                    const std::vector<std::string>& doubts) {
+  ProcedureOptions options;
+  options.doubts = doubts;
+  return calibrate_and_judge(calibration, samples, options);
+}
+
 /// Searches, and judges the calibration with what was found.
 Search search(const Config& config, const Robot& robot, std::span<const Sample> samples,
               bool geometry_only, const std::vector<std::string>& doubts) {
@@ -73,7 +80,7 @@ Search search(const Config& config, const Robot& robot, std::span<const Sample> 
   if (free_parameters(all.config.steps.front()).empty()) return all;
   Calibration chosen = assemble(all.config, robot, samples, diagnostics);
   diagnostics.throw_if_errors();
-  all.judged = calibrate_and_judge(chosen, samples, {.doubts = doubts});
+  all.judged = judged(chosen, samples, doubts);
   return all;
 }
 
@@ -165,7 +172,7 @@ int identify(IdentifyOptions options) {
     Diagnostics quiet;  // as 'kinecal calibrate' judges it, with all samples
     Calibration found = assemble(all.config, input.robot, input.samples, quiet);
     quiet.throw_if_errors();
-    all.judged = calibrate_and_judge(found, input.samples, {.doubts = input.diagnostics.doubts});
+    all.judged = judged(found, input.samples, input.diagnostics.doubts);
   }
   say("Robot '{}', {}: {} may be wrong, {} of them these samples support\n\n{}", input.robot.name(),
       counted(input.samples.size(), "sample"), counted(all.task.candidates.size(), "parameter"),
