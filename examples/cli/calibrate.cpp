@@ -135,14 +135,9 @@ SolveOptions solve_options(const CalibrateOptions& options) {
   return solving;
 }
 
-/// "--urdf robot.urdf --config calibrate.yaml --samples a.yaml b.yaml", for `kinecal plan`; empty if that
-/// needs more: a URDF, or intrinsics.
-std::string input_options(const CalibrateOptions& options) {
-  if (options.urdf.empty() || !options.cameras.empty()) return "";
-  std::string text = "--urdf " + shell_word(options.urdf) + " --config " +
-                     shell_word(options.config) + " --samples";
-  for (const std::string& file : options.samples) text += " " + shell_word(file);
-  return text;
+/// The inputs as `kinecal plan` takes them; empty if it needs more: a URDF, or intrinsics.
+std::string inputs_of_plan(const CalibrateOptions& options) {
+  return options.urdf.empty() || !options.cameras.empty() ? "" : input_options(options);
 }
 
 /// Checks before the work begins that the results can be written.
@@ -171,10 +166,10 @@ Fit fit_and_judge(const CalibrateOptions& options, Input& input) {
       {input.config, input.robot, input.urdf_text, input.urdf, fitted.samples, fitted.calibration},
       fitted.findings);
   if (fitted.findings.judgement.causes == 0) {  // else a cause is named already
-    fitted.findings.judgement.helps = would_help(input.config, input.robot, fitted.samples,
-                                                 fitted.calibration, fitted.findings.result);
+    fitted.findings.helps = would_help(input.config, input.robot, fitted.samples,
+                                       fitted.calibration, fitted.findings.result);
   }
-  fitted.findings.call = {options.command, input_options(options),
+  fitted.findings.call = {options.command, inputs_of_plan(options),
                           options.dry_run ? "" : options.output, KINECAL_VERSION,
                           read_files(options, input)};
   return fitted;

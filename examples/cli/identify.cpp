@@ -54,20 +54,10 @@ struct Search {
   IdentifyTask task;
   Identified found;
   Config config;  ///< that frees what was found
-  JudgedResult judged;
-  std::string robot;
 };
 
-JudgedResult judged(Calibration& calibration, std::span<const Sample> samples,
-                    const std::vector<std::string>& doubts) {
-  ProcedureOptions options;
-  options.doubts = doubts;
-  return calibrate_and_judge(calibration, samples, options);
-}
-
-/// Searches, and judges the calibration with what was found.
 Search search(const Config& config, const Robot& robot, std::span<const Sample> samples,
-              bool geometry_only, const std::vector<std::string>& doubts) {
+              bool geometry_only) {
   Search all;
   Diagnostics diagnostics;
   Calibration calibration =
@@ -77,11 +67,18 @@ Search search(const Config& config, const Robot& robot, std::span<const Sample> 
   all.task = identify_task(config, problem, geometry_only);
   all.found = identify(calibration, samples, all.task.base, all.task.candidates);
   all.config = identified_config(config, all.task, all.found, problem);
-  if (free_parameters(all.config.steps.front()).empty()) return all;
-  Calibration chosen = assemble(all.config, robot, samples, diagnostics);
-  diagnostics.throw_if_errors();
-  all.judged = judged(chosen, samples, doubts);
   return all;
+}
+
+/// Judges what was found as 'kinecal calibrate' will.
+JudgedResult judged(const Search& search, const Input& input) {
+  if (free_parameters(search.config.steps.front()).empty()) return {};
+  Diagnostics diagnostics;
+  Calibration calibration = assemble(search.config, input.robot, input.samples, diagnostics);
+  diagnostics.throw_if_errors();
+  ProcedureOptions options;
+  options.doubts = input.diagnostics.doubts;
+  return calibrate_and_judge(calibration, input.samples, options);
 }
 
 /// The name of a step: what it freed.
@@ -124,20 +121,16 @@ std::string steps_text(const Search& search) {
 }
 
 /// Comments of the configuration: what each parameter bought.
-std::map<std::string, std::string> comments(const Search& search, const AnyProblem* problem) {
+std::map<std::string, std::string> comments(const Search& search) {
   std::map<std::string, std::string> why;
-  double before = 0.0;
-  for (const IdentifyStep& step : search.found.steps) {
-    if (step.candidate >= 0 && problem != nullptr) {
-      for (const int p :
-           search.task.candidates[static_cast<std::size_t>(step.candidate)].parameters) {
-        const std::string text =
-            fmt::format("held out {} -> {}", reading(before, search.found.unit),
-                        reading(step.held_out, search.found.unit));
-        why.emplace(problem->table()[p].name, text);
-      }
+  const Identified& found = search.found;
+  for (std::size_t i = 1; i < found.steps.size(); ++i) {
+    const auto k = static_cast<std::size_t>(found.steps[i].candidate);
+    for (const int p : search.task.candidates[k].parameters) {
+      why.emplace(found.result.table[p].name,
+                  fmt::format("held out {} -> {}", reading(found.steps[i - 1].held_out, found.unit),
+                              reading(found.steps[i].held_out, found.unit)));
     }
-    before = step.held_out;
   }
   return why;
 }
@@ -159,50 +152,34 @@ int identify(IdentifyOptions options) {
   if (is_proposed) {  // its sigmas are guesses
     for (BlockConfig& block : input.config.steps.front().error_blocks) block.sigma.reset();
   }
-  Search all = search(input.config, input.robot, input.samples, options.geometry_only,
-                      input.diagnostics.doubts);
-  if (!all.judged.left_out.empty()) {  // again, without bad samples
-    std::set<int> out;
-    for (const LeftOutSample& sample : all.judged.left_out) out.insert(sample.number);
-    std::vector<Sample> used;
-    for (std::size_t i = 0; i < input.samples.size(); ++i) {
-      if (!out.contains(static_cast<int>(i) + 1)) used.push_back(input.samples[i]);
-    }
-    all = search(input.config, input.robot, used, options.geometry_only, {});
-    Diagnostics quiet;  // as 'kinecal calibrate' judges it, with all samples
-    Calibration found = assemble(all.config, input.robot, input.samples, quiet);
-    quiet.throw_if_errors();
-    all.judged = judged(found, input.samples, input.diagnostics.doubts);
+  Search all = search(input.config, input.robot, input.samples, options.geometry_only);
+  Findings findings{judged(all, input)};
+  if (!findings.left_out.empty()) {  // again, without bad samples
+    all = search(input.config, input.robot, used_samples(findings, input.samples),
+                 options.geometry_only);
+    findings = Findings{judged(all, input)};
   }
   say("Robot '{}', {}: {} may be wrong, {} of them these samples support\n\n{}", input.robot.name(),
       counted(input.samples.size(), "sample"), counted(all.task.candidates.size(), "parameter"),
       all.found.chosen.size(), steps_text(all));
-  Findings findings{std::move(all.judged)};
   for (const std::string& reason : findings.judgement.reasons) say("  - {}\n", reason);
   if (findings.judgement.verdict == Grade::do_not_use) {
     say("{} · {} was not written\n", findings_line(findings), options.output);
     return kNotUsable;
   }
-  Diagnostics quiet;
-  const Calibration names =
-      assemble(with_all_candidates(input.config, input.robot), input.robot, {}, quiet);
   write_text_file(
       options.output,
       config_to_yaml(
           all.config,
           "What these samples support; 'kinecal identify' found it.  With each parameter, the\n"
           "error on poses held out before and after it was freed.",
-          comments(all, names.steps.front().problem.get())));
+          comments(all)));
   say("{} · {}\n", findings_line(findings), options.output);
   if (std::any_of(inputs.begin(), inputs.end(), detail::is_stream) ||
       is_standard_output(options.output))
     return kDone;
-  std::string call = "kinecal calibrate";
-  if (!options.urdf.empty()) call += " --urdf " + shell_word(options.urdf);
-  call += " --config " + shell_word(options.output) + " --samples";
-  for (const std::string& file : options.samples) call += " " + shell_word(file);
-  for (const std::string& camera : options.cameras) call += " --camera " + shell_word(camera);
-  say("next: {} --output calibrated\n", call);
+  options.config = options.output;
+  say("next: kinecal calibrate {} --output calibrated\n", input_options(options));
   return kDone;
 }
 

@@ -17,6 +17,7 @@
 #include "kinecal/config/read_config.hpp"
 #include "kinecal/files/cameras/set_camera.hpp"
 #include "kinecal/files/urdf/read_urdf.hpp"
+#include "kinecal/text/shell_word.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
 
@@ -147,6 +148,15 @@ Input read_input(const InputOptions& options) {
   }
   (void)assemble(*configuration, *robot, {}, diagnostics);
   return input;
+}
+
+std::string input_options(const InputOptions& options) {
+  std::string text;
+  if (!options.urdf.empty()) text += "--urdf " + shell_word(options.urdf) + " ";
+  text += "--config " + shell_word(options.config) + " --samples";
+  for (const std::string& file : options.samples) text += " " + shell_word(file);
+  for (const std::string& camera : options.cameras) text += " --camera " + shell_word(camera);
+  return text;
 }
 
 void print_or_throw(const Diagnostics& diagnostics) {

@@ -33,6 +33,9 @@ struct Input {
 [[nodiscard]] Recording read_recordings(const std::vector<std::string>& files,
                                         Diagnostics& diagnostics);
 
+/// The options of a shell that name the same inputs: "--urdf robot.urdf --config calibrate.yaml --samples a.yaml b.yaml".
+[[nodiscard]] std::string input_options(const InputOptions& options);
+
 /// Prints warnings, doubts and errors to the standard error stream.
 void print(const Diagnostics& diagnostics);
 

@@ -36,23 +36,28 @@ void add_cameras(CLI::App& command, std::vector<std::string>& cameras) {
       ->allow_extra_args(false);
 }
 
+void add_urdf(CLI::App& command, std::string& urdf) {
+  command.add_option("--urdf", urdf, "the robot's URDF; default: /robot_description of the bag")
+      ->type_name("FILE");
+}
+
+CLI::Option* add_samples(CLI::App& command, std::vector<std::string>& samples) {
+  return command
+      .add_option("--samples", samples,
+                  "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
+      ->type_name("FILE");
+}
+
 /// The options that say what is calibrated, from which samples.
 /// @returns  --samples
 CLI::Option* add_input(CLI::App& command, InputOptions& options) {
-  command
-      .add_option("--urdf", options.urdf,
-                  "the robot's URDF; default: /robot_description of the bag")
-      ->type_name("FILE");
+  add_urdf(command, options.urdf);
   command
       .add_option("--config", options.config,
                   "what to calibrate: a configuration of robot_calibration, ROS 1 or ROS 2")
       ->required()
       ->type_name("FILE");
-  CLI::Option* samples =
-      command
-          .add_option("--samples", options.samples,
-                      "recorded samples: CalibrationData in YAML, a ROS 1 bag, MCAP or a ROS 2 bag")
-          ->type_name("FILE");
+  CLI::Option* samples = add_samples(command, options.samples);
   add_cameras(command, options.cameras);
   command
       .add_option("--hold", options.hold,
@@ -179,19 +184,14 @@ void add_calibrate(CLI::App& command, CalibrateOptions& options) {
 }
 
 void add_identify(CLI::App& command, IdentifyOptions& options) {
-  command
-      .add_option("--urdf", options.urdf,
-                  "the robot's URDF; default: /robot_description of the bag")
-      ->type_name("FILE");
+  add_urdf(command, options.urdf);
   command
       .add_option("--config", options.config,
                   "whose models, error blocks and unknown poses are kept; default: as of 'kinecal "
                   "init --from' "
                   "the samples")
       ->type_name("FILE");
-  command.add_option("--samples", options.samples, "recorded samples")
-      ->required()
-      ->type_name("FILE");
+  add_samples(command, options.samples)->required();
   add_cameras(command, options.cameras);
   command.add_flag("--geometry-only", options.geometry_only,
                    "without gear ratios and eccentric encoders, which a URDF cannot hold");

@@ -14,8 +14,10 @@
 #include "kinecal/study/exact_samples.hpp"
 #include "kinecal/study/seeded_random.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
+#include "kinecal/tools/identify/would_help.hpp"
 #include "kinecal/tools/init/answers_from_samples.hpp"
 #include "kinecal/tools/init/initial_config.hpp"
+#include "kinecal/trust/calibrate_and_judge.hpp"
 #include "kinecal/trust/observability.hpp"
 #include "support/data.hpp"
 #include "support/paths.hpp"
@@ -136,8 +138,8 @@ class SimulatedArm {
   }
 
   /// Makes some candidates wrong, of the size of real errors; returns their numbers.
-  /// @param turned  a joint whose zero is a quarter turn off
-  std::vector<int> spoil(int errors, const std::string& turned = "") {
+  /// @param turned  a joint whose zero is off, and by how much, radians
+  std::vector<int> spoil(int errors, const std::string& turned = "", double by = 1.5708 + 0.02) {
     const Calibration calibration = assembled(wide_, robot_, samples_);
     task_ = identify_task(config_, *calibration.steps.front().problem);
     truth_ = calibration.table;
@@ -147,7 +149,7 @@ class SimulatedArm {
           std::pair("smr_z", 0.05)}) {
       truth_[name].value = value;
     }
-    if (!turned.empty()) truth_[turned].value = 1.5708 + 0.02;
+    if (!turned.empty()) truth_[turned].value = by;
     std::set<int> wrong;
     while (static_cast<int>(wrong.size()) < errors) {
       wrong.insert(random_.integer(0, static_cast<int>(task_.candidates.size()) - 1));
@@ -168,6 +170,9 @@ class SimulatedArm {
     return {wrong.begin(), wrong.end()};
   }
 
+  [[nodiscard]] const Robot& robot() const { return robot_; }
+  [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
+  [[nodiscard]] const Config& config() const { return config_; }
   [[nodiscard]] Found found() const { return find(config_, robot_, samples_); }
   /// Error on other poses, of what was found and of these candidates, metres.
   [[nodiscard]] double error(const Config& config) const {
@@ -283,6 +288,60 @@ TEST(Identify, FindsAZeroThatIsAQuarterTurnOff) {
   EXPECT_NEAR(turn, 1.5708, 1e-4);
   EXPECT_THAT(found.names(), ElementsAre("wrist_2_joint")) << "by 0.02 rad more";
   EXPECT_LT(arm.error(found.config), 2e-4);
+}
+
+/// What would help a calibration.
+std::vector<std::string> helps_of(const Config& config, const Robot& robot,
+                                  std::span<const Sample> samples) {
+  const Calibration calibration = assembled(config, robot, samples);
+  return would_help(config, robot, samples, calibration, calibrate(calibration));
+}
+
+/// A robot with a wrong zero, and a configuration that holds it.
+struct HeldZero {
+  HeldZero() {
+    arm.spoil(0, "wrist_2_joint", 0.02);
+    config = arm.config();
+    std::erase_if(config.steps.front().free_params,
+                  [](const FreeParamConfig& free) { return free.name == "wrist_2_joint"; });
+  }
+  SimulatedArm arm{11};
+  Config config;
+};
+
+TEST(WouldHelp, NamesAHeldZeroAndWhatItBuys) {
+  const HeldZero held;
+  const auto helps = helps_of(held.config, held.arm.robot(), held.arm.samples());
+  ASSERT_FALSE(helps.empty());
+  EXPECT_THAT(helps.front(),
+              testing::MatchesRegex("freeing wrist_2_joint lowers the error on held-out "
+                                    "poses from [0-9.]+ mm to 0\\.1[0-9]+ mm"));
+  EXPECT_THAT(helps_of(held.arm.config(), held.arm.robot(), held.arm.samples()), IsEmpty());
+}
+
+TEST(WouldHelp, CountsErrorsOfSeveralBlocksInTheirNoise) {
+  HeldZero held;
+  std::vector<BlockConfig>& blocks = held.config.steps.front().error_blocks;
+  blocks.push_back(blocks.front());
+  blocks.back().name = "again";
+  const auto helps = helps_of(held.config, held.arm.robot(), held.arm.samples());
+  ASSERT_FALSE(helps.empty());
+  EXPECT_THAT(helps.front(), testing::MatchesRegex("freeing wrist_2_joint .* to 1[.0-9]* x noise"));
+}
+
+TEST(WouldHelp, SaysNothingOfSamplesOfOnePose) {
+  const HeldZero held;
+  std::vector<Sample> same(40, held.arm.samples().front());
+  for (std::size_t i = 0; i < same.size(); ++i) {
+    same[i].joint_positions[0] += 1e-6 * static_cast<double>(i);  // as encoders read them
+  }
+  EXPECT_THAT(helps_of(held.config, held.arm.robot(), same), IsEmpty());
+  Calibration calibration = assembled(held.config, held.arm.robot(), same);
+  const Judgement judgement = calibrate_and_judge(calibration, same).judgement;
+  EXPECT_NE(judgement.verdict, Grade::good);
+  EXPECT_THAT(judgement.reasons,
+              testing::Contains(testing::StartsWith("all samples are of one pose")));
+  EXPECT_THROW((void)find(held.config, held.arm.robot(), same), std::invalid_argument);
 }
 
 TEST(Identify, WritesAConfigurationThatReadsAsTheSame) {

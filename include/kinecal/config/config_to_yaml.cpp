@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
 
+#include "kinecal/config/config_free.ipp"
 #include "kinecal/config/registry.hpp"
 #include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/geometry/rpy.hpp"
@@ -18,8 +18,6 @@ namespace kinecal {
 
 namespace detail {
 namespace {
-
-constexpr std::array<const char*, 6> kAxesOfFrames = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 using Comments = std::map<std::string, std::string>;
 
@@ -34,7 +32,7 @@ using Comments = std::map<std::string, std::string>;
   for (std::size_t i = 0; i < 6; ++i) {
     const auto found = why.find(parameter_name(frame.name, kFrameAxes[i]));
     if (!frame.axes[i] || found == why.end()) continue;
-    text += fmt::format("{}{}: {}", text.empty() ? "  # " : "; ", kAxesOfFrames[i], found->second);
+    text += fmt::format("{}{}: {}", text.empty() ? "  # " : "; ", kConfigAxes[i], found->second);
   }
   return text;
 }
@@ -59,8 +57,7 @@ using Comments = std::map<std::string, std::string>;
   std::string text = " - {name: " + name_to_yaml(name);
   for (std::size_t i = 0; i < 6; ++i) {
     const auto axis = static_cast<Eigen::Index>(i % 3);
-    text +=
-        fmt::format(", {}: {}", kAxesOfFrames[i], number_to_yaml(i < 3 ? xyz(axis) : rpy(axis)));
+    text += fmt::format(", {}: {}", kConfigAxes[i], number_to_yaml(i < 3 ? xyz(axis) : rpy(axis)));
   }
   return text + "}\n";
 }
@@ -89,7 +86,7 @@ using Comments = std::map<std::string, std::string>;
     }
     frames += " - {name: " + name_to_yaml(frame.name);
     for (std::size_t i = 0; i < 6; ++i) {
-      frames += fmt::format(", {}: {}", kAxesOfFrames[i], frame.axes[i]);
+      frames += fmt::format(", {}: {}", kConfigAxes[i], frame.axes[i]);
     }
     frames += "}" + comment_of_axes(why, frame) + "\n";
   }

@@ -25,10 +25,9 @@ namespace detail {
   std::string text = fmt::format("verdict: {}\n", to_string(judgement.verdict));
   for (std::size_t i = 0; i < shown; ++i) text += fmt::format("  - {}\n", judgement.reasons[i]);
   if (shown < all) text += fmt::format("  - and {} more, see --verbose\n", all - shown);
-  for (std::size_t i = 0; i < judgement.helps.size(); ++i) {
-    text += fmt::format(
-        "{}{}{}", i == 0 ? "would help: " : ", ", judgement.helps[i],
-        i + 1 == judgement.helps.size() ? "; kinecal identify searches for more\n" : "");
+  if (!findings.helps.empty()) {
+    text += fmt::format("would help: {}; kinecal identify searches for more\n",
+                        fmt::join(findings.helps, ", "));
   }
   return text;
 }

@@ -20,8 +20,9 @@ struct Findings : JudgedResult {
   std::string robot = {};                          ///< its name
   std::map<std::string, std::string> images = {};  ///< "raw" or "rectified", where it was chosen,
                                                    ///< by camera
-  RecordedPoses poses = {};                        ///< of the samples that were used
-  ProgramCall call = {};                           ///< how the program was called
+  std::vector<std::string> helps = {};  ///< what would lower the error on held-out poses: sentences
+  RecordedPoses poses = {};             ///< of the samples that were used
+  ProgramCall call = {};                ///< how the program was called
 };
 
 /// What is reported of a judged calibration.

@@ -152,7 +152,7 @@ std::string json_report(const Findings& findings) {
       {"inputs", json_list(findings.call.files, file)},
       {"verdict", to_string(findings.judgement.verdict)},
       {"reasons", findings.judgement.reasons},
-      {"would_help", findings.judgement.helps},
+      {"would_help", findings.helps},
       {"next", next_step(findings)},
       {"converged", result.converged},
       {"termination", result.termination},

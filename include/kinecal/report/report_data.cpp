@@ -109,7 +109,7 @@ ReportData report_data(const Calibration& calibration, const Findings& findings,
   data.robot = findings.robot;
   data.verdict = findings.judgement.verdict;
   data.reasons = findings.judgement.reasons;
-  data.helps = findings.judgement.helps;
+  data.helps = findings.helps;
   data.next = next_step(findings);
   data.steps = findings.result.steps;
   data.blocks = detail::reported_blocks(calibration, findings, samples, left_out);

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "kinecal/trust/held_out.hpp"
@@ -38,18 +37,14 @@ class Identification {
     for (const IdentifyCandidate& candidate : candidates) {
       SearchCandidate& of = columns_.emplace_back();
       of.rank = candidate.rank;
-      for (const int p : candidate.parameters) {
-        if (all_.column(p) >= 0) of.columns.push_back(all_.column(p));
-      }
+      for (const int p : candidate.parameters) of.columns.push_back(all_.column(p));
+      const bool has_untouched =
+          std::any_of(of.columns.begin(), of.columns.end(), [](int column) { return column < 0; });
+      if (has_untouched) of.columns.clear();  // no residual depends on it
     }
     largest_.resize(all_.size());
     for (int c = 0; c < all_.size(); ++c) {
-      largest_(c) =
-          plausible_change(*step_.problem, all_.parameters()[static_cast<std::size_t>(c)]).care;
-    }
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (columns_[k].columns.size() != candidates[k].parameters.size())
-        columns_[k].columns.clear();
+      largest_(c) = plausible_change(*step_.problem, index(c)).care;
     }
     // Once: each solve begins where the last one ended.
     for (const auto& [parameter, value] : step_.assignments)
@@ -59,15 +54,16 @@ class Identification {
     sigmas_.resize(static_cast<std::size_t>(step_.problem->num_terms()), 0.0);
   }
 
-  /// The rank of each candidate's columns.
+  /// Their columns, in the order of the candidates.
   [[nodiscard]] const std::vector<SearchCandidate>& candidates() const { return columns_; }
   [[nodiscard]] const std::vector<int>& base() const { return base_; }  ///< columns
   /// The parameter of a column.
   [[nodiscard]] const Parameter& parameter(int column) const {
     return calibration_.table[index(column)];
   }
-  /// Noise of the first error block, in its unit, at the last solution.
+  /// Noise of the first error block at the last solution, and its unit.
   [[nodiscard]] double noise() const { return sigmas_.front(); }
+  [[nodiscard]] std::string noise_unit() const { return step_.problem->term(0).options.unit; }
 
   /// True if no chosen parameter has moved farther than robots are wrong.
   [[nodiscard]] bool is_plausible(const std::vector<int>& chosen) const {
@@ -97,7 +93,7 @@ class Identification {
   CalibrationResult solve(const std::vector<int>& chosen) {
     std::vector<int> free;
     const auto add = [&](const std::vector<int>& columns) {
-      for (const int c : columns) free.push_back(all_.parameters()[static_cast<std::size_t>(c)]);
+      for (const int c : columns) free.push_back(index(c));
     };
     add(base_);
     for (const int k : chosen) add(columns_[static_cast<std::size_t>(k)].columns);
@@ -138,16 +134,25 @@ class Identification {
     Eigen::VectorXd back = Eigen::VectorXd::Zero(n);
     for (const SearchCandidate& candidate : columns_) {
       for (const int c : candidate.columns) {
-        const auto p = static_cast<std::size_t>(all_.parameters()[static_cast<std::size_t>(c)]);
+        const auto p = static_cast<std::size_t>(index(c));
         back(c) = initial_[p] - values_[p];
       }
     }
     fit.residual += fit.jacobian * back;
     fit.prior_gradient += fit.prior_hessian * back;
-    if (sigmas_.size() > 1) return {fit, poses_, largest_, 0.0, 1};
-    const Term& only = step_.problem->term(0);
-    return {fit, poses_, largest_, only.weight, only.feature_size};
+    return {fit, poses_, largest_};
   }
+
+  /// What is found at the last solution, with errors as distances of the error block, or, of several, in units
+  /// of their noise.
+  [[nodiscard]] IdentifyStep written(const SearchStep& step) const {
+    const Term& only = step_.problem->term(0);
+    const double noise = sigmas_.size() > 1 ? 1.0 : std::sqrt(only.feature_size) / only.weight;
+    return {step.candidate,          noise * step.fit.fitted, noise * step.fit.held_out,
+            noise * step.fit.region, step.certainty,          step.alike};
+  }
+  /// The unit of these errors.
+  [[nodiscard]] std::string unit() const { return sigmas_.size() > 1 ? "1" : noise_unit(); }
 
  private:
   [[nodiscard]] int index(int column) const {

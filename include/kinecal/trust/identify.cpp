@@ -3,7 +3,6 @@
 #include "kinecal/trust/identify.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <set>
 #include <stdexcept>
@@ -16,17 +15,13 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-[[nodiscard]] IdentifyStep written(const SearchStep& step) {
-  return {step.candidate,  step.fit.fitted, step.fit.held_out,
-          step.fit.region, step.certainty,  step.alike};
-}
-
 /// Zeros that are a quarter or half turn off, as of servos that were screwed on so: no linearization finds them.
 void find_turns(Identification& search, Identified& found) {
   constexpr double kMetres = 0.01, kPixels = 30.0;  // residuals of less are no such error
   constexpr double kThird = 1.0 / 3.0;
   constexpr int kMost = 3;
-  for (int n = 0; n < kMost && search.noise() > (found.unit == "px" ? kPixels : kMetres); ++n) {
+  for (int n = 0; n < kMost && search.noise() > (search.noise_unit() == "px" ? kPixels : kMetres);
+       ++n) {
     std::pair<int, double> best{-1, 0.0};
     double least = kThird * search.noise();
     for (int k = 0; k < static_cast<int>(search.candidates().size()); ++k) {
@@ -53,10 +48,10 @@ void find_turns(Identification& search, Identified& found) {
   }
 }
 
-Identified run(Identification& search, const std::string& unit) {
+Identified run(Identification& search) {
   constexpr int kLinearizations = 12;
   Identified found;
-  found.unit = unit;
+  found.unit = search.unit();
   found.result = search.solve({});
   if (found.result.converged) find_turns(search, found);
   std::set<std::set<int>> seen;
@@ -85,18 +80,13 @@ Identified run(Identification& search, const std::string& unit) {
   if (!found.result.converged) return found;
   const ParameterSearch linear = search.linearized();
   const std::vector<int> base = linear.independent(search.base());
-  found.steps = {written({.candidate = -1, .fit = linear.fit_of(base)})};
+  found.steps = {
+      search.written({.candidate = -1, .fit = linear.fit_of(base, search.candidates(), {})})};
   for (const SearchStep& step : linear.path(base, search.candidates(), found.chosen)) {
-    found.steps.push_back(written(step));
+    found.steps.push_back(search.written(step));
   }
   return found;
 }
-
-}  // namespace
-}  // namespace detail
-
-namespace detail {
-namespace {
 
 /// @throws std::invalid_argument  if the calibration has not one step, or too few samples
 void check_search(const Calibration& calibration, std::span<const Sample> samples) {
@@ -112,36 +102,35 @@ void check_search(const Calibration& calibration, std::span<const Sample> sample
 }  // namespace
 }  // namespace detail
 
-std::vector<IdentifyStep> most_helpful(Calibration& calibration, std::span<const Sample> samples,
-                                       const std::vector<int>& base,
-                                       const std::vector<IdentifyCandidate>& candidates) {
+Identified most_helpful(Calibration& calibration, std::span<const Sample> samples,
+                        const std::vector<int>& base,
+                        const std::vector<IdentifyCandidate>& candidates) {
   detail::check_search(calibration, samples);
   detail::Identification search(calibration, samples, base, candidates);
   constexpr std::size_t kMost = 2;
-  std::vector<IdentifyStep> steps;
-  std::vector<int> chosen;
-  while (search.solve(chosen).converged) {
+  Identified found;
+  found.unit = search.unit();
+  for (;;) {
+    found.result = search.solve(found.chosen);
+    if (!found.result.converged) return found;
     const ParameterSearch linear = search.linearized();
     const std::vector<int> columns = linear.independent(search.base());
-    const std::vector<SearchStep> path = linear.path(columns, search.candidates(), chosen);
-    if (path.empty()) {
-      steps.push_back(detail::written({.candidate = -1, .fit = linear.fit_of(columns)}));
-    } else {
-      const auto last = std::find_if(path.begin(), path.end(), [&](const SearchStep& step) {
-        return step.candidate == chosen.back();
-      });
-      IdentifyStep& step = steps.emplace_back(detail::written(*last));
-      const SearchFit all = path.back().fit;  // with what was found before it
-      step.fitted = all.fitted;
-      step.held_out = all.held_out;
-      step.region = all.region;
+    if (found.chosen.size() < kMost &&
+        linear.free_one(columns, search.candidates(), found.chosen)) {
+      int& last = found.chosen.back();
+      last = linear.simplest(columns, search.candidates(), found.chosen, last);
+      continue;
     }
-    if (chosen.size() == kMost) return steps;
-    linear.free_one(columns, search.candidates(), chosen);
-    linear.name_simply(columns, search.candidates(), chosen);
-    if (chosen.size() + 1 == steps.size()) return steps;
+    // All at the last solution: there, noise is that of what was found.
+    for (std::size_t n = 0; n <= found.chosen.size(); ++n) {
+      const std::vector<int> first(found.chosen.begin(),
+                                   found.chosen.begin() + static_cast<std::ptrdiff_t>(n));
+      SearchStep step{.candidate = n == 0 ? -1 : first.back()};
+      step.fit = linear.fit_of(columns, search.candidates(), first);
+      found.steps.push_back(search.written(step));
+    }
+    return found;
   }
-  return steps;
 }
 
 Identified identify(Calibration& calibration, std::span<const Sample> samples,
@@ -149,8 +138,7 @@ Identified identify(Calibration& calibration, std::span<const Sample> samples,
                     const std::vector<IdentifyCandidate>& candidates) {
   detail::check_search(calibration, samples);
   detail::Identification search(calibration, samples, base, candidates);
-  const AnyProblem& problem = *calibration.steps.front().problem;
-  return detail::run(search, problem.num_terms() == 1 ? problem.term(0).options.unit : "1");
+  return detail::run(search);
 }
 
 }  // namespace kinecal

@@ -42,23 +42,23 @@ struct Identified {
   std::vector<std::pair<int, double>> turned;
   std::vector<IdentifyStep> steps;  ///< the first one is the base alone
   CalibrationResult result;         ///< with the chosen parameters free
-  std::string unit;                 ///< of the first error block
+  std::string unit;  ///< of the errors: that of the error block; "1": there are several
 };
 
-/// The one or two held candidates that lower the error on held-out poses most, each tested by another solve.
+/// The one or two held candidates that lower the error on held-out poses most, tested by another solve.  Without
+/// steps if it fails.
 /// @param calibration  of one step, whose problem has all parameters, at its solution; it changes
 /// @param base         table indices of the parameters that are free
-/// @returns  the first one is the base alone; only that if none helps
 /// @throws std::invalid_argument  as identify()
-[[nodiscard]] std::vector<IdentifyStep> most_helpful(
-    Calibration& calibration, std::span<const Sample> samples, const std::vector<int>& base,
-    const std::vector<IdentifyCandidate>& candidates);
+[[nodiscard]] Identified most_helpful(Calibration& calibration, std::span<const Sample> samples,
+                                      const std::vector<int>& base,
+                                      const std::vector<IdentifyCandidate>& candidates);
 
 /// Searches for the parameters that samples support.
 /// @param calibration  of one step, whose problem has all parameters; its free set, sigmas and values change
 /// @param samples      those of the problem, in their order
 /// @param base         table indices that are always free
-/// @throws std::invalid_argument  if the calibration has not one step, or too few samples
+/// @throws std::invalid_argument  if the calibration has not one step, or samples of too few poses
 [[nodiscard]] Identified identify(Calibration& calibration, std::span<const Sample> samples,
                                   const std::vector<int>& base,
                                   const std::vector<IdentifyCandidate>& candidates);

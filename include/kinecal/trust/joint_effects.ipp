@@ -49,7 +49,7 @@ namespace kinecal::detail {
         if (sample.joint_names[j] == name) sample.joint_positions[j] += kStep * repeats;
       }
     };
-    effects.col(column) = sample_slopes(problem, values, samples, free, fit, move, kStep);
+    effects.col(column) = sample_slopes({problem, free, fit, values, samples}, move, kStep);
     ++column;
   }
   return effects;

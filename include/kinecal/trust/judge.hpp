@@ -54,10 +54,9 @@ enum class Grade { good, use_with_care, do_not_use };
 /// A verdict and its reasons.
 struct Judgement {
   Grade verdict = Grade::good;
-  std::vector<std::string> reasons;     ///< causes, then the worst first; sentences with figures
-  bool wants_samples = false;           ///< more samples would help
-  int causes = 0;                       ///< how many of the reasons are causes of the others
-  std::vector<std::string> helps = {};  ///< what would lower the error on held-out poses; sentences
+  std::vector<std::string> reasons;  ///< causes, then the worst first; sentences with figures
+  bool wants_samples = false;        ///< more samples would help
+  int causes = 0;                    ///< how many of the reasons are causes of the others
 
   /// Adds a reason.
   void add(Grade grade, const std::string& reason) {

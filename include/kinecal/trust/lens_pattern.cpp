@@ -70,7 +70,11 @@ class CameraPixels {
   [[nodiscard]] TakenLens taken() const {
     const auto is_set = [](double number) { return number != 0.0; };
     const std::vector<double> settings = mounted_.sensor().settings(*first_);
-    if (std::any_of(settings.begin() + 4, settings.end(), is_set)) return TakenLens::given;
+    constexpr std::ptrdiff_t kPinhole = 4;
+    if (std::ssize(settings) > kPinhole &&
+        std::any_of(settings.begin() + kPinhole, settings.end(), is_set)) {
+      return TakenLens::given;
+    }
     if (!first_->camera) return TakenLens::none;
     const std::vector<double>& d = first_->camera->d;
     return std::any_of(d.begin(), d.end(), is_set) ? TakenLens::rectified : TakenLens::none;
@@ -100,33 +104,31 @@ class CameraPixels {
   const Observation* first_ = nullptr;
 };
 
-/// A fit and the samples that it is of.
+/// A fit, the samples that it is of, and their poses.
 struct LensSearch {
-  const AnyProblem& problem;
-  const FreeSet& free;
-  const LinearFit& fit;
-  ParameterValues values;
-  std::span<const Sample> samples;
+  FittedSamples fitted;
   const PoseGroups& poses;
 
   /// (rows) derivatives of weighted residuals by the size of a shift, pixels.
   [[nodiscard]] Eigen::VectorXd slope(const CameraPixels& camera, Shift shift) const {
     constexpr double kStep = 1e-3;  // pixels
     const auto move = [&](Sample& sample) { camera.move(sample, shift, kStep); };
-    return sample_slopes(problem, values, samples, free, fit, move, kStep);
+    return sample_slopes(fitted, move, kStep);
   }
 
   /// What the lens of a camera explains; nullopt if it could be chance, or does not matter.
   [[nodiscard]] std::optional<LensPattern> lens_of(const CameraPixels& camera,
                                                    double chance) const {
     constexpr double kLeft = 0.95, kPixels = 0.5;
+    const LinearFit& fit = fitted.fit;
+    const auto samples = std::ssize(fitted.samples);
     Eigen::MatrixXd slopes(fit.residual.size(), 1 + std::ssize(kOtherShifts));
     slopes.col(0) = slope(camera, lens_shift);
     const Eigen::ArrayXd squares = fit.loss.array() * fit.residual.array().square();
     const double own = (slopes.col(0).array() != 0.0).select(squares, 0.0).sum();
     const Eigen::MatrixXd inverse = Spectrum(information(fit, fit.loss)).pseudo_inverse();
-    const Fall fall = ErrorColumns(fit, slopes.col(0), std::ssize(samples))
-                          .fall(Eigen::MatrixXd::Ones(std::ssize(samples), 1), inverse);
+    const Fall fall =
+        ErrorColumns(fit, slopes.col(0), samples).fall(Eigen::MatrixXd::Ones(samples, 1), inverse);
     const double left = std::max(0.0, own - fall.squares), farther = -fall.change(0);
     if (!(own > 0.0) || left > kLeft * kLeft * own || !(std::abs(farther) > kPixels)) return {};
     for (std::size_t i = 0; i < kOtherShifts.size(); ++i) {
@@ -155,7 +157,7 @@ std::optional<LensPattern> lens_pattern(const AnyProblem& problem, const FreeSet
   constexpr double kChance = 1e-3;
   std::optional<LensPattern> best;
   if (detail::is_exact(problem, fit)) return best;
-  const detail::LensSearch search{problem, free, fit, values, samples, poses};
+  const detail::LensSearch search{{problem, free, fit, values, samples}, poses};
   const double each = kChance / static_cast<double>(problem.sensors().size());
   for (const MountedSensor& mounted : problem.sensors()) {
     if (!mounted.sensor().is_camera() || measures_depth(mounted.sensor())) continue;

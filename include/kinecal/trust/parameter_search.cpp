@@ -39,8 +39,8 @@ constexpr double kOwnShare = 1e-4;
 }  // namespace detail
 
 ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
-                                 Eigen::VectorXd largest, double unit, int components)
-    : largest_(std::move(largest)) {
+                                 Eigen::VectorXd largest)
+    : largest_(std::move(largest)), weight_(fit.loss.sum()) {
   const Eigen::VectorXd root = fit.loss.cwiseSqrt();
   jacobian_ = root.asDiagonal() * fit.jacobian;
   residual_ = root.cwiseProduct(fit.residual);
@@ -51,7 +51,6 @@ ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
   pose_.resize(rows);
   fold_.resize(rows);
   if (!poses.region.empty()) region_.resize(rows);
-  distance_ = Eigen::VectorXd::Zero(residual_.size());
   for (const RowBlock& block : fit.blocks) {
     const auto sample = static_cast<std::size_t>(block.sample);
     for (Eigen::Index row = block.first; row < block.first + block.size; ++row) {
@@ -60,10 +59,8 @@ ParameterSearch::ParameterSearch(const LinearFit& fit, const SearchPoses& poses,
       fold_[r] = poses.fold[sample];
       if (!region_.empty()) region_[r] = poses.region[sample];
       poses_ = std::max(poses_, pose_[r] + 1);
-      distance_(row) = unit > 0.0 ? 1.0 / unit : 1.0;
     }
   }
-  features_ = (distance_.array() > 0.0).select(fit.loss, 0.0).sum() / components;
 }
 
 std::vector<int> ParameterSearch::independent(const std::vector<int>& columns) const {
@@ -108,14 +105,13 @@ bool ParameterSearch::is_plausible(const Whole& whole, std::size_t from) const {
 }
 
 Eigen::VectorXd ParameterSearch::predicted(const std::vector<int>& columns,
-                                           const std::vector<int>& part, double* distance) const {
+                                           const std::vector<int>& part) const {
   const int parts = *std::max_element(part.begin(), part.end()) + 1;
   std::vector<std::vector<Eigen::Index>> rows(static_cast<std::size_t>(parts));
   for (std::size_t row = 0; row < part.size(); ++row) {
     rows[static_cast<std::size_t>(part[row])].push_back(static_cast<Eigen::Index>(row));
   }
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(poses_);
-  double sum = 0.0;
   const Eigen::MatrixXd squared = squared_(columns, columns);
   const Eigen::VectorXd gradient = gradient_(columns), scale = scale_(columns);
   for (const std::vector<Eigen::Index>& out : rows) {
@@ -129,26 +125,11 @@ Eigen::VectorXd ParameterSearch::predicted(const std::vector<int>& columns,
       left -= jacobian * (inverse * (gradient - jacobian.transpose() * left));
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
-      const double value = left(static_cast<Eigen::Index>(i)), metres = value * distance_(out[i]);
+      const double value = left(static_cast<Eigen::Index>(i));
       squares(pose_[static_cast<std::size_t>(out[i])]) += value * value;
-      sum += metres * metres;
     }
   }
-  if (distance != nullptr) *distance = sum;
   return squares;
-}
-
-SearchFit ParameterSearch::fit_of(const std::vector<int>& columns) const {
-  const auto root = [&](double squares) { return std::sqrt(squares / std::max(features_, 1.0)); };
-  constexpr double kUndetermined = std::numeric_limits<double>::infinity();
-  const Whole whole = whole_fit(columns);
-  SearchFit fit{root(whole.residual.cwiseProduct(distance_).squaredNorm()), kUndetermined, 0.0};
-  double squares = 0.0;
-  if (predicted(columns, fold_, &squares).size() > 0) fit.held_out = root(squares);
-  if (!region_.empty()) {
-    fit.region = predicted(columns, region_, &squares).size() > 0 ? root(squares) : kUndetermined;
-  }
-  return fit;
 }
 
 double ParameterSearch::certainty(const Eigen::VectorXd& before,
@@ -163,12 +144,10 @@ double ParameterSearch::certainty(const Eigen::VectorXd& before,
 
 double ParameterSearch::certainty_of(const std::vector<int>& with,
                                      const std::vector<int>& without) const {
-  const double sure =
-      certainty(predicted(without, fold_, nullptr), predicted(with, fold_, nullptr));
+  const double sure = certainty(predicted(without, fold_), predicted(with, fold_));
   if (region_.empty() || !(sure > kSure)) return sure;
   constexpr double kNotWorse = -1.0;  // what helps inside the poses must not harm beyond them
-  const double beyond =
-      certainty(predicted(without, region_, nullptr), predicted(with, region_, nullptr));
+  const double beyond = certainty(predicted(without, region_), predicted(with, region_));
   return beyond > kNotWorse ? sure : beyond;
 }
 

@@ -1,7 +1,7 @@
 // Which parameters samples support: a search over subsets, at one linearization.
 //
 // All candidates are columns of one linearized problem, so a fit with any subset of them, and its error on
-// poses held out, is linear algebra.  Forward steps free what lowers the error on held-out poses most surely;
+// poses held out, is linear algebra.  Forward steps free what explains most, if the error on held-out poses falls;
 // backward steps hold again what later ones have made superfluous.
 // Source: Hastie, Tibshirani, Friedman, The Elements of Statistical Learning, 3.3 and 7.10.
 // SPDX-License-Identifier: Apache-2.0
@@ -21,12 +21,11 @@ struct SearchCandidate {
       0;  ///< of candidates that explain the same, the lowest is taken: what an engineer names first
 };
 
-/// How well a subset predicts; residuals in the unit of the error block, or of their noise.
+/// How well a subset predicts: weighted residuals, root of the mean square of a component.
 struct SearchFit {
-  double fitted = 0.0;  ///< root of the mean squared distance
-  double held_out =
-      0.0;  ///< the same, of poses held out; infinite if a fold leaves something undetermined
-  double region = 0.0;  ///< the same, of regions held out; 0: there are none
+  double fitted = 0.0;    ///< of all poses
+  double held_out = 0.0;  ///< of poses held out; infinite if a fold leaves something undetermined
+  double region = 0.0;    ///< of regions held out; 0: there are none
 };
 
 /// A parameter that was found, in the order of what they explain.
@@ -53,18 +52,16 @@ class ParameterSearch {
   /// @param fit      linearized by all columns, as plain parameters
   /// @param poses    of the samples of the problem
   /// @param largest  (columns) plausible change of each parameter
-  /// @param unit     weight of the only error block: its rows are distances times this; 0: there are several, and
-  ///                 distances are in units of their noise
-  /// @param components  rows of one of its features
-  ParameterSearch(const LinearFit& fit, const SearchPoses& poses, Eigen::VectorXd largest,
-                  double unit, int components);
+  ParameterSearch(const LinearFit& fit, const SearchPoses& poses, Eigen::VectorXd largest);
 
   /// Columns without those that are combinations of others before them.
   [[nodiscard]] std::vector<int> independent(const std::vector<int>& columns) const;
 
   /// How well a subset predicts.
-  /// @param columns  that are free, independent
-  [[nodiscard]] SearchFit fit_of(const std::vector<int>& columns) const;
+  /// @param base    columns that are always free, independent
+  /// @param chosen  candidates
+  [[nodiscard]] SearchFit fit_of(const std::vector<int>& base, const Candidates& candidates,
+                                 const std::vector<int>& chosen) const;
 
   /// Searches until no step helps, or until steps change so much that the problem should be linearized again.
   /// @param base    columns that are always free, independent
@@ -76,9 +73,9 @@ class ParameterSearch {
   /// @returns  whether there is one
   bool free_one(const std::vector<int>& base, const Candidates& candidates,
                 std::vector<int>& chosen) const;
-  /// Takes the candidate of the lowest rank among those that do as well.
-  void name_simply(const std::vector<int>& base, const Candidates& candidates,
-                   std::vector<int>& chosen) const;
+  /// The candidate of the lowest rank among those that do as well in place of one of the chosen, or that one.
+  [[nodiscard]] int simplest(const std::vector<int>& base, const Candidates& candidates,
+                             const std::vector<int>& chosen, int k) const;
 
   /// What each of the chosen candidates buys.
   [[nodiscard]] std::vector<SearchStep> path(const std::vector<int>& base,
@@ -121,7 +118,7 @@ class ParameterSearch {
   [[nodiscard]] bool is_plausible(const Whole& whole, std::size_t from) const;
   /// (poses) sum of squared weighted residuals, each pose predicted without its part; empty if undetermined.
   [[nodiscard]] Eigen::VectorXd predicted(const std::vector<int>& columns,
-                                          const std::vector<int>& part, double* distance) const;
+                                          const std::vector<int>& part) const;
   /// Fall of held-out errors in standard errors.
   [[nodiscard]] double certainty(const Eigen::VectorXd& before, const Eigen::VectorXd& after) const;
   /// Fall of the error on held-out poses by some columns, in its standard errors; the smaller one of poses and regions,
@@ -152,8 +149,7 @@ class ParameterSearch {
   Eigen::VectorXd scale_;                  ///< (columns) lengths
   Eigen::VectorXd largest_;                ///< (columns)
   std::vector<int> pose_, fold_, region_;  ///< of each row
-  Eigen::VectorXd distance_;  ///< (rows) factor to the unit of the first block; 0: another block
-  double features_ = 0.0;     ///< of the first block, weighted
+  double weight_ = 0.0;                    ///< of all rows
   int poses_ = 0;
 };
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -75,15 +77,14 @@ std::vector<int> ParameterSearch::saturated(const std::vector<int>& base,
   return chosen;
 }
 
-void ParameterSearch::name_simply(const std::vector<int>& base, const Candidates& candidates,
-                                  std::vector<int>& chosen) const {
-  for (int& k : chosen) {
-    const Whole without = whole_fit(detail::columns_of(base, candidates, chosen, k));
-    for (const int other : like(without, candidates, chosen, k)) {
-      const auto rank = [&](int c) { return candidates[static_cast<std::size_t>(c)].rank; };
-      if (rank(other) < rank(k)) k = other;
-    }
+int ParameterSearch::simplest(const std::vector<int>& base, const Candidates& candidates,
+                              const std::vector<int>& chosen, int k) const {
+  const auto rank = [&](int c) { return candidates[static_cast<std::size_t>(c)].rank; };
+  const Whole without = whole_fit(detail::columns_of(base, candidates, chosen, k));
+  for (const int other : like(without, candidates, chosen, k)) {
+    if (rank(other) < rank(k)) k = other;
   }
+  return k;
 }
 
 std::vector<int> ParameterSearch::like(const Whole& without, const Candidates& candidates,
@@ -146,7 +147,18 @@ void ParameterSearch::run(const std::vector<int>& base, const Candidates& candid
     chosen = std::move(best);
     if (whole_fit(columns(chosen)).squares < kFar * begin) return;
   }
-  name_simply(base, candidates, chosen);
+  for (int& k : chosen) k = simplest(base, candidates, chosen, k);
+}
+
+SearchFit ParameterSearch::fit_of(const std::vector<int>& base, const Candidates& candidates,
+                                  const std::vector<int>& chosen) const {
+  const std::vector<int> columns = detail::columns_of(base, candidates, chosen);
+  const auto root = [&](const Eigen::VectorXd& squares) {
+    return squares.size() > 0 ? std::sqrt(squares.sum() / weight_)
+                              : std::numeric_limits<double>::infinity();
+  };
+  return {std::sqrt(whole_fit(columns).squares / weight_), root(predicted(columns, fold_)),
+          region_.empty() ? 0.0 : root(predicted(columns, region_))};
 }
 
 std::vector<SearchStep> ParameterSearch::path(const std::vector<int>& base,
@@ -164,12 +176,10 @@ std::vector<SearchStep> ParameterSearch::path(const std::vector<int>& base,
     SearchStep step{.candidate = *next};
     left.erase(next);
     free.push_back(step.candidate);
-    const std::vector<int> after = detail::columns_of(base, candidates, free);
-    step.fit = fit_of(after);
-    step.certainty = certainty_of(detail::columns_of(base, candidates, chosen),
-                                  detail::columns_of(base, candidates, chosen, step.candidate));
-    step.alike = like(whole_fit(detail::columns_of(base, candidates, chosen, step.candidate)),
-                      candidates, chosen, step.candidate);
+    const std::vector<int> without = detail::columns_of(base, candidates, chosen, step.candidate);
+    step.fit = fit_of(base, candidates, free);
+    step.certainty = certainty_of(detail::columns_of(base, candidates, chosen), without);
+    step.alike = like(whole_fit(without), candidates, chosen, step.candidate);
     steps.push_back(std::move(step));
   }
   return steps;

@@ -38,15 +38,6 @@ constexpr ErrorCourse kJointCourses[] = {ErrorCourse::zero, ErrorCourse::gear, E
   return std::abs(pattern.size) <= (pattern.turns ? kTurn : kMove);
 }
 
-/// A fit and the samples that it is of.
-struct FittedSamples {
-  const AnyProblem& problem;
-  const FreeSet& free;
-  const LinearFit& fit;
-  ParameterValues values;
-  std::span<const Sample> samples;
-};
-
 /// The search over all patterns.
 class PatternSearch {
  public:
@@ -124,8 +115,7 @@ class PatternSearch {
         for (Feature& feature : seen.features) feature.point(axis) *= 1.0 + kStep;
       }
     };
-    const Eigen::VectorXd slope = sample_slopes(fitted_.problem, fitted_.values, fitted_.samples,
-                                                fitted_.free, fitted_.fit, longer, kStep);
+    const Eigen::VectorXd slope = sample_slopes(fitted_, longer, kStep);
     if (slope.isZero(0.0)) return;
     const Fall fall = constant(slope);
     ResidualPattern pattern{.owner = sensor, .course = ErrorCourse::axis, .axis = axis};

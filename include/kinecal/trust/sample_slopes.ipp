@@ -11,18 +11,22 @@
 
 namespace kinecal::detail {
 
+/// A fit and the samples that it is of.
+struct FittedSamples {
+  const AnyProblem& problem;
+  const FreeSet& free;
+  const LinearFit& fit;
+  ParameterValues values;
+  std::span<const Sample> samples;
+};
+
 /// (rows) derivatives of weighted residuals, by a forward difference; zero if some are undefined.
-/// @param values   of all parameters of the table
-/// @param samples  those of the problem, in their order
-/// @param fit      the rows of these samples
 /// @param move     changes a sample a little
 /// @param step     what the difference is divided by
-[[nodiscard]] inline Eigen::VectorXd sample_slopes(const AnyProblem& problem,
-                                                   ParameterValues values,
-                                                   std::span<const Sample> samples,
-                                                   const FreeSet& free, const LinearFit& fit,
+[[nodiscard]] inline Eigen::VectorXd sample_slopes(const FittedSamples& fitted,
                                                    const std::function<void(Sample&)>& move,
                                                    double step) {
+  const auto& [problem, free, fit, values, samples] = fitted;
   const std::unique_ptr<AnyProblem> moved = problem.without_samples();
   try {
     for (Sample sample : samples) {

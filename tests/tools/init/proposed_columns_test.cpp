@@ -41,9 +41,9 @@ TEST(ProposedColumns, AreJointsByTheirNamesInTheUrdf) {
       "pos,wrist_2_joint_position,"
       "wrist_2_joint_velocity,x,y,z\n1,6,1,2,3,4,5,9,1,2,3\n2,6,1,2,3,4,5,9,1,2,3\n");
   EXPECT_THAT(text, AllOf(HasSubstr("shoulder_pan_joint: shoulder_pan_joint\n"),
-                          HasSubstr("shoulder_lift_joint: 'position.shoulder_lift_joint'\n"),
-                          HasSubstr("elbow_joint: 'Elbow [rad]'\n"),
-                          HasSubstr("wrist_1_joint: 'wrist 1 pos'\n"),
+                          HasSubstr("shoulder_lift_joint: position.shoulder_lift_joint\n"),
+                          HasSubstr("elbow_joint: \"Elbow [rad]\"\n"),
+                          HasSubstr("wrist_1_joint: \"wrist 1 pos\"\n"),
                           HasSubstr("wrist_2_joint: wrist_2_joint_position\n"),
                           HasSubstr("wrist_3_joint: wrist_3_joint\n")));
   EXPECT_THAT(text, HasSubstr("# Not used: time, wrist_2_joint_velocity\n"));
@@ -58,7 +58,7 @@ TEST(ProposedColumns, AreJointsByNumbersOfAnArm) {
     const std::string first = std::string(header).substr(0, std::string(header).find(','));
     EXPECT_THAT(text, HasSubstr("shoulder_pan_joint: " + first + "\n"));
     EXPECT_THAT(text, AllOf(HasSubstr("unit: radians  # by its values, up to 0.6\n"),
-                            HasSubstr("- [x, 'y', z]")));
+                            HasSubstr("- [x, \"y\", z]")));
   }
   EXPECT_THAT(
       refusal_of("q1,q2,q3,x,y,z\n1,2,3,1,2,3\n1,2,3,1,2,3\n"),

@@ -11,10 +11,10 @@
 
 namespace kinecal::detail {
 
-/// At most 100 samples: enough to see what fits.
-[[nodiscard]] inline std::vector<Sample> some_of(std::span<const Sample> samples) {
-  constexpr std::size_t kMost = 100;
-  const std::size_t step = (samples.size() + kMost - 1) / kMost;
+/// At most so many samples; 100 are enough to see what fits.
+[[nodiscard]] inline std::vector<Sample> some_of(std::span<const Sample> samples,
+                                                 std::size_t most = 100) {
+  const std::size_t step = (samples.size() + most - 1) / most;
   std::vector<Sample> some;
   for (std::size_t i = 0; i < samples.size(); i += std::max<std::size_t>(step, 1)) {
     some.push_back(samples[i]);

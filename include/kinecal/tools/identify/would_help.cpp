@@ -3,12 +3,12 @@
 #include "kinecal/tools/identify/would_help.hpp"
 
 #include <algorithm>
-#include <set>
-#include <utility>
 
 #include "kinecal/config/assemble.hpp"
+#include "kinecal/config/doubts/some_samples.ipp"
 #include "kinecal/text/reading.hpp"
 #include "kinecal/tools/identify/identified_config.hpp"
+#include "kinecal/trust/pose_groups.hpp"
 
 namespace kinecal {
 
@@ -32,12 +32,15 @@ namespace {
 std::vector<std::string> would_help(const Config& config, const Robot& robot,
                                     std::span<const Sample> samples, const Calibration& calibration,
                                     const CalibrationResult& result) {
-  constexpr std::size_t kFewest = 10, kMost = 20000;  // samples
+  constexpr std::size_t kFewest = 10, kMost = 2000;  // samples
   const bool fits = result.converged && config.steps.size() == 1 && calibration.steps.size() == 1;
-  if (!fits || samples.size() < kFewest || samples.size() > kMost) return {};
+  if (!fits || samples.size() < kFewest) return {};
+  const std::vector<Sample> some = detail::some_of(samples, kMost);
   Diagnostics ignored;
-  Calibration wide = assemble(with_all_candidates(config, robot), robot, samples, ignored);
+  Calibration wide = assemble(with_all_candidates(config, robot), robot, some, ignored);
   if (!ignored.errors.empty() || wide.steps.size() != 1) return {};
+  const AnyProblem& problem = *wide.steps.front().problem;
+  if (are_one_pose(problem, some)) return {};  // the verdict says so
   for (const Parameter& p : result.table) {
     const int index = wide.table.find(p.name);
     if (index >= 0) wide.table[index].value = p.value;
@@ -45,24 +48,25 @@ std::vector<std::string> would_help(const Config& config, const Robot& robot,
   wide.steps.front().unknown_frames.clear();  // they are known by now
   wide.steps.front().assignments.clear();
   const std::vector<int> base = detail::free_in(wide.table, calibration);
-  std::vector<IdentifyCandidate> candidates =
-      identify_task(config, *wide.steps.front().problem).candidates;
+  const auto is_free = [&](int p) { return std::find(base.begin(), base.end(), p) != base.end(); };
+  std::vector<IdentifyCandidate> candidates = identify_task(config, problem).candidates;
   std::erase_if(candidates, [&](const IdentifyCandidate& candidate) {
-    return std::any_of(candidate.parameters.begin(), candidate.parameters.end(),
-                       [&](int p) { return std::find(base.begin(), base.end(), p) != base.end(); });
+    return std::any_of(candidate.parameters.begin(), candidate.parameters.end(), is_free);
   });
-  std::vector<std::string> sentences;
-  const std::vector<IdentifyStep> steps = most_helpful(wide, samples, base, candidates);
-  const std::string unit = wide.steps.front().problem->term(0).options.unit;
+  const Identified found = most_helpful(wide, some, base, candidates);
+  const auto error = [&](std::size_t step) {
+    return reading(found.steps[step].held_out, found.unit) +
+           (problem.num_terms() > 1 ? " x noise" : "");
+  };
   constexpr double kMuch = 0.9;
-  for (std::size_t i = 1; i < steps.size() && steps[i].held_out < kMuch * steps[i - 1].held_out;
+  std::vector<std::string> sentences;
+  for (std::size_t i = 1;
+       i < found.steps.size() && found.steps[i].held_out < kMuch * found.steps[i - 1].held_out;
        ++i) {
-    sentences.push_back(
-        (i == 1 ? "freeing " : "and with it ") +
-        candidates[static_cast<std::size_t>(steps[i].candidate)].name +
-        (i == 1 ? " lowers the error on held-out poses from " + reading(steps[0].held_out, unit)
-                : "") +
-        " to " + reading(steps[i].held_out, unit));
+    const std::string& name = candidates[static_cast<std::size_t>(found.chosen[i - 1])].name;
+    sentences.push_back(i == 1 ? "freeing " + name + " lowers the error on held-out poses from " +
+                                     error(0) + " to " + error(1)
+                               : "and with it " + name + " to " + error(i));
   }
   return sentences;
 }

@@ -13,8 +13,9 @@
 
 namespace kinecal {
 
-/// Sentences, at most two: "freeing 'elbow_joint_x' lowers the error on held-out poses from 0.56 mm to 0.31 mm".  Each is
-/// tested by another solve.  Empty if nothing lowers it by a tenth, or for several steps.
+/// Sentences, at most two: "freeing elbow_joint_x lowers the error on held-out poses from 0.56 mm to 0.31 mm", "and with
+/// it ...".  Each is tested by another solve, of at most 2000 samples.  Empty if nothing lowers it by a tenth, for several
+/// steps, and for samples of one pose.
 /// @param config       of the calibration
 /// @param samples      that were used
 /// @param calibration  whose free parameters stay free

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinecal/tools/init/proposed_columns.hpp"
 
-#include <array>
 #include <map>
 #include <set>
 
+#include "kinecal/files/yaml/yaml_text.hpp"
 #include "kinecal/kinematics/chain.hpp"
 #include "kinecal/tools/init/proposed_joints.ipp"
 #include "kinecal/tools/init/proposed_points.ipp"
@@ -17,25 +17,13 @@ namespace kinecal {
 namespace detail {
 namespace {
 
-/// A column as columns.yaml names it.
+/// A column as columns.yaml names it: by its number, if its name does not tell it from others.
 [[nodiscard]] std::string column_name(const ReadTable& table, int c) {
   const std::string& name = table.columns[static_cast<std::size_t>(c)].name;
   const auto same = [&](const TableColumn& other) { return other.name == name; };
-  const bool printed = std::all_of(name.begin(), name.end(), [](char ch) {
-    return static_cast<unsigned char>(ch) >= 0x20 && ch != 0x7f;
-  });
-  if (name.empty() || !printed || !table.header ||
-      std::count_if(table.columns.begin(), table.columns.end(), same) > 1) {
-    return fmt::format("{}", c + 1);
-  }
-  const bool plain = std::isalpha(static_cast<unsigned char>(name.front())) != 0 &&
-                     std::all_of(name.begin(), name.end(), [](char ch) {
-                       return std::isalnum(static_cast<unsigned char>(ch)) != 0 || ch == '_';
-                     });
-  if (plain && name != "y" && name != "n") return name;  // YAML 1.1: true and false
-  std::string text = "'";
-  for (const char ch : name) text += ch == '\'' ? std::string("''") : std::string(1, ch);
-  return text + "'";
+  const auto count = std::count_if(table.columns.begin(), table.columns.end(), same);
+  const bool is_clear = table.header && !name.empty() && count == 1;
+  return is_clear ? name_to_yaml(name) : fmt::format("{}", c + 1);
 }
 
 [[nodiscard]] double largest(const ReadTable& table, const std::vector<int>& columns) {
@@ -65,7 +53,7 @@ namespace {
   for (const auto& [joint, column] : joints) {
     if (turns(robot.joint(joint).type) != turning) continue;
     columns.push_back(column);
-    text += fmt::format("    {}: {}\n", joint, column_name(table, column));
+    text += fmt::format("    {}: {}\n", name_to_yaml(joint), column_name(table, column));
   }
   if (columns.empty()) return "";
   constexpr double kMostRadians = 7.0, kMostMetres = 10.0;

@@ -78,7 +78,7 @@ namespace kinecal::detail {
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     std::vector<std::string> words = table.columns[c].words;
     if (words.size() < 2 || words.back().size() > 2 || !table.columns[c].is_number) continue;
-    const auto number = cell_number(words.back());
+    const auto number = csv_number(words.back());
     words.pop_back();
     const std::string name = fmt::format("{}", fmt::join(words, "_"));
     if (number && names.contains(name))

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "kinecal/files/csv/csv_columns.ipp"
 #include "kinecal/files/csv/csv_table.hpp"
 
 namespace kinecal::detail {
@@ -41,15 +41,6 @@ struct ReadTable {
   std::vector<TableColumn> columns;
 };
 
-[[nodiscard]] inline std::optional<double> cell_number(std::string_view cell) {
-  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '+')) cell.remove_prefix(1);
-  while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
-  double value = 0.0;
-  const auto [end, failed] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (failed != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
-  return value;
-}
-
 /// "Shoulder_Pan_joint [deg]" -> shoulder pan joint deg; "q10" -> q 10.
 [[nodiscard]] inline std::vector<std::string> words_of(std::string_view name) {
   std::vector<std::string> words;
@@ -69,9 +60,11 @@ struct ReadTable {
   return words;
 }
 
-/// Takes the unit off a name's words.
+/// Takes the unit off the words of a name.
+/// @param place  "table.csv: column 'x [cm]'"
 /// @throws InputError  if it is one that columns.yaml does not have
-[[nodiscard]] inline NamedUnit take_unit(std::vector<std::string>& words, const std::string& name) {
+[[nodiscard]] inline NamedUnit take_unit(std::vector<std::string>& words,
+                                         const std::string& place) {
   constexpr std::pair<std::string_view, NamedUnit> kUnits[] = {
       {"deg", NamedUnit::degrees},
       {"degree", NamedUnit::degrees},
@@ -91,9 +84,9 @@ struct ReadTable {
        {"cm", "dm", "um", "in", "inch", "inches", "ft", "grad", "gon", "mrad", "turns", "rev"}) {
     if (words.back() == other) {
       throw InputError(
-          fmt::format("column '{}' looks like one in {}; kinecal reads metres, millimetres, "
+          fmt::format("{} looks like one in {}; kinecal reads metres, millimetres, "
                       "radians and degrees: convert it",
-                      name, other));
+                      place, other));
     }
   }
   for (const auto& [word, unit] : kUnits) {
@@ -120,7 +113,7 @@ struct ReadTable {
     const auto numbers =
         static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [&](std::string cell) {
           if (separator != ',') std::replace(cell.begin(), cell.end(), ',', '.');
-          return cell_number(cell).has_value();
+          return csv_number(cell).has_value();
         }));
     if (numbers <= most) continue;
     most = numbers;
@@ -138,16 +131,15 @@ struct ReadTable {
   diagnostics.throw_if_errors();
   if (rows.size() < 2) throw InputError(file + ": is not a table: it has fewer than two rows");
   const std::vector<std::string>& first = rows.front().cells;
-  table.header = std::any_of(first.begin(), first.end(), [](const std::string& cell) {
-    return !cell.empty() && !cell_number(cell);
-  });
+  table.header = std::any_of(first.begin(), first.end(),
+                             [](const std::string& cell) { return !csv_number(cell); });
   if (table.separator != ',') {
     for (const std::string& cell : rows[1].cells) {
       const std::size_t comma = cell.find(',');
       if (comma == std::string::npos) continue;
       std::string point = cell;
       point[comma] = '.';
-      if (cell_number(point))
+      if (csv_number(point))
         throw InputError(fmt::format("{}:{}: '{}': write a decimal point, not a comma", file,
                                      rows[1].line, cell));
     }
@@ -156,18 +148,14 @@ struct ReadTable {
     TableColumn& column = table.columns.emplace_back();
     column.name = table.header ? first[c] : fmt::format("{}", c + 1);
     if (table.header) column.words = words_of(column.name);
-    try {
-      column.unit = take_unit(column.words, column.name);
-    } catch (const InputError& error) {
-      throw InputError(file + ": " + error.what());
-    }
+    column.unit = take_unit(column.words, fmt::format("{}: column '{}'", file, column.name));
     std::size_t numbers = 0;
     for (std::size_t r = table.header ? 1 : 0; r < rows.size(); ++r) {
       if (c >= rows[r].cells.size()) continue;
-      const auto value = cell_number(rows[r].cells[c]);
-      if (!value) continue;
+      const auto value = csv_number(rows[r].cells[c]);
+      if (!value || !std::isfinite(*value)) continue;
       ++numbers;
-      if (std::isfinite(*value)) column.largest = std::max(column.largest, std::abs(*value));
+      column.largest = std::max(column.largest, std::abs(*value));
     }
     column.is_number = 2 * numbers >= rows.size() - (table.header ? 1 : 0);
   }

@@ -44,7 +44,7 @@ inline void read_covariance(const JsonValue& report, StoredResult& result) {
   return format;
 }
 
-inline void read_noise(const JsonValue& report, StoredResult& result) {
+inline void read_noise(const JsonValue& report, std::int64_t format, StoredResult& result) {
   for (const JsonValue& entry : report.list("noise")) {
     BlockNoise noise;
     noise.block = entry.text("name");
@@ -65,7 +65,7 @@ inline void read_noise(const JsonValue& report, StoredResult& result) {
                      common->number("freedom"), common->number("scatter"),
                      common->number("effect")};
   }
-  const bool of_components = format_of(report) == 1;
+  const bool of_components = format == 1;
   for (const JsonValue& entry : report.list("error_blocks")) {
     const std::string name = entry.text("name");
     for (const BlockNoise& noise : result.noise) {
@@ -136,14 +136,14 @@ inline void read_images(const JsonValue& report, Config& config) {
 inline void read_calibration(const std::string& content, const std::string& values_file,
                              StoredResult& result) {
   const JsonValue report = JsonValue::parse(content);
-  (void)format_of(report);
+  const std::int64_t format = format_of(report);
   result.verdict = report.text("verdict");
   if (result.verdict == to_string(Grade::do_not_use)) {
     throw InputError(result.report + ": this result was judged 'do not use'; calibrate again");
   }
   read_parameters(report, values_file, result);
   read_covariance(report, result);
-  read_noise(report, result);
+  read_noise(report, format, result);
   read_poses(report, result);
   read_images(report, result.config);
 }
